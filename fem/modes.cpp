@@ -1,0 +1,106 @@
+#include "fem/modes.hpp"
+
+#include <Spectra/SymGEigsShiftSolver.h>
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "fem/stiffness_solver.hpp"
+
+namespace beamid::fem {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// What Spectra wants of (K - 0 M)^-1 and of M.
+class InverseStiffness {
+ public:
+  using Scalar = double;
+  explicit InverseStiffness(const StructuralSystem& system)
+      : size_(system.size()), solver_(system.stiffness) {}
+  Index rows() const { return size_; }
+  Index cols() const { return size_; }
+  void set_shift(double) {}  // always zero
+  void perform_op(const double* in, double* out) const {
+    Eigen::Map<VectorXd>(out, size_) = solver_.solve(Eigen::Map<const VectorXd>(in, size_));
+  }
+
+ private:
+  Index size_;
+  StiffnessSolver solver_;
+};
+
+class Mass {
+ public:
+  using Scalar = double;
+  explicit Mass(const SparseMatrix& mass) : mass_(mass) {}
+  Index rows() const { return mass_.rows(); }
+  Index cols() const { return mass_.cols(); }
+  void perform_op(const double* in, double* out) const {
+    Eigen::Map<VectorXd>(out, mass_.rows()) = mass_ * Eigen::Map<const VectorXd>(in, mass_.rows());
+  }
+
+ private:
+  const SparseMatrix& mass_;
+};
+
+MatrixXd lowest_shapes(const StructuralSystem& system, Index count) {
+  InverseStiffness inverse(system);
+  Mass mass(system.mass);
+  const Index subspace = std::min(system.size(), std::max<Index>(2 * count + 1, 20));
+  Spectra::SymGEigsShiftSolver<InverseStiffness, Mass, Spectra::GEigsMode::ShiftInvert> solver(
+      inverse, mass, count, subspace, 0.0);
+  solver.init();
+  const Index found =
+      solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-13, Spectra::SortRule::SmallestAlge);
+  if (solver.info() != Spectra::CompInfo::Successful)
+    throw std::runtime_error("modes: " + std::to_string(found) + " of " + std::to_string(count) +
+                             " eigenvalues converged");
+  return solver.eigenvectors();
+}
+
+// M = L L^T and D = R R^T: the singular values of R^T B L^-T are the frequencies, v = L^T phi.
+MatrixXd all_shapes(const StructuralSystem& system) {
+  const Eigen::LLT<MatrixXd> mass{MatrixXd(system.mass)};
+  const Eigen::LLT<MatrixXd> rigidity{MatrixXd(system.stiffness.rigidity)};
+  if (mass.info() != Eigen::Success)
+    throw std::runtime_error("modes: the mass matrix is not positive definite");
+  const MatrixXd strain = rigidity.matrixU() * MatrixXd(system.stiffness.strain);
+  const MatrixXd factor = mass.matrixL().solve(strain.transpose()).transpose();
+  const Eigen::BDCSVD<MatrixXd> svd(factor, Eigen::ComputeThinV);
+  return mass.matrixU().solve(svd.matrixV()).rowwise().reverse();
+}
+
+}  // namespace
+
+VectorXd Modes::frequency_hz() const {
+  return angular_frequency / (2.0 * std::numbers::pi);
+}
+
+Modes modes(const StructuralSystem& system, Index count) {
+  const Index n = system.size();
+  if (count < 1 || count > n)
+    throw std::invalid_argument("modes: count is " + std::to_string(count) + "; expected 1 to " +
+                                std::to_string(n));
+  const bool few = 3 * count < n && n > 60;
+  Modes result;
+  result.shape = few ? lowest_shapes(system, count) : MatrixXd(all_shapes(system).leftCols(count));
+  result.angular_frequency.resize(count);
+  result.residual.resize(count);
+  const StiffnessSolver solver(system.stiffness);
+  for (Index i = 0; i < count; ++i) {
+    auto shape = result.shape.col(i);
+    shape /= std::sqrt(shape.dot(system.mass * shape));
+    const double square = system.stiffness.energy(shape);
+    result.angular_frequency[i] = std::sqrt(square);
+    const VectorXd difference = shape - square * solver.solve(system.mass * shape);
+    result.residual[i] = std::sqrt(difference.dot(system.mass * difference));
+  }
+  return result;
+}
+
+}  // namespace beamid::fem

@@ -1,0 +1,56 @@
+// The equations of motion that full and reduced models share.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <string>
+#include <vector>
+
+namespace beamid::fem {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// Stiffness kept as its natural-strain factors, K = B^T D B.
+///
+/// The assembled K of a fine beam has lost its small eigenvalues to rounding; its factors have not: the
+/// entries of B are 0 and +-1 on a uniform mesh, and D is block diagonal.
+struct StrainFactors {
+  SparseMatrix strain;       ///< B (s x n): coordinates -> natural strains
+  SparseMatrix rigidity;     ///< D (s x s): symmetric positive definite
+  SparseMatrix flexibility;  ///< D^-1 (s x s), from its own closed form and not from inverting D
+
+  /// K = B^T D B (n x n), for the solvers that need it assembled.
+  SparseMatrix assembled() const { return strain.transpose() * rigidity * strain; }
+
+  /// Twice the strain energy, (B q)^T D (B q) [J] for q (n): accurate where q^T K q is not.
+  double energy(const Eigen::VectorXd& q) const {
+    const Eigen::VectorXd e = strain * q;
+    return e.dot(rigidity * e);
+  }
+};
+
+/// What one coordinate of a system measures.
+struct Coordinate {
+  enum class Kind { deflection, rotation, generalised };
+  Kind kind = Kind::generalised;
+  double position = 0.0;  ///< along the beam [m]; meaningless when generalised
+  double scale = 1.0;     ///< coordinate = scale x (deflection [m] or rotation [rad])
+};
+
+/// M q'' + C q' + K q = E f,  y = H q.
+///
+/// n coordinates, m inputs (forces [N]), p outputs (displacements [m]). A reduction maps one such system to a
+/// smaller one (reduction/projection.hpp), so whatever runs on the continuum runs on a reduced model.
+struct StructuralSystem {
+  std::vector<Coordinate> coordinates;    ///< n
+  SparseMatrix mass;                      ///< M (n x n), symmetric positive definite
+  SparseMatrix damping;                   ///< C (n x n), viscous
+  StrainFactors stiffness;                ///< K = B^T D B
+  SparseMatrix inputs;                    ///< E (n x m)
+  SparseMatrix outputs;                   ///< H (p x n)
+  std::vector<std::string> input_names;   ///< m
+  std::vector<std::string> output_names;  ///< p
+
+  Eigen::Index size() const { return mass.rows(); }
+};
+
+}  // namespace beamid::fem
