@@ -1,0 +1,79 @@
+#include "filters/discrete_model.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "filters/central_differences.hpp"
+
+namespace beamid::filters {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+void DiscreteModel::linearised_transition(const VectorXd& state, const VectorXd& input, VectorXd& next,
+                                          MatrixXd& jacobian) {
+  central_differences([&](const VectorXd& z, VectorXd& value) { transition(z, input, value); }, state,
+                      state.size(), jacobian);
+  transition(state, input, next);
+}
+
+void DiscreteModel::output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) {
+  central_differences([&](const VectorXd& z, VectorXd& value) { output(z, input, value); }, state,
+                      static_cast<Index>(output_labels().size()), jacobian);
+}
+
+namespace {
+
+class Discretised final : public DiscreteModel {
+ public:
+  Discretised(std::shared_ptr<const ContinuousModel> model, double dt, std::unique_ptr<Scheme> scheme,
+              Noise noise)
+      : model_(std::move(model)), dt_(dt), scheme_(std::move(scheme)), noise_(std::move(noise)) {}
+
+  std::vector<Label> state_labels() const override { return model_->state_labels(); }
+  std::vector<Label> output_labels() const override { return model_->output_labels(); }
+  const MatrixXd& process_noise() const override { return noise_.process; }
+  const MatrixXd& output_noise() const override { return noise_.output; }
+
+  void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
+    scheme_->step(*model_, state, input, dt_, next, nullptr);
+  }
+  void linearised_transition(const VectorXd& state, const VectorXd& input, VectorXd& next,
+                             MatrixXd& jacobian) override {
+    scheme_->step(*model_, state, input, dt_, next, &jacobian);
+  }
+  void output(const VectorXd& state, const VectorXd& input, VectorXd& output) override {
+    model_->output(state, input, output);
+  }
+  void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) override {
+    model_->output_jacobian(state, input, jacobian);
+  }
+
+ private:
+  std::shared_ptr<const ContinuousModel> model_;
+  double dt_;
+  std::unique_ptr<Scheme> scheme_;
+  Noise noise_;
+};
+
+void require_square(const MatrixXd& matrix, Index size, const char* name) {
+  if (matrix.rows() == size && matrix.cols() == size) return;
+  throw std::invalid_argument(std::string(name) + " is " + std::to_string(matrix.rows()) + " x " +
+                              std::to_string(matrix.cols()) + "; expected " + std::to_string(size) + " x " +
+                              std::to_string(size));
+}
+
+}  // namespace
+
+std::unique_ptr<DiscreteModel> discretise(std::shared_ptr<const ContinuousModel> model, double dt,
+                                          const std::string& scheme, Noise noise) {
+  if (!(dt > 0.0))
+    throw std::invalid_argument("interval is " + std::to_string(dt) + " s; expected more than 0");
+  const auto states = static_cast<Index>(model->state_labels().size());
+  if (noise.process.size() == 0) noise.process.setZero(states, states);
+  require_square(noise.process, states, "process noise");
+  require_square(noise.output, static_cast<Index>(model->output_labels().size()), "output noise");
+  return std::make_unique<Discretised>(std::move(model), dt, scheme_registry().make(scheme, {}),
+                                       std::move(noise));
+}
+
+}  // namespace beamid::filters

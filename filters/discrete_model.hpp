@@ -1,0 +1,48 @@
+// What a filter sees of a model.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "filters/continuous_model.hpp"
+#include "filters/scheme.hpp"
+
+namespace beamid::filters {
+
+/// z_k+1 = F(z_k, u_k) + w,  y_k = h(z_k, u_k) + v,  w ~ N(0, Q), v ~ N(0, R).
+///
+/// Models may keep work space: each filter owns one.
+class DiscreteModel {
+ public:
+  virtual ~DiscreteModel() = default;
+
+  virtual std::vector<Label> state_labels() const = 0;       ///< n
+  virtual std::vector<Label> output_labels() const = 0;      ///< p
+  virtual const Eigen::MatrixXd& process_noise() const = 0;  ///< Q (n x n)
+  virtual const Eigen::MatrixXd& output_noise() const = 0;   ///< R (p x p)
+
+  virtual void transition(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
+                          Eigen::VectorXd& next) = 0;
+  /// F(z, u) and its Jacobian (n x n); central differences unless overridden.
+  virtual void linearised_transition(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
+                                     Eigen::VectorXd& next, Eigen::MatrixXd& jacobian);
+
+  virtual void output(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
+                      Eigen::VectorXd& output) = 0;
+  /// dh/dz (p x n); central differences unless overridden.
+  virtual void output_jacobian(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
+                               Eigen::MatrixXd& jacobian);
+};
+
+struct Noise {
+  Eigen::MatrixXd process;  ///< Q (n x n) per step; empty: none
+  Eigen::MatrixXd output;   ///< R (p x p)
+};
+
+/// The continuous model sampled at interval `dt` [s] by a registered scheme ("exponential", ...).
+/// @throws std::invalid_argument on an unknown scheme, dt <= 0, or noise of the wrong shape.
+std::unique_ptr<DiscreteModel> discretise(std::shared_ptr<const ContinuousModel> model, double dt,
+                                          const std::string& scheme, Noise noise);
+
+}  // namespace beamid::filters

@@ -1,0 +1,44 @@
+#include "filters/filter_run.hpp"
+
+#include <stdexcept>
+
+namespace beamid::filters {
+
+FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements, Keep keep,
+              Start start) {
+  const Eigen::Index samples = measurements.time.size();
+  const auto outputs = static_cast<Eigen::Index>(filter.model().output_labels().size());
+  if (measurements.outputs.rows() != outputs || measurements.outputs.cols() != samples)
+    throw std::invalid_argument("outputs are " + std::to_string(measurements.outputs.rows()) + " x " +
+                                std::to_string(measurements.outputs.cols()) + "; expected " +
+                                std::to_string(outputs) + " x " + std::to_string(samples));
+  if (measurements.inputs.size() > 0 && measurements.inputs.cols() != samples)
+    throw std::invalid_argument("inputs have " + std::to_string(measurements.inputs.cols()) +
+                                " columns; expected " + std::to_string(samples));
+
+  FilterRun result;
+  result.innovations.setZero(outputs, samples);
+  result.normalised_squares.setZero(samples);
+  Eigen::VectorXd input, output(outputs);
+  filter.reset(initial);
+  Eigen::Index step = 0;
+  try {
+    for (; step < samples; ++step) {
+      if (step > 0 || start == Start::one_interval_before) filter.predict(input);
+      if (keep == Keep::all_beliefs) result.predicted.push_back(filter.belief());
+      if (measurements.inputs.size() > 0) input = measurements.inputs.col(step);
+      output = measurements.outputs.col(step);
+      const Correction& correction = filter.correct(output, input);
+      result.innovations.col(step) = correction.innovation;
+      result.normalised_squares[step] = correction.normalised_square;
+      result.log_likelihood += correction.log_likelihood;
+      if (keep == Keep::all_beliefs) result.filtered.push_back(filter.belief());
+    }
+  } catch (const FilterFailure& trouble) {
+    result.failure = Failure{step, measurements.time[step], trouble.what(), trouble.smallest_eigenvalue};
+  }
+  result.last = filter.belief();
+  return result;
+}
+
+}  // namespace beamid::filters

@@ -1,0 +1,78 @@
+#include "filters/innovation.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace beamid::filters {
+namespace {
+
+using Eigen::MatrixXd;
+
+double smallest_eigenvalue(const MatrixXd& matrix) {
+  if (!matrix.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+}  // namespace
+
+MatrixXd weigh(Correction& correction, const MatrixXd& cross, Eigen::LLT<MatrixXd>& factor) {
+  const MatrixXd& s = correction.innovation_covariance;
+  factor.compute(s);
+  if (factor.info() != Eigen::Success || !s.allFinite())
+    throw FilterFailure("the innovation covariance is not positive definite", smallest_eigenvalue(s));
+  const Eigen::VectorXd whitened = factor.matrixL().solve(correction.innovation);
+  const auto p = static_cast<double>(s.rows());
+  correction.normalised_square = whitened.squaredNorm();
+  const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  correction.log_likelihood =
+      -0.5 * (correction.normalised_square + log_determinant + p * std::log(2.0 * std::numbers::pi));
+  return factor.solve(cross.transpose()).transpose();
+}
+
+MatrixXd square_root(const MatrixXd& covariance, Eigen::LLT<MatrixXd>& factor) {
+  factor.compute(covariance);
+  if (factor.info() == Eigen::Success) return factor.matrixL();
+  if (!covariance.allFinite())
+    throw FilterFailure("the covariance is not finite", std::numeric_limits<double>::quiet_NaN());
+  // Semidefinite to rounding: clip. Correlation form, since the units of the states may differ widely.
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> correlation(inverse.asDiagonal() * covariance *
+                                                            inverse.asDiagonal());
+  const double smallest = correlation.eigenvalues()[0];
+  if (smallest < -1e-10)
+    throw FilterFailure("the covariance has lost its positivity (eigenvalue of its correlation matrix)",
+                        smallest);
+  return scale.asDiagonal() * correlation.eigenvectors() *
+         correlation.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+void symmetrise(MatrixXd& covariance) {
+  for (Eigen::Index j = 0; j < covariance.cols(); ++j)
+    for (Eigen::Index i = 0; i < j; ++i)
+      covariance(i, j) = covariance(j, i) = 0.5 * (covariance(i, j) + covariance(j, i));
+}
+
+void check_finite(const Gaussian& belief) {
+  if (!belief.mean.allFinite())
+    throw FilterFailure("the mean is not finite", smallest_eigenvalue(belief.covariance));
+  const auto variances = belief.covariance.diagonal().array();
+  if (!(variances >= 0.0).all() || !variances.allFinite())
+    throw FilterFailure("a variance is negative or not finite", smallest_eigenvalue(belief.covariance));
+}
+
+void check_belief(const Gaussian& belief, const DiscreteModel& model) {
+  const auto n = static_cast<Eigen::Index>(model.state_labels().size());
+  if (belief.mean.size() != n || belief.covariance.rows() != n || belief.covariance.cols() != n)
+    throw std::invalid_argument("initial belief has a mean of " + std::to_string(belief.mean.size()) +
+                                " and a covariance of " + std::to_string(belief.covariance.rows()) + " x " +
+                                std::to_string(belief.covariance.cols()) + "; expected " + std::to_string(n));
+  const bool finite = belief.mean.allFinite() && belief.covariance.allFinite();
+  if (!finite || !belief.covariance.isApprox(belief.covariance.transpose(), 1e-12) ||
+      smallest_eigenvalue(belief.covariance) < -1e-12 * belief.covariance.norm())
+    throw std::invalid_argument("initial covariance must be finite, symmetric and positive semidefinite");
+}
+
+}  // namespace beamid::filters

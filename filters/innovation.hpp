@@ -1,0 +1,29 @@
+// Steps that Gaussian filters share: weighing an innovation, and noticing numerical trouble.
+#pragma once
+
+#include <Eigen/Cholesky>
+
+#include "filters/filter.hpp"
+
+namespace beamid::filters {
+
+/// Gain G = cross S^-1 (n x p) for cross = cov(z, y) (n x p); fills the correction's normalised square and
+/// log-likelihood from its innovation and S. @throws FilterFailure when S is not positive definite.
+Eigen::MatrixXd weigh(Correction& correction, const Eigen::MatrixXd& cross,
+                      Eigen::LLT<Eigen::MatrixXd>& factor);
+
+/// Lower L (n x n) with L L^T = covariance, also where it is only semidefinite (a state known exactly).
+/// @throws FilterFailure when an eigenvalue is negative beyond rounding.
+Eigen::MatrixXd square_root(const Eigen::MatrixXd& covariance, Eigen::LLT<Eigen::MatrixXd>& factor);
+
+/// Replaces P by (P + P^T) / 2.
+void symmetrise(Eigen::MatrixXd& covariance);
+
+/// @throws FilterFailure when the mean or the covariance's diagonal is not finite, or a variance is negative.
+void check_finite(const Gaussian& belief);
+
+/// @throws std::invalid_argument when the belief does not fit the model or its covariance is not symmetric
+/// positive semidefinite.
+void check_belief(const Gaussian& belief, const DiscreteModel& model);
+
+}  // namespace beamid::filters

@@ -1,0 +1,30 @@
+// z+ = A z + w, y = C z + v: where the Kalman filter is exact.
+#pragma once
+
+#include "filters/discrete_model.hpp"
+
+namespace beamid::test {
+
+class LinearModel final : public filters::DiscreteModel {
+ public:
+  Eigen::MatrixXd a, c, q, r;
+
+  std::vector<filters::Label> state_labels() const override { return std::vector<filters::Label>(a.rows()); }
+  std::vector<filters::Label> output_labels() const override { return std::vector<filters::Label>(c.rows()); }
+  const Eigen::MatrixXd& process_noise() const override { return q; }
+  const Eigen::MatrixXd& output_noise() const override { return r; }
+  void transition(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& next) override {
+    next = a * z;
+  }
+  void linearised_transition(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& next,
+                             Eigen::MatrixXd& jacobian) override {
+    next = a * z;
+    jacobian = a;
+  }
+  void output(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& y) override { y = c * z; }
+  void output_jacobian(const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& jacobian) override {
+    jacobian = c;
+  }
+};
+
+}  // namespace beamid::test
