@@ -1,0 +1,62 @@
+#include "reduction/reduction.hpp"
+
+#include <Eigen/QR>
+#include <Eigen/SparseCholesky>
+#include <stdexcept>
+
+namespace beamid::reduction {
+
+using Eigen::Index, Eigen::MatrixXd;
+
+ReductionRegistry& reduction_registry() {
+  static ReductionRegistry registry("reduction");
+  return registry;
+}
+
+namespace {
+
+// U B Phi with D = U^T U.
+MatrixXd weighted_strain(const fem::StrainFactors& stiffness, const MatrixXd& shapes) {
+  const Eigen::SimplicialLLT<fem::SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> rigidity(
+      stiffness.rigidity);
+  return rigidity.matrixU() * MatrixXd(stiffness.strain * shapes);
+}
+
+}  // namespace
+
+ReducedModel project(const fem::StructuralSystem& system, const Bases& bases) {
+  const MatrixXd& shapes = bases.shapes;
+  const Index n = system.size(), r = shapes.cols();
+  if (shapes.rows() != n || r < 1 || r > n)
+    throw std::invalid_argument("shapes are " + std::to_string(shapes.rows()) + " x " + std::to_string(r) +
+                                "; expected " + std::to_string(n) + " rows and 1 to " + std::to_string(n) +
+                                " columns");
+  const Eigen::HouseholderQR<MatrixXd> strain(weighted_strain(system.stiffness, shapes));
+  const MatrixXd factor = strain.matrixQR().topRows(r).triangularView<Eigen::Upper>();
+  const auto diagonal = factor.diagonal().array().abs();
+  if (!(diagonal.minCoeff() > 1e-13 * diagonal.maxCoeff()))
+    throw std::invalid_argument(
+        "shapes depend on each other, or one of them moves the structure without strain");
+
+  fem::SparseMatrix identity(r, r);
+  identity.setIdentity();
+  ReducedModel model;
+  model.shapes = shapes;
+  model.system.coordinates.resize(r);
+  const MatrixXd mass = shapes.transpose() * (system.mass * shapes);
+  const MatrixXd damping = shapes.transpose() * (system.damping * shapes);
+  model.system.mass = (0.5 * (mass + mass.transpose())).sparseView();
+  model.system.damping = (0.5 * (damping + damping.transpose())).sparseView();
+  model.system.stiffness = {factor.sparseView(), identity, identity};
+  model.system.inputs = MatrixXd(shapes.transpose() * system.inputs).sparseView();
+  model.system.outputs = MatrixXd(system.outputs * shapes).sparseView();
+  model.system.input_names = system.input_names;
+  model.system.output_names = system.output_names;
+  return model;
+}
+
+ReducedModel reduce(const fem::StructuralSystem& system, const Reduction& reduction) {
+  return project(system, reduction.bases(system));
+}
+
+}  // namespace beamid::reduction
