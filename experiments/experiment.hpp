@@ -1,0 +1,63 @@
+// One identification, as its TOML file describes it (docs/configuration.md).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/input/input_error.hpp"
+#include "experiments/record.hpp"
+#include "fem/beam.hpp"
+#include "filters/options.hpp"
+
+namespace beamid::experiments {
+
+/// A registered method and its options, chosen by name.
+struct Choice {
+  std::string name;
+  filters::Options options;
+  Place place = {};  ///< where it was chosen, for messages; empty when it was not
+};
+
+/// One column of a delimited file: by number, from 1, or by the name in the header.
+struct ColumnDescription {
+  Quantity quantity = Quantity::acceleration;
+  std::string name;   ///< in the header; empty when chosen by number
+  int number = 0;     ///< from 1; 0 when chosen by name
+  double factor = 1;  ///< to SI units
+};
+
+/// How a delimited text file is to be read.
+struct RecordFormat {
+  char separator = '\0';  ///< '\0': the first of tab, semicolon, comma in the first row, else blanks (' ')
+  int header_lines = 0;   ///< before the rows, the last non-blank one naming columns; 0 finds a single one
+  std::optional<ColumnDescription> time;  ///< factor to seconds
+  std::optional<double> sampling_rate;  ///< [Hz]; replaces the printed times, counted from the first of them
+  std::vector<ColumnDescription> channels;          ///< empty: the header's names tell quantities and units
+  std::optional<std::pair<double, double>> window;  ///< [s]
+  Place window_place;                               ///< where the window is set, for messages
+};
+
+/// What is believed before the record is seen; absent values are worked out from the model and the record.
+struct PriorBelief {
+  std::optional<double> stiffness, stiffness_deviation;  ///< [N/m]
+  std::optional<double> damping_ratio, damping_ratio_deviation;
+};
+
+struct Experiment {
+  std::string title;
+  fem::Beam beam;
+  int elements = 40;
+  std::optional<std::string> record_file;  ///< relative to the TOML file's folder
+  RecordFormat format;
+  Choice reduction{"rayleigh", {}};
+  Choice model{"sdof", {}};
+  Choice filter{"ekf", {}};
+  std::string discretisation = "exponential";
+  PriorBelief prior;
+  std::map<Quantity, double> noise;  ///< standard deviation per quantity [SI]; absent: from the record
+};
+
+}  // namespace beamid::experiments

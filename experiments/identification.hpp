@@ -1,0 +1,41 @@
+// Stiffness and damping from a record, by a filter on a joint model.
+#pragma once
+
+#include <string>
+
+#include "experiments/joint_model.hpp"
+#include "experiments/oscillator.hpp"
+#include "filters/filter_run.hpp"
+
+namespace beamid::experiments {
+
+/// How a record is identified.
+struct IdentificationSettings {
+  std::string filter = "ekf";
+  filters::Options filter_options;
+  std::string discretisation = "exponential";
+  filters::Gaussian initial;                               ///< belief about [x, v, K, C, ...]
+  filters::Start start = filters::Start::at_first_sample;  ///< what instant that belief is about
+  Eigen::MatrixXd output_noise;                            ///< R
+  /// Times the record is filtered; each pass starts from the parameters the one before ended with, and from
+  /// the same initial covariance. Repeating removes what is left of the linearisation about a poor first
+  /// guess.
+  int passes = 1;
+};
+
+/// What was found.
+struct Identification {
+  Oscillator found;                ///< K and C at the end of the record
+  double stiffness_deviation = 0;  ///< standard deviations the filter reports
+  double damping_deviation = 0;
+  double frequency_deviation_hz = 0;
+  double damping_ratio_deviation = 0;
+  filters::FilterRun run;  ///< of the last pass
+};
+
+/// @throws std::invalid_argument when the settings do not fit the model or the record.
+Identification identify(const JointModel& model, const filters::Measurements& record,
+                        const IdentificationSettings& settings,
+                        filters::Keep keep = filters::Keep::last_belief);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,78 @@
+#include "experiments/input/read_experiment.hpp"
+
+#include "experiments/input/method_choice.hpp"
+#include "experiments/input/read_beam.hpp"
+#include "experiments/input/read_record_format.hpp"
+#include "experiments/input/units.hpp"
+#include "experiments/input/vocabulary.hpp"
+#include "experiments/joint_model.hpp"
+#include "filters/filter.hpp"
+#include "filters/scheme.hpp"
+#include "reduction/reduction.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+PriorBelief read_prior(const TomlTable& table) {
+  PriorBelief prior;
+  prior.stiffness = table.find_number("stiffness_n_per_m", Sign::positive);
+  prior.stiffness_deviation = table.find_number("stiffness_deviation_n_per_m", Sign::positive);
+  prior.damping_ratio = table.find_number("damping_ratio", Sign::not_negative);
+  prior.damping_ratio_deviation = table.find_number("damping_ratio_deviation", Sign::positive);
+  if (prior.damping_ratio && *prior.damping_ratio >= 1)
+    table.refuse("damping_ratio", "a number from 0 to below 1");
+  return prior;
+}
+
+std::map<Quantity, double> read_noise(const TomlTable& table) {
+  std::map<Quantity, double> noise;
+  for (const Quantity quantity : {Quantity::displacement, Quantity::velocity, Quantity::acceleration}) {
+    const std::string key = std::string(to_string(quantity)) + "_" + units(quantity).front().suffix;
+    if (const auto deviation = table.find_number(key, Sign::positive)) noise[quantity] = *deviation;
+  }
+  return noise;
+}
+
+/// The methods; an absent table means the Experiment's own default.
+void read_methods(const TomlTable& root, Experiment& experiment) {
+  const auto choose = [&](const char* name, const char* key, Choice& choice, const auto& registry,
+                          const std::vector<std::string>& others) {
+    if (const auto table = root.find_table(name))
+      choice = read_choice(*table, key, choice.name, registry, others);
+    else
+      choice.options = registry.completed(choice.name, choice.options);
+  };
+  choose("reduction", "method", experiment.reduction, reduction::reduction_registry(), {});
+  choose("model", "name", experiment.model, model_registry(), {});
+  choose("filter", "method", experiment.filter, filters::filter_registry(), {"discretisation"});
+  if (const auto table = root.find_table("filter")) {
+    experiment.discretisation = table->find_text("discretisation").value_or(experiment.discretisation);
+    at_place(table->value_place("discretisation"),
+             [&] { filters::scheme_registry().find(experiment.discretisation); });
+  }
+}
+
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& file) {
+  constexpr int most_elements = 1000000;
+  const TomlTable root = TomlTable::read(file);
+  refuse_unknown_keys(root);
+  Experiment experiment;
+  experiment.title = root.find_text("title").value_or("");
+  const TomlTable beam = root.table("beam");
+  experiment.beam = read_beam(beam);
+  experiment.elements = beam.find_whole_number("elements", 1, most_elements).value_or(experiment.elements);
+  if (const auto record = root.find_table("record")) {
+    experiment.record_file = record->find_text("file");
+    if (experiment.record_file && experiment.record_file->empty())
+      record->refuse("file", "the name of a file");
+    experiment.format = read_record_format(*record);
+  }
+  read_methods(root, experiment);
+  if (const auto prior = root.find_table("prior")) experiment.prior = read_prior(*prior);
+  if (const auto noise = root.find_table("noise")) experiment.noise = read_noise(*noise);
+  return experiment;
+}
+
+}  // namespace beamid::experiments

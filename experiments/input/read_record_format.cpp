@@ -1,0 +1,70 @@
+#include "experiments/input/read_record_format.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "experiments/input/spelling.hpp"
+#include "experiments/input/units.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+constexpr int most_columns = 100000, most_header_lines = 1000000;
+
+/// @param what measured: "acceleration", for messages.
+double read_factor(const TomlTable& table, const std::string& what, const std::vector<Unit>& known) {
+  const std::string expected = "a unit of " + what + ": " + joined(symbols(known));
+  if (!table.contains("unit")) table.miss("unit", expected);
+  const std::optional<std::string> symbol = table.find_text("unit");
+  const auto unit =
+      std::find_if(known.begin(), known.end(), [&](const Unit& u) { return u.symbol == *symbol; });
+  if (unit == known.end()) table.refuse("unit", expected);
+  return unit->factor;
+}
+
+ColumnDescription read_column(const TomlTable& table) {
+  constexpr const char* expected = "a column's number, from 1, or its name in the header";
+  ColumnDescription column;
+  const auto value = table.find_value("column");
+  if (!value) table.miss("column", expected);
+  if (std::holds_alternative<double>(*value))
+    column.number = *table.find_whole_number("column", 1, most_columns);
+  else if (std::holds_alternative<std::string>(*value))
+    column.name = std::get<std::string>(*value);
+  if (column.number == 0 && column.name.empty()) table.refuse("column", expected);
+  return column;
+}
+
+ColumnDescription read_channel(const TomlTable& table) {
+  std::vector<std::string> names;
+  for (const Quantity quantity : all_quantities) names.emplace_back(to_string(quantity));
+  const std::optional<std::string> name = table.find_text("quantity", names);
+  if (!name) table.miss("quantity", "one of " + joined(names));
+  ColumnDescription channel = read_column(table);
+  channel.quantity = *find_quantity(*name);
+  channel.factor = read_factor(table, *name, units(channel.quantity));
+  return channel;
+}
+
+}  // namespace
+
+RecordFormat read_record_format(const TomlTable& table) {
+  static const std::map<std::string, char> separators{
+      {"auto", '\0'}, {"tab", '\t'}, {"comma", ','}, {"semicolon", ';'}, {"space", ' '}};
+  RecordFormat format;
+  const std::vector<std::string> names{"auto", "tab", "comma", "semicolon", "space"};
+  format.separator = separators.at(table.find_text("separator", names).value_or("auto"));
+  format.header_lines = table.find_whole_number("header_lines", 0, most_header_lines).value_or(0);
+  format.sampling_rate = table.find_number("sampling_rate_hz", Sign::positive);
+  format.window = table.find_interval("window_s");
+  if (format.window) format.window_place = table.value_place("window_s");
+  if (const auto time = table.find_table("time")) {
+    format.time = read_column(*time);
+    format.time->factor = read_factor(*time, "time", time_units());
+  }
+  for (const TomlTable& channel : table.find_tables("channels"))
+    format.channels.push_back(read_channel(channel));
+  return format;
+}
+
+}  // namespace beamid::experiments

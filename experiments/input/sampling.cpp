@@ -1,0 +1,66 @@
+#include "experiments/input/sampling.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace beamid::experiments {
+
+void PrintedPrecision::add(std::string_view token) {
+  int decimals = 0, digits = 0, exponent = 0;
+  bool point = false;
+  for (std::size_t i = 0; i < token.size(); ++i) {
+    if (token[i] == '.') {
+      point = true;
+    } else if (token[i] == 'e' || token[i] == 'E') {
+      const std::size_t start = i + (token.substr(i + 1).starts_with('+') ? 2 : 1);
+      std::from_chars(token.data() + start, token.data() + token.size(), exponent);
+      break;
+    } else if (token[i] >= '0' && token[i] <= '9') {
+      decimals += point ? 1 : 0;
+      digits += digits > 0 || token[i] != '0' ? 1 : 0;
+    }
+  }
+  decimals_ = std::max(decimals_, decimals - exponent);
+  digits_ = std::max(digits_, digits);
+}
+
+double PrintedPrecision::resolution(double value) const {
+  const double fixed = std::pow(10.0, -decimals_);
+  if (value == 0) return fixed;
+  return std::max(fixed, std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - digits_));
+}
+
+std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,
+                                                 const PrintedPrecision& precision) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    intervals.push_back(times[i] - times[i - 1]);
+    if (intervals.back() <= 0)
+      return SamplingFault{
+          i, fmt::format("time {} after {}; expected increasing times", times[i], times[i - 1])};
+  }
+  if (intervals.empty()) return std::nullopt;
+  std::vector<double> sorted = intervals;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  const double median = sorted[sorted.size() / 2];
+  constexpr double tolerated = 0.05, slack = 1 + 1e-6;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double deviation = std::abs(intervals[i - 1] - median);
+    if (deviation <= tolerated * median) continue;
+    const double rounding = std::max(precision.resolution(times[i]), precision.resolution(times[i - 1]));
+    const bool coarse = rounding > 0.5 * median * slack;  // a missing sample would look the same
+    if (coarse || deviation > (tolerated * median + rounding) * slack)
+      return SamplingFault{
+          i, fmt::format(
+                 "time {} after {}, an interval of {:.6g}; expected the median interval {:.6g} within 5 %{}",
+                 times[i], times[i - 1], intervals[i - 1], median,
+                 coarse ? " (times printed this coarsely need record.sampling_rate_hz)" : "")};
+  }
+  return std::nullopt;
+}
+
+}  // namespace beamid::experiments

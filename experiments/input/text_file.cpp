@@ -1,0 +1,43 @@
+#include "experiments/input/text_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "experiments/input/input_error.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+bool is_binary(char byte) {
+  return byte >= 0 && byte < '\t';
+}
+
+}  // namespace
+
+std::string read_text(const std::filesystem::path& file, const std::string& expected) {
+  const Place place{file.string(), 0, 0};
+  std::error_code failure;
+  const std::filesystem::file_status status = std::filesystem::status(file, failure);
+  if (!std::filesystem::exists(status)) throw InputError(place, "no such file; expected " + expected);
+  if (std::filesystem::is_directory(status)) throw InputError(place, "a directory; expected " + expected);
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(place, "cannot be opened; expected " + expected + " that may be read");
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  if (stream.bad()) throw InputError(place, "cannot be read to its end; expected " + expected);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.empty()) throw InputError(place, "an empty file; expected " + expected);
+  if (const auto byte = std::find_if(text.begin(), text.end(), is_binary); byte != text.end()) {
+    const auto line = std::count(text.begin(), byte, '\n') + 1;
+    const std::size_t before = text.rfind('\n', static_cast<std::size_t>(byte - text.begin()));
+    const std::size_t start = before == std::string::npos ? 0 : before + 1;
+    throw InputError({place.file, static_cast<std::size_t>(line),
+                      static_cast<std::size_t>(byte - text.begin()) - start + 1},
+                     "a binary byte (" + std::to_string(static_cast<int>(*byte)) + "); expected " + expected +
+                         " in ASCII or UTF-8");
+  }
+  return text;
+}
+
+}  // namespace beamid::experiments

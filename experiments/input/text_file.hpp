@@ -1,0 +1,17 @@
+// A whole text file in memory.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace beamid::experiments {
+
+/// The file's bytes, without the byte-order mark some editors put in front.
+///
+/// @param expected what the file should hold, for messages: "a TOML file".
+/// @throws InputError when the file is missing, a directory, unreadable, empty or not text (holds a control
+/// byte
+///         that no text has, as compressed, binary and UTF-16 files do).
+std::string read_text(const std::filesystem::path& file, const std::string& expected);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,145 @@
+#include "experiments/input/toml_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/input/text_file.hpp"
+#include "experiments/input/toml_node.hpp"
+
+namespace beamid::experiments {
+
+std::string found(const toml::node& node) {
+  constexpr std::size_t longest = 40;
+  if (const auto* text = node.as_string())
+    return fmt::format("the text \"{}\"",
+                       text->get().size() > longest ? text->get().substr(0, longest) + "..." : text->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  if (const auto* array = node.as_array()) return fmt::format("an array of {}", array->size());
+  return node.is_table() ? "a table" : "a date or time";
+}
+
+namespace {
+
+/// toml++ builds and destroys dotted keys recursively; one of some ten thousand parts would exhaust the
+/// stack.
+void refuse_long_lines(const std::string& text, const std::string& file) {
+  constexpr std::size_t longest = 4096;
+  std::size_t line = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > longest)
+      throw InputError({file, line, longest + 1},
+                       fmt::format("a line of {} characters; expected at most {}", end - begin, longest));
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
+TomlTable TomlTable::read(const std::filesystem::path& file) {
+  const std::string text = read_text(file, "a TOML file");
+  refuse_long_lines(text, file.string());
+  try {
+    auto root = std::make_shared<const toml::table>(toml::parse(text, file.string()));
+    return TomlTable(std::make_shared<const Node>(Node{root, root.get(), file.string(), ""}));
+  } catch (const toml::parse_error& error) {
+    throw InputError({file.string(), error.source().begin.line, error.source().begin.column},
+                     fmt::format("no valid TOML: {}", error.description()));
+  }
+}
+
+const std::string& TomlTable::name() const {
+  return node_->name;
+}
+
+std::string TomlTable::path(const std::string& key) const {
+  return node_->name.empty() ? key : node_->name + "." + key;
+}
+
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::pair<toml::source_position, std::string>> placed;
+  for (const auto& [key, value] : *node_->table)
+    placed.emplace_back(key.source().begin, std::string(key.str()));
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (auto& [position, key] : placed) names.push_back(std::move(key));
+  return names;
+}
+
+bool TomlTable::contains(const std::string& key) const {
+  return node_->table->contains(key);
+}
+
+Place TomlTable::place() const {
+  return node_->name.empty() ? Place{node_->file, 0, 0} : node_->at(node_->table->source());
+}
+
+Place TomlTable::key_place(const std::string& key) const {
+  const auto it = node_->table->find(key);
+  return it == node_->table->end() ? place() : node_->at(it->first.source());
+}
+
+Place TomlTable::value_place(const std::string& key) const {
+  const toml::node* const value = node_->table->get(key);
+  return value == nullptr ? place() : node_->at(value->source());
+}
+
+void TomlTable::refuse(const std::string& key, const std::string& expected) const {
+  throw InputError(value_place(key),
+                   fmt::format("{} is {}; expected {}", path(key), found(*node_->table->get(key)), expected));
+}
+
+void TomlTable::miss(const std::string& key, const std::string& expected) const {
+  throw InputError(place(), fmt::format("{} is missing; expected {}", path(key), expected));
+}
+
+std::optional<TomlTable> TomlTable::find_table(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_table()) refuse(key, "a table");
+  return TomlTable(std::make_shared<const Node>(Node{node_->root, node->as_table(), node_->file, path(key)}));
+}
+
+std::vector<TomlTable> TomlTable::find_tables(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return {};
+  const toml::array* const array = node->as_array();
+  if (array == nullptr || array->empty()) refuse(key, "an array of at least one table");
+  std::vector<TomlTable> tables;
+  for (const toml::node& element : *array) {
+    const std::string name = fmt::format("{}[{}]", path(key), tables.size() + 1);
+    if (!element.is_table())
+      throw InputError(node_->at(element.source()),
+                       fmt::format("{} is {}; expected a table", name, found(element)));
+    tables.push_back(
+        TomlTable(std::make_shared<const Node>(Node{node_->root, element.as_table(), node_->file, name})));
+  }
+  return tables;
+}
+
+std::vector<TomlTable> TomlTable::tables_below(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  std::vector<TomlTable> tables;
+  const auto add = [&](const toml::node& candidate, const std::string& name) {
+    if (candidate.is_table())
+      tables.push_back(TomlTable(
+          std::make_shared<const Node>(Node{node_->root, candidate.as_table(), node_->file, name})));
+  };
+  if (node == nullptr) return tables;
+  add(*node, path(key));
+  if (const toml::array* const array = node->as_array())
+    for (const toml::node& element : *array) add(element, path(key));
+  return tables;
+}
+
+TomlTable TomlTable::table(const std::string& key) const {
+  const std::optional<TomlTable> value = find_table(key);
+  if (!value) miss(key, "a table");
+  return *value;
+}
+
+}  // namespace beamid::experiments

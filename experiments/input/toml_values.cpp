@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/input/spelling.hpp"
+#include "experiments/input/toml_node.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+const char* expected_number(Sign sign) {
+  switch (sign) {
+    case Sign::any:
+      return "a number";
+    case Sign::not_negative:
+      return "zero or a positive number";
+    case Sign::positive:
+      return "a positive number";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::optional<double> TomlTable::find_number(const std::string& key, Sign sign) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_number()) refuse(key, expected_number(sign));
+  const double value = *node->value<double>();
+  if (!std::isfinite(value) || (sign == Sign::positive && value <= 0) ||
+      (sign == Sign::not_negative && value < 0))
+    refuse(key, std::isfinite(value) ? expected_number(sign) : "a finite number");
+  return value;
+}
+
+std::optional<int> TomlTable::find_whole_number(const std::string& key, int least, int most) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  const auto* const value = node->as_integer();
+  if (value == nullptr || value->get() < least || value->get() > most)
+    refuse(key, fmt::format("a whole number from {} to {}", least, most));
+  return static_cast<int>(value->get());
+}
+
+std::optional<std::string> TomlTable::find_text(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_string()) refuse(key, "a text in quotes");
+  return node->as_string()->get();
+}
+
+std::optional<std::string> TomlTable::find_text(const std::string& key,
+                                                const std::vector<std::string>& allowed) const {
+  if (!contains(key)) return std::nullopt;
+  if (!node_->table->get(key)->is_string()) refuse(key, "one of the texts " + joined(allowed));
+  const std::optional<std::string> value = find_text(key);
+  if (std::find(allowed.begin(), allowed.end(), *value) == allowed.end())
+    refuse(key, "one of " + joined(allowed));
+  return value;
+}
+
+std::optional<std::pair<double, double>> TomlTable::find_interval(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  constexpr const char* expected = "two numbers [from, to], the first below the second";
+  const toml::array* const array = node->as_array();
+  if (array == nullptr || array->size() != 2) refuse(key, expected);
+  const std::optional<double> from = array->get(0)->value<double>(), to = array->get(1)->value<double>();
+  for (const toml::node& element : *array)
+    if (!element.is_number() || !std::isfinite(*element.value<double>()))
+      throw InputError(node_->at(element.source()),
+                       fmt::format("{} holds {}; expected {}", path(key), found(element), expected));
+  if (*from >= *to)
+    throw InputError(value_place(key),
+                     fmt::format("{} is [{}, {}]; expected {}", path(key), *from, *to, expected));
+  return std::pair{*from, *to};
+}
+
+std::optional<filters::OptionValue> TomlTable::find_value(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (node->is_string()) return *find_text(key);
+  if (node->is_boolean()) return node->as_boolean()->get();
+  if (!node->is_number()) refuse(key, "a number, a text in quotes, true or false");
+  return *find_number(key);
+}
+
+double TomlTable::number(const std::string& key, Sign sign) const {
+  const std::optional<double> value = find_number(key, sign);
+  if (!value) miss(key, expected_number(sign));
+  return *value;
+}
+
+std::string TomlTable::text(const std::string& key) const {
+  const std::optional<std::string> value = find_text(key);
+  if (!value) miss(key, "a text in quotes");
+  return *value;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,165 @@
+#include "experiments/modal_analysis/dominant_mode.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "experiments/modal_analysis/damped_sine_fit.hpp"
+#include "experiments/signal/decimation.hpp"
+#include "experiments/signal/spectrum.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+void check(const Eigen::VectorXd& signal, double interval, const ModalAnalysisSettings& settings) {
+  constexpr Eigen::Index fewest = 32;
+  std::ostringstream message;
+  if (signal.size() < fewest)
+    message << "free decay of " << signal.size() << " samples; expected at least " << fewest
+            << " for a modal analysis";
+  else if (!(interval > 0))
+    message << "sampling interval " << interval << " s; expected a positive value";
+  else if (!signal.allFinite())
+    message << "free decay holds a value that is not a finite number";
+  else if (settings.expected_frequency_hz &&
+           !(*settings.expected_frequency_hz > 0 && *settings.expected_frequency_hz < 0.5 / interval))
+    message << "expected frequency " << *settings.expected_frequency_hz
+            << " Hz; expected a value between 0 and " << 0.5 / interval << " Hz, half the sampling rate";
+  if (const std::string text = message.str(); !text.empty()) throw std::invalid_argument(text);
+}
+
+/// As many samples per cycle as asked for, but enough of them for the realisation.
+int decimation_factor(Eigen::Index count, double interval, double frequency_hz, double samples_per_cycle) {
+  constexpr Eigen::Index enough = 50;  // of which the decimation's kernel takes 10
+  const double wanted = 1 / (interval * frequency_hz * samples_per_cycle);
+  return static_cast<int>(std::max(1.0, std::min(wanted, static_cast<double>(count / enough))));
+}
+
+const IdentifiedMode& strongest_near(const EigensystemRealisation& realisation, double frequency_hz,
+                                     double tolerance) {
+  const IdentifiedMode* best = nullptr;
+  std::ostringstream found;
+  for (const IdentifiedMode& mode : realisation.modes) {
+    if (mode.spurious) continue;
+    found << (found.tellp() > 0 ? ", " : "") << mode.frequency_hz;
+    if (std::abs(mode.frequency_hz - frequency_hz) <= tolerance * frequency_hz &&
+        (!best || mode.amplitude() > best->amplitude()))
+      best = &mode;
+  }
+  if (best) return *best;
+  std::ostringstream message;
+  message << "no mode within " << 100 * tolerance << " % of " << frequency_hz << " Hz; found "
+          << (found.tellp() > 0 ? found.str() + " Hz" : "none");
+  throw std::invalid_argument(message.str());
+}
+
+/// Modes beside the dominant one that are strong enough to matter.
+std::vector<const IdentifiedMode*> strong_modes(const EigensystemRealisation& realisation,
+                                                const IdentifiedMode& dominant, double smallest_amplitude) {
+  std::vector<const IdentifiedMode*> modes;
+  for (const IdentifiedMode& mode : realisation.modes)
+    if (&mode != &dominant && !mode.spurious && mode.amplitude() >= smallest_amplitude * dominant.amplitude())
+      modes.push_back(&mode);
+  return modes;
+}
+
+bool resolved(const IdentifiedMode& a, const IdentifiedMode& b, double duration) {
+  constexpr double cycles_apart = 1.5;
+  return std::abs(a.frequency_hz - b.frequency_hz) * duration > cycles_apart;
+}
+
+struct Realised {
+  IdentifiedMode dominant;
+  std::vector<std::complex<double>> rates;  ///< the dominant mode's, then those of its companions
+};
+
+/// A mode whose frequency follows its amplitude is realised as several poles closer than the signal resolves:
+/// the order is then lowered until one is left.
+Realised realise(const DecimatedSignal& coarse, double expected_hz, const ModalAnalysisSettings& settings) {
+  const double duration = coarse.interval * static_cast<double>(coarse.samples.size());
+  EigensystemSettings eigensystem = settings.eigensystem;
+  for (;; --eigensystem.order) {
+    const EigensystemRealisation realisation =
+        eigensystem_realisation(coarse.samples.transpose(), coarse.interval, eigensystem);
+    const IdentifiedMode& dominant = strongest_near(realisation, expected_hz, settings.frequency_tolerance);
+    Realised result{dominant, {dominant.rate}};
+    bool split = false;
+    for (const IdentifiedMode* mode : strong_modes(realisation, dominant, settings.companion_amplitude)) {
+      const double ratio = mode->frequency_hz / dominant.frequency_hz;
+      if (!resolved(*mode, dominant, duration))
+        split = true;
+      else if (ratio > 0.5 && ratio < 2)
+        result.rates.push_back(mode->rate);
+    }
+    if (!split || realisation.order <= 2 || settings.eigensystem.order > 0) return result;
+    eigensystem.order = realisation.order;
+  }
+}
+
+/// A sine in the decimated signal's time and amplitude, returned to those of the signal itself.
+DampedSine undo_decimation(DampedSine sine, const DecimatedSignal& coarse) {
+  sine.amplitude *= std::exp(-sine.rate * coarse.start) / coarse.response(sine.rate);
+  return sine;
+}
+
+double residual_standard_deviation(const Eigen::VectorXd& signal, double interval,
+                                   const std::vector<DampedSine>& sines, double offset) {
+  double squares = 0;
+  for (Eigen::Index k = 0; k < signal.size(); ++k) {
+    double residual = signal[k] - offset;
+    for (const DampedSine& sine : sines)
+      residual -= (sine.amplitude * std::exp(sine.rate * (interval * static_cast<double>(k)))).real();
+    squares += residual * residual;
+  }
+  return std::sqrt(squares / static_cast<double>(signal.size()));
+}
+
+}  // namespace
+
+std::complex<double> ModalEstimate::rate() const {
+  return 2 * std::numbers::pi * frequency_hz *
+         std::complex<double>(-damping_ratio, std::sqrt(1 - damping_ratio * damping_ratio));
+}
+
+ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
+                            const ModalAnalysisSettings& settings) {
+  check(signal, interval, settings);
+  const double expected = settings.expected_frequency_hz ? *settings.expected_frequency_hz
+                                                         : strongest_frequency(signal, interval);
+  const int factor = decimation_factor(signal.size(), interval, expected, settings.samples_per_cycle);
+  const DecimatedSignal coarse = decimate(signal, interval, factor);
+  const Realised realised = realise(coarse, expected, settings);
+  DampedSineFit fit = fit_damped_sines(coarse.samples, coarse.interval, realised.rates);
+  for (DampedSine& sine : fit.sines) sine = undo_decimation(sine, coarse);
+
+  const DampedSine& sine = fit.sines.front();
+  const double w_d = sine.rate.imag(), d = -sine.rate.real(), w = std::abs(sine.rate);
+  ModalEstimate estimate;
+  estimate.frequency_hz = w / (2 * std::numbers::pi);
+  estimate.damping_ratio = d / w;
+  estimate.amplitude = std::abs(sine.amplitude);
+  estimate.phase = std::arg(sine.amplitude);
+  estimate.offset = fit.offset;
+  estimate.residual_standard_deviation = residual_standard_deviation(signal, interval, fit.sines, fit.offset);
+  estimate.noise_standard_deviation = fit.residual_standard_deviation / coarse.kernel.norm();
+  estimate.realised_frequency_hz = realised.dominant.frequency_hz;
+  estimate.realised_damping_ratio = realised.dominant.damping_ratio;
+  // Noise that passes the kernel unchanged is as dense as white noise of this variance at the new rate.
+  const double variance = std::pow(estimate.noise_standard_deviation, 2) / coarse.factor;
+  const Eigen::Matrix2d covariance = fit.cofactors.topLeftCorner<2, 2>() * variance;
+  const Eigen::Vector2d frequency_slope = Eigen::Vector2d(w_d, d) / (2 * std::numbers::pi * w);
+  const Eigen::Vector2d damping_slope = Eigen::Vector2d(-d * w_d, w_d * w_d) / (w * w * w);
+  estimate.frequency_standard_deviation_hz = std::sqrt(frequency_slope.dot(covariance * frequency_slope));
+  estimate.damping_ratio_standard_deviation = std::sqrt(damping_slope.dot(covariance * damping_slope));
+  for (std::size_t i = 1; i < fit.sines.size(); ++i) {
+    const DampedSine& other = fit.sines[i];
+    estimate.companions.push_back({std::abs(other.rate) / (2 * std::numbers::pi),
+                                   -other.rate.real() / std::abs(other.rate), std::abs(other.amplitude)});
+  }
+  return estimate;
+}
+
+}  // namespace beamid::experiments

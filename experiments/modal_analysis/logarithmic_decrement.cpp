@@ -1,0 +1,115 @@
+#include "experiments/modal_analysis/logarithmic_decrement.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index;
+
+struct Peak {
+  double time = 0;  ///< in samples
+  double value = 0;
+};
+
+/// Samples [begin, end) on one side of the mean.
+struct Lobe {
+  Index begin = 0, end = 0;
+  Index length() const { return end - begin; }
+};
+
+/// Whole lobes; slivers that noise cuts off around a crossing are dropped.
+std::vector<Lobe> lobes_of(const Eigen::ArrayXd& centred) {
+  std::vector<Lobe> lobes;
+  Index begin = 0, longest = 0;
+  for (Index k = 1; k < centred.size(); ++k) {
+    if ((centred[k] > 0) == (centred[k - 1] > 0)) continue;
+    if (begin > 0) {
+      lobes.push_back({begin, k});
+      longest = std::max(longest, k - begin);
+    }
+    begin = k;
+  }
+  std::erase_if(lobes, [&](const Lobe& lobe) { return 2 * lobe.length() < longest; });
+  return lobes;
+}
+
+/// Vertex of the least-squares parabola around the lobe's extreme sample.
+Peak peak_of(const Eigen::ArrayXd& signal, const Eigen::ArrayXd& centred, const Lobe& lobe) {
+  Index extreme = 0;
+  centred.segment(lobe.begin, lobe.length()).abs().maxCoeff(&extreme);
+  const Index reach = std::max<Index>(1, lobe.length() / 6);
+  const Index centre =
+      std::clamp(lobe.begin + extreme, reach, std::max<Index>(reach, signal.size() - 1 - reach));
+  Eigen::MatrixX3d basis(2 * reach + 1, 3);
+  basis.col(0).setOnes();
+  basis.col(1).setLinSpaced(-static_cast<double>(reach), static_cast<double>(reach));
+  basis.col(2) = basis.col(1).cwiseAbs2();
+  const Eigen::VectorXd around = signal.segment(centre - reach, 2 * reach + 1);
+  const Eigen::Vector3d c = basis.householderQr().solve(around);
+  const double shift =
+      c[2] != 0 ? std::clamp(-0.5 * c[1] / c[2], -static_cast<double>(reach), static_cast<double>(reach)) : 0;
+  return {static_cast<double>(centre) + shift, c[0] + shift * (c[1] + shift * c[2])};
+}
+
+struct Line {
+  double slope = 0, slope_standard_deviation = 0;
+};
+
+Line regression(const Eigen::ArrayXd& values) {
+  const auto count = static_cast<double>(values.size());
+  const Eigen::ArrayXd k = Eigen::ArrayXd::LinSpaced(values.size(), -0.5 * (count - 1), 0.5 * (count - 1));
+  const double slope = (k * values).sum() / k.square().sum();
+  const double scatter = (values - values.mean() - slope * k).square().sum() / std::max(1.0, count - 2);
+  return {slope, std::sqrt(scatter / k.square().sum())};
+}
+
+}  // namespace
+
+DecrementEstimate logarithmic_decrement(const Eigen::VectorXd& signal, double interval,
+                                        const DecrementSettings& settings) {
+  const Eigen::ArrayXd values = signal.array(), centred = values - (signal.size() > 0 ? values.mean() : 0);
+  std::vector<double> times, swings;
+  double largest = 0;
+  std::vector<Peak> peaks;
+  for (const Lobe& lobe : lobes_of(centred)) {
+    peaks.push_back(peak_of(values, centred, lobe));
+    if (peaks.size() < 2) continue;
+    const double swing = std::abs(peaks.back().value - peaks[peaks.size() - 2].value);
+    largest = std::max(largest, swing);
+    if (!(swing > settings.smallest_swing * largest)) {
+      peaks.pop_back();
+      break;
+    }
+    swings.push_back(std::log(swing));
+  }
+  constexpr std::size_t fewest = 4;
+  if (peaks.size() < fewest)
+    throw std::invalid_argument("logarithmic decrement of " + std::to_string(signal.size()) +
+                                " samples: found " + std::to_string(peaks.size()) +
+                                " peaks; expected at least " + std::to_string(fewest));
+  for (const Peak& peak : peaks) times.push_back(peak.time);
+  const auto as_array = [](const std::vector<double>& data) {
+    return Eigen::ArrayXd(Eigen::Map<const Eigen::ArrayXd>(data.data(), static_cast<Index>(data.size())));
+  };
+  const Line shrinking = regression(as_array(swings)), timing = regression(as_array(times));
+  DecrementEstimate estimate;
+  const double turn = 2 * std::numbers::pi;
+  estimate.decrement = -2 * shrinking.slope;
+  const double hypotenuse = std::hypot(turn, estimate.decrement);
+  estimate.damping_ratio = estimate.decrement / hypotenuse;
+  estimate.damping_ratio_standard_deviation =
+      2 * shrinking.slope_standard_deviation * turn * turn / (hypotenuse * hypotenuse * hypotenuse);
+  const double damped_frequency_hz = 0.5 / (timing.slope * interval);
+  estimate.frequency_hz = damped_frequency_hz * hypotenuse / turn;
+  estimate.peaks = static_cast<int>(peaks.size());
+  return estimate;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,15 @@
+// Fields of a comma-separated file.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace beamid::experiments {
+
+/// A text as one CSV field [rfc4180]: quoted where it holds a comma, a quote or a line break.
+std::string csv_field(std::string_view text);
+
+/// The shortest decimal number that reads back as the same double; empty when it is NaN.
+std::string csv_field(double value);
+
+}  // namespace beamid::experiments

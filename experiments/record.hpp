@@ -1,0 +1,40 @@
+// A vibration record: measured and simulated alike.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace beamid::experiments {
+
+enum class Quantity { displacement, velocity, acceleration, force };
+
+/// SI unit of a quantity: m, m/s, m/s2, N.
+const char* si_unit(Quantity quantity);
+const char* to_string(Quantity quantity);
+
+struct Channel {
+  Quantity quantity = Quantity::acceleration;
+  std::string name;
+};
+
+/// N samples of p measured channels, in SI units.
+struct Record {
+  Eigen::VectorXd time;           ///< (N) [s], strictly increasing
+  Eigen::MatrixXd samples;        ///< (p x N), one column per instant
+  std::vector<Channel> channels;  ///< p
+
+  Eigen::Index size() const { return time.size(); }
+
+  /// Mean sampling interval [s].
+  double interval() const { return (time[size() - 1] - time[0]) / static_cast<double>(size() - 1); }
+
+  /// One channel's history (N). @throws std::invalid_argument when no channel measures the quantity.
+  Eigen::VectorXd channel(Quantity quantity) const;
+
+  /// The samples whose time lies in [from, to] [s].
+  /// @throws std::invalid_argument when the window leaves the record or holds fewer than 16 samples.
+  Record window(double from, double to) const;
+};
+
+}  // namespace beamid::experiments

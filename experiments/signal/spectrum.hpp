@@ -1,0 +1,16 @@
+// Where in frequency a signal is strongest.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace beamid::experiments {
+
+/// Frequency [Hz] of the largest magnitude in the spectrum of a signal (N), its mean removed, under a Hann
+/// window and zero-padded to at least 2 N; the peak is refined by a parabola through the logarithms.
+///
+/// Frequencies with fewer than two cycles in the signal are left out: the window cannot tell them from a
+/// trend.
+/// @throws std::invalid_argument when the signal has fewer than 16 samples or does not vary.
+double strongest_frequency(const Eigen::VectorXd& signal, double interval);
+
+}  // namespace beamid::experiments
