@@ -1,0 +1,51 @@
+#include "apps/command.hpp"
+
+#include <iostream>
+
+namespace beamid::apps {
+
+std::vector<Command> commands() {
+  std::vector<Command> all = study_commands();
+  all.push_back(identify_command());
+  all.push_back(list_command());
+  return all;
+}
+
+options::options_description output_options() {
+  options::options_description described("Output");
+  described.add_options()  //
+      ("out", options::value<std::string>()->value_name("DIR"),
+       "write results.json, tables, figures there")    //
+      ("force", "replace the results that DIR holds")  //
+      ("json", "print results.json instead of text")   //
+      ("help", "show this help");
+  return described;
+}
+
+bool parse(const Command& command, const std::vector<std::string>& arguments,
+           const options::options_description& described, const std::vector<std::string>& positional,
+           options::variables_map& values) {
+  options::options_description all;
+  all.add(described);
+  options::positional_options_description order;
+  for (const std::string& name : positional) {
+    all.add_options()(name.c_str(), options::value<std::string>());
+    order.add(name.c_str(), 1);
+  }
+  try {
+    options::store(options::command_line_parser(arguments).options(all).positional(order).run(), values);
+  } catch (const options::too_many_positional_options_error&) {
+    throw UsageError(command.name + ": too many words; expected: beamid " + command.name + " " +
+                     command.arguments);
+  } catch (const options::error& error) {
+    throw UsageError(command.name + ": " + error.what());
+  }
+  if (!values.count("help")) return true;
+  std::cout << "beamid " << command.name << " " << command.arguments << "\n\n"
+            << command.summary << "\n\n"
+            << described << "\nExamples\n"
+            << command.examples;
+  return false;
+}
+
+}  // namespace beamid::apps

@@ -1,0 +1,15 @@
+// What every command does with what it found.
+#pragma once
+
+#include <functional>
+
+#include "apps/command.hpp"
+#include "experiments/output/results.hpp"
+
+namespace beamid::apps {
+
+/// Checks --out before any work is done, runs `find`, prints its results (text, or results.json with --json)
+/// and writes them to --out.
+void deliver(const options::variables_map& values, const std::function<experiments::Results()>& find);
+
+}  // namespace beamid::apps

@@ -1,0 +1,64 @@
+// beamid: from the command line to a subcommand, and from an exception to an exit code.
+//
+//     0  success (a filter that diverged is a result)     1  failure with nothing usable     2  bad input
+#include <iostream>
+
+#include "apps/command.hpp"
+#include "experiments/input/input_error.hpp"
+
+namespace beamid::apps {
+namespace {
+
+void print_help(std::ostream& stream) {
+  stream << "beamid " BEAMID_VERSION
+            ": what a vibration record tells about a beam, and how far to trust it\n\n"
+            "  beamid COMMAND [OPTIONS]\n\nCommands\n";
+  for (const Command& command : commands()) {
+    std::string name = command.name;
+    name.resize(12, ' ');
+    stream << "  " << name << command.summary << "\n";
+  }
+  stream << "\n  beamid COMMAND --help   options and examples of a command\n"
+            "  beamid --version        the version\n";
+}
+
+int run(const std::vector<std::string>& words) {
+  if (words.empty() || words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
+    print_help(words.empty() ? std::cerr : std::cout);
+    return words.empty() ? 2 : 0;
+  }
+  if (words[0] == "--version") {
+    std::cout << "beamid " BEAMID_VERSION "\n";
+    return 0;
+  }
+  std::string known;
+  for (const Command& command : commands()) {
+    if (command.name == words[0]) return command.run(command, {words.begin() + 1, words.end()});
+    known += (known.empty() ? "" : ", ") + command.name;
+  }
+  throw UsageError("unknown command '" + words[0] + "'; known: " + known);
+}
+
+}  // namespace
+}  // namespace beamid::apps
+
+int main(int count, char** words) {
+  try {
+    const int code = beamid::apps::run({words + 1, words + count});
+    std::cout.flush();
+    if (!std::cout) throw std::runtime_error("standard output cannot be written");
+    return code;
+  } catch (const beamid::apps::UsageError& error) {
+    std::cerr << "beamid: " << error.what() << "\nTry: beamid --help\n";
+    return 2;
+  } catch (const beamid::experiments::InputError& error) {
+    std::cerr << error.what() << "\n";
+    return 2;
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "beamid: " << error.what() << "\n";
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "beamid: " << error.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,93 @@
+#include "experiments/record_identification/record_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+Figure reproduction(const Record& record, const RecordIdentification& r) {
+  const double begin = record.time[0], end = record.time[record.size() - 1];
+  const double cycles = begin + 6.0 / r.identification.found.frequency_hz();
+  Figure figure{"reproduction", {}, 2, 1};
+  for (const bool whole : {false, true}) {
+    Panel panel{whole ? "the whole window" : "first six cycles",
+                {"time [s]"},
+                {std::string(to_string(record.channels[0].quantity)) + " [" +
+                 si_unit(record.channels[0].quantity) + "]"},
+                {}};
+    panel.curves = {
+        {"measured", record.time, record.samples.row(0).transpose(), CurveStyle::line, {}, {}, Colour::grey},
+        {"reproduced with the identified K and C",
+         record.time,
+         r.reproduced.row(0).transpose(),
+         CurveStyle::dashed,
+         {},
+         {},
+         Colour::blue}};
+    panel.x_axis.range = {begin, whole ? end : std::min(cycles, end)};
+    panel.legend = whole ? Legend::below : Legend::none;
+    figure.panels.push_back(panel);
+  }
+  return figure;
+}
+
+// Estimate and 95 % band of one quantity over time, with the axis around its final value.
+Panel history(const Record& record, const VectorXd& estimate, const VectorXd& deviation, double modal,
+              const char* label, double half_range) {
+  Panel panel{"", {"time [s]"}, {label}, {}};
+  panel.curves = {{"95 % of the filter",
+                   record.time,
+                   {},
+                   CurveStyle::band,
+                   estimate - 1.96 * deviation,
+                   estimate + 1.96 * deviation},
+                  {"filter", record.time, estimate, CurveStyle::line, {}, {}, Colour::blue},
+                  {"modal analysis",
+                   Eigen::Vector2d(record.time[0], record.time[record.size() - 1]),
+                   Eigen::Vector2d(modal, modal),
+                   CurveStyle::dashed,
+                   {},
+                   {},
+                   Colour::black}};
+  const double last = estimate[estimate.size() - 1];
+  panel.y_axis.range = {last - half_range, last + half_range};
+  panel.x_axis.range = {record.time[0], record.time[record.size() - 1]};
+  return panel;
+}
+
+Figure convergence(const Record& record, const RecordIdentification& r) {
+  const auto& beliefs = r.identification.run.filtered;
+  const auto count = static_cast<Index>(beliefs.size());
+  VectorXd frequency(count), frequency_deviation(count), ratio(count), ratio_deviation(count);
+  for (Index k = 0; k < count; ++k) {
+    const Oscillator now{r.identification.found.mass, beliefs[k].mean[2], beliefs[k].mean[3]};
+    frequency[k] = now.frequency_hz();
+    frequency_deviation[k] = 0.5 * frequency[k] * std::sqrt(beliefs[k].covariance(2, 2)) / now.stiffness;
+    ratio[k] = 100.0 * now.damping_ratio();
+    ratio_deviation[k] =
+        100.0 * std::sqrt(beliefs[k].covariance(3, 3)) / (2.0 * std::sqrt(now.stiffness * now.mass));
+  }
+  const double last_ratio = ratio[count - 1];
+  Figure figure{"convergence", {}, 2, 1};
+  figure.panels = {history(record, frequency, frequency_deviation, r.modal.frequency_hz, "frequency [Hz]",
+                           0.02 * frequency[count - 1]),
+                   history(record, ratio, ratio_deviation, 100.0 * r.modal.damping_ratio, "damping ratio [%]",
+                           std::abs(last_ratio))};
+  figure.panels.front().legend = Legend::none;
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Figure> figures(const Record& record, const RecordIdentification& found) {
+  std::vector<Figure> result;
+  if (found.reproduced.size() > 0) result.push_back(reproduction(record, found));
+  if (!found.identification.run.filtered.empty()) result.push_back(convergence(record, found));
+  return result;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,120 @@
+#include "experiments/record_identification/record_identification.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "experiments/input/method_choice.hpp"
+#include "experiments/modal_analysis/shape_fit.hpp"
+#include "fem/assembly.hpp"
+#include "fem/modes.hpp"
+#include "reduction/reduction.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+constexpr int passes = 3;                     // the first guess may be 20 % off
+constexpr double stiffness_doubt = 0.3;       // standard deviation of K0, relative: clamps are never ideal
+constexpr double first_damping_ratio = 0.01;  // of C0, with a standard deviation as large
+
+std::vector<Quantity> observed(const Record& record) {
+  std::vector<Quantity> quantities;
+  for (const Channel& channel : record.channels) quantities.push_back(channel.quantity);
+  return quantities;
+}
+
+// Largest displacement [m] at frequency w [rad/s] behind a channel's largest reading.
+double displacement_scale(const Record& record, double w) {
+  const double largest = record.samples.row(0).cwiseAbs().maxCoeff();
+  switch (record.channels[0].quantity) {
+    case Quantity::displacement:
+      return largest;
+    case Quantity::velocity:
+      return largest / w;
+    default:
+      return largest / (w * w);
+  }
+}
+
+// At rest give or take the record's own amplitude; K0 and C0 from the beam unless the experiment says
+// otherwise.
+filters::Gaussian initial_belief(const Experiment& experiment, const Record& record, const JointModel& model,
+                                 double beam_stiffness) {
+  const PriorBelief& prior = experiment.prior;
+  const double mass = model.equivalent_mass, stiffness = prior.stiffness.value_or(beam_stiffness);
+  const double w = std::sqrt(stiffness / mass), amplitude = displacement_scale(record, w);
+  const double ratio = prior.damping_ratio.value_or(first_damping_ratio),
+               to_damping = 2.0 * std::sqrt(stiffness * mass);
+  const std::map<std::string, std::pair<double, double>> beliefs{
+      {"displacement", {0.0, amplitude}},
+      {"velocity", {0.0, amplitude * w}},
+      {"stiffness", {stiffness, prior.stiffness_deviation.value_or(stiffness_doubt * stiffness)}},
+      {"damping", {ratio * to_damping, prior.damping_ratio_deviation.value_or(ratio) * to_damping}},
+      {"sensor_bias", {0.0, 0.1 * amplitude * w * w}}};
+  const auto labels = model.motion->state_labels();
+  const auto n = static_cast<Index>(labels.size());
+  filters::Gaussian belief{VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
+  for (Index i = 0; i < n; ++i) {
+    const auto& [mean, deviation] = beliefs.at(labels[i].name);
+    belief.mean[i] = mean;
+    belief.covariance(i, i) = deviation * deviation;
+  }
+  return belief;
+}
+
+}  // namespace
+
+RecordIdentification identify_record(const Experiment& experiment, const Record& record) {
+  RecordIdentification result;
+  const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
+  result.beam_frequency_hz = fem::modes(system, 1).frequency_hz()[0];
+  const auto method =
+      reduction::reduction_registry().make(experiment.reduction.name, experiment.reduction.options);
+  const reduction::ReducedModel reduced = reduce(system, *method);
+  result.model = at_place(experiment.model.place, [&] {
+    return *model_registry().make(experiment.model.name, experiment.model.options, reduced.system,
+                                  observed(record));
+  });
+
+  const double dt = record.interval();
+  ModalAnalysisSettings modal;
+  modal.expected_frequency_hz = result.beam_frequency_hz;
+  result.modal = dominant_mode(record.samples.row(0).transpose(), dt, modal);
+
+  const std::complex<double> rate = result.modal.rate();
+  const ShapeFit left = fit_shapes(record.samples, dt, {rate, 0.0}, {true, false});
+  result.noise_deviation = left.residual_standard_deviation;
+  result.noise_from_record = true;
+  for (Index i = 0; i < record.samples.rows(); ++i)
+    if (const auto given = experiment.noise.find(record.channels[i].quantity);
+        given != experiment.noise.end()) {
+      result.noise_deviation[i] = given->second;
+      result.noise_from_record = false;
+    }
+  result.interval_factor = std::max(1.0, result.modal.noise_standard_deviation / result.noise_deviation[0]);
+
+  const double beam_stiffness =
+      result.model.equivalent_mass * std::pow(fem::modes(reduced.system, 1).angular_frequency[0], 2);
+  result.settings.filter = experiment.filter.name;
+  result.settings.filter_options = experiment.filter.options;
+  result.settings.discretisation = experiment.discretisation;
+  result.settings.initial = initial_belief(experiment, record, result.model, beam_stiffness);
+  result.settings.output_noise = result.noise_deviation.cwiseAbs2().asDiagonal();
+  result.settings.passes = passes;
+  const filters::Measurements measurements{record.time, record.samples, {}};
+  result.identification = at_place(experiment.filter.place, [&] {
+    return identify(result.model, measurements, result.settings, filters::Keep::all_beliefs);
+  });
+  if (result.identification.run.failure) return result;
+
+  if (record.size() >= 100) result.consistency = filters::innovation_consistency(result.identification.run);
+  if (result.identification.found.damping_ratio() < 1.0)
+    result.reproduced =
+        fit_shapes(record.samples, dt, {result.identification.found.eigenvalue(), 0.0}, {true, false})
+            .reconstruction;
+  return result;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,38 @@
+// A record identified as its experiment file says: `beamid identify`.
+#pragma once
+
+#include <string>
+
+#include "experiments/experiment.hpp"
+#include "experiments/identification.hpp"
+#include "experiments/modal_analysis/dominant_mode.hpp"
+#include "experiments/output/results.hpp"
+#include "filters/innovation_consistency.hpp"
+
+namespace beamid::experiments {
+
+/// What a record told, before it is put into words.
+struct RecordIdentification {
+  JointModel model;
+  double beam_frequency_hz = 0;     ///< first mode of the finite-element beam
+  ModalEstimate modal;              ///< of the first channel, without any model
+  Eigen::VectorXd noise_deviation;  ///< of every channel (p)
+  bool noise_from_record = false;   ///< taken from what the modal analysis leaves
+  double interval_factor = 1;  ///< >= 1: widens the intervals where the noise near the mode is denser than R
+  IdentificationSettings settings;
+  Identification identification;
+  std::optional<filters::InnovationConsistency> consistency;  ///< absent when the filter failed early
+  Eigen::MatrixXd reproduced;  ///< (p x N): free decay with the identified K and C
+};
+
+/// Assemble, reduce, analyse, filter. The initial belief and the noise come from the experiment where it
+/// gives them, else from the beam and the record.
+/// @throws InputError at the model's or filter's place in the experiment file; std::invalid_argument when the
+/// record shows no mode near the beam's.
+RecordIdentification identify_record(const Experiment& experiment, const Record& record);
+
+/// Tables, figures, words and results.json keys.
+Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
+               const RecordIdentification& found);
+
+}  // namespace beamid::experiments

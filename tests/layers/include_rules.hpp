@@ -1,0 +1,135 @@
+// Who may include whom (docs/decisions/0001-registry-and-layers.md), as a function of a file's path and text.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace beamid::layers {
+
+/// One `#include` line; `quoted` when written with "..." and not with <...>.
+struct Include {
+  int line = 0;
+  std::string target;
+  bool quoted = false;
+};
+
+inline std::vector<Include> includes_of(const std::string& source) {
+  static const std::regex directive(R"re(^\s*#\s*include\s*(["<])([^">]+)[">].*)re");
+  std::vector<Include> found;
+  std::istringstream lines(source);
+  std::string text;
+  for (int line = 1; std::getline(lines, text); ++line)
+    if (std::smatch match; std::regex_match(text, match, directive))
+      found.push_back({line, match[2], match[1] == "\""});
+  return found;
+}
+
+inline bool starts_with_any(const std::string& text, const std::vector<std::string>& beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(),
+                     [&](const std::string& beginning) { return text.starts_with(beginning); });
+}
+
+inline std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// Folders and single headers of the project that a folder's files may include.
+inline const std::map<std::string, std::vector<std::string>>& allowed_within_project() {
+  static const std::map<std::string, std::vector<std::string>> allowed{
+      {"fem", {"fem/"}},
+      {"filters", {"filters/"}},
+      {"reduction", {"reduction/", "fem/", "filters/registry.hpp", "filters/options.hpp"}},
+      {"experiments", {"experiments/", "reduction/", "filters/", "fem/"}},
+      {"apps", {"apps/", "experiments/", "reduction/", "filters/", "fem/"}}};
+  return allowed;
+}
+
+/// A library, by how its headers begin, and where it may be seen. Places ending in "/" are folders.
+struct Library {
+  std::string name;
+  std::vector<std::string> headers, places;
+  bool in_headers =
+      false;  ///< whether any header may show it; else only those that .cpp files of `places` share
+};
+
+inline const std::vector<Library>& libraries() {
+  static const std::vector<Library> known{
+      {"SuiteSparse",
+       {"umfpack", "cholmod", "klu", "SuiteSparse", "suitesparse/", "Eigen/UmfPack", "Eigen/Cholmod",
+        "Eigen/KLU", "Eigen/SPQR"},
+       {"fem/"}},
+      {"Spectra", {"Spectra/"}, {"fem/"}},
+      {"SUNDIALS",
+       {"sundials/", "cvode", "arkode/", "ida", "kinsol/", "nvector/", "sunmatrix/", "sunlinsol/",
+        "sunnonlinsol/"},
+       {"filters/schemes/cvode.cpp", "fem/"}},
+      {"Eigen",
+       {"Eigen/", "unsupported/Eigen/"},
+       {"fem/", "reduction/", "filters/", "experiments/", "apps/"},
+       true},
+      {"VTK", {"vtk"}, {"experiments/output/"}},
+      {"toml++", {"toml"}, {"experiments/input/"}},
+      {"nlohmann-json", {"nlohmann/"}, {"experiments/", "apps/"}, true},
+      {"fmt", {"fmt/"}, {"experiments/", "apps/"}, true},
+      {"oneTBB", {"tbb/", "oneapi/"}, {"experiments/"}},
+      {"Boost.Math", {"boost/math/"}, {"fem/", "filters/", "experiments/"}},
+      {"Boost.Program_options", {"boost/program_options"}, {"apps/"}, true},
+      {"POSIX", {"unistd.h", "fcntl.h", "poll.h", "spawn.h", "signal.h", "sys/"}, {"experiments/", "apps/"}}};
+  return known;
+}
+
+/// What is wrong with one include of `file` (a path from the repository's root); empty when it is allowed.
+inline std::string objection(const std::string& file, const Include& include) {
+  const std::string folder = file.substr(0, file.find('/'));
+  if (include.quoted) {
+    const auto rule = allowed_within_project().find(folder);
+    if (rule == allowed_within_project().end()) return "no rule for folder '" + folder + "'";
+    if (starts_with_any(include.target, rule->second)) return "";
+    return folder + " includes \"" + include.target +
+           "\"; expected a path from the root below: " + joined(rule->second);
+  }
+  for (const Library& library : libraries()) {
+    if (!starts_with_any(include.target, library.headers)) continue;
+    if (starts_with_any(file, library.places)) return "";
+    return "<" + include.target + "> belongs to " + library.name + "; expected only in " +
+           joined(library.places);
+  }
+  if (include.target.find_first_of("./") == std::string::npos) return "";  // the standard library
+  return "<" + include.target + "> belongs to no library that tests/layers/include_rules.hpp knows";
+}
+
+/// Every objection to a file, as "file:line: objection".
+inline std::vector<std::string> objections(const std::string& file, const std::string& source) {
+  std::vector<std::string> found;
+  for (const Include& include : includes_of(source))
+    if (const std::string text = objection(file, include); !text.empty())
+      found.push_back(file + ":" + std::to_string(include.line) + ": " + text);
+  return found;
+}
+
+/// Objections to headers that show a library to files which should not see it. `texts`: every source by its
+/// path.
+inline std::vector<std::string> leaks(const std::map<std::string, std::string>& texts) {
+  std::vector<std::string> found;
+  for (const auto& [header, text] : texts)
+    for (const Include& shown : includes_of(text))
+      for (const Library& library : libraries()) {
+        if (!header.ends_with(".hpp") || shown.quoted || library.in_headers) continue;
+        if (!starts_with_any(shown.target, library.headers)) continue;
+        for (const auto& [file, source] : texts)
+          for (const Include& include : includes_of(source))
+            if (include.target == header &&
+                !(file.ends_with(".cpp") && starts_with_any(file, library.places)))
+              found.push_back(file + ":" + std::to_string(include.line) + ": \"" + header + "\" shows " +
+                              library.name + "; expected only in .cpp files of " + joined(library.places));
+      }
+  return found;
+}
+
+}  // namespace beamid::layers
