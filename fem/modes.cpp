@@ -2,8 +2,8 @@
 
 #include <Spectra/SymGEigsShiftSolver.h>
 
-#include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numbers>
 #include <stdexcept>
@@ -63,16 +63,20 @@ MatrixXd lowest_shapes(const StructuralSystem& system, Index count) {
   return solver.eigenvectors();
 }
 
-// M = L L^T and D = R R^T: the singular values of R^T B L^-T are the frequencies, v = L^T phi.
+// M = L L^T and D = R^T R: the singular values of F = R B L^-T are the frequencies, v = L^T phi. They are the
+// upper half of the spectrum of [0 F; F^T 0], with v in the lower half of its eigenvectors: as accurate as a
+// singular value decomposition, whose templates take far longer to compile.
 MatrixXd all_shapes(const StructuralSystem& system) {
   const Eigen::LLT<MatrixXd> mass{MatrixXd(system.mass)};
   const Eigen::LLT<MatrixXd> rigidity{MatrixXd(system.stiffness.rigidity)};
   if (mass.info() != Eigen::Success)
     throw std::runtime_error("modes: the mass matrix is not positive definite");
   const MatrixXd strain = rigidity.matrixU() * MatrixXd(system.stiffness.strain);
-  const MatrixXd factor = mass.matrixL().solve(strain.transpose()).transpose();
-  const Eigen::BDCSVD<MatrixXd> svd(factor, Eigen::ComputeThinV);
-  return mass.matrixU().solve(svd.matrixV()).rowwise().reverse();
+  const Index s = strain.rows(), n = strain.cols();
+  MatrixXd symmetric = MatrixXd::Zero(s + n, s + n);  // the solver reads its lower triangle only
+  symmetric.bottomLeftCorner(n, s) = mass.matrixL().solve(strain.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
+  return mass.matrixU().solve(solver.eigenvectors().bottomRightCorner(n, n));
 }
 
 }  // namespace

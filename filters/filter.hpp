@@ -14,9 +14,9 @@ namespace beamid::filters {
 struct Correction {
   Eigen::VectorXd innovation;             ///< y - E[y] (p)
   Eigen::MatrixXd innovation_covariance;  ///< S (p x p)
-  double normalised_square =
-      0.0;                      ///< innovation^T S^-1 innovation, chi-square with p degrees when consistent
-  double log_likelihood = 0.0;  ///< log N(innovation; 0, S)
+  Eigen::VectorXd whitened;        ///< L^-1 innovation, S = L L^T: of unit covariance when consistent (p)
+  double normalised_square = 0.0;  ///< innovation^T S^-1 innovation: chi-square of p degrees when consistent
+  double log_likelihood = 0.0;     ///< log N(innovation; 0, S)
 };
 
 /// Numerical trouble inside a filter; the run that meets it adds step and time.

@@ -18,6 +18,7 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
 
   FilterRun result;
   result.innovations.setZero(outputs, samples);
+  result.whitened_innovations.setZero(outputs, samples);
   result.normalised_squares.setZero(samples);
   Eigen::VectorXd input, output(outputs);
   filter.reset(initial);
@@ -30,6 +31,7 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
       output = measurements.outputs.col(step);
       const Correction& correction = filter.correct(output, input);
       result.innovations.col(step) = correction.innovation;
+      result.whitened_innovations.col(step) = correction.whitened;
       result.normalised_squares[step] = correction.normalised_square;
       result.log_likelihood += correction.log_likelihood;
       if (keep == Keep::all_beliefs) result.filtered.push_back(filter.belief());

@@ -26,10 +26,11 @@ struct Measurements {
 
 /// x(t|t-1) and x(t|t) for every sample t that was reached, and what each said.
 struct FilterRun {
-  std::vector<Gaussian> predicted;     ///< before each sample; empty unless kept
-  std::vector<Gaussian> filtered;      ///< after each sample; empty unless kept
-  Eigen::MatrixXd innovations;         ///< (p x N)
-  Eigen::VectorXd normalised_squares;  ///< innovation^T S^-1 innovation (N)
+  std::vector<Gaussian> predicted;       ///< before each sample; empty unless kept
+  std::vector<Gaussian> filtered;        ///< after each sample; empty unless kept
+  Eigen::MatrixXd innovations;           ///< (p x N)
+  Eigen::MatrixXd whitened_innovations;  ///< L^-1 innovation, S = L L^T (p x N)
+  Eigen::VectorXd normalised_squares;    ///< innovation^T S^-1 innovation (N)
   double log_likelihood = 0.0;
   Gaussian last;  ///< the last filtered belief
   std::optional<Failure> failure;

@@ -22,9 +22,9 @@ MatrixXd weigh(Correction& correction, const MatrixXd& cross, Eigen::LLT<MatrixX
   factor.compute(s);
   if (factor.info() != Eigen::Success || !s.allFinite())
     throw FilterFailure("the innovation covariance is not positive definite", smallest_eigenvalue(s));
-  const Eigen::VectorXd whitened = factor.matrixL().solve(correction.innovation);
+  correction.whitened = factor.matrixL().solve(correction.innovation);
   const auto p = static_cast<double>(s.rows());
-  correction.normalised_square = whitened.squaredNorm();
+  correction.normalised_square = correction.whitened.squaredNorm();
   const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
   correction.log_likelihood =
       -0.5 * (correction.normalised_square + log_determinant + p * std::log(2.0 * std::numbers::pi));

@@ -1,6 +1,7 @@
 #include "filters/innovation_consistency.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -10,13 +11,15 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-// Autocorrelation of a series (N) at lags 1..count.
+// Autocorrelation of a series (N) at lags 1..count; one where the series is constant or beyond all bounds.
 VectorXd autocorrelation(const VectorXd& series, Index count) {
   const VectorXd centred = series.array() - series.mean();
+  const double power = centred.squaredNorm();
+  if (!(power > 0.0 && std::isfinite(power))) return VectorXd::Ones(count);
   VectorXd result(count);
   for (Index lag = 1; lag <= count; ++lag) {
     const Index overlap = centred.size() - lag;
-    result[lag - 1] = centred.head(overlap).dot(centred.tail(overlap)) / centred.squaredNorm();
+    result[lag - 1] = centred.head(overlap).dot(centred.tail(overlap)) / power;
   }
   return result;
 }
@@ -50,7 +53,8 @@ InnovationConsistency innovation_consistency(const FilterRun& run) {
   std::tie(result.window_lower_95, result.window_upper_95) =
       band(static_cast<double>(part), outputs, 0.05 / parts);
 
-  const VectorXd correlation = autocorrelation(run.innovations.row(0).head(samples).transpose(), lags);
+  const VectorXd correlation =
+      autocorrelation(run.whitened_innovations.row(0).head(samples).transpose(), lags);
   result.lag_one_correlation = correlation[0];
   const auto n = static_cast<double>(samples);
   double statistic = 0.0;  // Q = n (n + 2) sum r_k^2 / (n - k), chi-square of as many degrees as lags

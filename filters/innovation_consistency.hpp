@@ -14,9 +14,10 @@ struct InnovationConsistency {
          upper_95 = 0;      ///< where 95 % of consistent runs of this length lie [barshalom2001, sec. 5.4]
   Eigen::VectorXd windows;  ///< the same mean over ten successive parts of the record
   double window_lower_95 = 0,
-         window_upper_95 = 0;      ///< where all ten lie in 95 % of consistent runs (Bonferroni)
-  double lag_one_correlation = 0;  ///< of successive normalised innovations of the first output; 0 when white
-  double whiteness_p_value = 0;    ///< Ljung-Box test over 20 lags [ljung1978]; below 0.05: not white
+         window_upper_95 = 0;  ///< where all ten lie in 95 % of consistent runs (Bonferroni)
+  /// Of successive whitened innovations of the first output; 0 when white.
+  double lag_one_correlation = 0;
+  double whiteness_p_value = 0;  ///< Ljung-Box test over 20 lags [ljung1978]; below 0.05: not white
 
   bool size_is_right() const {
     return mean_normalised_square >= lower_95 && mean_normalised_square <= upper_95;
