@@ -7,6 +7,8 @@ namespace beamid::apps {
 std::vector<Command> commands() {
   std::vector<Command> all = study_commands();
   all.push_back(identify_command());
+  all.push_back(new_command());
+  all.push_back(validate_command());
   all.push_back(list_command());
   return all;
 }

@@ -30,6 +30,8 @@ std::vector<Command> commands();
 
 Command identify_command();
 Command list_command();
+Command new_command();
+Command validate_command();
 /// Every registered study is a command of its own.
 std::vector<Command> study_commands();
 

@@ -1,9 +1,20 @@
 #include "apps/deliver.hpp"
 
+#include <unistd.h>
+
 #include <iostream>
 #include <optional>
 
 namespace beamid::apps {
+
+namespace {
+constexpr const char* clear_line = "\r\033[K";
+}
+
+experiments::Progress show_progress() {
+  if (!isatty(STDERR_FILENO)) return [](const std::string&) {};
+  return [](const std::string& what) { std::cerr << clear_line << what << " ..." << std::flush; };
+}
 
 void deliver(const options::variables_map& values, const std::function<experiments::Results()>& find) {
   std::optional<experiments::ResultDirectory> directory;
@@ -11,6 +22,7 @@ void deliver(const options::variables_map& values, const std::function<experimen
   if (writes) directory.emplace(values["out"].as<std::string>(), values.count("force") > 0);
 
   const experiments::Results results = find();
+  if (isatty(STDERR_FILENO)) std::cerr << clear_line;
   if (directory) {
     experiments::write(results, *directory);
     directory->commit();

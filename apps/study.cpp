@@ -20,12 +20,15 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   for (const auto& option : study.options) {
     const std::string help = option.description + (option.unit.empty() ? "" : " [" + option.unit + "]");
     if (const double* number = std::get_if<double>(&option.fallback))
-      described.add_options()(flag(option.name).c_str(), options::value<double>()->default_value(*number),
+      described.add_options()(flag(option.name).c_str(),
+                              options::value<double>()->default_value(*number)->value_name("N"),
                               help.c_str());
     else
-      described.add_options()(
-          flag(option.name).c_str(),
-          options::value<std::string>()->default_value(std::get<std::string>(option.fallback)), help.c_str());
+      described.add_options()(flag(option.name).c_str(),
+                              options::value<std::string>()
+                                  ->default_value(std::get<std::string>(option.fallback))
+                                  ->value_name("NAME"),
+                              help.c_str());
   }
   described.add(output_options());
   options::variables_map values;
@@ -40,7 +43,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       chosen.set(option.name, value.as<std::string>());
   }
   const auto ready = study_registry().make(command.name, chosen);
-  deliver(values, [&] { return ready->run(); });
+  deliver(values, [&] { return ready->run(show_progress()); });
   return 0;
 }
 

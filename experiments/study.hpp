@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/output/results.hpp"
+#include "experiments/progress.hpp"
 #include "filters/registry.hpp"
 
 namespace beamid::experiments {
@@ -10,7 +11,7 @@ namespace beamid::experiments {
 class Study {
  public:
   virtual ~Study() = default;
-  virtual Results run() const = 0;
+  virtual Results run(const Progress& progress) const = 0;
 };
 
 using StudyRegistry = filters::Registry<Study>;

@@ -40,7 +40,7 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
     if (const auto table = root.find_table(name))
       choice = read_choice(*table, key, choice.name, registry, others);
     else
-      choice.options = registry.completed(choice.name, choice.options);
+      choice = {choice.name, registry.completed(choice.name, choice.options), root.value_place(name)};
   };
   choose("reduction", "method", experiment.reduction, reduction::reduction_registry(), {});
   choose("model", "name", experiment.model, model_registry(), {});

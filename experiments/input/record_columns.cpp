@@ -46,6 +46,11 @@ RecordColumns columns_of_header(const DelimitedText& text) {
   RecordColumns columns;
   const std::vector<std::string>& names = text.names();
   const Place header{text.file(), text.header_line(), 0};
+  if (names.empty())
+    throw InputError({text.file()},
+                     fmt::format("no header; expected one that names every column with its unit ({}), or "
+                                 "record.channels in the configuration",
+                                 known_column_names()));
   if (names.size() != text.width())
     throw InputError(header,
                      fmt::format("a header of {} names for {}; expected one each, with its unit ({}), or "

@@ -54,7 +54,7 @@ std::optional<std::string> TomlTable::find_text(const std::string& key,
                                                 const std::vector<std::string>& allowed) const {
   if (!contains(key)) return std::nullopt;
   if (!node_->table->get(key)->is_string()) refuse(key, "one of the texts " + joined(allowed));
-  const std::optional<std::string> value = find_text(key);
+  std::optional<std::string> value = find_text(key);
   if (std::find(allowed.begin(), allowed.end(), *value) == allowed.end())
     refuse(key, "one of " + joined(allowed));
   return value;

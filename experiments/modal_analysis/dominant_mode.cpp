@@ -34,8 +34,9 @@ void check(const Eigen::VectorXd& signal, double interval, const ModalAnalysisSe
 /// As many samples per cycle as asked for, but enough of them for the realisation.
 int decimation_factor(Eigen::Index count, double interval, double frequency_hz, double samples_per_cycle) {
   constexpr Eigen::Index enough = 50;  // of which the decimation's kernel takes 10
+  const Eigen::Index most = count / enough;
   const double wanted = 1 / (interval * frequency_hz * samples_per_cycle);
-  return static_cast<int>(std::max(1.0, std::min(wanted, static_cast<double>(count / enough))));
+  return static_cast<int>(std::max(1.0, std::min(wanted, static_cast<double>(most))));
 }
 
 const IdentifiedMode& strongest_near(const EigensystemRealisation& realisation, double frequency_hz,

@@ -1,6 +1,5 @@
 #include "experiments/modal_analysis/logarithmic_decrement.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -47,15 +46,16 @@ Peak peak_of(const Eigen::ArrayXd& signal, const Eigen::ArrayXd& centred, const 
   const Index reach = std::max<Index>(1, lobe.length() / 6);
   const Index centre =
       std::clamp(lobe.begin + extreme, reach, std::max<Index>(reach, signal.size() - 1 - reach));
-  Eigen::MatrixX3d basis(2 * reach + 1, 3);
-  basis.col(0).setOnes();
-  basis.col(1).setLinSpaced(-static_cast<double>(reach), static_cast<double>(reach));
-  basis.col(2) = basis.col(1).cwiseAbs2();
-  const Eigen::VectorXd around = signal.segment(centre - reach, 2 * reach + 1);
-  const Eigen::Vector3d c = basis.householderQr().solve(around);
-  const double shift =
-      c[2] != 0 ? std::clamp(-0.5 * c[1] / c[2], -static_cast<double>(reach), static_cast<double>(reach)) : 0;
-  return {static_cast<double>(centre) + shift, c[0] + shift * (c[1] + shift * c[2])};
+  const auto samples = signal.segment(centre - reach, 2 * reach + 1);
+  const auto end = static_cast<double>(reach);
+  // y = c0 + c1 k + c2 k^2 for k = -reach..reach, where k, k^2 - mean(k^2) and 1 are orthogonal
+  const Eigen::ArrayXd k = Eigen::ArrayXd::LinSpaced(samples.size(), -end, end), squares = k.square();
+  const Eigen::ArrayXd bend = squares - squares.mean();
+  const double c1 = (k * samples).sum() / squares.sum();
+  const double c2 = (bend * samples).sum() / bend.square().sum();
+  const double c0 = samples.mean() - c2 * squares.mean();
+  const double shift = c2 != 0 ? std::clamp(-0.5 * c1 / c2, -end, end) : 0;
+  return {static_cast<double>(centre) + shift, c0 + shift * (c1 + shift * c2)};
 }
 
 struct Line {

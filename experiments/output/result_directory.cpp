@@ -114,7 +114,7 @@ void ResultDirectory::check_replaceable() const {
                                 " holds no results.json of beamid; --force replaces only earlier results");
   for (const auto& entry : fs::directory_iterator(destination_))
     if (entry.symlink_status().type() != fs::file_type::regular ||
-        files.count(entry.path().filename().string()) == 0)
+        !files.contains(entry.path().filename().string()))
       throw std::invalid_argument(name + " also holds '" + entry.path().filename().string() +
                                   "', which beamid did not write; move it away, or choose another folder");
 }

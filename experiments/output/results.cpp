@@ -21,7 +21,7 @@ void make_finite(Json& json, const std::string& place, Json& warnings) {
     warnings.push_back(fmt::format("{} is {}", place, json.get<double>()));
     json = nullptr;
   } else if (json.is_object()) {
-    for (auto& [key, value] : json.items())
+    for (auto&& [key, value] : json.items())
       make_finite(value, place.empty() ? key : place + "." + key, warnings);
   } else if (json.is_array()) {
     for (std::size_t i = 0; i < json.size(); ++i)

@@ -1,5 +1,8 @@
 #include "experiments/paper/beam_identification.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "fem/assembly.hpp"
 #include "fem/exact_cantilever.hpp"
 #include "filters/fisher_information.hpp"
@@ -60,20 +63,36 @@ BeamSettings wide_settings(const BeamCase& beam) {
   return settings;
 }
 
+BeamSettings zero_phase_settings(const BeamCase& beam) {
+  BeamSettings settings = tuned_settings(beam);
+  settings.zero_phase = true;
+  settings.skipped_at_end = settings.skipped;
+  return settings;
+}
+
+BeamSettings zero_phase_wide_settings(const BeamCase& beam) {
+  BeamSettings settings = wide_settings(beam);
+  settings.zero_phase = true;
+  return settings;
+}
+
 filters::Measurements process(const Record& acceleration, const BeamSettings& settings) {
   ProcessingSettings processing;
   processing.high_pass_hz = settings.high_pass_hz;
   processing.high_pass_order = processing.low_pass_order = 2;
   if (settings.low_pass_hz > 0.0) processing.low_pass_hz = settings.low_pass_hz;
+  processing.zero_phase = settings.zero_phase;
   const double dt = acceleration.interval();
   const ProcessedMotion motion =
       process_acceleration(acceleration.channel(Quantity::acceleration), dt, processing);
   const auto first = static_cast<Eigen::Index>(std::lround(settings.skipped / dt));
-  const Eigen::Index count = acceleration.size() - first;
+  const Eigen::Index count =
+      acceleration.size() - first - static_cast<Eigen::Index>(std::lround(settings.skipped_at_end / dt));
   filters::Measurements result;
-  result.time = acceleration.time.tail(count);
+  result.time = acceleration.time.segment(first, count);
   result.outputs.resize(2, count);
-  result.outputs << motion.displacement.tail(count).transpose(), motion.velocity.tail(count).transpose();
+  result.outputs << motion.displacement.segment(first, count).transpose(),
+      motion.velocity.segment(first, count).transpose();
   return result;
 }
 

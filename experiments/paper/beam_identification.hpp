@@ -17,8 +17,10 @@ inline constexpr double sensor_noise = 0.05;  // standard deviation of the accel
 /// How acceleration becomes what the filter reads, and with what belief it starts.
 struct BeamSettings {
   double high_pass_hz = 0.0, low_pass_hz = 0.0;  ///< second order each, causal, once; 0: none
+  bool zero_phase = false;                       ///< forwards and backwards instead
   double skipped = 0.0;                          ///< left out at the beginning, for the transients [s]
-  Eigen::Vector2d noise_variance{1e-7, 1e-5};    ///< R of displacement [m2] and velocity [m2/s2]
+  double skipped_at_end = 0.0;  ///< left out at the end: zero-phase filters have transients there too
+  Eigen::Vector2d noise_variance{1e-7, 1e-5};  ///< R of displacement [m2] and velocity [m2/s2]
   Eigen::Vector4d initial_variance{1e-4, 1e-1, 200.0 * 200.0, 3.0 * 3.0};  ///< P0
   double first_stiffness = 0.0;                                            ///< K0 [N/m]
   double first_damping = 0.3;                                              ///< C0 [N s/m]
@@ -39,6 +41,11 @@ BeamCase prepare(const TestBeam& test);
 BeamSettings tuned_settings(const BeamCase& beam);
 /// The paper's: high-pass at 0.5 Hz, no low-pass, nothing left out, R = 1e-5, P0 of K and C 1e5.
 BeamSettings wide_settings(const BeamCase& beam);
+
+/// The tuned processing with zero-phase filters, three cycles left out at both ends.
+BeamSettings zero_phase_settings(const BeamCase& beam);
+/// The paper's settings with a zero-phase high-pass, its end transients kept.
+BeamSettings zero_phase_wide_settings(const BeamCase& beam);
 
 /// Displacement and velocity (2 x N) from an acceleration record.
 filters::Measurements process(const Record& acceleration, const BeamSettings& settings);

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/discretisation_bias.hpp"
 #include "experiments/output/mode_shapes.hpp"
+#include "experiments/paper/errors.hpp"
 #include "experiments/paper/report.hpp"
 #include "fem/assembly.hpp"
 
@@ -38,8 +38,8 @@ Panel convergence(const Outcome& outcome, const char* scheme, const char* title,
       time[k + 1] = static_cast<double>(k + 1) * validation_interval;
       value[k + 1] = result.run.filtered[k].mean[index];
     }
-    panel.curves.push_back(
-        {fmt::format("K_{{0}} = {:g}, C_{{0}} = {:g}", first_stiffness, first_damping), time, value});
+    panel.curves.push_back({fmt::format("K_{{0}} = {:g}, C_{{0}} = {:g}", first_stiffness, first_damping),
+                            time, value, first_damping > 10.0 ? CurveStyle::dashed : CurveStyle::line});
   }
   const double truth = stiffness ? outcome.truth.stiffness : outcome.truth.damping;
   panel.curves.push_back({"true value",
@@ -112,7 +112,7 @@ Figure damping_law_figure(const Outcome& outcome) {
     const BeamOutcome& o = outcome.beams[b];
     product[b] = o.beam.reference.damping_ratio() * std::sqrt(o.beam.reference.mass);
     for (std::size_t i = 0; i < variants.size(); ++i)
-      errors[i][b] = std::abs(percent(o.identified[i].found.damping, o.beam.reference.damping));
+      errors[i][b] = std::abs(damping_error(o.identified[i].found, o.beam.reference));
   }
   // The law to first order, 100 sqrt(K) dt / (2 xi sqrt(Meq)), for the beams' common static stiffness.
   const double stiffness = steel_beam(test_beams[0]).tip_stiffness(),

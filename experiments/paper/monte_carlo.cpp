@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "experiments/discretisation_bias.hpp"
+#include "experiments/paper/errors.hpp"
 
 namespace beamid::experiments::paper {
 
@@ -20,8 +20,8 @@ TrialStatistics repeat(const BeamCase& beam, int beam_number, int trials, std::u
     const Record record =
         measure_acceleration(beam.released, sensor_noise, seed, stream_of(beam_number, trial));
     const Identification result = identify(beam, process(record, settings), settings, "ekf", "exponential");
-    stiffness[trial] = percent(result.found.stiffness, beam.reference.stiffness);
-    damping[trial] = percent(result.found.damping, beam.reference.damping);
+    stiffness[trial] = stiffness_error(result.found, beam.reference);
+    damping[trial] = damping_error(result.found, beam.reference);
     diverged[trial] = result.run.failure.has_value();
   });
   TrialStatistics statistics;

@@ -31,16 +31,21 @@ BeamOutcome examine(const TestBeam& test, int number, std::uint64_t seed, int tr
   const BeamSettings wide = wide_settings(beam);
   outcome.wide_true = identify(beam, true_motion(beam), wide, "ekf", "exponential");
   outcome.wide_processed = identify(beam, process(record, wide), wide, "ekf", "exponential");
+  outcome.wide_zero_phase =
+      identify(beam, process(record, zero_phase_wide_settings(beam)), wide, "ekf", "exponential");
+  const BeamSettings zero_phase = zero_phase_settings(beam);
+  outcome.zero_phase = identify(beam, process(record, zero_phase), zero_phase, "ekf", "exponential");
   outcome.trials = repeat(beam, number, trials, seed);
   return outcome;
 }
 
 }  // namespace
 
-Outcome investigate(std::uint64_t seed, int trials) {
+Outcome investigate(std::uint64_t seed, int trials, const Progress& progress) {
   Outcome outcome;
   outcome.seed = seed;
   outcome.truth = validation_truth();
+  progress("simulated oscillator");
   for (const std::string& scheme : compared_schemes())
     outcome.schemes.push_back(examine(scheme, outcome.truth));
   ValidationSettings literal;
@@ -48,8 +53,10 @@ Outcome investigate(std::uint64_t seed, int trials) {
   outcome.literal_variance_large = validate("ekf", "forward_euler", literal);
   literal.release = release_of(test_beams[0]).tip_deflection;
   outcome.literal_variance = validate("ekf", "forward_euler", literal);
-  for (std::size_t i = 0; i < test_beams.size(); ++i)
+  for (std::size_t i = 0; i < test_beams.size(); ++i) {
+    progress(std::string("beam ") + test_beams[i].name + ", " + std::to_string(trials) + " trials");
     outcome.beams.push_back(examine(test_beams[i], static_cast<int>(i), seed, trials));
+  }
   return outcome;
 }
 

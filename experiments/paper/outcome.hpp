@@ -9,6 +9,7 @@
 #include "experiments/paper/beam_identification.hpp"
 #include "experiments/paper/monte_carlo.hpp"
 #include "experiments/paper/numerical_validation.hpp"
+#include "experiments/progress.hpp"
 
 namespace beamid::experiments::paper {
 
@@ -39,8 +40,10 @@ struct BeamOutcome {
   filters::Measurements motion;              ///< processed displacement and velocity
   std::array<Identification, 4> identified;  ///< by the variants
   std::array<Oscillator, 4> predicted;       ///< what the variants' schemes see of the reference
-  Identification wide_true,
-      wide_processed;  ///< exact EKF, the paper's wide prior: true motion; its own processing
+  /// Exact EKF with the paper's wide prior: on the true motion, after its own processing, after a zero-phase
+  /// high-pass.
+  Identification wide_true, wide_processed, wide_zero_phase;
+  Identification zero_phase;  ///< exact EKF, tuned processing made zero-phase, both ends left out
   TrialStatistics trials;
 };
 
@@ -53,7 +56,7 @@ struct Outcome {
   std::vector<BeamOutcome> beams;
 };
 
-/// Runs it all. @param trials seeded repetitions per beam.
-Outcome investigate(std::uint64_t seed, int trials);
+/// Runs it all. @param trials seeded repetitions per beam. @param progress is told what is being done.
+Outcome investigate(std::uint64_t seed, int trials, const Progress& progress);
 
 }  // namespace beamid::experiments::paper

@@ -23,6 +23,8 @@ Table table_4(const Outcome& outcome);
 Table table_5(const Outcome& outcome);
 /// Wide prior and unmodelled modes: the second cause of failure.
 Table second_cause_table(const Outcome& outcome);
+/// Zero-phase filtering, with its end transients left out and kept.
+Table zero_phase_table(const Outcome& outcome);
 /// Mean and rms error over the seeded trials against the Cramer-Rao bound.
 Table trials_table(const Outcome& outcome);
 /// Error of Rayleigh's equivalent mass.

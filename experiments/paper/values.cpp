@@ -1,4 +1,4 @@
-#include "experiments/discretisation_bias.hpp"
+#include "experiments/paper/errors.hpp"
 #include "experiments/paper/report.hpp"
 
 namespace beamid::experiments::paper {
@@ -7,8 +7,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json errors(const Oscillator& found, const Oscillator& truth) {
-  return {{"stiffness_error_percent", percent(found.stiffness, truth.stiffness)},
-          {"damping_error_percent", percent(found.damping, truth.damping)}};
+  return {{"stiffness_error_percent", stiffness_error(found, truth)},
+          {"damping_error_percent", damping_error(found, truth)}};
 }
 
 Json identified(const Identification& result, const Oscillator& reference, const Oscillator& predicted) {
@@ -16,8 +16,8 @@ Json identified(const Identification& result, const Oscillator& reference, const
             {"damping_n_s_per_m", result.found.damping},
             {"damping_ratio", result.found.damping_ratio()}};
   json.update(errors(result.found, reference));
-  json["predicted_stiffness_error_percent"] = percent(predicted.stiffness, reference.stiffness);
-  json["predicted_damping_error_percent"] = percent(predicted.damping, reference.damping);
+  json["predicted_stiffness_error_percent"] = stiffness_error(predicted, reference);
+  json["predicted_damping_error_percent"] = damping_error(predicted, reference);
   json["stiffness_standard_deviation_n_per_m"] = result.stiffness_deviation;
   json["damping_standard_deviation_n_s_per_m"] = result.damping_deviation;
   json["status"] = result.run.failure ? "diverged" : "converged";
@@ -44,7 +44,11 @@ Json beam_values(const BeamOutcome& o) {
     json[variants[i].filter][variants[i].scheme] =
         identified(o.identified[i], beam.reference, o.predicted[i]);
   json["wide_prior"] = {{"true_motion", errors(o.wide_true.found, beam.reference)},
-                        {"paper_processing", errors(o.wide_processed.found, beam.reference)}};
+                        {"paper_processing", errors(o.wide_processed.found, beam.reference)},
+                        {"zero_phase_ends_kept", errors(o.wide_zero_phase.found, beam.reference)}};
+  json["wide_prior"]["zero_phase_ends_kept"]["status"] =
+      lost(o.wide_zero_phase, o.analysis.mode.frequency_hz) ? "diverged" : "converged";
+  json["zero_phase"] = errors(o.zero_phase.found, beam.reference);
   json["trials"] = {{"count", o.trials.trials},
                     {"diverged", o.trials.diverged},
                     {"stiffness_mean_error_percent", o.trials.stiffness_mean_percent},
@@ -65,9 +69,8 @@ Json values(const Outcome& outcome) {
     table2[o.scheme] = errors(o.ekf.found, outcome.truth);
     table2[o.scheme]["ukf"] = errors(o.ukf.found, outcome.truth);
     bias[o.scheme] = errors(o.displacement_only.found, outcome.truth);
-    bias[o.scheme]["predicted_stiffness_error_percent"] =
-        percent(o.predicted.stiffness, outcome.truth.stiffness);
-    bias[o.scheme]["predicted_damping_error_percent"] = percent(o.predicted.damping, outcome.truth.damping);
+    bias[o.scheme]["predicted_stiffness_error_percent"] = stiffness_error(o.predicted, outcome.truth);
+    bias[o.scheme]["predicted_damping_error_percent"] = damping_error(o.predicted, outcome.truth);
   }
   for (const BeamOutcome& o : outcome.beams) beams.push_back(beam_values(o));
   return {{"published",

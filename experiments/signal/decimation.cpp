@@ -42,8 +42,9 @@ DecimatedSignal decimate(const Eigen::VectorXd& signal, double interval, int fac
     throw std::invalid_argument("signal of " + std::to_string(signal.size()) +
                                 " samples; expected at least " + std::to_string(length) + " to decimate by " +
                                 std::to_string(factor));
-  DecimatedSignal result{Eigen::VectorXd((signal.size() - length) / factor + 1), factor * interval,
-                         static_cast<double>(length / 2) * interval, factor, kernel};
+  const Eigen::Index half = length / 2, count = (signal.size() - length) / factor + 1;
+  DecimatedSignal result{Eigen::VectorXd(count), factor * interval, static_cast<double>(half) * interval,
+                         factor, kernel};
   for (Eigen::Index m = 0; m < result.samples.size(); ++m)
     result.samples[m] = kernel.dot(signal.segment(m * factor, length));
   return result;

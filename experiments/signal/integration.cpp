@@ -30,8 +30,7 @@ std::complex<double> trapezoidal_response(std::complex<double> rate, double inte
 }
 
 CascadedFilter processing_filter(const ProcessingSettings& settings, double interval) {
-  const CascadedFilter high_pass =
-      butterworth_high_pass(settings.high_pass_order, settings.high_pass_hz, interval);
+  CascadedFilter high_pass = butterworth_high_pass(settings.high_pass_order, settings.high_pass_hz, interval);
   if (!settings.low_pass_hz) return high_pass;
   return cascade(high_pass, butterworth_low_pass(settings.low_pass_order, *settings.low_pass_hz, interval));
 }

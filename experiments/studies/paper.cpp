@@ -18,9 +18,9 @@ class PaperStudy final : public Study {
       throw std::invalid_argument("trials must be a whole number from 2 to 1000000");
   }
 
-  Results run() const override {
+  Results run(const Progress& progress) const override {
     const auto begin = std::chrono::steady_clock::now();
-    const paper::Outcome outcome = paper::investigate(seed_, trials_);
+    const paper::Outcome outcome = paper::investigate(seed_, trials_, progress);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
     Results results;
     results.command = "paper";

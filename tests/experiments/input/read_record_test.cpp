@@ -188,16 +188,15 @@ TEST(ReadRecord, RefusesColumnsThatAreNotThere) {
 
 TEST(ReadRecord, RefusesHeadersThatDoNotTellTheUnits) {
   expect_refused(
-      {},
-      {{"time_s,acc\n0,1\n1,1\n", "bad.txt:1: unknown column 'acc'; expected names with units (" KNOWN
-                                  "), or record.channels in the configuration"},
-       {"0,1\n1,1\n", "bad.txt: a header of 0 names for 2 columns; expected one each, with its unit (" KNOWN
-                      "), or record.channels in the configuration"},
-       {"time_s\n0\n1\n", "bad.txt:1: no column but time; expected a measured quantity"},
-       {"time_s,time_ms,force_n\n0,1,2\n1,1,2\n", "bad.txt:1: two columns of time; expected one"},
-       {"force_n\n0\n1\n",
-        "bad.txt: no times; expected a column time_s, or record.time or record.sampling_rate_hz in the "
-        "configuration"}});
+      {}, {{"time_s,acc\n0,1\n1,1\n", "bad.txt:1: unknown column 'acc'; expected names with units (" KNOWN
+                                      "), or record.channels in the configuration"},
+           {"0,1\n1,1\n", "bad.txt: no header; expected one that names every column with its unit (" KNOWN
+                          "), or record.channels in the configuration"},
+           {"time_s\n0\n1\n", "bad.txt:1: no column but time; expected a measured quantity"},
+           {"time_s,time_ms,force_n\n0,1,2\n1,1,2\n", "bad.txt:1: two columns of time; expected one"},
+           {"force_n\n0\n1\n",
+            "bad.txt: no times; expected a column time_s, or record.time or record.sampling_rate_hz in the "
+            "configuration"}});
 }
 
 TEST(ReadRecord, RefusesIrregularTimes) {

@@ -1,17 +1,13 @@
+// Tables of the five beams.
 #include <cmath>
+#include <limits>
+#include <numbers>
 
-#include "experiments/discretisation_bias.hpp"
+#include "experiments/paper/errors.hpp"
 #include "experiments/paper/report.hpp"
 
 namespace beamid::experiments::paper {
 namespace {
-
-double stiffness_error(const Oscillator& found, const Oscillator& reference) {
-  return percent(found.stiffness, reference.stiffness);
-}
-double damping_error(const Oscillator& found, const Oscillator& reference) {
-  return percent(found.damping, reference.damping);
-}
 
 constexpr double not_applicable = std::numeric_limits<double>::quiet_NaN();
 
@@ -32,48 +28,8 @@ Table table_1(const Outcome& outcome) {
                100.0 * o.analysis.mode.damping_ratio, 100.0 * o.analysis.decrement.damping_ratio});
   table.note =
       "Damping ratios are assumed (the paper's own table is not available; its text says all are below 0.5 "
-      "%). f1 "
-      "and xi1: eigensystem realisation polished by least squares; by decrement: logarithmic decrement.";
-  return table;
-}
-
-Table table_2(const Outcome& outcome) {
-  Table table{"table_2", "Table 2. Errors on the simulated oscillator: published, and found here"};
-  table.column({"discretisation", "discretisation"})
-      .column({"published |K| [%]", "published_stiffness_error_percent", "{:.2f}"})
-      .column({"published |C| [%]", "published_damping_error_percent", "{:.2f}"})
-      .column({"EKF K [%]", "ekf_stiffness_error_percent", "{:+.4f}"})
-      .column({"EKF C [%]", "ekf_damping_error_percent", "{:+.4f}"})
-      .column({"UKF K [%]", "ukf_stiffness_error_percent", "{:+.4f}"})
-      .column({"UKF C [%]", "ukf_damping_error_percent", "{:+.4f}"});
-  for (const SchemeOutcome& o : outcome.schemes) {
-    const bool published = o.scheme == "forward_euler";
-    table.row({o.scheme, published ? published_stiffness_error_percent : not_applicable,
-               published ? published_damping_error_percent : not_applicable,
-               stiffness_error(o.ekf.found, outcome.truth), damping_error(o.ekf.found, outcome.truth),
-               stiffness_error(o.ukf.found, outcome.truth), damping_error(o.ukf.found, outcome.truth)});
-  }
-  table.note =
-      "K = 515.8 N/m, M = 3.0 kg, damping ratio 10 %, 5 s at 1 kHz, noise-free; displacement and velocity "
-      "observed, "
-      "R = 1e-5 I, P0 = diag(1, 1, 1e5, 1e5), K0 = 300 N/m, C0 = 2 N s/m, released from 1 m (not printed in "
-      "the paper).";
-  return table;
-}
-
-Table bias_table(const Outcome& outcome) {
-  Table table{"discretisation_bias", "What the discretisation alone does: closed form, and the filter"};
-  table.column({"discretisation", "discretisation"})
-      .column({"closed form K [%]", "predicted_stiffness_error_percent", "{:+.8f}"})
-      .column({"EKF K [%]", "stiffness_error_percent", "{:+.8f}"})
-      .column({"closed form C [%]", "predicted_damping_error_percent", "{:+.8f}"})
-      .column({"EKF C [%]", "damping_error_percent", "{:+.8f}"});
-  for (const SchemeOutcome& o : outcome.schemes)
-    table.row({o.scheme, stiffness_error(o.predicted, outcome.truth),
-               stiffness_error(o.displacement_only.found, outcome.truth),
-               damping_error(o.predicted, outcome.truth),
-               damping_error(o.displacement_only.found, outcome.truth)});
-  table.note = "As table 2, but displacement alone observed, R = 1e-12 and two passes: nothing else is left.";
+      "%). f1 and xi1: eigensystem realisation polished by least squares; by decrement: logarithmic "
+      "decrement.";
   return table;
 }
 
@@ -100,11 +56,9 @@ Table table_3(const Outcome& outcome) {
     }
   }
   table.note =
-      "Reference: Rayleigh's mass (static shape) with the exact first mode, K = Meq w1^2, C = 2 xi1 w1 Meq. "
-      "+-: one "
-      "standard deviation as the filter reports it; on integrated channels, whose noise is coloured, it is "
-      "only a "
-      "rough guide (the trials below tell the real spread).";
+      "Reference: Rayleigh's mass (static shape) with the exact first mode, K = Meq w1^2, C = 2 xi1 w1 "
+      "Meq. +-: one standard deviation as the filter reports it; on integrated channels, whose noise is "
+      "coloured, it is only a rough guide (the trials below tell the real spread).";
   return table;
 }
 
@@ -145,31 +99,6 @@ Table table_5(const Outcome& outcome) {
   return table;
 }
 
-Table second_cause_table(const Outcome& outcome) {
-  Table table{"second_cause", "The second cause: a wide prior and unmodelled modes (EKF, exact)"};
-  table.column({"beam", "beam"})
-      .column({"true motion, K [%]", "true_motion_stiffness_error_percent", "{:+.4f}"})
-      .column({"true motion, C [%]", "true_motion_damping_error_percent", "{:+.3f}"})
-      .column({"paper's processing, K [%]", "paper_processing_stiffness_error_percent", "{:+.4f}"})
-      .column({"paper's processing, C [%]", "paper_processing_damping_error_percent", "{:+.3f}"})
-      .column({"tuned processing, K [%]", "tuned_stiffness_error_percent", "{:+.4f}"})
-      .column({"tuned processing, C [%]", "tuned_damping_error_percent", "{:+.3f}"});
-  for (const BeamOutcome& o : outcome.beams) {
-    const Oscillator& reference = o.beam.reference;
-    std::vector<Cell> row{o.beam.test.name};
-    for (const Identification* result : {&o.wide_true, &o.wide_processed, &o.identified[1]}) {
-      row.emplace_back(stiffness_error(result->found, reference));
-      row.emplace_back(damping_error(result->found, reference));
-    }
-    table.row(row);
-  }
-  table.note =
-      "First four columns: R = 1e-5 I, P0 = diag(1, 1, 1e5, 1e5) from the release on, eight modes in the "
-      "motion. The "
-      "paper's processing: high-pass at 0.5 Hz, no low-pass, its transient not left out.";
-  return table;
-}
-
 Table trials_table(const Outcome& outcome) {
   Table table{"trials", "Seeded repetitions against the Cramer-Rao bound (EKF, exact)"};
   table.column({"beam", "beam"})
@@ -188,8 +117,7 @@ Table trials_table(const Outcome& outcome) {
   }
   table.note =
       "The bound: white noise of 0.05 m/s2 on the acceleration itself, all 25 s, initial state unknown, no "
-      "prior. The "
-      "distance to it is the price of filtering and of the three cycles left out.";
+      "prior. The distance to it is the price of filtering and of the three cycles left out.";
   return table;
 }
 
@@ -207,8 +135,7 @@ Table reduction_table(const Outcome& outcome) {
   }
   table.note =
       "From free decay only K/M and C/M can be told. Rayleigh's mass is too small for the true first mode; "
-      "an "
-      "identified K is too small against 3EI/L^3 by as much. This is kept apart from the errors above.";
+      "an identified K is too small against 3EI/L^3 by as much. This is kept apart from the errors above.";
   return table;
 }
 

@@ -1,0 +1,96 @@
+// beamid new: a commented experiment file to start from.
+#include <filesystem>
+#include <iostream>
+
+#include "apps/command.hpp"
+#include "experiments/input/input_error.hpp"
+#include "experiments/output/file.hpp"
+
+namespace beamid::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using experiments::InputError;
+
+constexpr const char* starter =
+    R"toml(# An experiment for beamid: the beam, its record, the methods. Put your own values in place of these.
+# Numbers are SI, and keys carry the unit. Lines behind # show what else may stand there; docs/configuration.md has
+# every key. Check:     beamid validate FILE
+#          identify:  beamid identify RECORD --config FILE --out results
+title = "steel cantilever with a tip mass"
+
+[beam]                              # a uniform cantilever
+length_m = 1.10                     # from the clamp to the tip mass's centre
+width_m = 0.060                     # of the section, across the direction of bending
+height_m = 0.006                    # of the section, along the direction of bending
+youngs_modulus_pa = 2.12e11
+# bending_stiffness_n_m2 = 228.96   # EI, instead of youngs_modulus_pa, width_m and height_m
+mass_kg = 3.055                     # the beam alone
+# mass_per_length_kg_per_m = 2.777  # instead of mass_kg
+# density_kg_per_m3 = 7850          # instead of mass_kg, with width_m and height_m
+tip_mass_kg = 0.360                 # 0 without one
+# tip_rotary_inertia_kg_m2 = 1e-4   # of the tip mass about its own centre
+sensor_mass_kg = 0.0                # accelerometer at the tip, added to the tip mass
+
+[record]                            # a text file of numbers in columns
+file = "record.csv"                 # relative to this file; a RECORD on the command line comes first
+# header_lines = 23                 # when more than one line stands before the numbers
+# sampling_rate_hz = 1000.0         # when the printed times are rounded, or there are none
+# window_s = [0.8, 1.6]             # part of the record to use; damping often depends on amplitude, hence on it
+time = { column = 1, unit = "s" }   # by number from 1, or by name: column = "Time"; units s, ms, us
+channels = [                        # what was measured at the tip, in which column and unit
+  { quantity = "acceleration", column = 2, unit = "m/s2" },  # m/s2, mm/s2 or g
+  # { quantity = "displacement", column = 3, unit = "mm" },  # m, mm or um
+]
+
+[filter]
+method = "ekf"                      # beamid list filters
+discretisation = "exponential"      # beamid list discretisations; forward_euler is the error of the 2009 paper
+
+# [reduction]
+# method = "rayleigh"               # beamid list reductions
+
+# [prior]                           # believed beforehand; what is left out is worked out from beam and record
+# stiffness_n_per_m = 510.0
+# stiffness_deviation_n_per_m = 150.0
+# damping_ratio = 0.01
+# damping_ratio_deviation = 0.01
+
+# [noise]                           # standard deviation; estimated from the record unless given
+# acceleration_m_per_s2 = 0.05
+)toml";
+
+int run(const Command& command, const std::vector<std::string>& arguments) {
+  options::options_description described("Options");
+  described.add_options()                      //
+      ("force", "replace a file that exists")  //
+      ("help", "show this help");
+  options::variables_map values;
+  if (!parse(command, arguments, described, {"file"}, values)) return 0;
+  if (!values.count("file")) throw UsageError("new: which FILE? ('-' for standard output)");
+
+  const fs::path file = values["file"].as<std::string>();
+  if (file == "-") {
+    std::cout << starter;
+    return 0;
+  }
+  if (fs::is_directory(file))
+    throw InputError({file.string()}, "a directory; expected the name of a new file");
+  if (fs::exists(file) && !values.count("force"))
+    throw InputError({file.string()}, "exists; choose another name, or replace it with --force");
+  const fs::path folder = fs::absolute(file).parent_path();
+  if (!fs::is_directory(folder)) throw InputError({file.string()}, "no folder '" + folder.string() + "'");
+  experiments::write_file(file, starter);
+  std::cout << "Written: " << file.string() << "\nNext: put your beam and record in, then: beamid validate "
+            << file.string() << "\n";
+  return 0;
+}
+
+}  // namespace
+
+Command new_command() {
+  return {"new", "FILE [--force]", "a commented experiment file to start from",
+          "  beamid new cantilever.toml\n  beamid new - | less\n", run};
+}
+
+}  // namespace beamid::apps

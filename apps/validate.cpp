@@ -1,0 +1,110 @@
+// beamid validate: is an experiment file, and the record it is for, understood as it was meant?
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iostream>
+
+#include "apps/command.hpp"
+#include "experiments/input/method_choice.hpp"
+#include "experiments/input/read_experiment.hpp"
+#include "experiments/input/read_record.hpp"
+#include "experiments/joint_model.hpp"
+#include "fem/assembly.hpp"
+#include "fem/modes.hpp"
+#include "reduction/reduction.hpp"
+
+namespace beamid::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace experiments;
+
+std::string columns_text(const RecordFormat& format) {
+  std::string text;
+  for (const ColumnDescription& channel : format.channels)
+    text += fmt::format("{}{} from column {} (1 is {:g} {})", text.empty() ? "" : ", ",
+                        to_string(channel.quantity),
+                        channel.name.empty() ? std::to_string(channel.number) : "'" + channel.name + "'",
+                        channel.factor, si_unit(channel.quantity));
+  return text.empty() ? "columns by the names in the record's header" : text;
+}
+
+std::string channels_text(const Record& record) {
+  std::string text;
+  for (Eigen::Index i = 0; i < record.samples.rows(); ++i)
+    text += fmt::format("{}{} up to {:.4g} {}", i ? ", " : "", to_string(record.channels[i].quantity),
+                        record.samples.row(i).cwiseAbs().maxCoeff(), si_unit(record.channels[i].quantity));
+  return text;
+}
+
+std::string record_text(const fs::path& file, const Record& record) {
+  return fmt::format("{}: {} samples from {:.6g} to {:.6g} s at {:.6g} Hz; {}", file.filename().string(),
+                     record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
+                     channels_text(record));
+}
+
+// What the model says of the record's channels shows only when it is made.
+void check_model(const Experiment& experiment, const fem::StructuralSystem& system, const Record& record) {
+  std::vector<Quantity> observed;
+  for (const Channel& channel : record.channels) observed.push_back(channel.quantity);
+  const auto method =
+      reduction::reduction_registry().make(experiment.reduction.name, experiment.reduction.options);
+  const reduction::ReducedModel reduced = reduce(system, *method);
+  at_place(experiment.model.place, [&] {
+    return model_registry().make(experiment.model.name, experiment.model.options, reduced.system, observed);
+  });
+}
+
+int run(const Command& command, const std::vector<std::string>& arguments) {
+  options::options_description described("Options");
+  described.add_options()  //
+      ("record", options::value<std::string>()->value_name("RECORD"),
+       "read this record too, instead of the one the file names")  //
+      ("help", "show this help");
+  options::variables_map values;
+  if (!parse(command, arguments, described, {"file"}, values)) return 0;
+  if (!values.count("file")) throw UsageError("validate: which FILE?");
+
+  const fs::path file = values["file"].as<std::string>();
+  const Experiment experiment = read_experiment(file);
+  const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
+  std::string record_line = "none named; " + columns_text(experiment.format);
+  fs::path record_file;
+  if (values.count("record"))
+    record_file = values["record"].as<std::string>();
+  else if (experiment.record_file)
+    record_file = file.parent_path() / *experiment.record_file;
+  if (values.count("record") || (!record_file.empty() && fs::exists(record_file))) {
+    const Record record = read_record(record_file, experiment.format);
+    check_model(experiment, system, record);
+    record_line = record_text(record_file, record);
+  } else if (!record_file.empty()) {
+    record_line = fmt::format("'{}' is not there and was not checked; {}", record_file.string(),
+                              columns_text(experiment.format));
+  }
+
+  const fem::Beam& beam = experiment.beam;
+  std::cout << file.string() << ": valid\n"
+            << fmt::format(
+                   "  beam     {:g} m, EI = {:.6g} N m2, {:.6g} kg with {:.6g} kg at its tip; first mode "
+                   "predicted at {:.4f} Hz\n",
+                   beam.length, beam.bending_stiffness, beam.mass(), beam.tip_mass,
+                   fem::modes(system, 1).frequency_hz()[0])
+            << "  record   " << record_line << "\n"
+            << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
+                           experiment.reduction.name, experiment.model.name, experiment.filter.name,
+                           experiment.discretisation);
+  return 0;
+}
+
+}  // namespace
+
+Command validate_command() {
+  return {
+      "validate", "FILE [--record RECORD]",
+      "is an experiment file, and its record, right? what was understood",
+      "  beamid validate cantilever.toml\n  beamid validate cantilever.toml --record tip_acceleration.csv\n",
+      run};
+}
+
+}  // namespace beamid::apps

@@ -1,0 +1,33 @@
+// The numbers of an identification, as they stand in results.json.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/record_identification/record_identification.hpp"
+
+namespace beamid::experiments {
+
+/// One identified quantity and what the modal analysis says of it.
+struct Parameter {
+  const char* name;  ///< on the terminal
+  const char* key;   ///< in results.json
+  double shown;      ///< factor to the unit of the name
+  double estimate, deviation, modal;
+
+  double lower_95() const { return estimate - 1.959963984540054 * deviation; }  ///< normal quantile of 2.5 %
+  double upper_95() const { return estimate + 1.959963984540054 * deviation; }
+};
+
+/// Frequency, damping ratio, stiffness and damping; deviations widened by the interval factor.
+std::vector<Parameter> parameters(const RecordIdentification& found);
+
+/// The keys of results.json.
+nlohmann::ordered_json values(const RecordIdentification& found, const Record& record);
+
+/// All that was set, given or worked out.
+nlohmann::ordered_json configuration(const Experiment& experiment, const Record& record,
+                                     const RecordIdentification& found, const std::string& record_name);
+
+}  // namespace beamid::experiments
