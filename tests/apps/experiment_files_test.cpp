@@ -1,0 +1,132 @@
+// beamid new and beamid validate.
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty, testing::StartsWith;
+
+TEST(New, WritesAFileThatValidateAccepts) {
+  Workplace place;
+  const Outcome written = place.run("new mine.toml"), checked = place.run("validate mine.toml");
+  EXPECT_EQ(written.code, 0) << written.err;
+  EXPECT_THAT(written.out, StartsWith("Written: mine.toml\n"));
+  EXPECT_EQ(checked.code, 0) << checked.err;
+  EXPECT_THAT(checked.out, StartsWith("mine.toml: valid\n"));
+  EXPECT_THAT(checked.out, HasSubstr("'record.csv' is not there and was not checked"));
+}
+
+// Behind # stands only what may stand there: with every such line put to use, one key too many is refused
+// where two exclude each other, and nothing else.
+TEST(New, ShowsKeysThatExist) {
+  Workplace place;
+  const std::string text = place.run("new -").out;
+  std::istringstream lines(text);
+  std::string used;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t start = line.find_first_not_of(' ');
+    const bool key =
+        start != std::string::npos && line.compare(start, 2, "# ") == 0 &&
+        (line.find(" = ") != std::string::npos || line.find('[') == start + 2 || line.find('{') == start + 2);
+    const bool excluded = line.find("instead of") != std::string::npos;
+    used += key && !excluded ? line.substr(start + 2) + "\n" : line + "\n";
+  }
+  place.write("all.toml", used);
+  const Outcome checked = place.run("validate all.toml");
+  EXPECT_EQ(checked.code, 0) << checked.err << used;
+  for (const char* table : {"\n[reduction]", "\n[prior]", "\n[noise]", "\nwindow_s = ", "\nheader_lines = "})
+    EXPECT_THAT(used, HasSubstr(table));
+}
+
+TEST(New, WritesTheSameToStandardOutput) {
+  Workplace place;
+  const Outcome printed = place.run("new -");
+  EXPECT_EQ(printed.code, 0);
+  EXPECT_THAT(place.files(), IsEmpty());
+  place.run("new mine.toml");
+  EXPECT_EQ(printed.out, contents(place.folder() / "mine.toml"));
+}
+
+TEST(New, ReplacesAFileOnlyWithForce) {
+  Workplace place;
+  place.write("mine.toml", "precious");
+  const Outcome refused = place.run("new mine.toml");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.first_error_line(), "mine.toml: exists; choose another name, or replace it with --force");
+  EXPECT_EQ(contents(place.folder() / "mine.toml"), "precious");
+  EXPECT_EQ(place.run("new mine.toml --force").code, 0);
+  EXPECT_NE(contents(place.folder() / "mine.toml"), "precious");
+}
+
+TEST(New, RefusesFoldersAndMissingOnes) {
+  Workplace place;
+  EXPECT_EQ(place.run("new .").first_error_line(), ".: a directory; expected the name of a new file");
+  EXPECT_THAT(place.run("new no/mine.toml").err, StartsWith("no/mine.toml: no folder '"));
+  EXPECT_EQ(place.run("new").first_error_line(), "beamid: new: which FILE? ('-' for standard output)");
+  EXPECT_THAT(place.files(), IsEmpty());
+}
+
+TEST(Validate, ReadsTheRecordToo) {
+  Workplace place;
+  fs::copy(source("docs/tutorials/02_identify_a_record"), place.folder(), fs::copy_options::recursive);
+  const Outcome named = place.run("validate cantilever.toml"),
+                given = place.run("validate cantilever.toml --record tip_acceleration.csv");
+  EXPECT_EQ(named.code, 0) << named.err;
+  EXPECT_EQ(named.out, given.out);
+  EXPECT_EQ(
+      named.out,
+      "cantilever.toml: valid\n"
+      "  beam     1.1 m, EI = 228.96 N m2, 3.055 kg with 0.36049 kg at its tip; first mode predicted at "
+      "3.4555 Hz\n"
+      "  record   tip_acceleration.csv: 2001 samples from 2 to 10 s at 250 Hz; acceleration up to 4.581 "
+      "m/s2\n"
+      "  methods  reduction rayleigh, model sdof, filter ekf, discretisation exponential\n");
+}
+
+TEST(Validate, RefusesARecordThatDoesNotFit) {
+  Workplace place;
+  place.run("new mine.toml");
+  place.write("one_column.csv", "1\n2\n3\n");
+  const Outcome outcome = place.run("validate mine.toml --record one_column.csv");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_EQ(outcome.first_error_line(),
+            "one_column.csv:1:1: 1 column; expected at least 2, the column asked for");
+  EXPECT_EQ(place.run("validate mine.toml --record no.csv").first_error_line(),
+            "no.csv: no such file; expected a record of numbers in columns");
+}
+
+TEST(Validate, RefusesAModelThatCannotReadTheRecord) {
+  Workplace place;
+  fs::copy(source("docs/tutorials/02_identify_a_record"), place.folder(), fs::copy_options::recursive);
+  place.write("full.toml",
+              contents(place.folder() / "cantilever.toml") + "\n[reduction]\nmethod = \"none\"\n");
+  const Outcome outcome = place.run("validate full.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.first_error_line(),
+            "full.toml: model 'sdof' needs a reduction to one coordinate; this one keeps 80");
+}
+
+TEST(Validate, SaysWhatIsMissing) {
+  EXPECT_EQ(Workplace().run("validate").first_error_line(), "beamid: validate: which FILE?");
+  EXPECT_EQ(Workplace().run("validate no.toml").first_error_line(),
+            "no.toml: no such file; expected a TOML file");
+}
+
+TEST(Tutorials, HoldExperimentFilesThatAreValid) {
+  int found = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(source("docs/tutorials"))) {
+    if (entry.path().extension() != ".toml") continue;
+    ++found;
+    const Outcome outcome = Workplace().run("validate '" + entry.path().string() + "'");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+  }
+  EXPECT_EQ(found, 7);
+}
+
+}  // namespace
+}  // namespace beamid::apps

@@ -1,0 +1,105 @@
+// What the command says of itself.
+#include <gmock/gmock.h>
+
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using testing::HasSubstr, testing::IsEmpty, testing::MatchesRegex, testing::StartsWith;
+
+TEST(Beamid, TellsItsVersion) {
+  const Outcome outcome = Workplace().run("--version");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, MatchesRegex("beamid [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(outcome.err, IsEmpty());
+}
+
+TEST(Beamid, WithoutWordsShowsHelpAsAnError) {
+  const Outcome bare = Workplace().run(""), asked = Workplace().run("--help");
+  EXPECT_EQ(bare.code, 2);
+  EXPECT_THAT(bare.out, IsEmpty());
+  EXPECT_EQ(asked.code, 0);
+  EXPECT_EQ(asked.out, bare.err);
+}
+
+class EveryCommand : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryCommand, IsNamedInTheHelp) {
+  EXPECT_THAT(Workplace().run("--help").out, HasSubstr("\n  " + std::string(GetParam()) + " "));
+}
+
+TEST_P(EveryCommand, ExplainsItselfWithExamples) {
+  const Outcome outcome = Workplace().run(GetParam() + std::string(" --help"));
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, StartsWith("beamid " + std::string(GetParam()) + " "));
+  EXPECT_THAT(outcome.out, HasSubstr("\nExamples\n  beamid " + std::string(GetParam())));
+}
+
+TEST_P(EveryCommand, RefusesAnUnknownOption) {
+  const Outcome outcome = Workplace().run(GetParam() + std::string(" --sed 1"));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_EQ(outcome.first_error_line(),
+            "beamid: " + std::string(GetParam()) + ": unrecognised option '--sed'");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryCommand, testing::Values("paper", "identify", "new", "validate", "list"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
+  const Outcome outcome = Workplace().run("indentify");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_EQ(outcome.first_error_line(),
+            "beamid: unknown command 'indentify'; known: paper, identify, new, validate, list");
+}
+
+struct Kind {
+  const char* name;
+  std::vector<std::string> members;
+};
+
+void PrintTo(const Kind& tested, std::ostream* stream) {
+  *stream << tested.name;
+}
+
+class ListOf : public testing::TestWithParam<Kind> {};
+
+TEST_P(ListOf, NamesEveryMember) {
+  const Outcome outcome = Workplace().run(std::string("list ") + GetParam().name);
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  for (const std::string& member : GetParam().members)
+    EXPECT_THAT(outcome.out, HasSubstr("\n" + member + " "));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ListOf,
+                         testing::Values(Kind{"filters", {"ekf", "ukf"}},
+                                         Kind{"reductions", {"none", "rayleigh", "modal_truncation"}},
+                                         Kind{"discretisations",
+                                              {"forward_euler", "backward_euler", "implicit_midpoint",
+                                               "runge_kutta_2", "runge_kutta_4", "exponential", "cvode"}},
+                                         Kind{"models", {"sdof"}}, Kind{"studies", {"paper"}}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST(ListOfOneFilter, ShowsItsOptionsWithDefaults) {
+  const Outcome outcome = Workplace().run("list filters ukf");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, StartsWith("ukf: "));
+  for (const char* option : {"\nalpha   1 ", "\nbeta    2 ", "\nkappa   0 "})
+    EXPECT_THAT(outcome.out, HasSubstr(option));
+}
+
+TEST(List, RefusesUnknownKindsAndNames) {
+  EXPECT_EQ(
+      Workplace().run("list fliters").first_error_line(),
+      "beamid: list: unknown kind 'fliters'; known: discretisations, filters, models, reductions, studies");
+  EXPECT_EQ(Workplace().run("list filters ufk").first_error_line(),
+            "beamid: unknown filter 'ufk'; known: ekf, ukf");
+  EXPECT_EQ(Workplace().run("list filters ufk").code, 2);
+}
+
+}  // namespace
+}  // namespace beamid::apps

@@ -1,0 +1,140 @@
+// beamid identify on the record that ships with the project.
+#include <gmock/gmock.h>
+
+#include <complex>
+#include <numbers>
+
+#include "experiments/input/write_record.hpp"
+#include "experiments/virtual_rig.hpp"
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr, testing::IsEmpty, testing::IsSupersetOf;
+
+const char* const tutorial = "docs/tutorials/02_identify_a_record";
+
+/// A folder that holds the tutorial.
+class Tutorial : public testing::Test {
+ protected:
+  Tutorial() { fs::copy(source(tutorial), place_.folder(), fs::copy_options::recursive); }
+
+  Workplace place_;
+};
+
+// The record is the library's own: the beam S(11.8) of [inverse2009] released from 12 mm, three modes as an
+// anti-aliasing filter would leave them, an accelerometer with white noise of 0.05 m/s2.
+TEST_F(Tutorial, RecordIsSimulatedAgainByteForByte) {
+  experiments::Release rig;
+  rig.beam.length = 1.10;
+  rig.beam.bending_stiffness = 2.12e11 * fem::rectangle_second_moment(0.060, 0.006);
+  rig.beam.mass_per_length = 3.055 / rig.beam.length;
+  rig.beam.tip_mass = 0.36049;
+  rig.modes = 3;
+  rig.first_damping_ratio = 0.0045;
+  rig.higher_damping_ratio = 0.02;
+  rig.duration = 10;
+  rig.sampling_rate = 250;
+  constexpr double noise = 0.05;
+  constexpr std::uint64_t seed = 1, stream = 0;
+  constexpr int digits = 6;
+  const auto record = experiments::measure_acceleration(experiments::release(rig), noise, seed, stream);
+  EXPECT_TRUE(experiments::to_csv(record, digits) == contents(place_.folder() / "tip_acceleration.csv"));
+}
+
+TEST_F(Tutorial, GivesTheExpectedValues) {
+  const Outcome outcome = place_.run("identify --config cantilever.toml --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  const json results = json::parse(outcome.out),
+             expected = json::parse(contents(source(tutorial) / "expected.json"));
+  for (const auto& [path, value] : expected.at("values").items())
+    EXPECT_NEAR(results.at(json::json_pointer(path)).get<double>(), value.at("value").get<double>(),
+                value.at("tolerance").get<double>())
+        << path;
+}
+
+// Oracle: what the record was simulated with.
+TEST_F(Tutorial, HasTheTruthInsideItsIntervals) {
+  const json results = json::parse(place_.run("identify --config cantilever.toml --json").out),
+             expected = json::parse(contents(source(tutorial) / "expected.json"));
+  for (const std::string key : {"frequency_hz", "damping_ratio", "stiffness_n_per_m", "damping_n_s_per_m"}) {
+    const double truth = expected.at("values").at("/" + key + "/estimate").at("truth");
+    EXPECT_LT(results.at(key).at("lower_95").get<double>(), truth) << key;
+    EXPECT_GT(results.at(key).at("upper_95").get<double>(), truth) << key;
+  }
+}
+
+TEST_F(Tutorial, TakesTheRecordFromTheCommandLineOrFromTheFile) {
+  EXPECT_EQ(place_.run("identify tip_acceleration.csv --config cantilever.toml --json").out,
+            place_.run("identify --config cantilever.toml --json").out);
+}
+
+TEST_F(Tutorial, FindsTheSameWithTheUnscentedFilter) {
+  std::string text = contents(place_.folder() / "cantilever.toml");
+  text.replace(text.find("\"ekf\""), 5, "\"ukf\"");
+  place_.write("ukf.toml", text);
+  const json ekf = json::parse(place_.run("identify --config cantilever.toml --json").out),
+             ukf = json::parse(place_.run("identify --config ukf.toml --json").out);
+  for (const char* key : {"stiffness_n_per_m", "damping_n_s_per_m"})
+    EXPECT_NEAR(ukf.at(key).at("estimate").get<double>(), ekf.at(key).at("estimate").get<double>(),
+                ekf.at(key).at("standard_deviation").get<double>());
+}
+
+TEST_F(Tutorial, PrintsATableAndWritesTheWholeSet) {
+  const Outcome outcome = place_.run("identify --config cantilever.toml --out results");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  for (const char* text : {"frequency [Hz]", "damping ratio [%]", "stiffness K [N/m]", "damping C [N s/m]",
+                           "Innovations: ", "\nWritten to results\n"})
+    EXPECT_THAT(outcome.out, HasSubstr(text));
+  std::vector<std::string> expected{"results/results.json", "results/timing.json", "results/parameters.csv"};
+  for (const char* figure : {"convergence", "reproduction"})
+    for (const char* ending : {".svg", ".png", ".gp", ".csv"})
+      expected.push_back(std::string("results/") + figure + ending);
+  EXPECT_THAT(place_.files(), IsSupersetOf(expected));
+}
+
+TEST_F(Tutorial, WritesTheSameBytesTwice) {
+  place_.run("identify --config cantilever.toml --out one");
+  place_.run("identify --config cantilever.toml --out two");
+  for (const auto& entry : fs::directory_iterator(place_.folder() / "one")) {
+    const std::string name = entry.path().filename().string();
+    if (name == "timing.json") continue;
+    EXPECT_TRUE(contents(entry.path()) == contents(place_.folder() / "two" / name)) << name;
+  }
+}
+
+TEST_F(Tutorial, UsesTheWindowOfTheCommandLine) {
+  const json results = json::parse(place_.run("identify --config cantilever.toml --window 4 6 --json").out);
+  EXPECT_NEAR(results.at("window_s")[0].get<double>(), 4.0, 1e-9);
+  EXPECT_NEAR(results.at("window_s")[1].get<double>(), 6.0, 1e-9);
+  EXPECT_EQ(results.at("samples"), 501);
+}
+
+// Oracle: the closed form. lambda_f = (e^(lambda dt) - 1)/dt, C_f = -2 M Re lambda_f.
+TEST_F(Tutorial, ShowsTheBiasOfForwardEuler) {
+  std::string text = contents(place_.folder() / "cantilever.toml");
+  text.replace(text.find("\"exponential\""), 13, "\"forward_euler\"");
+  place_.write("euler.toml", text);
+  const json results = json::parse(place_.run("identify --config euler.toml --json").out);
+  const double w = 2.0 * std::numbers::pi * 3.455527194845, ratio = 0.0045, dt = 0.004,
+               mass = results.at("equivalent_mass_kg");
+  const std::complex<double> rate(-ratio * w, w * std::sqrt(1.0 - ratio * ratio));
+  const double predicted = -2.0 * mass * ((std::exp(rate * dt) - 1.0) / dt).real();
+  EXPECT_NEAR(results.at("damping_n_s_per_m").at("estimate").get<double>(), predicted, 2e-3 * predicted);
+}
+
+TEST_F(Tutorial, LeavesNothingBehindWhenFiguresCannotBeDrawn) {
+  const auto before = place_.files();
+  const Outcome outcome = place_.run("identify --config cantilever.toml --out results", "PATH=/nowhere");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, HasSubstr("cannot start 'gnuplot'"));
+  EXPECT_EQ(place_.files(), before);
+}
+
+}  // namespace
+}  // namespace beamid::apps
