@@ -46,7 +46,7 @@ Record Record::window(double from, double to) const {
   const double* const first = std::lower_bound(time.data(), time.data() + size(), from - slack);
   const double* const last = std::upper_bound(time.data(), time.data() + size(), to + slack);
   const Eigen::Index begin = first - time.data(), count = last - first;
-  if (from < time[0] - slack || to > time[size() - 1] + slack || count < fewest) {
+  if (!(from >= time[0] - slack && to <= time[size() - 1] + slack) || count < fewest) {
     std::ostringstream message;
     message << "window " << from << " to " << to << " s; expected at least " << fewest
             << " samples inside the record, which runs from " << time[0] << " to " << time[size() - 1]

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numbers>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -103,6 +104,12 @@ Modes modes(const StructuralSystem& system, Index count) {
     result.angular_frequency[i] = std::sqrt(square);
     const VectorXd difference = shape - square * solver.solve(system.mass * shape);
     result.residual[i] = std::sqrt(difference.dot(system.mass * difference));
+    if (few && !(result.residual[i] < 1e-4)) {  // what Lanczos calls converged need not be a mode
+      std::ostringstream message;
+      message << "modes: mode " << i + 1 << " has a relative residual of " << result.residual[i]
+              << "; masses or stiffnesses are too far apart for double precision";
+      throw std::runtime_error(message.str());
+    }
   }
   return result;
 }

@@ -20,8 +20,8 @@ struct Modes {
 /// Lowest `count` modes (all of them at most). Few modes of a large system: shift-invert Lanczos at shift
 /// zero (Spectra) on the factored stiffness. Most modes, or a small system: singular values of D^1/2 B
 /// M^-1/2, which are the frequencies themselves and not their squares.
-/// @throws std::invalid_argument when count is not in 1..n; std::runtime_error when Lanczos does not
-/// converge.
+/// @throws std::invalid_argument when count is not in 1..n; std::runtime_error when Lanczos does not converge
+/// or what it found has a residual above 1e-4.
 Modes modes(const StructuralSystem& system, Eigen::Index count);
 
 }  // namespace beamid::fem

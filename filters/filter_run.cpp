@@ -1,5 +1,6 @@
 #include "filters/filter_run.hpp"
 
+#include <limits>
 #include <stdexcept>
 
 namespace beamid::filters {
@@ -38,6 +39,9 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
     }
   } catch (const FilterFailure& trouble) {
     result.failure = Failure{step, measurements.time[step], trouble.what(), trouble.smallest_eigenvalue};
+  } catch (const std::runtime_error& trouble) {  // a discretisation that cannot take the step
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    result.failure = Failure{step, measurements.time[step], trouble.what(), unknown};
   }
   result.last = filter.belief();
   return result;

@@ -14,7 +14,7 @@ struct Failure {
   Eigen::Index step = 0;  ///< index of the sample
   double time = 0.0;      ///< of that sample [s]
   std::string reason;
-  double smallest_eigenvalue = 0.0;
+  double smallest_eigenvalue = 0.0;  ///< of the covariance that failed; NaN when none did
 };
 
 /// N samples to filter; a row per channel.
@@ -41,8 +41,8 @@ enum class Keep { last_belief, all_beliefs };
 enum class Start { at_first_sample, one_interval_before };
 
 /// Runs the filter over the record.
-/// @throws std::invalid_argument when shapes disagree; numerical trouble ends the run and is told in
-/// `failure`.
+/// @throws std::invalid_argument when shapes disagree; numerical trouble of the filter or of its
+/// discretisation ends the run and is told in `failure`.
 FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements,
               Keep keep = Keep::last_belief, Start start = Start::at_first_sample);
 

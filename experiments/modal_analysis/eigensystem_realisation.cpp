@@ -33,8 +33,10 @@ void check(const MatrixXd& outputs, double interval, const EigensystemSettings& 
     message << rows << " block rows; expected 2 to " << count / 2 << ", half of the " << count << " samples";
   else if (settings.order < 0 || settings.order > rows * p)
     message << "order " << settings.order << "; expected 0 (automatic) to " << rows * p;
-  else if (outputs.cwiseAbs().maxCoeff() == 0)
+  else if (const double largest = outputs.cwiseAbs().maxCoeff(); largest == 0)
     message << "free decay of zeros only has no modes";
+  else if (!(largest > 1e-100 && largest < 1e100))  // products of outputs must neither vanish nor overflow
+    message << "free decay with values up to " << largest << "; expected between 1e-100 and 1e100";
   if (const std::string text = message.str(); !text.empty()) throw std::invalid_argument(text);
 }
 

@@ -45,7 +45,8 @@ struct EigensystemRealisation {
 /// rows squared appear, whatever the length of the record. The price: singular values below about 1e-8 of the
 /// largest are lost. Shapes are the least-squares fit of all modes to the whole record.
 /// @param outputs (p x N), one column per instant
-/// @throws std::invalid_argument when N, rows and order do not fit or an output is not finite.
+/// @throws std::invalid_argument when N, rows and order do not fit, an output is not finite, or its square
+/// leaves double precision.
 EigensystemRealisation eigensystem_realisation(const Eigen::MatrixXd& outputs, double interval,
                                                const EigensystemSettings& settings = {});
 

@@ -9,9 +9,9 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-Figure reproduction(const Record& record, const RecordIdentification& r) {
+Figure reproduction(const Record& record, const RecordIdentification& found) {
   const double begin = record.time[0], end = record.time[record.size() - 1];
-  const double cycles = begin + 6.0 / r.identification.found.frequency_hz();
+  const double cycles = begin + 6.0 / found.identification.found.frequency_hz();
   const bool long_record = cycles < 0.8 * end + 0.2 * begin;  // else both panels would show the same
   Figure figure{"reproduction", {}, long_record ? 2 : 1, 1};
   for (const bool whole : {false, true}) {
@@ -25,7 +25,7 @@ Figure reproduction(const Record& record, const RecordIdentification& r) {
         {"measured", record.time, record.samples.row(0).transpose(), CurveStyle::line, {}, {}, Colour::grey},
         {"reproduced with the identified K and C",
          record.time,
-         r.reproduced.row(0).transpose(),
+         found.reproduced.row(0).transpose(),
          CurveStyle::dashed,
          {},
          {},
@@ -61,12 +61,12 @@ Panel history(const Record& record, const VectorXd& estimate, const VectorXd& de
   return panel;
 }
 
-Figure convergence(const Record& record, const RecordIdentification& r) {
-  const auto& beliefs = r.identification.run.filtered;
+Figure convergence(const Record& record, const RecordIdentification& found) {
+  const auto& beliefs = found.identification.run.filtered;
   const auto count = static_cast<Index>(beliefs.size());
   VectorXd frequency(count), frequency_deviation(count), ratio(count), ratio_deviation(count);
   for (Index k = 0; k < count; ++k) {
-    const Oscillator now{r.identification.found.mass, beliefs[k].mean[2], beliefs[k].mean[3]};
+    const Oscillator now{found.identification.found.mass, beliefs[k].mean[2], beliefs[k].mean[3]};
     frequency[k] = now.frequency_hz();
     frequency_deviation[k] = 0.5 * frequency[k] * std::sqrt(beliefs[k].covariance(2, 2)) / now.stiffness;
     ratio[k] = 100.0 * now.damping_ratio();
@@ -75,10 +75,10 @@ Figure convergence(const Record& record, const RecordIdentification& r) {
   }
   const double last_ratio = ratio[count - 1];
   Figure figure{"convergence", {}, 2, 1};
-  figure.panels = {history(record, frequency, frequency_deviation, r.modal.frequency_hz, "frequency [Hz]",
+  figure.panels = {history(record, frequency, frequency_deviation, found.modal.frequency_hz, "frequency [Hz]",
                            0.02 * frequency[count - 1]),
-                   history(record, ratio, ratio_deviation, 100.0 * r.modal.damping_ratio, "damping ratio [%]",
-                           std::abs(last_ratio))};
+                   history(record, ratio, ratio_deviation, 100.0 * found.modal.damping_ratio,
+                           "damping ratio [%]", std::abs(last_ratio))};
   figure.panels.front().legend = Legend::none;
   return figure;
 }

@@ -18,6 +18,9 @@ using Eigen::Index, Eigen::VectorXd;
 constexpr int passes = 3;                     // the first guess may be 20 % off
 constexpr double stiffness_doubt = 0.3;       // standard deviation of K0, relative: clamps are never ideal
 constexpr double first_damping_ratio = 0.01;  // of C0, with a standard deviation as large
+// Smallest noise taken from a record, relative to its largest reading. One simulated without noise would else
+// make P0 and R differ by more digits than double precision has.
+constexpr double smallest_noise = 1e-6;
 
 std::vector<Quantity> observed(const Record& record) {
   std::vector<Quantity> quantities;
@@ -85,7 +88,8 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
 
   const std::complex<double> rate = result.modal.rate();
   const ShapeFit left = fit_shapes(record.samples, dt, {rate, 0.0}, {true, false});
-  result.noise_deviation = left.residual_standard_deviation;
+  result.noise_deviation = left.residual_standard_deviation.cwiseMax(
+      smallest_noise * record.samples.cwiseAbs().rowwise().maxCoeff());
   result.noise_from_record = true;
   for (Index i = 0; i < record.samples.rows(); ++i)
     if (const auto given = experiment.noise.find(record.channels[i].quantity);

@@ -16,7 +16,7 @@ int decimals(double deviation) {
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 12);
 }
 
-Table parameter_table(const RecordIdentification& r) {
+Table parameter_table(const RecordIdentification& found) {
   Table table{"parameters", ""};
   table.column({"", "parameter"})
       .column({"estimate", "estimate", "{}"})
@@ -24,7 +24,7 @@ Table parameter_table(const RecordIdentification& r) {
       .column({"to", "upper_95", "{}"})
       .column({"modal analysis", "modal_analysis", "{}"})
       .column({"difference [%]", "difference_percent", "{:+.3f}"});
-  for (const Parameter& p : parameters(r)) {
+  for (const Parameter& p : parameters(found)) {
     const int digits = decimals(p.shown * p.deviation);
     const auto shown = [&](double value) { return fmt::format("{:.{}f}", p.shown * value, digits); };
     table.row({p.name, shown(p.estimate), shown(p.lower_95()), shown(p.upper_95()), shown(p.modal),
@@ -33,12 +33,15 @@ Table parameter_table(const RecordIdentification& r) {
   table.note = fmt::format(
       "Intervals take the mass as known: Meq = {:.4f} kg; a mass wrong by 1 % makes K and C wrong by 1 %. "
       "Modal analysis: eigensystem realisation polished by least squares, without the beam.",
-      r.identification.found.mass);
+      found.identification.found.mass);
   return table;
 }
 
 std::string verdict(const filters::InnovationConsistency& c) {
   if (c.white() && c.size_is_steady()) return "white and of steady size, as they should be";
+  if (c.windows.maxCoeff() < c.window_lower_95)
+    return "smaller all along than they should be. The noise assumed is larger than the record's, and the "
+           "intervals are too wide";
   const char* what = c.white()            ? "white, but their size changes along the record"
                      : c.size_is_steady() ? "of steady size, but not white"
                                           : "neither white nor of steady size";
@@ -47,9 +50,9 @@ std::string verdict(const filters::InnovationConsistency& c) {
          "amplitude), and the intervals are a lower limit of the doubt";
 }
 
-std::string consistency_text(const RecordIdentification& r) {
-  if (!r.consistency) return "The record is too short to test the innovations.";
-  const auto& c = *r.consistency;
+std::string consistency_text(const RecordIdentification& found) {
+  if (!found.consistency) return "The record is too short to test the innovations.";
+  const auto& c = *found.consistency;
   return fmt::format(
       "Innovations: mean normalised square {:.3f} (95 % of consistent filters: {:.3f} to {:.3f}), over ten "
       "windows {:.2f} to {:.2f} ({:.2f} to {:.2f}), correlation of successive ones {:+.2f}, Ljung-Box p = "
@@ -58,64 +61,65 @@ std::string consistency_text(const RecordIdentification& r) {
       c.window_lower_95, c.window_upper_95, c.lag_one_correlation, c.whiteness_p_value, verdict(c));
 }
 
-std::string noise_text(const Record& record, const RecordIdentification& r) {
+std::string noise_text(const Record& record, const RecordIdentification& found) {
   std::string text = "Noise (standard deviation):";
-  for (Eigen::Index i = 0; i < r.noise_deviation.size(); ++i)
+  for (Eigen::Index i = 0; i < found.noise_deviation.size(); ++i)
     text += fmt::format("{} {} {:.4g} {}", i ? "," : "", to_string(record.channels[i].quantity),
-                        r.noise_deviation[i], si_unit(record.channels[i].quantity));
-  text += r.noise_from_record ? ", all that the modal analysis leaves of the record." : ", as configured.";
-  if (r.interval_factor > 1.0)
+                        found.noise_deviation[i], si_unit(record.channels[i].quantity));
+  text +=
+      found.noise_from_record ? ", all that the modal analysis leaves of the record." : ", as configured.";
+  if (found.interval_factor > 1.0)
     text += fmt::format(" Near the mode it is denser than that: intervals are widened by {:.2f}.",
-                        r.interval_factor);
+                        found.interval_factor);
   return text;
 }
 
-std::string companion_text(const RecordIdentification& r) {
+std::string companion_text(const RecordIdentification& found) {
   std::string text;
-  for (const CompanionMode& mode : r.modal.companions)
+  for (const CompanionMode& mode : found.modal.companions)
     text += fmt::format(
         "{}Beside the mode there is another at {:.2f} Hz with {:.0f} % of its amplitude. A model of one "
         "mode takes its decay and beat for damping: trust the modal analysis, which fits both, or a window "
         "where it has died out.",
-        text.empty() ? "" : " ", mode.frequency_hz, 100.0 * mode.amplitude / r.modal.amplitude);
+        text.empty() ? "" : " ", mode.frequency_hz, 100.0 * mode.amplitude / found.modal.amplitude);
   return text;
 }
 
 }  // namespace
 
 Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
-               const RecordIdentification& r) {
+               const RecordIdentification& found) {
   Results results;
   results.command = "identify";
-  results.configuration = configuration(experiment, record, r, record_name);
-  results.values = values(r, record);
+  results.configuration = configuration(experiment, record, found, record_name);
+  results.values = values(found, record);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
-      experiment.filter.name, experiment.model.name, experiment.discretisation, r.settings.passes));
-  if (const auto& failure = r.identification.run.failure) {
-    results.paragraph(fmt::format("Diverged at sample {}, {:.4f} s: {} (smallest eigenvalue {:.3g}).",
-                                  failure->step, failure->time, failure->reason,
-                                  failure->smallest_eigenvalue));
+      experiment.filter.name, experiment.model.name, experiment.discretisation, found.settings.passes));
+  if (const auto& failure = found.identification.run.failure) {
+    const double smallest = failure->smallest_eigenvalue;
+    results.paragraph(
+        fmt::format("Diverged at sample {}, {:.4f} s: {}{}.", failure->step, failure->time, failure->reason,
+                    std::isnan(smallest) ? "" : fmt::format(" (smallest eigenvalue {:.3g})", smallest)));
     return results;
   }
-  if (lost(r.identification, r.modal.frequency_hz))
+  if (lost(found.identification, found.modal.frequency_hz))
     results.paragraph(
         fmt::format("DIVERGED: the filter has lost the motion. Its stiffness or damping is not positive, or "
-                    "its frequency is far from "
-                    "the {:.4f} Hz of the modal analysis. Look at [prior] and [noise] in the experiment "
-                    "file; below is where it ended.",
-                    r.modal.frequency_hz));
-  results.table(parameter_table(r));
-  results.paragraph(consistency_text(r));
-  results.paragraph(noise_text(record, r));
+                    "its frequency is far from the {:.4f} Hz of the modal analysis. Look at the "
+                    "discretisation, [prior] and [noise] in the experiment file; below is where it ended.",
+                    found.modal.frequency_hz));
+  results.table(parameter_table(found));
+  results.paragraph(consistency_text(found));
+  results.paragraph(noise_text(record, found));
   results.paragraph(fmt::format(
       "The finite-element beam as described has its first mode at {:.3f} Hz; the record's is {:+.1f} % "
       "from it.",
-      r.beam_frequency_hz, percent(r.identification.found.frequency_hz(), r.beam_frequency_hz)));
-  if (const std::string text = companion_text(r); !text.empty()) results.paragraph(text);
-  results.figures = figures(record, r);
+      found.beam_frequency_hz, percent(found.identification.found.frequency_hz(), found.beam_frequency_hz)));
+  if (const std::string text = companion_text(found); !text.empty()) results.paragraph(text);
+  results.figures = figures(record, found);
   return results;
 }
 

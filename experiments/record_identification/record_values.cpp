@@ -7,56 +7,58 @@ namespace beamid::experiments {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<Parameter> parameters(const RecordIdentification& r) {
-  const Identification& i = r.identification;
+std::vector<Parameter> parameters(const RecordIdentification& found) {
+  const Identification& i = found.identification;
   const Oscillator modal = Oscillator::from_frequency(
-      i.found.mass, 2.0 * std::numbers::pi * r.modal.frequency_hz, r.modal.damping_ratio);
-  const double widen = r.interval_factor;
+      i.found.mass, 2.0 * std::numbers::pi * found.modal.frequency_hz, found.modal.damping_ratio);
+  const double widen = found.interval_factor;
   return {{"frequency [Hz]", "frequency_hz", 1.0, i.found.frequency_hz(), widen * i.frequency_deviation_hz,
-           r.modal.frequency_hz},
+           found.modal.frequency_hz},
           {"damping ratio [%]", "damping_ratio", 100.0, i.found.damping_ratio(),
-           widen * i.damping_ratio_deviation, r.modal.damping_ratio},
+           widen * i.damping_ratio_deviation, found.modal.damping_ratio},
           {"stiffness K [N/m]", "stiffness_n_per_m", 1.0, i.found.stiffness, widen * i.stiffness_deviation,
            modal.stiffness},
           {"damping C [N s/m]", "damping_n_s_per_m", 1.0, i.found.damping, widen * i.damping_deviation,
            modal.damping}};
 }
 
-Json values(const RecordIdentification& r, const Record& record) {
-  Json json{{"status", lost(r.identification, r.modal.frequency_hz) ? "diverged" : "converged"}};
-  for (const Parameter& p : parameters(r))
+Json values(const RecordIdentification& found, const Record& record) {
+  Json json{{"status", lost(found.identification, found.modal.frequency_hz) ? "diverged" : "converged"}};
+  for (const Parameter& p : parameters(found))
     json[p.key] = {{"estimate", p.estimate},
                    {"standard_deviation", p.deviation},
                    {"lower_95", p.lower_95()},
                    {"upper_95", p.upper_95()},
                    {"modal_analysis", p.modal}};
-  json["equivalent_mass_kg"] = r.identification.found.mass;
-  json["beam_frequency_hz"] = r.beam_frequency_hz;
+  json["equivalent_mass_kg"] = found.identification.found.mass;
+  json["beam_frequency_hz"] = found.beam_frequency_hz;
   json["window_s"] = {record.time[0], record.time[record.size() - 1]};
   json["samples"] = record.size();
-  json["interval_factor"] = r.interval_factor;
-  json["log_likelihood"] = r.identification.run.log_likelihood;
-  if (r.consistency)
-    json["innovations"] = {
-        {"mean_normalised_square", r.consistency->mean_normalised_square},
-        {"lower_95", r.consistency->lower_95},
-        {"upper_95", r.consistency->upper_95},
-        {"windows", std::vector<double>(r.consistency->windows.begin(), r.consistency->windows.end())},
-        {"lag_one_correlation", r.consistency->lag_one_correlation},
-        {"whiteness_p_value", r.consistency->whiteness_p_value}};
-  json["modal_analysis"] = {{"frequency_hz", r.modal.frequency_hz},
-                            {"damping_ratio", r.modal.damping_ratio},
-                            {"frequency_standard_deviation_hz", r.modal.frequency_standard_deviation_hz},
-                            {"damping_ratio_standard_deviation", r.modal.damping_ratio_standard_deviation}};
+  json["interval_factor"] = found.interval_factor;
+  json["log_likelihood"] = found.identification.run.log_likelihood;
+  if (found.consistency)
+    json["innovations"] = {{"mean_normalised_square", found.consistency->mean_normalised_square},
+                           {"lower_95", found.consistency->lower_95},
+                           {"upper_95", found.consistency->upper_95},
+                           {"windows", std::vector<double>(found.consistency->windows.begin(),
+                                                           found.consistency->windows.end())},
+                           {"lag_one_correlation", found.consistency->lag_one_correlation},
+                           {"whiteness_p_value", found.consistency->whiteness_p_value}};
+  json["modal_analysis"] = {
+      {"frequency_hz", found.modal.frequency_hz},
+      {"damping_ratio", found.modal.damping_ratio},
+      {"frequency_standard_deviation_hz", found.modal.frequency_standard_deviation_hz},
+      {"damping_ratio_standard_deviation", found.modal.damping_ratio_standard_deviation}};
   json["modal_analysis"]["companions"] = Json::array();
-  for (const CompanionMode& mode : r.modal.companions)
+  for (const CompanionMode& mode : found.modal.companions)
     json["modal_analysis"]["companions"].push_back(
         {{"frequency_hz", mode.frequency_hz},
          {"damping_ratio", mode.damping_ratio},
-         {"relative_amplitude", mode.amplitude / r.modal.amplitude}});
-  if (r.reproduced.size() > 0)
-    json["response_error_percent"] = 100.0 * (record.samples - r.reproduced).norm() / record.samples.norm();
-  if (const auto& failure = r.identification.run.failure)
+         {"relative_amplitude", mode.amplitude / found.modal.amplitude}});
+  if (found.reproduced.size() > 0)
+    json["response_error_percent"] =
+        100.0 * (record.samples - found.reproduced).norm() / record.samples.norm();
+  if (const auto& failure = found.identification.run.failure)
     json["failure"] = {{"step", failure->step},
                        {"time_s", failure->time},
                        {"reason", failure->reason},
@@ -64,7 +66,7 @@ Json values(const RecordIdentification& r, const Record& record) {
   return json;
 }
 
-Json configuration(const Experiment& experiment, const Record& record, const RecordIdentification& r,
+Json configuration(const Experiment& experiment, const Record& record, const RecordIdentification& found,
                    const std::string& record_name) {
   const auto choice = [](const Choice& chosen) {
     Json json{{"name", chosen.name}};
@@ -86,14 +88,15 @@ Json configuration(const Experiment& experiment, const Record& record, const Rec
             {"model", choice(experiment.model)},
             {"filter", choice(experiment.filter)}};
   json["filter"]["discretisation"] = experiment.discretisation;
-  json["passes"] = r.settings.passes;
-  const auto labels = r.model.motion->state_labels();
+  json["passes"] = found.settings.passes;
+  const auto labels = found.model.motion->state_labels();
   for (std::size_t i = 0; i < labels.size(); ++i)
-    json["initial"][labels[i].name] = {{"mean", r.settings.initial.mean[i]},
-                                       {"standard_deviation", std::sqrt(r.settings.initial.covariance(i, i))},
-                                       {"unit", labels[i].unit}};
-  for (Eigen::Index i = 0; i < r.noise_deviation.size(); ++i)
-    json["noise"][to_string(record.channels[i].quantity)] = r.noise_deviation[i];
+    json["initial"][labels[i].name] = {
+        {"mean", found.settings.initial.mean[i]},
+        {"standard_deviation", std::sqrt(found.settings.initial.covariance(i, i))},
+        {"unit", labels[i].unit}};
+  for (Eigen::Index i = 0; i < found.noise_deviation.size(); ++i)
+    json["noise"][to_string(record.channels[i].quantity)] = found.noise_deviation[i];
   return json;
 }
 

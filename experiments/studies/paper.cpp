@@ -10,12 +10,13 @@ namespace {
 
 class PaperStudy final : public Study {
  public:
-  PaperStudy(double seed, double trials)
-      : seed_(static_cast<std::uint64_t>(seed)), trials_(static_cast<int>(trials)) {
+  PaperStudy(double seed, double trials) {
     if (!(seed >= 0.0 && seed == std::floor(seed) && seed < 0x1p53))
       throw std::invalid_argument("seed must be a whole number from 0");
     if (!(trials >= 2.0 && trials == std::floor(trials) && trials <= 1e6))
       throw std::invalid_argument("trials must be a whole number from 2 to 1000000");
+    seed_ = static_cast<std::uint64_t>(seed);
+    trials_ = static_cast<int>(trials);
   }
 
   Results run(const Progress& progress) const override {
@@ -35,8 +36,8 @@ class PaperStudy final : public Study {
   }
 
  private:
-  std::uint64_t seed_;
-  int trials_;
+  std::uint64_t seed_ = 0;
+  int trials_ = 0;
 };
 
 const bool registered = study_registry().add(

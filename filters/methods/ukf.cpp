@@ -7,8 +7,9 @@
 //     covariance  W sum d_i d_i^T + (beta - alpha^2) s s^T
 //
 // The weights therefore sum to one exactly, for any alpha, and the covariance is positive for beta >=
-// alpha^2: options that break this are refused. The correction subtracts nothing either. With e_i = h(z_i) -
-// h(z_0), t = W sum e_i and gain G it is, as in Joseph's form,
+// alpha^2: options that break this are refused, and so are points so close that rounding of f is all that
+// d_i holds. The correction subtracts nothing either. With e_i = h(z_i) - h(z_0), t = W sum e_i and gain G it
+// is, as in Joseph's form,
 //
 //     P = W sum (d_i - G e_i)(d_i - G e_i)^T + (beta - alpha^2)(s - G t)(s - G t)^T + G R G^T.
 #include "filters/filter.hpp"
@@ -29,6 +30,10 @@ class UnscentedKalmanFilter final : public Filter {
     if (!(alpha > 0.0 && spread_ > 0.0))
       throw std::invalid_argument("ukf: alpha and n + kappa must be positive; found alpha " +
                                   std::to_string(alpha) + ", n + kappa " + std::to_string(n + kappa));
+    if (!(std::sqrt(spread_) >= 1e-4))
+      throw std::invalid_argument(
+          "ukf: alpha is too small: sigma points nearer to the mean than 1e-4 standard deviations, alpha "
+          "sqrt(n + kappa), are lost in rounding");
     if (!(centre_ >= 0.0))
       throw std::invalid_argument("ukf: beta is " + std::to_string(beta) + "; expected at least alpha^2 = " +
                                   std::to_string(alpha * alpha) + ", else covariances may turn negative");

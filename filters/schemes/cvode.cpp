@@ -58,6 +58,7 @@ class Integrator {
     sensitivity_.reset(N_VCloneVectorArray(n_, state_.get()));
     memory_.reset(CVodeCreate(CV_ADAMS, context));
     view(state_.get()).setZero();
+    require(CVodeSetErrFile(memory_.get(), nullptr), "CVodeSetErrFile");  // failures are thrown, not printed
     require(CVodeInit(memory_.get(), right_hand_side, 0.0, state_.get()), "CVodeInit");
     require(CVodeSStolerances(memory_.get(), tolerance, tolerance), "CVodeSStolerances");
     require(CVodeSetUserData(memory_.get(), &motion), "CVodeSetUserData");

@@ -9,10 +9,11 @@ namespace {
 
 class ModalTruncation final : public Reduction {
  public:
-  explicit ModalTruncation(double modes) : modes_(static_cast<Eigen::Index>(modes)) {
-    if (!(modes >= 1.0) || modes != std::floor(modes))
+  explicit ModalTruncation(double modes) {
+    if (!(modes >= 1.0 && modes <= 1e6 && modes == std::floor(modes)))
       throw std::invalid_argument("option 'modes' of reduction 'modal_truncation' is " +
-                                  std::to_string(modes) + "; expected a whole number from 1");
+                                  std::to_string(modes) + "; expected a whole number from 1 to 1000000");
+    modes_ = static_cast<Eigen::Index>(modes);
   }
 
   Bases bases(const fem::StructuralSystem& system) const override {
@@ -24,7 +25,7 @@ class ModalTruncation final : public Reduction {
   }
 
  private:
-  Eigen::Index modes_;
+  Eigen::Index modes_ = 0;
 };
 
 const bool registered =

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace beamid::experiments {
 namespace {
 
@@ -56,7 +58,9 @@ TEST(Record, AllowsHalfAnIntervalAtTheWindowsEnds) {
 
 TEST(Record, RefusesWindowsThatLeaveItOrHoldTooLittle) {
   const Record record = ramp();
-  for (const auto& [from, to] : {std::pair{1.9, 3.0}, {3.0, 4.1}, {5.0, 6.0}, {3.0, 3.1}, {3.5, 2.5}})
+  const double nan = std::nan("");
+  for (const auto& [from, to] :
+       {std::pair{1.9, 3.0}, {3.0, 4.1}, {5.0, 6.0}, {3.0, 3.1}, {3.5, 2.5}, {nan, 3.0}, {3.0, nan}})
     EXPECT_THAT(message_of([&, from = from, to = to] { record.window(from, to); }),
                 testing::AllOf(testing::HasSubstr("window"), testing::HasSubstr("from 2 to 4 s")))
         << from << " to " << to;

@@ -87,6 +87,21 @@ TEST(Modes, ShapesAreOrthonormalInMassAndStiffness) {
   EXPECT_LT((gram - Eigen::MatrixXd::Identity(60, 60)).cwiseAbs().maxCoeff(), 1e-8);
 }
 
+TEST(Modes, NoWrongFrequencyIsReturnedForMassesFarApart) {
+  // Oracle: a beam so much lighter than its tip mass is a spring. What Lanczos cannot find it must refuse.
+  for (const double tip_mass : {1e3, 1e5, 1e7, 1e9}) {
+    const fem::Beam beam = test::steel_beam(tip_mass);
+    const auto system = assemble(beam, 80);
+    try {
+      EXPECT_NEAR(fem::modes(system, 1).angular_frequency[0] / std::sqrt(beam.tip_stiffness() / tip_mass),
+                  1.0, 1e-3)
+          << tip_mass;
+    } catch (const std::runtime_error&) {
+      EXPECT_GT(tip_mass, 1e6);
+    }
+  }
+}
+
 TEST(Modes, RefusesMoreModesThanCoordinates) {
   const auto system = assemble(test::steel_beam(0.0), 3);
   EXPECT_THROW(fem::modes(system, 7), std::invalid_argument);

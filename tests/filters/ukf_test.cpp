@@ -59,5 +59,13 @@ TEST(Ukf, RefusesSpreadsThatBreakPositivity) {
   EXPECT_THROW(make({{"alpha", 2.0}}), std::invalid_argument);  // beta = 2 < alpha^2
 }
 
+TEST(Ukf, RefusesSigmaPointsThatRoundingSwallows) {
+  const auto make = [](double alpha) {
+    return filter_registry().make("ukf", {{"alpha", alpha}}, std::make_unique<test::LinearModel>(walk()));
+  };
+  EXPECT_NO_THROW(make(1e-4));  // the smallest in use [wan2000]
+  EXPECT_THROW(make(1e-6), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace beamid

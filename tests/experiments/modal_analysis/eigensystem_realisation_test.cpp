@@ -144,6 +144,8 @@ TEST(EigensystemRealisation, RefusesWhatItCannotAnalyse) {
   EXPECT_THROW(eigensystem_realisation(signal, 0), std::invalid_argument);
   EXPECT_THROW(eigensystem_realisation(Eigen::MatrixXd::Zero(1, 100), 0.01), std::invalid_argument);
   EXPECT_THROW(eigensystem_realisation(signal * std::nan(""), 0.01), std::invalid_argument);
+  EXPECT_THROW(eigensystem_realisation(signal * 1e200, 0.01), std::invalid_argument);
+  EXPECT_THROW(eigensystem_realisation(signal * 1e-200, 0.01), std::invalid_argument);
   EigensystemSettings settings;
   settings.rows = 60;
   EXPECT_THROW(eigensystem_realisation(signal, 0.01, settings), std::invalid_argument);

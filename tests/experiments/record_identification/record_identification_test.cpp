@@ -6,6 +6,7 @@
 #include <array>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+#include <sstream>
 
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
@@ -84,6 +85,23 @@ TEST(RecordIdentification, HoldsTheTruthInItsIntervalsAsOftenAsItSays) {
   RecordProperty("frequency_inside", inside[0]);
   RecordProperty("damping_ratio_inside", inside[1]);
   RecordProperty("mean_square_of_normalised_damping_error", std::to_string(sum_of_squares / records));
+}
+
+TEST(RecordIdentification, SaysThatTheNoiseAssumedIsTooLarge) {
+  Experiment experiment = simulated.experiment();
+  experiment.noise[Quantity::displacement] = 0.0024;  // twenty times the record's
+  const Record record = simulated.record({Quantity::displacement}, 0.01, 44);
+  std::ostringstream text;
+  print(text, report(experiment, record, "record", identify_record(experiment, record)));
+  EXPECT_NE(text.str().find("smaller all along than they should be"), std::string::npos) << text.str();
+}
+
+TEST(RecordIdentification, TakesARecordWithoutNoise) {
+  const RecordIdentification r =
+      identify_record(simulated.experiment(), simulated.record({Quantity::displacement}, 0.0, 1));
+  ASSERT_FALSE(r.identification.run.failure);
+  EXPECT_NEAR(r.identification.found.stiffness / simulated.truth.stiffness, 1.0, 1e-6);
+  EXPECT_NEAR(r.identification.found.damping / simulated.truth.damping, 1.0, 1e-4);
 }
 
 TEST(RecordIdentification, FindsTheSensorsBias) {
