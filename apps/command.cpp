@@ -34,8 +34,12 @@ bool parse(const Command& command, const std::vector<std::string>& arguments,
     all.add_options()(name.c_str(), options::value<std::string>());
     order.add(name.c_str(), 1);
   }
+  constexpr int no_guessing =
+      options::command_line_style::unix_style & ~options::command_line_style::allow_guessing;
   try {
-    options::store(options::command_line_parser(arguments).options(all).positional(order).run(), values);
+    options::store(
+        options::command_line_parser(arguments).options(all).positional(order).style(no_guessing).run(),
+        values);
   } catch (const options::too_many_positional_options_error&) {
     throw UsageError(command.name + ": too many words; expected: beamid " + command.name + " " +
                      command.arguments);

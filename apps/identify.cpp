@@ -18,7 +18,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       ("config", options::value<std::string>()->value_name("FILE"),
        "experiment file: beam, columns, units, window, filter (docs/configuration.md)")  //
       ("window", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
-       "part of the record to use [s], instead of the experiment file's");
+       "part of the record to use [s], instead of the experiment file's; after RECORD");
   described.add(output_options());
   options::variables_map values;
   if (!parse(command, arguments, described, {"record"}, values)) return 0;

@@ -33,7 +33,14 @@ int run(const std::vector<std::string>& words) {
   }
   std::string known;
   for (const Command& command : commands()) {
-    if (command.name == words[0]) return command.run(command, {words.begin() + 1, words.end()});
+    if (command.name == words[0]) {
+      try {
+        return command.run(command, {words.begin() + 1, words.end()});
+      } catch (const UsageError& error) {
+        std::cerr << "beamid: " << error.what() << "\nTry: beamid " << command.name << " --help\n";
+        return 2;
+      }
+    }
     known += (known.empty() ? "" : ", ") + command.name;
   }
   throw UsageError("unknown command '" + words[0] + "'; known: " + known);

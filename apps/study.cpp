@@ -52,7 +52,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 std::vector<Command> study_commands() {
   std::vector<Command> result;
   for (const auto& [name, entry] : study_registry().entries())
-    result.push_back({name, "[--out DIR]", entry.summary,
+    result.push_back({name, "[OPTIONS] [--out DIR]", entry.summary,
                       "  beamid " + name + "\n  beamid " + name + " --out results\n  beamid " + name +
                           " --json | python3 -m json.tool\n",
                       run});

@@ -13,7 +13,7 @@ namespace beamid::fem {
 ///     [ -D^-1  B ] [ N ]   [ 0 ]
 ///     [  B^T   0 ] [ q ] = [ f ]      (N: natural forces)
 ///
-/// by sparse LU (UMFPACK). Nothing is ever subtracted that the assembled K would have cancelled.
+/// by sparse LU (UMFPACK [davis2004]). Nothing is ever subtracted that the assembled K would have cancelled.
 class StiffnessSolver {
  public:
   /// @throws std::runtime_error when the stiffness is singular (a mechanism).

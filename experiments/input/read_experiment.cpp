@@ -55,7 +55,7 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
 }  // namespace
 
 Experiment read_experiment(const std::filesystem::path& file) {
-  constexpr int most_elements = 1000000;
+  constexpr int most_elements = 100000;
   const TomlTable root = TomlTable::read(file);
   refuse_unknown_keys(root);
   Experiment experiment;

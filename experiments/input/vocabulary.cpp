@@ -63,7 +63,7 @@ void refuse_unknown_keys(const TomlTable& root) {
                    [](const Unknown& a, const Unknown& b) { return a.place.line < b.place.line; });
   std::string message = unknown.front().message;
   for (std::size_t i = 1; i < unknown.size(); ++i)
-    message += "\n" + to_string(unknown[i].place) + ": " + unknown[i].message;
+    message.append("\n").append(to_string(unknown[i].place)).append(": ").append(unknown[i].message);
   throw InputError(unknown.front().place, message);
 }
 

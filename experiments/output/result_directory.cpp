@@ -1,6 +1,7 @@
 #include "experiments/output/result_directory.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -90,7 +91,7 @@ ResultDirectory::ResultDirectory(const fs::path& destination, bool force)
     throw std::invalid_argument(name + ": '" + existing.string() + "' is a file; expected a folder");
   if (access(existing.c_str(), W_OK | X_OK) != 0)
     throw std::runtime_error("cannot write " + name + ": '" + existing.string() + "': " + reason());
-  staging_ = parent / ("." + destination_.filename().string() + ".partial-" + std::to_string(getpid()));
+  staging_ = parent / fmt::format(".{}.partial-{}", destination_.filename().string(), getpid());
 }
 
 ResultDirectory::~ResultDirectory() {

@@ -34,13 +34,16 @@ std::size_t Table::rows() const {
 std::string to_csv(const Table& table) {
   const std::size_t rows = table.rows();
   std::string csv;
-  for (std::size_t i = 0; i < table.columns.size(); ++i)
-    csv += (i == 0 ? "" : ",") + csv_field(table.columns[i].key);
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (i > 0) csv += ',';
+    csv += csv_field(table.columns[i].key);
+  }
   csv += '\n';
   for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t i = 0; i < table.columns.size(); ++i)
-      csv += (i == 0 ? "" : ",") +
-             std::visit([](const auto& value) { return csv_field(value); }, table.columns[i].cells[row]);
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      if (i > 0) csv += ',';
+      csv += std::visit([](const auto& value) { return csv_field(value); }, table.columns[i].cells[row]);
+    }
     csv += '\n';
   }
   return csv;

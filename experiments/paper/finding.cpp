@@ -29,8 +29,8 @@ std::string cause(const Outcome& outcome) {
       "The paper printed errors of {:.2f} % in K and {:.2f} % in C for a noise-free oscillator. The closed "
       "form of forward Euler predicts {:+.5f} % and {:+.5f} %; the paper's filter, repeated here with "
       "displacement and velocity observed, finds {:+.5f} % and {:+.5f} %, and with displacement alone and "
-      "hardly any noise {:+.5f} % and {:+.5f} %. The error in damping is the first-order bias of the "
-      "filter's time step and nothing else.",
+      "hardly any noise {:+.5f} % and {:+.5f} %. On this oscillator the error in damping is the "
+      "first-order bias of the filter's time step and nothing else.",
       published_stiffness_error_percent, published_damping_error_percent,
       stiffness_error(euler.predicted, truth), damping_error(euler.predicted, truth),
       stiffness_error(euler.ekf.found, truth), damping_error(euler.ekf.found, truth),
@@ -78,8 +78,7 @@ std::string variance(const Outcome& outcome) {
   return fmt::format(
       "A misprint: the text gives the initial variance of the parameters as 10^-5. With that value the "
       "stiffness hardly moves: started at K = {:g} N/m it ends at {:.4f} N/m after a release of 12 mm (and "
-      "at "
-      "{:.1f} N/m after one of 1 m). 10^+5 reproduces the printed errors.",
+      "at {:.1f} N/m after one of 1 m). 10^+5 reproduces the printed errors.",
       ValidationSettings{}.first_stiffness, outcome.literal_variance.found.stiffness,
       outcome.literal_variance_large.found.stiffness);
 }

@@ -22,7 +22,7 @@ TrialStatistics repeat(const BeamCase& beam, int beam_number, int trials, std::u
     const Identification result = identify(beam, process(record, settings), settings, "ekf", "exponential");
     stiffness[trial] = stiffness_error(result.found, beam.reference);
     damping[trial] = damping_error(result.found, beam.reference);
-    diverged[trial] = result.run.failure.has_value();
+    diverged[trial] = lost(result, beam.reference.frequency_hz());
   });
   TrialStatistics statistics;
   statistics.trials = trials;

@@ -8,7 +8,7 @@ namespace beamid::experiments::paper {
 /// Errors relative to the reference, over all trials.
 struct TrialStatistics {
   int trials = 0;
-  int diverged = 0;
+  int diverged = 0;  ///< lost the motion; counted in the errors as they are
   double stiffness_mean_percent = 0, damping_mean_percent = 0;
   double stiffness_rms_percent = 0, damping_rms_percent = 0;
   double stiffness_bound_percent = 0, damping_bound_percent = 0;  ///< Cramer-Rao

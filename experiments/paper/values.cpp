@@ -20,7 +20,7 @@ Json identified(const Identification& result, const Oscillator& reference, const
   json["predicted_damping_error_percent"] = damping_error(predicted, reference);
   json["stiffness_standard_deviation_n_per_m"] = result.stiffness_deviation;
   json["damping_standard_deviation_n_s_per_m"] = result.damping_deviation;
-  json["status"] = result.run.failure ? "diverged" : "converged";
+  json["status"] = lost(result, reference.frequency_hz()) ? "diverged" : "converged";
   return json;
 }
 
@@ -91,14 +91,18 @@ Json configuration(const Outcome& outcome) {
     return Json{{"high_pass_hz", s.high_pass_hz},
                 {"low_pass_hz", s.low_pass_hz},
                 {"filter_order", 2},
+                {"zero_phase", s.zero_phase},
                 {"skipped_s", s.skipped},
+                {"skipped_at_end_s", s.skipped_at_end},
                 {"noise_variance", diagonal(s.noise_variance)},
                 {"initial_variance", diagonal(s.initial_variance)},
                 {"initial_stiffness_n_per_m", s.first_stiffness},
                 {"initial_damping_n_s_per_m", s.first_damping}};
   };
   const auto validation = [&](const ValidationSettings& s) {
-    return Json{{"observed_quantities", s.observed.size()},
+    Json observed = Json::array();
+    for (const Quantity quantity : s.observed) observed.push_back(to_string(quantity));
+    return Json{{"observed", observed},
                 {"release_m", s.release},
                 {"duration_s", s.duration},
                 {"noise_variance", s.noise_variance},
@@ -127,7 +131,12 @@ Json configuration(const Outcome& outcome) {
               {"duration_s", rig.duration},
               {"sampling_rate_hz", rig.sampling_rate},
               {"sensor_noise_m_per_s2", sensor_noise}}}};
-  for (const BeamOutcome& o : outcome.beams) json["beams"][o.beam.test.name] = filter_settings(o.settings);
+  for (const BeamOutcome& o : outcome.beams)
+    json["beams"][o.beam.test.name] = {
+        {"tuned", filter_settings(o.settings)},
+        {"zero_phase", filter_settings(zero_phase_settings(o.beam))},
+        {"wide_prior", filter_settings(wide_settings(o.beam))},
+        {"zero_phase_ends_kept", filter_settings(zero_phase_wide_settings(o.beam))}};
   return json;
 }
 

@@ -41,7 +41,7 @@ Figure reproduction(const Record& record, const RecordIdentification& found) {
 Panel history(const Record& record, const VectorXd& estimate, const VectorXd& deviation, double modal,
               const char* label, double half_range) {
   Panel panel{"", {"time [s]"}, {label}, {}};
-  panel.curves = {{"95 % of the filter",
+  panel.curves = {{"95 %, widened as in the table",
                    record.time,
                    {},
                    CurveStyle::band,
@@ -68,7 +68,8 @@ Figure convergence(const Record& record, const RecordIdentification& found) {
   for (Index k = 0; k < count; ++k) {
     const Oscillator now{found.identification.found.mass, beliefs[k].mean[2], beliefs[k].mean[3]};
     frequency[k] = now.frequency_hz();
-    frequency_deviation[k] = 0.5 * frequency[k] * std::sqrt(beliefs[k].covariance(2, 2)) / now.stiffness;
+    frequency_deviation[k] =
+        found.interval_factor * 0.5 * frequency[k] * std::sqrt(beliefs[k].covariance(2, 2)) / now.stiffness;
     ratio[k] = 100.0 * now.damping_ratio();
     ratio_deviation[k] =
         100.0 * std::sqrt(beliefs[k].covariance(3, 3)) / (2.0 * std::sqrt(now.stiffness * now.mass));

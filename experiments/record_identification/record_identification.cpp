@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <stdexcept>
 
 #include "experiments/input/method_choice.hpp"
@@ -67,6 +68,27 @@ filters::Gaussian initial_belief(const Experiment& experiment, const Record& rec
   return belief;
 }
 
+// The mode near the frequency that the beam, or the stiffness believed beforehand, leads to expect.
+ModalEstimate analyse(const Experiment& experiment, const Record& record, const RecordIdentification& known) {
+  ModalAnalysisSettings settings;
+  settings.expected_frequency_hz = known.beam_frequency_hz;
+  if (experiment.prior.stiffness)
+    settings.expected_frequency_hz =
+        Oscillator{known.model.equivalent_mass, *experiment.prior.stiffness}.frequency_hz();
+  try {
+    return dominant_mode(record.samples.row(0).transpose(), record.interval(), settings);
+  } catch (const std::invalid_argument& error) {
+    std::ostringstream message;
+    message << "modal analysis: " << error.what() << " (looked for near the "
+            << *settings.expected_frequency_hz
+            << (experiment.prior.stiffness ? " Hz of prior.stiffness_n_per_m"
+                                           : " Hz of the beam as described; "
+                                             "prior.stiffness_n_per_m tells better")
+            << ")";
+    throw std::invalid_argument(message.str());
+  }
+}
+
 }  // namespace
 
 RecordIdentification identify_record(const Experiment& experiment, const Record& record) {
@@ -82,20 +104,18 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
   });
 
   const double dt = record.interval();
-  ModalAnalysisSettings modal;
-  modal.expected_frequency_hz = result.beam_frequency_hz;
-  result.modal = dominant_mode(record.samples.row(0).transpose(), dt, modal);
+  result.modal = analyse(experiment, record, result);
 
   const std::complex<double> rate = result.modal.rate();
   const ShapeFit left = fit_shapes(record.samples, dt, {rate, 0.0}, {true, false});
   result.noise_deviation = left.residual_standard_deviation.cwiseMax(
       smallest_noise * record.samples.cwiseAbs().rowwise().maxCoeff());
-  result.noise_from_record = true;
+  result.noise_from_record.assign(record.channels.size(), true);
   for (Index i = 0; i < record.samples.rows(); ++i)
     if (const auto given = experiment.noise.find(record.channels[i].quantity);
         given != experiment.noise.end()) {
       result.noise_deviation[i] = given->second;
-      result.noise_from_record = false;
+      result.noise_from_record[i] = false;
     }
   result.interval_factor = std::max(1.0, result.modal.noise_standard_deviation / result.noise_deviation[0]);
 

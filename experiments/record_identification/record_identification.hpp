@@ -14,10 +14,10 @@ namespace beamid::experiments {
 /// What a record told, before it is put into words.
 struct RecordIdentification {
   JointModel model;
-  double beam_frequency_hz = 0;     ///< first mode of the finite-element beam
-  ModalEstimate modal;              ///< of the first channel, without any model
-  Eigen::VectorXd noise_deviation;  ///< of every channel (p)
-  bool noise_from_record = false;   ///< taken from what the modal analysis leaves
+  double beam_frequency_hz = 0;         ///< first mode of the finite-element beam
+  ModalEstimate modal;                  ///< of the first channel, without any model
+  Eigen::VectorXd noise_deviation;      ///< of every channel (p)
+  std::vector<bool> noise_from_record;  ///< whether it is what the modal analysis leaves, or configured (p)
   double interval_factor = 1;  ///< >= 1: widens the intervals where the noise near the mode is denser than R
   IdentificationSettings settings;
   Identification identification;

@@ -64,10 +64,11 @@ std::string consistency_text(const RecordIdentification& found) {
 std::string noise_text(const Record& record, const RecordIdentification& found) {
   std::string text = "Noise (standard deviation):";
   for (Eigen::Index i = 0; i < found.noise_deviation.size(); ++i)
-    text += fmt::format("{} {} {:.4g} {}", i ? "," : "", to_string(record.channels[i].quantity),
-                        found.noise_deviation[i], si_unit(record.channels[i].quantity));
-  text +=
-      found.noise_from_record ? ", all that the modal analysis leaves of the record." : ", as configured.";
+    text += fmt::format(
+        "{} {} {:.4g} {}, {}", i ? ";" : "", to_string(record.channels[i].quantity), found.noise_deviation[i],
+        si_unit(record.channels[i].quantity),
+        found.noise_from_record[i] ? "all that the modal analysis leaves of the record" : "as configured");
+  text += ".";
   if (found.interval_factor > 1.0)
     text += fmt::format(" Near the mode it is denser than that: intervals are widened by {:.2f}.",
                         found.interval_factor);

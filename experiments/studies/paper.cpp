@@ -44,7 +44,7 @@ const bool registered = study_registry().add(
     {"paper",
      "the 2009 steel-beam study: reproduced, explained and put right",
      "[inverse2009]",
-     {{"seed", 2009.0, "", "of the sensor noise; the same seed gives the same bytes"},
+     {{"seed", 2009.0, "", "seed of the sensor noise; the same seed gives the same bytes"},
       {"trials", 100.0, "", "seeded repetitions per beam against the Cramer-Rao bound"}},
      {},
      [](const filters::Options& options) {

@@ -231,7 +231,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadOption{"HalfASeed", "--seed 0.5", "beamid: seed must be a whole number from 0"},
         BadOption{"TextForANumber", "--trials many",
                   "beamid: paper: the argument ('many') for option '--trials' is invalid"},
-        BadOption{"Words", "again", "beamid: paper: too many words; expected: beamid paper [--out DIR]"}),
+        BadOption{"Words", "again",
+                  "beamid: paper: too many words; expected: beamid paper [OPTIONS] [--out DIR]"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

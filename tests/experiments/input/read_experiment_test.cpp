@@ -211,10 +211,9 @@ TEST(ReadExperiment, RefusesImpossibleBeams) {
         "youngs_modulus_pa or density_kg_per_m3, or no section"},
        {BEAM "tip_mass_kg = -1\n",
         "bad.toml:5:15: beam.tip_mass_kg is -1; expected zero or a positive number"},
-       {BEAM "elements = 0\n",
-        "bad.toml:5:12: beam.elements is 0; expected a whole number from 1 to 1000000"},
+       {BEAM "elements = 0\n", "bad.toml:5:12: beam.elements is 0; expected a whole number from 1 to 100000"},
        {BEAM "elements = 4.5\n",
-        "bad.toml:5:12: beam.elements is 4.5; expected a whole number from 1 to 1000000"},
+        "bad.toml:5:12: beam.elements is 4.5; expected a whole number from 1 to 100000"},
        {"[beam]\nlength_m = 1\nyoungs_modulus_pa = 1e300\nwidth_m = 1e300\nheight_m = 1\nmass_kg = 1\n",
         "bad.toml:1:1: bending stiffness is inf; expected a positive number of N m2"}});
 }

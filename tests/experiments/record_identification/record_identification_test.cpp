@@ -147,7 +147,7 @@ TEST(RecordIdentification, ObeysTheExperimentsPriorAndNoise) {
   EXPECT_NEAR(r.settings.initial.mean[3], 0.006 * to_damping, 1e-9);
   EXPECT_NEAR(std::sqrt(r.settings.initial.covariance(3, 3)), 0.002 * to_damping, 1e-9);
   EXPECT_EQ(r.noise_deviation[0], 0.004);
-  EXPECT_FALSE(r.noise_from_record);
+  EXPECT_FALSE(r.noise_from_record[0]);
   EXPECT_DOUBLE_EQ(r.settings.output_noise(0, 0), 1.6e-5);
 }
 
