@@ -5,6 +5,7 @@
 #include <sundials/sundials_context.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -16,7 +17,9 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 void require(int flag, const char* call) {
-  if (flag < 0) throw std::runtime_error(std::string(call) + " failed: " + CVodeGetReturnFlagName(flag));
+  if (flag >= 0) return;
+  const std::unique_ptr<char, decltype(&std::free)> name(CVodeGetReturnFlagName(flag), std::free);
+  throw std::runtime_error(std::string(call) + " failed: " + name.get());
 }
 
 Eigen::Map<VectorXd> view(N_Vector vector) {
