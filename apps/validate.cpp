@@ -88,8 +88,8 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
             << fmt::format(
                    "  beam     {:g} m, EI = {:.6g} N m2, {:.6g} kg with {:.6g} kg at its tip; first mode "
                    "predicted at {:.4f} Hz\n",
-                   beam.length, beam.bending_stiffness, beam.mass(), beam.tip_mass,
-                   fem::modes(system, 1).frequency_hz()[0])
+                   beam.length(), beam.segments.front().section.bending_stiffness(0.0), beam.mass(),
+                   beam.tip_mass(), fem::modes(system, 1).frequency_hz()[0])
             << "  record   " << record_line << "\n"
             << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
                            experiment.reduction.name, experiment.model.name, experiment.filter.name,

@@ -1,94 +1,250 @@
 #include "fem/assembly.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
+
+#include "fem/element.hpp"
 
 namespace beamid::fem {
 namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
+using Kind = Coordinate::Kind;
 
 SparseMatrix sparse(Eigen::Index rows, Eigen::Index columns, const Triplets& entries) {
   SparseMatrix matrix(rows, columns);
   matrix.setFromTriplets(entries.begin(), entries.end());
+  matrix.makeCompressed();
   return matrix;
 }
 
-// Consistent mass of [w1, h theta1, w2, h theta2], m h / 420 times these integers [przemieniecki1968,
-// eq. 11.43].
-constexpr double element_mass[4][4] = {
-    {156, 22, 54, -13}, {22, 4, 13, -3}, {54, 13, 156, -22}, {-13, -3, -22, 4}};
+double added_mass(const Beam& beam, const Mesh& mesh, const Mesh::Element& element) {
+  const double middle = 0.5 * (mesh.nodes[element.first].x + mesh.nodes[element.second].x);
+  double sum = 0.0;
+  for (const AddedMass& added : beam.added_masses)
+    if (added.from < middle && middle < added.to) sum += added.mass_per_length;
+  return sum;
+}
 
-// Rows: natural strains; columns: [w1, h theta1, w2, h theta2].
-constexpr double element_strain[2][4] = {{1, 1, -1, 0}, {1, 0, -1, 1}};
+// Gathers the equations of one beam. Rows of the strains are written node by node: the springs of a node,
+// then the element beyond it, so that they determine the coordinates in their order.
+class Assembly {
+ public:
+  Assembly(const Beam& beam, const Mesh& mesh) : beam_(beam), mesh_(mesh) { number(); }
 
-Eigen::VectorXd nodal(const StructuralSystem& system, const Eigen::VectorXd& q, Coordinate::Kind kind) {
+  StructuralSystem finish(const std::vector<Point>& points) {
+    add_springs(0);
+    for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
+      add_element(e);
+      add_springs(mesh_.elements[e].second);
+    }
+    for (const Body& body : beam_.bodies) add_body(body);
+    for (const Dashpot& dashpot : beam_.dashpots) add_dashpot(dashpot);
+    const auto n = static_cast<Eigen::Index>(system_.coordinates.size());
+    if (n == 0) throw std::invalid_argument("the supports hold every node; expected some freedom");
+    add_points(points, n);
+    system_.mass = sparse(n, n, mass_);
+    Triplets().swap(mass_);
+    system_.damping = sparse(n, n, damping_);
+    system_.stiffness = {sparse(strains_, n, strain_), sparse(strains_, strains_, rigid_),
+                         sparse(strains_, strains_, flexible_)};
+    system_.mesh = mesh_;
+    return std::move(system_);
+  }
+
+ private:
+  const Beam& beam_;
+  const Mesh& mesh_;
+  StructuralSystem system_;
+  std::vector<int> deflection_, rotation_;  // coordinate of each node, -1 where supported
+  std::vector<double> scale_;               // of the rotation at each node
+  Triplets mass_, damping_, strain_, rigid_, flexible_;
+  std::vector<double> base_;  // force of a unit acceleration of the base, on the free coordinates
+  int strains_ = 0;
+  // An element like the one before has the same matrices.
+  Mesh::Element previous_;
+  double previous_added_ = 0.0;
+  ElementMatrices matrices_;
+
+  void number() {
+    std::map<int, Support> held;
+    for (const Support& support : beam_.supports) {
+      Support& both =
+          held.try_emplace(mesh_.node_at(support.position), Support{0.0, false, false}).first->second;
+      both.deflection |= support.deflection;
+      both.rotation |= support.rotation;
+    }
+    for (std::size_t node = 0; node < mesh_.nodes.size(); ++node) {
+      const auto support = held.find(static_cast<int>(node));
+      scale_.push_back(mesh_.elements[node == 0 ? 0 : node - 1].length);
+      const auto coordinate = [&](bool is_held, Kind kind, double scale) {
+        if (is_held) return -1;
+        system_.coordinates.push_back({kind, mesh_.nodes[node].x, scale, static_cast<int>(node)});
+        return static_cast<int>(system_.coordinates.size()) - 1;
+      };
+      const bool known = support != held.end();
+      deflection_.push_back(coordinate(known && support->second.deflection, Kind::deflection, 1.0));
+      rotation_.push_back(coordinate(known && support->second.rotation, Kind::rotation, scale_.back()));
+    }
+    base_.assign(system_.coordinates.size(), 0.0);
+  }
+
+  void add_strain(int row, int coordinate, double value) {
+    if (coordinate >= 0 && value != 0.0) strain_.emplace_back(row, coordinate, value);
+  }
+
+  void add_ground_strain(int coordinate, double rigidity) {
+    if (coordinate < 0 || rigidity == 0.0) return;
+    add_strain(strains_, coordinate, 1.0);
+    rigid_.emplace_back(strains_, strains_, rigidity);
+    flexible_.emplace_back(strains_, strains_, 1.0 / rigidity);
+    ++strains_;
+  }
+
+  void add_springs(int node) {
+    for (const Spring& spring : beam_.springs) {
+      if (mesh_.node_at(spring.position) != node) continue;
+      add_ground_strain(deflection_[node], spring.translational);
+      add_ground_strain(rotation_[node], spring.rotational / (scale_[node] * scale_[node]));
+      if (spring.cubic != 0.0) add_nonlinear(node, spring.cubic, 0.0);
+    }
+  }
+
+  void add_nonlinear(int node, double cubic, double quadratic) {
+    if (deflection_[node] < 0) return;
+    const auto n = static_cast<Eigen::Index>(system_.coordinates.size());
+    system_.nonlinear_forces.push_back({sparse(n, 1, {{deflection_[node], 0, 1.0}}), cubic, quadratic});
+  }
+
+  void add_mass(int row, int column, double value, bool column_deflects) {
+    if (row < 0 || value == 0.0) return;
+    if (column >= 0) mass_.emplace_back(row, column, value);
+    if (column_deflects) base_[row] -= value;
+  }
+
+  void add_element(std::size_t e) {
+    const Mesh::Element& element = mesh_.elements[e];
+    const Section& section = beam_.segments[element.segment].section;
+    const double added = beam_.added_masses.empty() ? 0.0 : added_mass(beam_, mesh_, element);
+    const bool same = e > 0 && section.is_uniform() && element.segment == previous_.segment &&
+                      element.length == previous_.length && element.remaining == previous_.remaining &&
+                      added == previous_added_;
+    if (!same) matrices_ = element_matrices(section, element, added, beam_.axial_load, beam_.mass_model);
+    previous_ = element;
+    previous_added_ = added;
+
+    const double h = element.length;
+    const int first = element.first, second = element.second;
+    const int at[4] = {deflection_[first], rotation_[first], deflection_[second], rotation_[second]};
+    const double ratio[4] = {1.0, h / scale_[first], 1.0, h / scale_[second]};  // h theta per coordinate
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        add_mass(at[i], at[j], ratio[i] * matrices_.mass(i, j) * ratio[j], j % 2 == 0);
+    const double drift[4] = {1.0, ratio[1], -1.0, 0.0}, turn[4] = {0.0, -ratio[1], 0.0, ratio[3]};
+    for (int i = 0; i < 4; ++i) {
+      add_strain(strains_, at[i], drift[i]);
+      add_strain(strains_ + 1, at[i], turn[i]);
+    }
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) {
+        rigid_.emplace_back(strains_ + i, strains_ + j, matrices_.rigidity(i, j));
+        flexible_.emplace_back(strains_ + i, strains_ + j, matrices_.flexibility(i, j));
+      }
+    strains_ += 2;
+    if (beam_.axial_load != 0.0) {  // the chord, w_2 - w_1
+      add_strain(strains_, at[0], -1.0);
+      add_strain(strains_, at[2], 1.0);
+      rigid_.emplace_back(strains_, strains_, -beam_.axial_load / h);
+      flexible_.emplace_back(strains_, strains_, -h / beam_.axial_load);
+      ++strains_;
+    }
+  }
+
+  // M (w + e theta)^2 + J theta^2
+  void add_body(const Body& body) {
+    const int node = mesh_.node_at(body.position), w = deflection_[node], turn = rotation_[node];
+    const double s = scale_[node], e = body.eccentricity;
+    add_mass(w, w, body.mass, true);
+    add_mass(w, turn, body.mass * e / s, false);
+    add_mass(turn, w, body.mass * e / s, true);
+    add_mass(turn, turn, (body.mass * e * e + body.rotary_inertia) / (s * s), false);
+  }
+
+  void add_dashpot(const Dashpot& dashpot) {
+    const int node = mesh_.node_at(dashpot.position), w = deflection_[node], turn = rotation_[node];
+    if (w >= 0 && dashpot.translational != 0.0) damping_.emplace_back(w, w, dashpot.translational);
+    if (turn >= 0 && dashpot.rotational != 0.0)
+      damping_.emplace_back(turn, turn, dashpot.rotational / (scale_[node] * scale_[node]));
+    if (dashpot.quadratic != 0.0) add_nonlinear(node, 0.0, dashpot.quadratic);
+  }
+
+  void add_points(const std::vector<Point>& points, Eigen::Index n) {
+    Triplets inputs, outputs;
+    const auto count = static_cast<int>(points.size());
+    for (int i = 0; i < count; ++i) {
+      const int w = deflection_[mesh_.node_at(points[i].position)];
+      if (w < 0)
+        throw std::invalid_argument("point '" + points[i].name +
+                                    "' is held by a support; expected one that can move");
+      inputs.emplace_back(w, i, 1.0);
+      outputs.emplace_back(i, w, 1.0);
+      system_.input_names.push_back(points[i].name + "_force");
+      system_.output_names.push_back(points[i].name + "_deflection");
+    }
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (base_[i] != 0.0) inputs.emplace_back(static_cast<int>(i), count, base_[i]);
+    system_.input_names.push_back("base_acceleration");
+    system_.inputs = sparse(n, count + 1, inputs);
+    system_.outputs = sparse(count, n, outputs);
+  }
+};
+
+Eigen::VectorXd nodal(const StructuralSystem& system, const Eigen::VectorXd& q, Kind kind) {
   if (q.size() != system.size())
     throw std::invalid_argument("motion has " + std::to_string(q.size()) + " entries; expected " +
                                 std::to_string(system.size()));
-  std::vector<double> values{0.0};  // the clamped root
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.mesh.nodes.size()));
   for (Eigen::Index i = 0; i < system.size(); ++i)
-    if (system.coordinates[i].kind == kind) values.push_back(q[i] / system.coordinates[i].scale);
-  return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    if (system.coordinates[i].kind == kind)
+      values[system.coordinates[i].node] = q[i] / system.coordinates[i].scale;
+  return values;
 }
 
 }  // namespace
 
+StructuralSystem assemble(const Beam& beam, int elements, const std::vector<Point>& points) {
+  std::vector<double> places;
+  for (const Point& point : points) places.push_back(point.position);
+  const Mesh mesh = cut(beam, elements, places);
+  return Assembly(beam, mesh).finish(points);
+}
+
 StructuralSystem assemble(const Beam& beam, int elements) {
   validate(beam);
-  if (elements < 1)
-    throw std::invalid_argument("elements is " + std::to_string(elements) + "; expected at least 1");
-  const double h = beam.length / elements;
-  const double rigidity = beam.bending_stiffness / (h * h * h);
-  const double element_scale = beam.mass_per_length * h / 420.0;
+  return assemble(beam, elements, {natural_point(beam)});
+}
 
-  StructuralSystem system;
-  Triplets mass, strain, stiff, flexible;
-  for (int e = 0; e < elements; ++e) {
-    const int first = 2 * e - 2;  // coordinate of w1; negative coordinates belong to the clamped root
-    for (int i = 0; i < 4; ++i) {
-      if (first + i < 0) continue;
-      for (int j = 0; j < 4; ++j)
-        if (first + j >= 0) mass.emplace_back(first + i, first + j, element_scale * element_mass[i][j]);
-      for (int s = 0; s < 2; ++s)
-        if (element_strain[s][i] != 0.0) strain.emplace_back(2 * e + s, first + i, element_strain[s][i]);
-    }
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j) {
-        stiff.emplace_back(2 * e + i, 2 * e + j, rigidity * (i == j ? 4.0 : 2.0));
-        flexible.emplace_back(2 * e + i, 2 * e + j, (i == j ? 1.0 / 3.0 : -1.0 / 6.0) / rigidity);
-      }
-    const double x = (e + 1) * h;
-    system.coordinates.push_back({Coordinate::Kind::deflection, x, 1.0});
-    system.coordinates.push_back({Coordinate::Kind::rotation, x, h});
-  }
-  const int n = 2 * elements, tip = n - 2;
-  mass.emplace_back(tip, tip, beam.tip_mass);
-  mass.emplace_back(tip + 1, tip + 1, beam.tip_rotary_inertia / (h * h));
-
-  system.mass = sparse(n, n, mass);
-  system.damping = SparseMatrix(n, n);
-  system.stiffness = {sparse(n, n, strain), sparse(n, n, stiff), sparse(n, n, flexible)};
-  system.inputs = sparse(n, 1, {{tip, 0, 1.0}});
-  system.outputs = sparse(1, n, {{0, tip, 1.0}});
-  system.input_names = {"tip_force"};
-  system.output_names = {"tip_deflection"};
-  return system;
+Point natural_point(const Beam& beam) {
+  const double length = beam.length();
+  const bool tip_is_held =
+      std::any_of(beam.supports.begin(), beam.supports.end(),
+                  [&](const Support& support) { return support.deflection && support.position == length; });
+  return tip_is_held ? Point{"midspan", 0.5 * length} : Point{"tip", length};
 }
 
 Eigen::VectorXd nodal_deflection(const StructuralSystem& system, const Eigen::VectorXd& q) {
-  return nodal(system, q, Coordinate::Kind::deflection);
+  return nodal(system, q, Kind::deflection);
 }
 
 Eigen::VectorXd nodal_rotation(const StructuralSystem& system, const Eigen::VectorXd& q) {
-  return nodal(system, q, Coordinate::Kind::rotation);
+  return nodal(system, q, Kind::rotation);
 }
 
-Eigen::VectorXd nodal_position(const StructuralSystem& system) {
-  Eigen::VectorXd positions(system.size());
-  for (Eigen::Index i = 0; i < system.size(); ++i)
-    positions[i] = system.coordinates[i].position * system.coordinates[i].scale;
-  return nodal(system, positions, Coordinate::Kind::deflection);
+Eigen::VectorXd nodal_axial(const StructuralSystem& system, const Eigen::VectorXd& q) {
+  return nodal(system, q, Kind::axial);
 }
 
 }  // namespace beamid::fem

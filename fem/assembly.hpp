@@ -1,28 +1,45 @@
 // From a beam to its finite-element equations of motion.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "fem/beam.hpp"
 #include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 
-/// Hermite cubic elements of equal length h with consistent mass, the root clamped.
+/// Where forces act and motion is observed.
+struct Point {
+  std::string name;
+  double position = 0.0;  ///< [m]
+};
+
+/// Finite elements (element.hpp) over the mesh that cut() makes.
 ///
-/// Coordinates (n = 2 x elements), node after node from the first one beyond the root: deflection w [m] and
-/// scaled rotation h theta [m]. Natural strains of an element between nodes 1 and 2 are its end rotations
-/// against the chord, (h theta_1 - (w_2 - w_1), h theta_2 - (w_2 - w_1)), with D = EI/h^3 [4 2; 2 4]
-/// [argyris1979]. One input, the tip force [N]; one output, the tip deflection [m].
+/// Coordinates, node after node from the root, those held by supports left out: deflection w [m] and scaled
+/// rotation s theta [m], s being the length of the element before the node. Each point is an input, a force
+/// [N] called NAME_force, and an output, a deflection [m] called NAME_deflection; the last input is
+/// base_acceleration [m/s2], the acceleration of all supports and grounded springs together, coordinates then
+/// being relative to the base.
 ///
-/// @throws std::invalid_argument when the beam is impossible or elements < 1.
+/// @throws std::invalid_argument when the beam is impossible, elements < 1, or a point is off the beam or
+/// supported.
+StructuralSystem assemble(const Beam& beam, int elements, const std::vector<Point>& points);
+
+/// The same with one point: "tip", or "midspan" where the tip's deflection is held.
 StructuralSystem assemble(const Beam& beam, int elements);
 
-/// Deflection [m] at the nodes, the root included, of the motion q (n): (elements + 1).
+/// The point that the short form uses.
+Point natural_point(const Beam& beam);
+
+/// Deflection [m] at every node of the mesh, zero where supported, of the motion q (n): (nodes).
 Eigen::VectorXd nodal_deflection(const StructuralSystem& system, const Eigen::VectorXd& q);
 
-/// Rotation [rad] at the nodes, the root included, of the motion q (n): (elements + 1).
+/// Rotation [rad] at every node, likewise.
 Eigen::VectorXd nodal_rotation(const StructuralSystem& system, const Eigen::VectorXd& q);
 
-/// Position [m] of the nodes, the root included: (elements + 1).
-Eigen::VectorXd nodal_position(const StructuralSystem& system);
+/// Displacement along x [m] at every node, likewise; zero but for frames.
+Eigen::VectorXd nodal_axial(const StructuralSystem& system, const Eigen::VectorXd& q);
 
 }  // namespace beamid::fem

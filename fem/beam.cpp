@@ -8,23 +8,106 @@
 namespace beamid::fem {
 namespace {
 
-void require(bool valid, const char* name, double value, const char* expected) {
+void require(bool valid, const std::string& name, double value, const std::string& expected) {
   if (valid && std::isfinite(value)) return;
   std::ostringstream message;
   message << name << " is " << value << "; expected " << expected;
   throw std::invalid_argument(message.str());
 }
 
+// A section's end may vanish (a sharp tip), not both, and nothing may be negative in between.
+void validate(const Section& section, const std::string& where) {
+  const auto positive = [&](const Variation& quantity, const char* name, const char* unit) {
+    for (const double s : {0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0})
+      require(s == 0.0 || s == 1.0 ? quantity(s) >= 0.0 : quantity(s) > 0.0, where + name, quantity(s),
+              std::string("a positive number of ") + unit);
+  };
+  positive(section.bending_stiffness, "bending stiffness", "N m2");
+  positive(section.mass_per_length, "mass per length", "kg/m");
+  if (section.shear_stiffness) positive(*section.shear_stiffness, "shear stiffness", "N");
+  if (section.axial_stiffness) positive(*section.axial_stiffness, "axial stiffness", "N");
+  for (const double s : {0.0, 0.5, 1.0})
+    require(section.rotary_inertia(s) >= 0.0, where + "rotary inertia", section.rotary_inertia(s),
+            "zero or a positive number of kg m");
+}
+
 }  // namespace
 
+double Beam::length() const {
+  double sum = 0.0;
+  for (const Segment& segment : segments) sum += segment.length;
+  return sum;
+}
+
+double Beam::mass() const {
+  double sum = 0.0;
+  for (const Segment& segment : segments) sum += segment.length * segment.section.mass_per_length.mean();
+  for (const AddedMass& added : added_masses) sum += (added.to - added.from) * added.mass_per_length;
+  return sum;
+}
+
+double Beam::tip_mass() const {
+  double sum = 0.0;
+  for (const Body& body : bodies)
+    if (body.position == length()) sum += body.mass;
+  return sum;
+}
+
 void validate(const Beam& beam) {
-  require(beam.length > 0.0, "length", beam.length, "a positive number of metres");
-  require(beam.bending_stiffness > 0.0, "bending stiffness", beam.bending_stiffness,
-          "a positive number of N m2");
-  require(beam.mass_per_length > 0.0, "mass per length", beam.mass_per_length, "a positive number of kg/m");
-  require(beam.tip_mass >= 0.0, "tip mass", beam.tip_mass, "zero or a positive number of kg");
-  require(beam.tip_rotary_inertia >= 0.0, "tip rotary inertia", beam.tip_rotary_inertia,
-          "zero or a positive number of kg m2");
+  if (beam.segments.empty()) throw std::invalid_argument("the beam has no segment; expected at least one");
+  for (std::size_t i = 0; i < beam.segments.size(); ++i) {
+    const std::string where = beam.segments.size() == 1 ? "" : "segment " + std::to_string(i + 1) + ": ";
+    require(beam.segments[i].length > 0.0, where + "length", beam.segments[i].length,
+            "a positive number of metres");
+    validate(beam.segments[i].section, where);
+  }
+  const double length = beam.length();
+  std::ostringstream span;
+  span << "between 0 and the beam's length, " << length << " m";
+  const auto on_beam = [&](double x, const char* what) {
+    require(x >= 0.0 && x <= length, what, x, span.str());
+  };
+  const auto stretch = [&](double from, double to, const char* what) {
+    on_beam(from, what), on_beam(to, what);
+    require(from < to, what, from, "a begin before its end");
+  };
+  for (const Body& body : beam.bodies) {
+    const char* const name = body.position == length ? "tip" : "body";
+    on_beam(body.position, "position of a body");
+    require(body.mass >= 0.0, std::string(name) + " mass", body.mass, "zero or a positive number of kg");
+    require(body.rotary_inertia >= 0.0, std::string(name) + " rotary inertia", body.rotary_inertia,
+            "zero or a positive number of kg m2");
+    require(true, std::string(name) + " eccentricity", body.eccentricity, "a finite number of metres");
+  }
+  for (const AddedMass& added : beam.added_masses) {
+    stretch(added.from, added.to, "added mass");
+    require(added.mass_per_length >= 0.0, "added mass per length", added.mass_per_length,
+            "zero or a positive number of kg/m");
+  }
+  for (const Damage& damage : beam.damages) {
+    stretch(damage.from, damage.to, "damage");
+    require(damage.loss >= 0.0 && damage.loss < 1.0, "loss of stiffness", damage.loss,
+            "a number from 0 to below 1");
+  }
+  for (const Support& support : beam.supports) on_beam(support.position, "position of a support");
+  for (const Spring& spring : beam.springs) {
+    on_beam(spring.position, "position of a spring");
+    require(spring.translational >= 0.0, "spring stiffness", spring.translational,
+            "zero or a positive number of N/m");
+    require(spring.rotational >= 0.0, "rotational spring stiffness", spring.rotational,
+            "zero or a positive number of N m/rad");
+    require(true, "cubic spring stiffness", spring.cubic, "a finite number of N/m3");
+  }
+  for (const Dashpot& dashpot : beam.dashpots) {
+    on_beam(dashpot.position, "position of a dashpot");
+    require(dashpot.translational >= 0.0, "dashpot", dashpot.translational,
+            "zero or a positive number of N s/m");
+    require(dashpot.rotational >= 0.0, "rotational dashpot", dashpot.rotational,
+            "zero or a positive number of N m s/rad");
+    require(dashpot.quadratic >= 0.0, "quadratic dashpot", dashpot.quadratic,
+            "zero or a positive number of N s2/m2");
+  }
+  require(true, "axial load", beam.axial_load, "a finite number of N");
 }
 
 }  // namespace beamid::fem

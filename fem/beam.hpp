@@ -1,33 +1,87 @@
-// The beam as a researcher describes it: lengths, stiffness and masses in SI units.
+// The beam as a researcher describes it: segments, bodies, supports, springs and dashpots, in SI units.
 #pragma once
+
+#include <vector>
+
+#include "fem/section.hpp"
 
 namespace beamid::fem {
 
-/// A uniform Euler-Bernoulli cantilever with a rigid tip body.
-///
-///     root (clamped) |=============================( M, J )   tip
-///                    |<---------- length -------->|
-///
-/// The tip body's centre of mass lies on the beam's end.
-struct Beam {
-  double length = 0.0;              ///< L [m]
-  double bending_stiffness = 0.0;   ///< E I [N m2]
-  double mass_per_length = 0.0;     ///< rho A [kg/m]
-  double tip_mass = 0.0;            ///< M [kg]
-  double tip_rotary_inertia = 0.0;  ///< J about the tip mass's own centre [kg m2]
-
-  double mass() const { return mass_per_length * length; }  ///< of the beam alone [kg]
-
-  /// Static stiffness at the tip, 3 E I / L^3 [N/m].
-  double tip_stiffness() const { return 3.0 * bending_stiffness / (length * length * length); }
+struct Segment {
+  double length = 0.0;  ///< [m]
+  Section section;
 };
 
-/// Second moment of area of a rectangle about its own axis, width x height^3 / 12 [m4].
-inline double rectangle_second_moment(double width, double height) {
-  return width * height * height * height / 12.0;
-}
+/// A rigid body fixed to the beam. Its own centre of mass lies `eccentricity` beyond its position along the
+/// axis.
+struct Body {
+  double position = 0.0;        ///< along the beam [m]
+  double mass = 0.0;            ///< [kg]
+  double rotary_inertia = 0.0;  ///< about its own centre of mass [kg m2]
+  double eccentricity = 0.0;    ///< [m], positive towards the tip
+};
 
-/// @throws std::invalid_argument naming the first quantity that is not finite or has an impossible sign.
+/// Mass that rides on the beam without stiffening it.
+struct AddedMass {
+  double from = 0.0, to = 0.0;   ///< [m]
+  double mass_per_length = 0.0;  ///< [kg/m]
+};
+
+/// What is held at zero: both (clamped), the deflection (pinned) or the rotation (guided).
+struct Support {
+  double position = 0.0;  ///< [m]
+  bool deflection = true;
+  bool rotation = true;
+};
+
+/// Between one point of the beam and the ground.
+struct Spring {
+  double position = 0.0;       ///< [m]
+  double translational = 0.0;  ///< k [N/m]
+  double rotational = 0.0;     ///< k [N m/rad]
+  double cubic = 0.0;          ///< k3 of a force k w + k3 w^3 [N/m3]
+};
+
+/// Between one point of the beam and the ground.
+struct Dashpot {
+  double position = 0.0;       ///< [m]
+  double translational = 0.0;  ///< c [N s/m]
+  double rotational = 0.0;     ///< c [N m s/rad]
+  double quadratic = 0.0;      ///< c2 of a force c w' + c2 |w'| w' [N s2/m2]
+};
+
+/// A local loss of bending stiffness: E I becomes (1 - loss) E I.
+struct Damage {
+  double from = 0.0, to = 0.0;  ///< [m]
+  double loss = 0.0;            ///< 0 <= loss < 1
+};
+
+/// Consistent: from the element's own shape functions, frequencies err by h^4. Lumped: half of each element
+/// at its ends, with the rotary inertia of the half; M is diagonal but for eccentric bodies, frequencies err
+/// by h^2.
+enum class MassModel { consistent, lumped };
+
+/// A straight beam along x, x = 0 at its root; w is the deflection, theta = dw/dx the slope of the section.
+struct Beam {
+  std::vector<Segment> segments;  ///< from the root on
+  std::vector<Body> bodies;
+  std::vector<AddedMass> added_masses;
+  std::vector<Support> supports;
+  std::vector<Spring> springs;
+  std::vector<Dashpot> dashpots;
+  std::vector<Damage> damages;
+  double axial_load = 0.0;  ///< P [N], all along, positive in compression, dead: it keeps its direction
+  MassModel mass_model = MassModel::consistent;
+
+  double length() const;  ///< L [m]
+  double mass() const;    ///< of the segments and of what rides on them, bodies excluded [kg]
+
+  /// What a body at the tip has, the sum of those there.
+  double tip_mass() const;
+};
+
+/// @throws std::invalid_argument naming the first quantity that is not finite, has an impossible sign or lies
+/// off the beam.
 void validate(const Beam& beam);
 
 }  // namespace beamid::fem

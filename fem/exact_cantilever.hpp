@@ -1,7 +1,7 @@
 // The exact Euler-Bernoulli cantilever with a tip body: the oracle of the finite elements.
 #pragma once
 
-#include "fem/beam.hpp"
+#include "fem/cantilever.hpp"
 
 namespace beamid::fem {
 
@@ -15,7 +15,7 @@ namespace beamid::fem {
 class ExactMode {
  public:
   /// @throws std::invalid_argument when the beam is impossible or i < 1.
-  ExactMode(const Beam& beam, int i);
+  ExactMode(const Cantilever& beam, int i);
 
   double root() const { return root_; }  ///< b [-]
   double angular_frequency() const;      ///< omega [rad/s]
@@ -35,7 +35,7 @@ class ExactMode {
   double unscaled_shape(double y) const;  // at y = b x / L
   double unscaled_slope(double y) const;  // d/dy
 
-  Beam beam_;
+  Cantilever beam_;
   double root_ = 0.0;
   double growing_ = 0.0, decaying_ = 0.0;  // coefficients of e^(y-b) and e^-y in cosh y - sigma sinh y
   double sigma_ = 0.0;

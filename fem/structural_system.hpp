@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "fem/mesh.hpp"
+
 namespace beamid::fem {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
@@ -12,10 +14,12 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 /// Stiffness kept as its natural-strain factors, K = B^T D B.
 ///
 /// The assembled K of a fine beam has lost its small eigenvalues to rounding; its factors have not: the
-/// entries of B are 0 and +-1 on a uniform mesh, and D is block diagonal.
+/// entries of B are 0 and +-1 on a uniform mesh, and D is block diagonal. The rows of B come in the order in
+/// which they determine the coordinates, one after another, which is what the solver goes by
+/// (stiffness_solver.hpp).
 struct StrainFactors {
   SparseMatrix strain;       ///< B (s x n): coordinates -> natural strains
-  SparseMatrix rigidity;     ///< D (s x s): symmetric positive definite
+  SparseMatrix rigidity;     ///< D (s x s): symmetric, positive definite unless an axial load softens it
   SparseMatrix flexibility;  ///< D^-1 (s x s), from its own closed form and not from inverting D
 
   /// K = B^T D B (n x n), for the solvers that need it assembled.
@@ -30,16 +34,25 @@ struct StrainFactors {
 
 /// What one coordinate of a system measures.
 struct Coordinate {
-  enum class Kind { deflection, rotation, generalised };
+  enum class Kind { axial, deflection, rotation, generalised };
   Kind kind = Kind::generalised;
   double position = 0.0;  ///< along the beam [m]; meaningless when generalised
-  double scale = 1.0;     ///< coordinate = scale x (deflection [m] or rotation [rad])
+  double scale = 1.0;     ///< coordinate = scale x (displacement [m] or rotation [rad])
+  int node = -1;          ///< of the mesh; -1 when generalised
 };
 
-/// M q'' + C q' + K q = E f,  y = H q.
+/// A force between the ground and one point that is not linear: -(k3 x^3 + c2 |x'| x') c, x = c^T q.
+struct NonlinearForce {
+  SparseMatrix direction;          ///< c (n x 1)
+  double cubic_stiffness = 0.0;    ///< k3 [N/m3]
+  double quadratic_damping = 0.0;  ///< c2 [N s2/m2]
+};
+
+/// M q'' + C q' + K q = E f + nonlinear forces,  y = H q.
 ///
-/// n coordinates, m inputs (forces [N]), p outputs (displacements [m]). A reduction maps one such system to a
-/// smaller one (reduction/projection.hpp), so whatever runs on the continuum runs on a reduced model.
+/// n coordinates, m inputs (forces [N], accelerations of the base [m/s2]), p outputs (displacements [m]). A
+/// reduction maps one such system to a smaller one (reduction/projection.hpp), so whatever runs on the
+/// continuum runs on a reduced model.
 struct StructuralSystem {
   std::vector<Coordinate> coordinates;    ///< n
   SparseMatrix mass;                      ///< M (n x n), symmetric positive definite
@@ -49,6 +62,8 @@ struct StructuralSystem {
   SparseMatrix outputs;                   ///< H (p x n)
   std::vector<std::string> input_names;   ///< m
   std::vector<std::string> output_names;  ///< p
+  std::vector<NonlinearForce> nonlinear_forces;
+  Mesh mesh;  ///< empty when reduced
 
   Eigen::Index size() const { return mass.rows(); }
 };

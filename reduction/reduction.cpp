@@ -1,5 +1,6 @@
 #include "reduction/reduction.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 #include <stdexcept>
@@ -15,11 +16,21 @@ ReductionRegistry& reduction_registry() {
 
 namespace {
 
-// U B Phi with D = U^T U.
-MatrixXd weighted_strain(const fem::StrainFactors& stiffness, const MatrixXd& shapes) {
+// K_r = R^T R. With D = U^T U it is the R of the QR decomposition of U B Phi, so that nothing cancels. Where
+// an axial load has made D indefinite there is no U, and R is the Cholesky factor of K_r itself.
+MatrixXd stiffness_factor(const fem::StrainFactors& stiffness, const MatrixXd& shapes) {
+  const MatrixXd strain = stiffness.strain * shapes;
   const Eigen::SimplicialLLT<fem::SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> rigidity(
       stiffness.rigidity);
-  return rigidity.matrixU() * MatrixXd(stiffness.strain * shapes);
+  if (rigidity.info() == Eigen::Success) {
+    const Eigen::HouseholderQR<MatrixXd> qr(rigidity.matrixU() * strain);
+    return qr.matrixQR().topRows(shapes.cols()).triangularView<Eigen::Upper>();
+  }
+  const Eigen::LLT<MatrixXd> reduced(strain.transpose() * (stiffness.rigidity * strain));
+  if (reduced.info() != Eigen::Success)
+    throw std::invalid_argument(
+        "the reduced stiffness is not positive: the axial load buckles the structure");
+  return reduced.matrixU();
 }
 
 }  // namespace
@@ -31,8 +42,7 @@ ReducedModel project(const fem::StructuralSystem& system, const Bases& bases) {
     throw std::invalid_argument("shapes are " + std::to_string(shapes.rows()) + " x " + std::to_string(r) +
                                 "; expected " + std::to_string(n) + " rows and 1 to " + std::to_string(n) +
                                 " columns");
-  const Eigen::HouseholderQR<MatrixXd> strain(weighted_strain(system.stiffness, shapes));
-  const MatrixXd factor = strain.matrixQR().topRows(r).triangularView<Eigen::Upper>();
+  const MatrixXd factor = stiffness_factor(system.stiffness, shapes);
   const auto diagonal = factor.diagonal().array().abs();
   if (!(diagonal.minCoeff() > 1e-13 * diagonal.maxCoeff()))
     throw std::invalid_argument(
@@ -52,6 +62,9 @@ ReducedModel project(const fem::StructuralSystem& system, const Bases& bases) {
   model.system.outputs = MatrixXd(system.outputs * shapes).sparseView();
   model.system.input_names = system.input_names;
   model.system.output_names = system.output_names;
+  for (const fem::NonlinearForce& force : system.nonlinear_forces)
+    model.system.nonlinear_forces.push_back({MatrixXd(shapes.transpose() * force.direction).sparseView(),
+                                             force.cubic_stiffness, force.quadratic_damping});
   return model;
 }
 

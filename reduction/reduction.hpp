@@ -32,7 +32,8 @@ struct ReducedModel {
 };
 
 /// Galerkin projection: M_r = Phi^T M Phi, C_r = Phi^T C Phi, E_r = Phi^T E, H_r = H Phi, and the stiffness
-/// kept as a factor, K_r = R^T R from the QR decomposition D^1/2 B Phi = Q R, so that it never cancels.
+/// kept as a factor, K_r = R^T R from the QR decomposition D^1/2 B Phi = Q R, so that it never cancels
+/// (unless an axial load makes D indefinite: then R is the Cholesky factor of K_r).
 /// @throws std::invalid_argument when shapes do not fit the system or depend on each other.
 ReducedModel project(const fem::StructuralSystem& system, const Bases& bases);
 

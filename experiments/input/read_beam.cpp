@@ -32,7 +32,7 @@ Section read_section(const TomlTable& table, const std::string& owner) {
 }  // namespace
 
 fem::Beam read_beam(const TomlTable& table) {
-  fem::Beam beam;
+  fem::Cantilever beam;
   beam.length = table.number("length_m", Sign::positive);
 
   const std::string stiffness =

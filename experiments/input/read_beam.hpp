@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/input/toml_table.hpp"
-#include "fem/beam.hpp"
+#include "fem/cantilever.hpp"
 
 namespace beamid::experiments {
 

@@ -71,7 +71,7 @@ void write_mode_shapes(const std::filesystem::path& folder, const fem::Structura
     throw std::invalid_argument(
         fmt::format("mode shapes are {} x {}; expected {} x {}, a column for each frequency", shapes.rows(),
                     shapes.cols(), system.size(), frequencies_hz.size()));
-  const Eigen::VectorXd position = fem::nodal_position(system);
+  const Eigen::VectorXd position = system.mesh.positions();
   vtkNew<vtkUnstructuredGrid> all;
   set_mesh(all, position);
   std::string series;

@@ -30,7 +30,7 @@ BeamCase prepare(const TestBeam& test) {
   beam.test = test;
   const Release settings = release_of(test);
   beam.released = release(settings);
-  const fem::ExactMode exact(settings.beam, 1);
+  const fem::ExactMode exact(steel_beam(test), 1);
   beam.exact_frequency_hz = exact.frequency_hz();
   const auto rayleigh = reduction::reduction_registry().make("rayleigh", {});
   const auto reduced = reduce(fem::assemble(settings.beam, settings.elements), *rayleigh);

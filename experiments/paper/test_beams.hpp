@@ -4,6 +4,7 @@
 #include <array>
 
 #include "experiments/virtual_rig.hpp"
+#include "fem/cantilever.hpp"
 
 namespace beamid::experiments::paper {
 
@@ -20,8 +21,8 @@ inline constexpr std::array<TestBeam, 5> test_beams{{{"S(0.65)", 0.0198575, 0.00
                                                      {"S(119.3)", 3.644615, 0.0015}}};
 
 /// Steel, 1.10 m x 60 mm x 6 mm, 3.055 kg, E = 2.12e11 N/m2 [inverse2009].
-inline fem::Beam steel_beam(const TestBeam& test) {
-  fem::Beam beam;
+inline fem::Cantilever steel_beam(const TestBeam& test) {
+  fem::Cantilever beam;
   beam.length = 1.10;
   beam.bending_stiffness = 2.12e11 * fem::rectangle_second_moment(0.060, 0.006);
   beam.mass_per_length = 3.055 / beam.length;

@@ -112,6 +112,7 @@ Json configuration(const Outcome& outcome) {
                 {"passes", s.passes}};
   };
   const Release rig = release_of(test_beams[0]);
+  const fem::Cantilever beam = steel_beam(test_beams[0]);
   Json json{{"trials", outcome.beams.front().trials.trials},
             {"oscillator",
              {{"stiffness_n_per_m", outcome.truth.stiffness},
@@ -121,9 +122,9 @@ Json configuration(const Outcome& outcome) {
               {"table2", validation({})},
               {"discretisation_bias", validation(bias_settings())}}},
             {"rig",
-             {{"length_m", rig.beam.length},
-              {"bending_stiffness_n_m2", rig.beam.bending_stiffness},
-              {"mass_kg", rig.beam.mass()},
+             {{"length_m", beam.length},
+              {"bending_stiffness_n_m2", beam.bending_stiffness},
+              {"mass_kg", beam.mass()},
               {"elements", rig.elements},
               {"modes", rig.modes},
               {"higher_damping_ratio", rig.higher_damping_ratio},

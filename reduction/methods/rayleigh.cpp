@@ -23,7 +23,9 @@ Eigen::VectorXd one_minus_cosine(const fem::StructuralSystem& system) {
   const double wave = 0.5 * std::numbers::pi / length;
   Eigen::VectorXd shape(system.size());
   for (Eigen::Index i = 0; i < system.size(); ++i) {
-    const auto& [kind, x, scale] = system.coordinates[i];
+    const fem::Coordinate& coordinate = system.coordinates[i];
+    const auto kind = coordinate.kind;
+    const double x = coordinate.position, scale = coordinate.scale;
     if (kind == fem::Coordinate::Kind::generalised)
       throw std::invalid_argument("reduction 'rayleigh' needs a mesh for shape 'one_minus_cosine'");
     const bool deflection = kind == fem::Coordinate::Kind::deflection;

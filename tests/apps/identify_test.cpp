@@ -6,6 +6,7 @@
 
 #include "experiments/input/write_record.hpp"
 #include "experiments/virtual_rig.hpp"
+#include "fem/cantilever.hpp"
 #include "tests/apps/run_command.hpp"
 
 namespace beamid::apps {
@@ -28,10 +29,8 @@ class Tutorial : public testing::Test {
 // anti-aliasing filter would leave them, an accelerometer with white noise of 0.05 m/s2.
 TEST_F(Tutorial, RecordIsSimulatedAgainByteForByte) {
   experiments::Release rig;
-  rig.beam.length = 1.10;
-  rig.beam.bending_stiffness = 2.12e11 * fem::rectangle_second_moment(0.060, 0.006);
-  rig.beam.mass_per_length = 3.055 / rig.beam.length;
-  rig.beam.tip_mass = 0.36049;
+  rig.beam =
+      fem::Cantilever{1.10, 2.12e11 * fem::rectangle_second_moment(0.060, 0.006), 3.055 / 1.10, 0.36049};
   rig.modes = 3;
   rig.first_damping_ratio = 0.0045;
   rig.higher_damping_ratio = 0.02;

@@ -13,7 +13,7 @@ using fem::ExactMode;
 
 TEST(ExactCantilever, BareBeamHasTheTextbookRoots) {
   // Oracle: roots of 1 + cos b cosh b = 0 [blevins1979, table 8-1].
-  const fem::Beam bare = test::steel_beam(0.0);
+  const fem::Cantilever bare = test::steel_beam(0.0);
   const double published[] = {1.87510406871196, 4.69409113297417, 7.85475743823761, 10.9955407348755,
                               14.1371683910464};
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(ExactMode(bare, i + 1).root(), published[i], 1e-12);
@@ -40,7 +40,7 @@ TEST(ExactCantilever, ReleaseGivesTheTabulatedAmplitudesOfEveryMode) {
 
 TEST(ExactCantilever, ModalAmplitudesSumToTheReleasedDeflection) {
   // Oracle: completeness of the modes; the remainder falls with the fourth power of the mode number.
-  const fem::Beam beam = test::steel_beam(0.0198575);
+  const fem::Cantilever beam = test::steel_beam(0.0198575);
   double sum = 0.0;
   for (int i = 1; i <= 40; ++i) sum += ExactMode(beam, i).release_amplitude(0.012);
   EXPECT_NEAR(sum, 0.012, 1e-8);
@@ -50,7 +50,7 @@ TEST(ExactCantilever, HighModesKeepTheirShape) {
   // Oracle: at high frequency the free end of a bare beam moves as cos + decaying exponential, so the shape
   // at the root vanishes and consecutive tip slopes alternate; a shape that cancels would lose this from mode
   // 12 on.
-  const fem::Beam bare = test::steel_beam(0.0);
+  const fem::Cantilever bare = test::steel_beam(0.0);
   for (int i = 1; i <= 30; ++i) {
     const ExactMode mode(bare, i);
     EXPECT_NEAR(mode.shape(0.0), 0.0, 1e-13);
@@ -60,7 +60,7 @@ TEST(ExactCantilever, HighModesKeepTheirShape) {
 }
 
 TEST(ExactCantilever, RefusesImpossibleBeams) {
-  fem::Beam beam = test::steel_beam(1.0);
+  fem::Cantilever beam = test::steel_beam(1.0);
   EXPECT_THROW(ExactMode(beam, 0), std::invalid_argument);
   beam.tip_mass = -1.0;
   EXPECT_THROW(ExactMode(beam, 1), std::invalid_argument);

@@ -17,7 +17,7 @@ using fem::ExactMode;
 TEST(Cantilever, StaticTipStiffnessIsThreeEIOverLCubed) {
   // Oracle: beam theory; Hermite cubics contain the static solution, so only rounding remains.
   for (const int elements : {1, 7, 80, 400}) {
-    const fem::Beam beam = test::steel_beam(1.0);
+    const fem::Cantilever beam = test::steel_beam(1.0);
     EXPECT_NEAR(fem::static_stiffness(assemble(beam, elements)) / beam.tip_stiffness(), 1.0, 1e-11)
         << elements;
   }
@@ -32,7 +32,7 @@ TEST(Cantilever, FirstFrequencyOfTheFiveBeamsIsExactToNineDigits) {
 
 TEST(Cantilever, ModesTwoToFiveAreExactToSixDigits) {
   for (const auto& known : test::five_beams) {
-    const fem::Beam beam = test::steel_beam(known.tip_mass);
+    const fem::Cantilever beam = test::steel_beam(known.tip_mass);
     const auto modes = fem::modes(assemble(beam, 80), 5);
     for (int i = 2; i <= 5; ++i)
       EXPECT_NEAR(modes.frequency_hz()[i - 1] / ExactMode(beam, i).frequency_hz(), 1.0, 1e-6) << "mode " << i;
@@ -43,7 +43,7 @@ TEST(Cantilever, FrequenciesConvergeAtOrderFourFromAbove) {
   // Oracle: Hermite cubics with consistent mass err by (b h / L)^4 / 1440 in frequency, b the exact root of
   // the bare beam; a tip mass, which is not discretised, lowers the factor and keeps the order.
   for (const double tip_mass : {0.0, 0.36049}) {
-    const fem::Beam beam = test::steel_beam(tip_mass);
+    const fem::Cantilever beam = test::steel_beam(tip_mass);
     const ExactMode exact(beam, 3);
     const auto error = [&](int elements) {
       return fem::modes(assemble(beam, elements), 3).angular_frequency[2] / exact.angular_frequency() - 1.0;
@@ -58,7 +58,7 @@ TEST(Cantilever, FrequenciesConvergeAtOrderFourFromAbove) {
 }
 
 TEST(Cantilever, TipRotaryInertiaMatchesTheExactRoots) {
-  fem::Beam beam = test::steel_beam(1.33809);
+  fem::Cantilever beam = test::steel_beam(1.33809);
   beam.tip_rotary_inertia = 0.05 * beam.mass() * beam.length * beam.length;
   const auto modes = fem::modes(assemble(beam, 80), 4);
   for (int i = 1; i <= 4; ++i) {
@@ -90,7 +90,7 @@ TEST(Modes, ShapesAreOrthonormalInMassAndStiffness) {
 TEST(Modes, NoWrongFrequencyIsReturnedForMassesFarApart) {
   // Oracle: a beam so much lighter than its tip mass is a spring. What Lanczos cannot find it must refuse.
   for (const double tip_mass : {1e3, 1e5, 1e7, 1e9}) {
-    const fem::Beam beam = test::steel_beam(tip_mass);
+    const fem::Cantilever beam = test::steel_beam(tip_mass);
     const auto system = assemble(beam, 80);
     try {
       EXPECT_NEAR(fem::modes(system, 1).angular_frequency[0] / std::sqrt(beam.tip_stiffness() / tip_mass),

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(Registered, PromisesExactStatics,
 
 TEST(Rayleigh, EquivalentMassIs33Over140OnAnyMesh) {
   // Oracle: integral of ((3 L x^2 - x^3) / 2 L^3)^2 over the beam = 33/140 L, by hand.
-  const fem::Beam beam = test::steel_beam(0.36049);
+  const fem::Cantilever beam = test::steel_beam(0.36049);
   for (const int elements : {1, 2, 13, 80}) {
     const auto model = reduce(assemble(beam, elements), *reduction_registry().make("rayleigh", {}));
     EXPECT_NEAR(model.system.mass.coeff(0, 0), 33.0 / 140.0 * beam.mass() + beam.tip_mass, 1e-10);
@@ -88,7 +88,7 @@ TEST(Rayleigh, OneMinusCosineHasItsOwnMassAndStiffness) {
   // Oracle: integrals of (1 - cos)^2 and of the curvature squared, by hand: (3/2 - 4/pi) m and pi^4 EI / 32
   // L^3.
   using std::numbers::pi;
-  const fem::Beam beam = test::steel_beam(0.0);
+  const fem::Cantilever beam = test::steel_beam(0.0);
   const auto method = reduction_registry().make("rayleigh", {{"shape", "one_minus_cosine"}});
   const auto model = reduce(assemble(beam, 80), *method);
   EXPECT_NEAR(model.system.mass.coeff(0, 0) / ((1.5 - 4.0 / pi) * beam.mass()), 1.0, 1e-8);
@@ -100,7 +100,7 @@ TEST(Rayleigh, FrequencyErrorsOfTheFiveBeamsAreTheTabulatedOnes) {
   const double static_shape_error[] = {1.38833, 0.65267, 0.17907, 0.08120, 0.03957};
   const double cosine_error[] = {4.07, 2.70, 1.59, 1.27, 1.09};
   for (int i = 0; i < 5; ++i) {
-    const fem::Beam beam = test::steel_beam(test::five_beams[i].tip_mass);
+    const fem::Cantilever beam = test::steel_beam(test::five_beams[i].tip_mass);
     const double exact = fem::ExactMode(beam, 1).angular_frequency();
     const auto error = [&](const char* shape) {
       const auto model =

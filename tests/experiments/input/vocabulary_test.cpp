@@ -102,7 +102,7 @@ TEST(ConfigurationDocument, HoldsAnExampleThatIsValid) {
   const TemporaryFile file("example.toml", example);
   const Experiment experiment = read_experiment(file.path());
   EXPECT_EQ(experiment.record_file, "massa1_test1-1.txt");
-  EXPECT_DOUBLE_EQ(experiment.beam.tip_mass, 1.437 + 0.054);
+  EXPECT_DOUBLE_EQ(experiment.beam.tip_mass(), 1.437 + 0.054);
   for (const std::string& key : known_keys()) {  // also what it leaves at its default, as a comment
     const std::string name = key.substr(key.rfind('.') + 1);
     EXPECT_NE(example.find(name + " ="), std::string::npos) << "the example does not show " << key;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/assembly.hpp"
+#include "fem/cantilever.hpp"
 #include "tests/experiments/output/temporary_folder.hpp"
 
 namespace beamid::experiments {
@@ -18,7 +19,7 @@ namespace {
 constexpr int elements = 8;
 
 fem::StructuralSystem beam() {
-  return fem::assemble({1.1, 228.96, 2.777, 0.36, 0.0}, elements);
+  return fem::assemble(fem::Cantilever{1.1, 228.96, 2.777, 0.36, 0.0}, elements);
 }
 
 // Any shapes do; the second is largest at the tip, downwards.
@@ -46,7 +47,7 @@ TEST(ModeShapes, ReadBackAsTheyWere) {
   ASSERT_EQ(grid->GetNumberOfPoints(), elements + 1);
   ASSERT_EQ(grid->GetNumberOfCells(), elements);
   EXPECT_EQ(grid->GetCellType(0), VTK_LINE);
-  const Eigen::VectorXd position = fem::nodal_position(system);
+  const Eigen::VectorXd position = system.mesh.positions();
   const char* names[] = {"Mode 1 (4.1455 Hz)", "Mode 2 (26.1000 Hz)"};
   for (int mode = 0; mode < 2; ++mode) {
     vtkDataArray* array = grid->GetPointData()->GetArray(names[mode]);

@@ -7,6 +7,7 @@
 
 #include "experiments/input/read_record.hpp"
 #include "experiments/record_identification/record_identification.hpp"
+#include "fem/cantilever.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -27,10 +28,8 @@ std::filesystem::path folder() {
 // Catalogue values: 350 mm x 25 mm x 6 mm, 210 GPa, 0.445 kg; an accelerometer of 0.054 kg on the tip.
 Experiment cantilever(double tip_mass) {
   Experiment experiment;
-  experiment.beam.length = 0.350;
-  experiment.beam.bending_stiffness = 210e9 * fem::rectangle_second_moment(0.025, 0.006);
-  experiment.beam.mass_per_length = 0.445 / 0.350;
-  experiment.beam.tip_mass = tip_mass + 0.054;
+  experiment.beam = fem::Cantilever{0.350, 210e9 * fem::rectangle_second_moment(0.025, 0.006), 0.445 / 0.350,
+                                    tip_mass + 0.054};
   return experiment;
 }
 
