@@ -60,6 +60,8 @@ class Assembly {
   const Mesh& mesh_;
   StructuralSystem system_;
   std::vector<int> deflection_, rotation_;  // coordinate of each node, -1 where supported
+  std::vector<int> absorber_;               // coordinate of each absorber
+  std::vector<int> interior_;               // first of the two inside each element, -1 where it has none
   std::vector<double> scale_;               // of the rotation at each node
   Triplets mass_, damping_, strain_, rigid_, flexible_;
   std::vector<double> base_;  // force of a unit acceleration of the base, on the free coordinates
@@ -70,6 +72,7 @@ class Assembly {
   ElementMatrices matrices_;
 
   void number() {
+    absorber_.resize(beam_.absorbers.size());
     std::map<int, Support> held;
     for (const Support& support : beam_.supports) {
       Support& both =
@@ -88,6 +91,18 @@ class Assembly {
       const bool known = support != held.end();
       deflection_.push_back(coordinate(known && support->second.deflection, Kind::deflection, 1.0));
       rotation_.push_back(coordinate(known && support->second.rotation, Kind::rotation, scale_.back()));
+      for (std::size_t i = 0; i < absorber_.size(); ++i)
+        if (mesh_.node_at(beam_.absorbers[i].position) == static_cast<int>(node)) {
+          absorber_[i] = static_cast<int>(system_.coordinates.size());
+          system_.coordinates.push_back({Kind::generalised, mesh_.nodes[node].x, 1.0, -1});
+        }
+      if (node == mesh_.elements.size()) break;
+      const Mesh::Element& element = mesh_.elements[node];
+      const bool inside = has_interior(beam_.segments[element.segment].section, element, beam_.mass_model);
+      interior_.push_back(inside ? static_cast<int>(system_.coordinates.size()) : -1);
+      if (inside)
+        system_.coordinates.insert(system_.coordinates.end(), 2,
+                                   {Kind::generalised, mesh_.nodes[node].x + 0.5 * element.length, 1.0, -1});
     }
     base_.assign(system_.coordinates.size(), 0.0);
   }
@@ -111,6 +126,25 @@ class Assembly {
       add_ground_strain(rotation_[node], spring.rotational / (scale_[node] * scale_[node]));
       if (spring.cubic != 0.0) add_nonlinear(node, spring.cubic, 0.0);
     }
+    for (std::size_t i = 0; i < absorber_.size(); ++i)
+      if (mesh_.node_at(beam_.absorbers[i].position) == node) add_absorber(i, deflection_[node]);
+  }
+
+  // Its strain is its travel, w_absorber - w.
+  void add_absorber(std::size_t i, int w) {
+    const Absorber& absorber = beam_.absorbers[i];
+    add_strain(strains_, absorber_[i], 1.0);
+    add_strain(strains_, w, -1.0);
+    rigid_.emplace_back(strains_, strains_, absorber.stiffness);
+    flexible_.emplace_back(strains_, strains_, 1.0 / absorber.stiffness);
+    ++strains_;
+    add_mass(absorber_[i], absorber_[i], absorber.mass, true);
+    if (absorber.damping == 0.0) return;
+    damping_.emplace_back(absorber_[i], absorber_[i], absorber.damping);
+    if (w < 0) return;
+    damping_.emplace_back(w, w, absorber.damping);
+    damping_.emplace_back(w, absorber_[i], -absorber.damping);
+    damping_.emplace_back(absorber_[i], w, -absorber.damping);
   }
 
   void add_nonlinear(int node, double cubic, double quadratic) {
@@ -138,22 +172,32 @@ class Assembly {
 
     const double h = element.length;
     const int first = element.first, second = element.second;
-    const int at[4] = {deflection_[first], rotation_[first], deflection_[second], rotation_[second]};
-    const double ratio[4] = {1.0, h / scale_[first], 1.0, h / scale_[second]};  // h theta per coordinate
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j)
-        add_mass(at[i], at[j], ratio[i] * matrices_.mass(i, j) * ratio[j], j % 2 == 0);
+    const int inside = interior_[e], beyond = inside < 0 ? -1 : inside + 1;
+    const int at[6] = {deflection_[first], rotation_[first], deflection_[second],
+                       rotation_[second],  inside,           beyond};
+    const double ratio[6] = {1.0, h / scale_[first], 1.0, h / scale_[second], 1.0,
+                             1.0};  // h theta per coordinate
+    const int coordinates = matrices_.interior ? 6 : 4, strains = coordinates - 2;
+    for (int i = 0; i < coordinates; ++i)
+      for (int j = 0; j < coordinates; ++j) {
+        const double mass = matrices_.interior ? matrices_.interior->mass(i, j) : matrices_.mass(i, j);
+        add_mass(at[i], at[j], ratio[i] * mass * ratio[j], j == 0 || j == 2);
+      }
     const double drift[4] = {1.0, ratio[1], -1.0, 0.0}, turn[4] = {0.0, -ratio[1], 0.0, ratio[3]};
     for (int i = 0; i < 4; ++i) {
       add_strain(strains_, at[i], drift[i]);
       add_strain(strains_ + 1, at[i], turn[i]);
     }
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j) {
-        rigid_.emplace_back(strains_ + i, strains_ + j, matrices_.rigidity(i, j));
-        flexible_.emplace_back(strains_ + i, strains_ + j, matrices_.flexibility(i, j));
+    for (int i = 2; i < strains; ++i) add_strain(strains_ + i, at[i + 2], 1.0);
+    for (int i = 0; i < strains; ++i)
+      for (int j = 0; j < strains; ++j) {
+        const bool inner = matrices_.interior.has_value();
+        rigid_.emplace_back(strains_ + i, strains_ + j,
+                            inner ? matrices_.interior->rigidity(i, j) : matrices_.rigidity(i, j));
+        flexible_.emplace_back(strains_ + i, strains_ + j,
+                               inner ? matrices_.interior->flexibility(i, j) : matrices_.flexibility(i, j));
       }
-    strains_ += 2;
+    strains_ += strains;
     if (beam_.axial_load != 0.0) {  // the chord, w_2 - w_1
       add_strain(strains_, at[0], -1.0);
       add_strain(strains_, at[2], 1.0);
@@ -228,11 +272,17 @@ StructuralSystem assemble(const Beam& beam, int elements) {
 }
 
 Point natural_point(const Beam& beam) {
-  const double length = beam.length();
-  const bool tip_is_held =
-      std::any_of(beam.supports.begin(), beam.supports.end(),
-                  [&](const Support& support) { return support.deflection && support.position == length; });
-  return tip_is_held ? Point{"midspan", 0.5 * length} : Point{"tip", length};
+  const double length = beam.length(), same_place = 1e-9 * length;
+  std::vector<double> held;
+  for (const Support& support : beam.supports)
+    if (support.deflection) held.push_back(support.position);
+  std::sort(held.begin(), held.end());
+  if (held.empty() || held.back() < length - same_place) return {"tip", length};
+  held.insert(held.begin(), 0.0);  // a free root bounds the first span
+  std::size_t longest = 1;
+  for (std::size_t i = 1; i < held.size(); ++i)
+    if (held[i] - held[i - 1] > (held[longest] - held[longest - 1]) * (1 + 1e-9)) longest = i;
+  return {"midspan", 0.5 * (held[longest - 1] + held[longest])};
 }
 
 Eigen::VectorXd nodal_deflection(const StructuralSystem& system, const Eigen::VectorXd& q) {

@@ -18,8 +18,9 @@ struct Point {
 /// Finite elements (element.hpp) over the mesh that cut() makes.
 ///
 /// Coordinates, node after node from the root, those held by supports left out: deflection w [m] and scaled
-/// rotation s theta [m], s being the length of the element before the node. Each point is an input, a force
-/// [N] called NAME_force, and an output, a deflection [m] called NAME_deflection; the last input is
+/// rotation s theta [m], s being the length of the element before the node; then the displacement [m] of each
+/// absorber there and the interior coordinates of the element beyond it. Each point is an input, a force [N]
+/// called NAME_force, and an output, a deflection [m] called NAME_deflection; the last input is
 /// base_acceleration [m/s2], the acceleration of all supports and grounded springs together, coordinates then
 /// being relative to the base.
 ///
@@ -27,7 +28,8 @@ struct Point {
 /// supported.
 StructuralSystem assemble(const Beam& beam, int elements, const std::vector<Point>& points);
 
-/// The same with one point: "tip", or "midspan" where the tip's deflection is held.
+/// The same with one point: "tip", or where the tip's deflection is held "midspan", the middle of the longest
+/// span.
 StructuralSystem assemble(const Beam& beam, int elements);
 
 /// The point that the short form uses.

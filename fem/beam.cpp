@@ -15,19 +15,20 @@ void require(bool valid, const std::string& name, double value, const std::strin
   throw std::invalid_argument(message.str());
 }
 
-// A section's end may vanish (a sharp tip), not both, and nothing may be negative in between.
+// A section's end may vanish (a sharp tip), to rounding, and nothing may be negative in between.
 void validate(const Section& section, const std::string& where) {
   const auto positive = [&](const Variation& quantity, const char* name, const char* unit) {
+    const double rounding = 1e-12 * std::abs(quantity(0.5));
     for (const double s : {0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0})
-      require(s == 0.0 || s == 1.0 ? quantity(s) >= 0.0 : quantity(s) > 0.0, where + name, quantity(s),
-              std::string("a positive number of ") + unit);
+      require((s == 0.0 || s == 1.0) && !quantity.is_constant() ? quantity(s) >= -rounding : quantity(s) > 0.0,
+              where + name, quantity(s), std::string("a positive number of ") + unit);
   };
   positive(section.bending_stiffness, "bending stiffness", "N m2");
   positive(section.mass_per_length, "mass per length", "kg/m");
   if (section.shear_stiffness) positive(*section.shear_stiffness, "shear stiffness", "N");
   if (section.axial_stiffness) positive(*section.axial_stiffness, "axial stiffness", "N");
   for (const double s : {0.0, 0.5, 1.0})
-    require(section.rotary_inertia(s) >= 0.0, where + "rotary inertia", section.rotary_inertia(s),
+    require(section.rotary_inertia(s) >= -1e-12 * std::abs(section.rotary_inertia(0.5)), where + "rotary inertia", section.rotary_inertia(s),
             "zero or a positive number of kg m");
 }
 
@@ -106,6 +107,12 @@ void validate(const Beam& beam) {
             "zero or a positive number of N m s/rad");
     require(dashpot.quadratic >= 0.0, "quadratic dashpot", dashpot.quadratic,
             "zero or a positive number of N s2/m2");
+  }
+  for (const Absorber& absorber : beam.absorbers) {
+    on_beam(absorber.position, "position of an absorber");
+    require(absorber.mass > 0.0, "absorber mass", absorber.mass, "a positive number of kg");
+    require(absorber.stiffness > 0.0, "absorber stiffness", absorber.stiffness, "a positive number of N/m");
+    require(absorber.damping >= 0.0, "absorber damping", absorber.damping, "zero or a positive number of N s/m");
   }
   require(true, "axial load", beam.axial_load, "a finite number of N");
 }

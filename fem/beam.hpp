@@ -50,6 +50,14 @@ struct Dashpot {
   double quadratic = 0.0;      ///< c2 of a force c w' + c2 |w'| w' [N s2/m2]
 };
 
+/// A mass on a spring that hangs on one point of the beam: a tuned absorber, a passenger, an instrument.
+struct Absorber {
+  double position = 0.0;   ///< [m]
+  double mass = 0.0;       ///< [kg]
+  double stiffness = 0.0;  ///< k of a force k (w_absorber - w) on the beam [N/m]
+  double damping = 0.0;    ///< c of a force c (w_absorber - w)' [N s/m]
+};
+
 /// A local loss of bending stiffness: E I becomes (1 - loss) E I.
 struct Damage {
   double from = 0.0, to = 0.0;  ///< [m]
@@ -69,6 +77,7 @@ struct Beam {
   std::vector<Support> supports;
   std::vector<Spring> springs;
   std::vector<Dashpot> dashpots;
+  std::vector<Absorber> absorbers;
   std::vector<Damage> damages;
   double axial_load = 0.0;  ///< P [N], all along, positive in compression, dead: it keeps its direction
   MassModel mass_model = MassModel::consistent;

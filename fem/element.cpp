@@ -1,97 +1,50 @@
 #include "fem/element.hpp"
 
 #include <Eigen/LU>
-#include <boost/math/quadrature/gauss.hpp>
+
+#include "fem/element_shapes.hpp"
 
 namespace beamid::fem {
 namespace {
 
 using Eigen::Matrix2d, Eigen::Matrix4d, Eigen::Vector2d, Eigen::Vector4d;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Vector<double, 6>;
 
-// Integral over 0..1 by ten Gauss points: exact for the polynomials here, to rounding for 1/EI of mild taper.
-template <class Result, class Function>
-Result integral(const Function& f) {
-  using Gauss = boost::math::quadrature::gauss<double, 10>;
-  Result sum = Result::Zero();
-  for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
-    const double offset = 0.5 * Gauss::abscissa()[i], weight = 0.5 * Gauss::weights()[i];
-    sum += weight * (f(0.5 - offset) + f(0.5 + offset));
-  }
-  return sum;
-}
-
-// Static shapes of a uniform element [friedman1993]; phi = 12 EI / (kappa G A h^2), 0 gives Hermite's cubics.
-struct Shapes {
-  double phi;
-
-  Vector4d deflection(double s) const {  // of (w1, h theta1, w2, h theta2)
-    const double bend = 0.5 * phi * (s - s * s);
-    return Vector4d{1 + s * s * (2 * s - 3) + phi * (1 - s), s * (1 - s) * (1 - s) + bend,
-                    s * s * (3 - 2 * s) + phi * s, s * s * (s - 1) - bend} /
-           (1 + phi);
-  }
-  Vector4d slope(double s) const {  // h dw/dx
-    const double bend = 0.5 * phi * (1 - 2 * s);
-    return Vector4d{6 * s * (s - 1) - phi, 1 + s * (3 * s - 4) + bend, 6 * s * (1 - s) + phi,
-                    s * (3 * s - 2) - bend} /
-           (1 + phi);
-  }
-  Vector4d rotation(double s) const {  // h theta; the slope without the shear strain
-    return Vector4d{6 * s * (s - 1), 1 + s * (3 * s - 4) + phi * (1 - s), 6 * s * (1 - s),
-                    s * (3 * s - 2) + phi * s} /
-           (1 + phi);
-  }
-  // h dw/dx of the two strains alone, the chord's slope taken off; h theta_1 = eps_1, h theta_2 = eps_1 +
-  // eps_2
-  Vector2d slope_of_strains(double s) const {
-    const Vector4d n = slope(s);
-    return {n[1] + n[3], n[3]};
-  }
-};
-
-struct Properties {  // of the element, s from 0 to 1 along it
-  const Section& section;
-  const Mesh::Element& element;
-  double along(const Variation& quantity, double s) const {
-    return quantity(element.from + s * (element.to - element.from));
-  }
-  double bending(double s) const { return element.remaining * along(section.bending_stiffness, s); }
-};
-
-Matrix2d flexibility_of(const Properties& p) {
+Matrix2d flexibility_of(const ElementSection& p) {
   const double h = p.element.length;
-  return integral<Matrix2d>([&](double s) {
+  return p.integral<Matrix2d>([&](double s) {
     const Vector2d moment{s - 1, 1};
-    Matrix2d part = h * h * h / p.bending(s) * moment * moment.transpose();
-    if (p.section.shear_stiffness) part(0, 0) += h / p.along(*p.section.shear_stiffness, s);
+    Matrix2d part = h * h * h / p.bending_stiffness(s) * moment * moment.transpose();
+    part(0, 0) += h * p.shear_flexibility(s);
     return part;
   });
 }
 
-// Over Hermite's cubics: h^2 w'' = (6 s - 4) e1 + (6 s - 2) e2 with the chord rotations e1 = eps_1, e2 =
-// eps_1 + eps_2
-Matrix2d integrated_rigidity(const Properties& p) {
+// Over Hermite's cubics: h^2 w'' = (6 s - 4) e1 + (6 s - 2) e2, e1 = eps_1, e2 = eps_1 + eps_2 the chord
+// rotations.
+Matrix2d integrated_rigidity(const ElementSection& p) {
   const double h = p.element.length;
-  return integral<Matrix2d>([&](double s) {
-           const Vector2d curvature{12 * s - 6, 6 * s - 2};
-           return Matrix2d(p.bending(s) * curvature * curvature.transpose());
-         }) /
-         (h * h * h);
+  return p.integral<Matrix2d>([&](double s) {
+    const Vector2d curvature{12 * s - 6, 6 * s - 2};
+    return Matrix2d(p.bending_stiffness(s) * curvature * curvature.transpose());
+  }) / (h * h * h);
 }
 
-Matrix4d consistent_mass(const Properties& p, const Shapes& shapes, double added) {
+Matrix2d interior_rigidity(const ElementSection& p, double phi) {
   const double h = p.element.length;
-  return integral<Matrix4d>([&](double s) {
-    const Vector4d w = shapes.deflection(s), turn = shapes.rotation(s);
-    return Matrix4d(h * (p.along(p.section.mass_per_length, s) + added) * w * w.transpose() +
-                    p.along(p.section.rotary_inertia, s) / h * turn * turn.transpose());
+  return p.integral<Matrix2d>([&](double s) {
+    const InteriorShape at = interior_shape(phi, s);
+    const Vector2d shear = at.slope - at.rotation;
+    return Matrix2d(p.bending_stiffness(s) / (h * h * h) * at.bend * at.bend.transpose() +
+                    shear * shear.transpose() / (h * p.shear_flexibility(s)));
   });
 }
 
 // Each half at its node, with the rotary inertia m (h/2)^3 / 3 of the half about it.
-Matrix4d lumped_mass(const Properties& p, double added) {
+Matrix4d lumped_mass(const ElementSection& p, double added) {
   const double h = p.element.length;
-  const Vector4d diagonal = integral<Vector4d>([&](double s) {
+  const Vector4d diagonal = p.integral<Vector4d>([&](double s) {
     const double mass = h * (p.along(p.section.mass_per_length, s) + added);
     const double turn = mass / 12.0 + p.along(p.section.rotary_inertia, s) / h;
     return Vector4d(mass * (1 - s), turn * (1 - s), mass * s, turn * s);
@@ -101,28 +54,62 @@ Matrix4d lumped_mass(const Properties& p, double added) {
 
 }  // namespace
 
+bool has_interior(const Section& section, const Mesh::Element& element, MassModel mass_model) {
+  return section.shear_stiffness && mass_model == MassModel::consistent &&
+         !ElementSection{section, element}.is_sharp();
+}
+
 ElementMatrices element_matrices(const Section& section, const Mesh::Element& element, double added,
                                  double axial_load, MassModel mass_model) {
-  const Properties p{section, element};
+  const ElementSection p{section, element};
   const double h = element.length;
+  const bool sharp = p.is_sharp(), with_interior = has_interior(section, element, mass_model);
+  const double phi = sharp ? 0.0 : 12.0 * p.bending_stiffness(0.5) * p.shear_flexibility(0.5) / (h * h);
   ElementMatrices result;
-  if (p.bending(0.0) > 0.0 && p.bending(1.0) > 0.0) {
-    result.flexibility = flexibility_of(p);
-    result.rigidity = result.flexibility.inverse();
-  } else {
-    result.rigidity = integrated_rigidity(p);
-    result.flexibility = result.rigidity.inverse();
-  }
-  const double shear = section.shear_stiffness ? p.along(*section.shear_stiffness, 0.5) : 0.0;
-  const Shapes shapes{shear > 0.0 ? 12.0 * p.bending(0.5) / (shear * h * h) : 0.0};
+  result.flexibility = sharp ? integrated_rigidity(p).inverse().eval() : flexibility_of(p);
+  result.rigidity = sharp ? integrated_rigidity(p) : result.flexibility.inverse().eval();
+  const Matrix2d static_rigidity = result.rigidity;
+  const auto shape = [&](double s) {
+    return sharp || section.is_uniform() ? uniform_shape(phi, s) : varying_shape(p, static_rigidity, s);
+  };
+
+  Matrix4d rigidity = Matrix4d::Zero(), softening = Matrix4d::Zero();
   if (axial_load != 0.0) {
-    result.rigidity -= axial_load / h * integral<Matrix2d>([&](double s) {
-                         const Vector2d slope = shapes.slope_of_strains(s);
-                         return Matrix2d(slope * slope.transpose());
-                       });
+    softening = axial_load / h * p.integral<Matrix4d>([&](double s) {
+      Vector4d slope;
+      slope << shape(s).slope_of_strains(), interior_shape(phi, s).slope;
+      return Matrix4d(slope * slope.transpose());
+    });
+    result.rigidity -= softening.topLeftCorner<2, 2>();
     result.flexibility = result.rigidity.inverse();
   }
-  result.mass = mass_model == MassModel::lumped ? lumped_mass(p, added) : consistent_mass(p, shapes, added);
+  Matrix6d mass = Matrix6d::Zero();
+  if (mass_model == MassModel::lumped)
+    mass.topLeftCorner<4, 4>() = lumped_mass(p, added);
+  else
+    mass = p.integral<Matrix6d>([&](double s) {
+      const NodalShape nodal = shape(s);
+      const InteriorShape inner = interior_shape(phi, s);
+      Vector6d deflection, rotation;
+      deflection << nodal.deflection, inner.deflection;
+      rotation << nodal.rotation, inner.rotation;
+      return Matrix6d(h * (p.along(section.mass_per_length, s) + added) * deflection *
+                          deflection.transpose() +
+                      p.along(section.rotary_inertia, s) / h * rotation * rotation.transpose());
+    });
+  result.mass = mass.topLeftCorner<4, 4>();
+  if (!with_interior) return result;
+
+  rigidity.topLeftCorner<2, 2>() = static_rigidity;
+  rigidity.bottomRightCorner<2, 2>() = interior_rigidity(p, phi);
+  ElementMatrices::Interior interior{rigidity - softening, Matrix4d::Zero(), mass};
+  if (axial_load != 0.0) {
+    interior.flexibility = interior.rigidity.inverse();
+  } else {
+    interior.flexibility.topLeftCorner<2, 2>() = result.flexibility;
+    interior.flexibility.bottomRightCorner<2, 2>() = rigidity.bottomRightCorner<2, 2>().inverse();
+  }
+  result.interior = interior;
   return result;
 }
 

@@ -22,6 +22,7 @@ std::vector<double> breaks(const Beam& beam, const std::vector<double>& points) 
   for (const Support& support : beam.supports) places.push_back(support.position);
   for (const Spring& spring : beam.springs) places.push_back(spring.position);
   for (const Dashpot& dashpot : beam.dashpots) places.push_back(dashpot.position);
+  for (const Absorber& absorber : beam.absorbers) places.push_back(absorber.position);
   for (const Damage& damage : beam.damages) places.insert(places.end(), {damage.from, damage.to});
   for (const AddedMass& added : beam.added_masses) places.insert(places.end(), {added.from, added.to});
   places.insert(places.end(), points.begin(), points.end());

@@ -1,83 +1,87 @@
 #include "fem/modes.hpp"
 
-#include <Spectra/SymGEigsShiftSolver.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "fem/stiffness_solver.hpp"
+#include "fem/dense_modes.hpp"
+#include "fem/lanczos.hpp"
+#include "fem/repeated_rows.hpp"
 
 namespace beamid::fem {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// What Spectra wants of (K - 0 M)^-1 and of M.
-class InverseStiffness {
+// Below this residual the complementary quotient, which errs by its square, is the better one.
+constexpr double converged = 1e-6;
+constexpr double largest_residual = 1e-4;  // of what Lanczos may return
+
+// Normalises the shape of mode i and fills in what is told of it.
+class Appraisal {
  public:
-  using Scalar = double;
-  explicit InverseStiffness(const StructuralSystem& system)
-      : size_(system.size()), solver_(system.stiffness) {}
-  Index rows() const { return size_; }
-  Index cols() const { return size_; }
-  void set_shift(double) {}  // always zero
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<VectorXd>(out, size_) = solver_.solve(Eigen::Map<const VectorXd>(in, size_));
+  Appraisal(const StructuralSystem& system, const StiffnessSolver& solver, const RigidComplement& complement)
+      : system_(system),
+        solver_(solver),
+        complement_(complement),
+        mass_(system.mass),
+        flexibility_(system.stiffness.flexibility) {}
+
+  void operator()(Modes& modes, Index i, bool always_from_forces) {
+    VectorXd shape = modes.shape.col(i), load = mass_ * shape;
+    const double size = std::sqrt(shape.dot(load));
+    shape /= size;
+    load /= size;
+    complement_.project_load(load);
+    StiffnessSolver::Solution next = solver_.solve_with_forces(load);
+    complement_.project_motion(next.coordinates);
+    load = mass_ * next.coordinates;
+    const double square =
+        next.natural_forces.dot(flexibility_ * next.natural_forces) / next.coordinates.dot(load);
+    const VectorXd difference = shape - square * next.coordinates;
+    modes.residual[i] = std::sqrt(difference.dot(mass_ * difference));
+    if (modes.residual[i] < converged) shape.swap(next.coordinates);
+    orthonormalise(shape, modes.shape.leftCols(i));
+    const double rayleigh = system_.stiffness.energy(shape);
+    if (square < 0.0 || rayleigh < 0.0) throw_unstable(std::min(square, rayleigh));
+    const bool from_forces = always_from_forces || modes.residual[i] < converged;
+    modes.angular_frequency[i] = std::sqrt(from_forces ? square : rayleigh);
+    modes.rayleigh_angular_frequency[i] = std::sqrt(rayleigh);
+    modes.shape.col(i) = shape;
   }
 
  private:
-  Index size_;
-  StiffnessSolver solver_;
-};
+  const StructuralSystem& system_;
+  const StiffnessSolver& solver_;
+  const RigidComplement& complement_;
+  RepeatedRows mass_, flexibility_;
 
-class Mass {
- public:
-  using Scalar = double;
-  explicit Mass(const SparseMatrix& mass) : mass_(mass) {}
-  Index rows() const { return mass_.rows(); }
-  Index cols() const { return mass_.cols(); }
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<VectorXd>(out, mass_.rows()) = mass_ * Eigen::Map<const VectorXd>(in, mass_.rows());
+  // Against the modes below, which an inverse iteration brings out.
+  void orthonormalise(VectorXd& shape, const Eigen::Ref<const MatrixXd>& below) const {
+    const VectorXd load = mass_ * shape;
+    if (below.cols() > 0) shape -= below * (below.transpose() * load).eval();
+    shape /= std::sqrt(shape.dot(mass_ * shape));
   }
-
- private:
-  const SparseMatrix& mass_;
 };
 
-MatrixXd lowest_shapes(const StructuralSystem& system, Index count) {
-  InverseStiffness inverse(system);
-  Mass mass(system.mass);
-  const Index subspace = std::min(system.size(), std::max<Index>(2 * count + 1, 20));
-  Spectra::SymGEigsShiftSolver<InverseStiffness, Mass, Spectra::GEigsMode::ShiftInvert> solver(
-      inverse, mass, count, subspace, 0.0);
-  solver.init();
-  const Index found =
-      solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-13, Spectra::SortRule::SmallestAlge);
-  if (solver.info() != Spectra::CompInfo::Successful)
-    throw std::runtime_error("modes: " + std::to_string(found) + " of " + std::to_string(count) +
-                             " eigenvalues converged");
-  return solver.eigenvectors();
-}
-
-// M = L L^T and D = R^T R: the singular values of F = R B L^-T are the frequencies, v = L^T phi. They are the
-// upper half of the spectrum of [0 F; F^T 0], with v in the lower half of its eigenvectors: as accurate as a
-// singular value decomposition, whose templates take far longer to compile.
-MatrixXd all_shapes(const StructuralSystem& system) {
-  const Eigen::LLT<MatrixXd> mass{MatrixXd(system.mass)};
-  const Eigen::LLT<MatrixXd> rigidity{MatrixXd(system.stiffness.rigidity)};
-  if (mass.info() != Eigen::Success)
-    throw std::runtime_error("modes: the mass matrix is not positive definite");
-  const MatrixXd strain = rigidity.matrixU() * MatrixXd(system.stiffness.strain);
-  const Index s = strain.rows(), n = strain.cols();
-  MatrixXd symmetric = MatrixXd::Zero(s + n, s + n);  // the solver reads its lower triangle only
-  symmetric.bottomLeftCorner(n, s) = mass.matrixL().solve(strain.transpose());
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
-  return mass.matrixU().solve(solver.eigenvectors().bottomRightCorner(n, n));
+// Neighbours closer than the first estimates could tell may come in the wrong order.
+void sort(Modes& modes) {
+  std::vector<Index> order(static_cast<std::size_t>(modes.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  const auto ascending = [&](Index a, Index b) {
+    return modes.angular_frequency[a] < modes.angular_frequency[b];
+  };
+  if (std::is_sorted(order.begin(), order.end(), ascending)) return;
+  std::stable_sort(order.begin(), order.end(), ascending);
+  modes.angular_frequency = modes.angular_frequency(order).eval();
+  modes.rayleigh_angular_frequency = modes.rayleigh_angular_frequency(order).eval();
+  modes.residual = modes.residual(order).eval();
+  modes.shape = modes.shape(Eigen::all, order).eval();
 }
 
 }  // namespace
@@ -86,31 +90,51 @@ VectorXd Modes::frequency_hz() const {
   return angular_frequency / (2.0 * std::numbers::pi);
 }
 
+double Modes::digits(Index i) const {
+  constexpr double most = 15.0;
+  if (rayleigh_angular_frequency[i] == angular_frequency[i]) return most;
+  return std::clamp(-std::log10(std::abs(rayleigh_angular_frequency[i] / angular_frequency[i] - 1.0)), 0.0,
+                    most);
+}
+
 Modes modes(const StructuralSystem& system, Index count) {
   const Index n = system.size();
   if (count < 1 || count > n)
     throw std::invalid_argument("modes: count is " + std::to_string(count) + "; expected 1 to " +
                                 std::to_string(n));
-  const bool few = 3 * count < n && n > 60;
-  Modes result;
-  result.shape = few ? lowest_shapes(system, count) : MatrixXd(all_shapes(system).leftCols(count));
-  result.angular_frequency.resize(count);
-  result.residual.resize(count);
   const StiffnessSolver solver(system.stiffness);
-  for (Index i = 0; i < count; ++i) {
-    auto shape = result.shape.col(i);
-    shape /= std::sqrt(shape.dot(system.mass * shape));
-    const double square = system.stiffness.energy(shape);
-    result.angular_frequency[i] = std::sqrt(square);
-    const VectorXd difference = shape - square * solver.solve(system.mass * shape);
-    result.residual[i] = std::sqrt(difference.dot(system.mass * difference));
-    if (few && !(result.residual[i] < 1e-4)) {  // what Lanczos calls converged need not be a mode
+  const RigidComplement complement(system.mass, solver.rigid_motions());
+  const Index rigid = std::min(count, complement.count()), flexible = count - rigid;
+  const bool few = 3 * count < n && n > 60;
+
+  Modes result;
+  result.rigid = rigid;
+  result.angular_frequency = result.rayleigh_angular_frequency = result.residual = VectorXd::Zero(count);
+  if (flexible > 0) {
+    result.shape =
+        few ? lowest_shapes(system, solver, complement, flexible) : all_shapes(system, solver, complement);
+    if (result.shape.cols() < flexible)
+      throw std::runtime_error("modes: only " + std::to_string(rigid + result.shape.cols()) + " of the " +
+                               std::to_string(count) + " modes asked for have mass");
+  }
+  if (rigid > 0 || result.shape.cols() > flexible) {
+    MatrixXd shapes(n, count);
+    shapes.leftCols(rigid) = complement.modes().leftCols(rigid);
+    if (flexible > 0) shapes.rightCols(flexible) = result.shape.leftCols(flexible);
+    result.shape.swap(shapes);
+  }
+
+  Appraisal appraise(system, solver, complement);
+  for (Index i = rigid; i < count; ++i) {
+    appraise(result, i, few);
+    if (few && !(result.residual[i] < largest_residual)) {  // what Lanczos calls converged need not be a mode
       std::ostringstream message;
       message << "modes: mode " << i + 1 << " has a relative residual of " << result.residual[i]
               << "; masses or stiffnesses are too far apart for double precision";
       throw std::runtime_error(message.str());
     }
   }
+  sort(result);
   return result;
 }
 

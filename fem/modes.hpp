@@ -7,21 +7,36 @@
 
 namespace beamid::fem {
 
-/// The k lowest solutions of K phi = omega^2 M phi, frequencies ascending.
+/// The k lowest solutions of K phi = omega^2 M phi, frequencies ascending, rigid-body modes first.
+///
+/// What an eigensolver finds, psi with psi^T M psi = 1, goes through one inverse iteration K q = M psi. Its
+/// residual says how good psi was; phi is q, scaled, and better still. Modes so high that the iteration would
+/// rather bring out the lower ones, with residuals above 1e-6, keep psi.
 struct Modes {
-  Eigen::VectorXd angular_frequency;  ///< omega (k) [rad/s], from the strain-form Rayleigh quotient
-  Eigen::MatrixXd shape;              ///< phi (n x k), phi^T M phi = 1
-  Eigen::VectorXd residual;           ///< ||phi - omega^2 K^-1 M phi||_M (k): relative, 0 when exact
+  /// omega (k) [rad/s], from the complementary energy of the natural forces N that belong to q,
+  /// omega^2 = N^T D^-1 N / (q^T M q), where nothing cancels; the strain-form quotient for modes that keep
+  /// psi. Zero for rigid-body modes, exactly.
+  Eigen::VectorXd angular_frequency;
+  Eigen::MatrixXd shape;     ///< phi (n x k), phi^T M phi = 1
+  Eigen::VectorXd residual;  ///< ||psi - omega^2 K^-1 M psi||_M (k): relative, 0 when exact; psi: see below
+
+  /// (k) [rad/s], from the strain-form Rayleigh quotient (B phi)^T D (B phi) of the shape [rayleigh1877].
+  Eigen::VectorXd rayleigh_angular_frequency;
+  Eigen::Index rigid = 0;  ///< the first so many are rigid-body modes
 
   Eigen::Index size() const { return angular_frequency.size(); }
   Eigen::VectorXd frequency_hz() const;
+
+  /// Decimal digits of frequency i on which the two forms agree, 0 to 15.
+  double digits(Eigen::Index i) const;
 };
 
-/// Lowest `count` modes (all of them at most). Few modes of a large system: shift-invert Lanczos at shift
-/// zero (Spectra) on the factored stiffness. Most modes, or a small system: singular values of D^1/2 B
-/// M^-1/2, which are the frequencies themselves and not their squares.
+/// Lowest `count` modes (all of them at most). Rigid-body motions are found from the strains and set apart.
+/// Of the rest, few modes of a large system: shift-invert Lanczos at shift zero (lanczos.hpp). Most modes, or
+/// a small system: dense (dense_modes.hpp).
 /// @throws std::invalid_argument when count is not in 1..n; std::runtime_error when Lanczos does not converge
-/// or what it found has a residual above 1e-4.
+/// or what it found has a residual above 1e-4, when a mode has a negative omega^2 (an axial load beyond
+/// buckling), when fewer than `count` modes have mass.
 Modes modes(const StructuralSystem& system, Eigen::Index count);
 
 }  // namespace beamid::fem

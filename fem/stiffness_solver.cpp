@@ -1,63 +1,131 @@
 #include "fem/stiffness_solver.hpp"
 
-#include <Eigen/UmfPackSupport>
+#include <optional>
 #include <stdexcept>
-#include <vector>
+#include <string>
+#include <utility>
+
+#include "fem/chain_solver.hpp"
+#include "fem/mixed_solver.hpp"
 
 namespace beamid::fem {
 namespace {
 
-SparseMatrix mixed_matrix(const StrainFactors& stiffness) {
-  const auto strains = static_cast<int>(stiffness.strain.rows());
-  const auto coordinates = static_cast<int>(stiffness.strain.cols());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int k = 0; k < stiffness.flexibility.outerSize(); ++k)
-    for (SparseMatrix::InnerIterator it(stiffness.flexibility, k); it; ++it)
-      entries.emplace_back(it.row(), it.col(), -it.value());
-  for (int k = 0; k < stiffness.strain.outerSize(); ++k)
-    for (SparseMatrix::InnerIterator it(stiffness.strain, k); it; ++it) {
-      entries.emplace_back(it.row(), strains + it.col(), it.value());
-      entries.emplace_back(strains + it.col(), it.row(), it.value());
-    }
-  SparseMatrix matrix(strains + coordinates, strains + coordinates);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double balanced = 1e-8;  // work of a load in a rigid motion, relative to its terms
+
+// Beyond this many gauges the strains are those of no chain, and LU is left to find out whether they hold it.
+constexpr std::size_t most_gauges = 40;
+constexpr double no_strain = 1e-13;  // of a solution, relative to the terms that cancel in it
+
+VectorXd response(const StructuralSystem& system, Index input) {
+  const StiffnessSolver solver(system.stiffness);
+  if (const Index rigid = solver.rigid_motions().cols(); rigid > 0)
+    throw std::runtime_error("the structure can move without strain: " + std::to_string(rigid) +
+                             (rigid == 1 ? " rigid-body motion" : " rigid-body motions"));
+  const MatrixXd force = system.inputs.col(input);
+  return solver.solve(force);
 }
 
 }  // namespace
 
-struct StiffnessSolver::Factorisation {
-  explicit Factorisation(const StrainFactors& stiffness) : matrix(mixed_matrix(stiffness)), lu(matrix) {}
-  SparseMatrix matrix;  // UmfPackLU keeps a reference to it
-  Eigen::UmfPackLU<SparseMatrix> lu;
+struct StiffnessSolver::Method {
+  Index coordinates, strains;
+  RigidMotions rigid;
+  std::optional<ChainSolver> chain;
+  std::optional<MixedSolver> mixed;
+
+  explicit Method(const StrainFactors& stiffness)
+      : coordinates(stiffness.strain.cols()), strains(stiffness.strain.rows()) {
+    StrainSweeps sweeps(stiffness.strain);
+    const bool sweeps_left_open = sweeps.gauges().size() > most_gauges;
+    if (!sweeps_left_open)
+      rigid = fem::rigid_motions(sweeps, stiffness.strain);
+    else
+      rigid.motions.resize(coordinates, 0);
+    if (ChainSolver::suits(sweeps))
+      chain.emplace(stiffness, std::move(sweeps), rigid);
+    else
+      mixed.emplace(stiffness, rigid.held);
+    if (sweeps_left_open) refuse_motion_without_strain(stiffness);
+  }
+
+  // LU meets a rigid-body motion as a pivot that rounding has left: its solutions are then nearly all that
+  // motion.
+  void refuse_motion_without_strain(const StrainFactors& stiffness) const {
+    const VectorXd load = VectorXd::LinSpaced(coordinates, 1.0, 2.0);
+    VectorXd motion(coordinates), forces(strains);
+    mixed->solve(load, motion, forces);
+    const VectorXd strain = stiffness.strain * motion,
+                   terms = stiffness.strain.cwiseAbs() * motion.cwiseAbs();
+    if (!(strain.cwiseAbs().maxCoeff() > no_strain * terms.maxCoeff()))
+      throw std::runtime_error("the structure can move without strain");
+  }
+
+  void check(const Eigen::Ref<const MatrixXd>& f) const {
+    if (f.rows() != coordinates)
+      throw std::invalid_argument("load has " + std::to_string(f.rows()) + " rows; expected " +
+                                  std::to_string(coordinates));
+    if (rigid.motions.cols() == 0) return;
+    const MatrixXd work = rigid.motions.transpose() * f;
+    const MatrixXd terms = rigid.motions.cwiseAbs().transpose() * f.cwiseAbs();
+    if ((work.array().abs() > balanced * terms.array()).any())
+      throw std::invalid_argument("the load does work in a rigid-body motion; expected one in balance");
+  }
+
+  void solve_carefully(const Eigen::Ref<const VectorXd>& f, Eigen::Ref<VectorXd> q,
+                       Eigen::Ref<VectorXd> forces) const {
+    if (chain)
+      chain->solve_carefully(f, q, forces);
+    else
+      mixed->solve(f, q, forces);
+  }
 };
 
 StiffnessSolver::StiffnessSolver(const StrainFactors& stiffness)
-    : factorisation_(std::make_unique<Factorisation>(stiffness)) {
-  if (factorisation_->lu.info() != Eigen::Success)
-    throw std::runtime_error("the stiffness is singular: the structure can move without strain");
-}
+    : method_(std::make_unique<Method>(stiffness)) {}
 StiffnessSolver::~StiffnessSolver() = default;
 StiffnessSolver::StiffnessSolver(StiffnessSolver&&) noexcept = default;
 
-Eigen::MatrixXd StiffnessSolver::solve(const Eigen::Ref<const Eigen::MatrixXd>& f) const {
-  const Eigen::Index unknowns = factorisation_->matrix.rows();
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(unknowns, f.cols());
-  right.bottomRows(f.rows()) = f;
-  const Eigen::MatrixXd solution = factorisation_->lu.solve(right);
-  return solution.bottomRows(f.rows());
+const MatrixXd& StiffnessSolver::rigid_motions() const {
+  return method_->rigid.motions;
 }
 
-Eigen::VectorXd static_shape(const StructuralSystem& system, Eigen::Index input, Eigen::Index output) {
-  const Eigen::MatrixXd force = system.inputs.col(input);
-  const Eigen::VectorXd q = StiffnessSolver(system.stiffness).solve(force);
+bool StiffnessSolver::is_chain() const {
+  return method_->chain.has_value();
+}
+
+void StiffnessSolver::solve_into(Eigen::Ref<const VectorXd> f, Eigen::Ref<VectorXd> coordinates,
+                                 Eigen::Ref<VectorXd> natural_forces) const {
+  if (method_->chain)
+    method_->chain->solve(f, coordinates, natural_forces);
+  else
+    method_->mixed->solve(f, coordinates, natural_forces);
+}
+
+StiffnessSolver::Solution StiffnessSolver::solve_with_forces(const VectorXd& f) const {
+  method_->check(f);
+  Solution solution{VectorXd(method_->coordinates), VectorXd::Zero(method_->strains)};
+  method_->solve_carefully(f, solution.coordinates, solution.natural_forces);
+  return solution;
+}
+
+MatrixXd StiffnessSolver::solve(const Eigen::Ref<const MatrixXd>& f) const {
+  method_->check(f);
+  MatrixXd coordinates(method_->coordinates, f.cols());
+  VectorXd natural_forces = VectorXd::Zero(method_->strains);
+  for (Index i = 0; i < f.cols(); ++i) method_->solve_carefully(f.col(i), coordinates.col(i), natural_forces);
+  return coordinates;
+}
+
+VectorXd static_shape(const StructuralSystem& system, Index input, Index output) {
+  const VectorXd q = response(system, input);
   return q / (system.outputs * q)[output];
 }
 
-double static_stiffness(const StructuralSystem& system, Eigen::Index input, Eigen::Index output) {
-  const Eigen::MatrixXd force = system.inputs.col(input);
-  const Eigen::VectorXd q = StiffnessSolver(system.stiffness).solve(force);
-  return 1.0 / (system.outputs * q)[output];
+double static_stiffness(const StructuralSystem& system, Index input, Index output) {
+  return 1.0 / (system.outputs * response(system, input))[output];
 }
 
 }  // namespace beamid::fem
