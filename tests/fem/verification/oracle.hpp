@@ -1,0 +1,93 @@
+// What the verification tests share: roots of frequency equations, and the comparison of both methods with
+// them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "fem/assembly.hpp"
+#include "fem/exact/exact_modes.hpp"
+#include "fem/modes.hpp"
+
+namespace beamid::test {
+
+/// A uniform Euler-Bernoulli beam; numbers that no unit hides.
+inline fem::Beam uniform_beam() {
+  fem::Beam beam;
+  beam.segments = {{1.3, {7.3, 0.9, 0.0, {}, {}, {}}}};
+  return beam;
+}
+inline constexpr double length = 1.3, bending_stiffness = 7.3, mass_per_length = 0.9;
+
+/// omega of b = beta L of that beam.
+inline double angular_frequency(double b) {
+  return b * b / (length * length) * std::sqrt(bending_stiffness / mass_per_length);
+}
+
+/// The first `count` positive roots, found in steps far below their spacing and bracketed to the last digit.
+template <class Function>
+std::vector<double> roots(const Function& f, int count, double step = 0.01, double start = 1e-3) {
+  std::vector<double> found;
+  double left = start, at_left = f(left);
+  while (static_cast<int>(found.size()) < count) {
+    const double right = left + step, at_right = f(right);
+    if (at_left * at_right <= 0.0) {
+      std::uintmax_t iterations = 200;
+      const auto [a, b] = boost::math::tools::toms748_solve(
+          f, left, right, at_left, at_right, boost::math::tools::eps_tolerance<double>(52), iterations);
+      found.push_back(0.5 * (a + b));
+    }
+    left = right;
+    at_left = at_right;
+  }
+  return found;
+}
+
+struct Tolerance {
+  double finite_elements = 1e-7;
+  double exact = 1e-12;
+  int elements = 200;
+};
+
+/// Writes the largest error of the running test into the test report, from which docs/verification.md is
+/// made.
+inline void record(const std::string& key, double error) {
+  static std::map<std::string, double> largest;
+  const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+  double& worst = largest[std::string(test.test_suite_name()) + "." + test.name() + "." + key];
+  worst = std::max(worst, std::abs(error));
+  std::ostringstream text;
+  text.precision(2);
+  text << worst;
+  testing::Test::RecordProperty(key, text.str());
+}
+
+/// Both methods against known frequencies [rad/s], zeros of rigid-body modes included.
+inline void expect_frequencies(const fem::Beam& beam, const std::vector<double>& known,
+                               const Tolerance& tolerance = {}) {
+  const auto count = static_cast<Eigen::Index>(known.size());
+  const auto exact = fem::exact_modes(beam, count, {});
+  const auto modes = fem::modes(fem::assemble(beam, tolerance.elements, {}), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto expect_near = [&](const char* key, double omega, double limit) {
+      if (known[i] == 0.0) {
+        EXPECT_EQ(omega, 0.0) << key << ", mode " << i + 1;
+        return;
+      }
+      EXPECT_NEAR(omega / known[i], 1.0, limit) << key << ", mode " << i + 1;
+      record(key, omega / known[i] - 1.0);
+    };
+    if (exact) expect_near("exact_modes", exact->angular_frequency[i], tolerance.exact);
+    expect_near("finite_elements", modes.angular_frequency[i], tolerance.finite_elements);
+  }
+}
+
+}  // namespace beamid::test
