@@ -1,0 +1,86 @@
+// A plane frame: straight members between joints, in SI units.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fem/beam.hpp"
+#include "fem/structural_system.hpp"
+
+namespace beamid::fem {
+
+/// A frame in the plane of x and y, moving in that plane. Joints are told by their number, from 0 on.
+struct Frame {
+  struct Joint {
+    double x = 0.0, y = 0.0;  ///< [m]
+  };
+  /// Between two joints, rigidly fixed to them but for hinges, through which no moment passes. The section
+  /// varies from the first joint to the second and needs an axial stiffness.
+  struct Member {
+    int first = 0, second = 0;
+    Section section;
+    bool hinged_at_first = false, hinged_at_second = false;
+  };
+  /// What is held at zero: clamped as it stands, pinned without the rotation, rolling without x or y too.
+  struct Support {
+    int joint = 0;
+    bool x = true, y = true, rotation = true;
+  };
+  struct Body {
+    int joint = 0;
+    double mass = 0.0;            ///< [kg]
+    double rotary_inertia = 0.0;  ///< [kg m2]
+  };
+  /// Between a joint and the ground.
+  struct Spring {
+    int joint = 0;
+    double x = 0.0, y = 0.0;  ///< [N/m]
+    double rotational = 0.0;  ///< [N m/rad]
+  };
+  std::vector<Joint> joints;
+  std::vector<Member> members;
+  std::vector<Support> supports;
+  std::vector<Body> bodies;
+  std::vector<Spring> springs;
+  MassModel mass_model = MassModel::consistent;
+
+  double length(std::size_t member) const;  ///< [m]
+};
+
+/// @throws std::invalid_argument naming the first joint, member or quantity that is impossible.
+void validate(const Frame& frame);
+
+/// A joint where forces act and motion is observed.
+struct FramePoint {
+  std::string name;
+  int joint = 0;
+};
+
+/// Finite elements: each member is cut into `elements_per_member` equal ones, which bend as those of a beam
+/// do (element.hpp) and stretch linearly, with the elongation as a third strain, of rigidity EA/h.
+///
+/// Coordinates of a node: u and v [m], its displacements along x (Coordinate::Kind::axial) and y
+/// (deflection), and the scaled rotation s theta [m], counterclockwise. The mesh's first nodes are the
+/// frame's joints. Where a hinge lets a member turn against its joint the end's rotation is a coordinate of
+/// its own (generalised, as the interior ones of elements are); at a joint where all members are hinged one
+/// of them turns with the joint.
+///
+/// The strains of an element from node 1 to node 2 in the direction t, n being t turned by 90 degrees, are
+/// written along x and y,
+///
+///     (u_2, v_2) - (u_1, v_1) - n h theta_1 = t elongation - n epsilon_1,
+///     h theta_2 - h theta_1 = epsilon_2,
+///
+/// and elements come in the order of a walk over the frame, so that each of these determines one coordinate;
+/// where the walk closes a loop or meets a support they are redundant.
+///
+/// Each point is, for each of x and y in which it can move, an input NAME_force_x [N] and an output
+/// NAME_displacement_x [m]. The last two inputs are base_acceleration_x and base_acceleration_y [m/s2], of
+/// all supports and springs.
+///
+/// @throws std::invalid_argument when the frame is impossible, elements_per_member < 1, or a point does not
+/// exist or cannot move.
+StructuralSystem assemble(const Frame& frame, int elements_per_member,
+                          const std::vector<FramePoint>& points = {});
+
+}  // namespace beamid::fem

@@ -1,0 +1,31 @@
+// One element of a frame: what a beam element does, and its elongation.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "fem/mesh.hpp"
+
+namespace beamid::fem {
+
+/// Matrices of one element between nodes 1 and 2 in the frame's axes.
+///
+/// Coordinates: (u_1, v_1, h theta_1, u_2, v_2, h theta_2), and the two interior ones where a beam's element
+/// has them (element.hpp). With the direction t of the element, n = t turned by 90 degrees, and the strains
+/// of element.hpp, the strains here are
+///
+///     (t elongation - n epsilon_1, epsilon_2)   [m],
+///
+/// and the interior coordinates themselves. The flexibility of the elongation is h times the mean of 1/EA,
+/// exact for any variation. Its mass is that of linear displacements, or half at each node.
+struct FrameElementMatrices {
+  Eigen::MatrixXd strain;                 ///< (3 x 6), with interior coordinates (5 x 8)
+  Eigen::MatrixXd rigidity, flexibility;  ///< [N/m], [m/N], of the strains
+  Eigen::MatrixXd mass;                   ///< [kg], of the coordinates
+};
+
+/// @param direction t, of length 1.
+/// @param section with an axial stiffness.
+FrameElementMatrices frame_element_matrices(const Section& section, const Mesh::Element& element,
+                                            const Eigen::Vector2d& direction, MassModel mass_model);
+
+}  // namespace beamid::fem
