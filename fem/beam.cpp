@@ -20,16 +20,17 @@ void validate(const Section& section, const std::string& where) {
   const auto positive = [&](const Variation& quantity, const char* name, const char* unit) {
     const double rounding = 1e-12 * std::abs(quantity(0.5));
     for (const double s : {0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0})
-      require((s == 0.0 || s == 1.0) && !quantity.is_constant() ? quantity(s) >= -rounding : quantity(s) > 0.0,
-              where + name, quantity(s), std::string("a positive number of ") + unit);
+      require(
+          (s == 0.0 || s == 1.0) && !quantity.is_constant() ? quantity(s) >= -rounding : quantity(s) > 0.0,
+          where + name, quantity(s), std::string("a positive number of ") + unit);
   };
   positive(section.bending_stiffness, "bending stiffness", "N m2");
   positive(section.mass_per_length, "mass per length", "kg/m");
   if (section.shear_stiffness) positive(*section.shear_stiffness, "shear stiffness", "N");
   if (section.axial_stiffness) positive(*section.axial_stiffness, "axial stiffness", "N");
   for (const double s : {0.0, 0.5, 1.0})
-    require(section.rotary_inertia(s) >= -1e-12 * std::abs(section.rotary_inertia(0.5)), where + "rotary inertia", section.rotary_inertia(s),
-            "zero or a positive number of kg m");
+    require(section.rotary_inertia(s) >= -1e-12 * std::abs(section.rotary_inertia(0.5)),
+            where + "rotary inertia", section.rotary_inertia(s), "zero or a positive number of kg m");
 }
 
 }  // namespace
@@ -112,7 +113,8 @@ void validate(const Beam& beam) {
     on_beam(absorber.position, "position of an absorber");
     require(absorber.mass > 0.0, "absorber mass", absorber.mass, "a positive number of kg");
     require(absorber.stiffness > 0.0, "absorber stiffness", absorber.stiffness, "a positive number of N/m");
-    require(absorber.damping >= 0.0, "absorber damping", absorber.damping, "zero or a positive number of N s/m");
+    require(absorber.damping >= 0.0, "absorber damping", absorber.damping,
+            "zero or a positive number of N s/m");
   }
   require(true, "axial load", beam.axial_load, "a finite number of N");
 }

@@ -45,6 +45,20 @@ TEST(FreeDecay, LosesEnergyAtTheRateOfItsDamping) {
   EXPECT_NEAR(motion.displacement[1], std::exp(-xi * omega * period), 1e-14);
 }
 
+TEST(FreeDecay, IsTheSameOnEvenAndOnUnevenInstants) {
+  // Oracle: the exponential at every instant by itself, which uneven instants need. 25 s at 1000 samples/s.
+  const Eigen::VectorXd amplitude{{0.012, 3e-4}}, omega{{21.7, 180.0}}, ratio{{0.002, 0.005}};
+  const Eigen::VectorXd even = Eigen::VectorXd::LinSpaced(25000, 0.0, 24.999);
+  Eigen::VectorXd uneven(25001);
+  uneven << even, 26.5;
+  const auto fast = fem::free_decay(amplitude, omega, ratio, even),
+             slow = fem::free_decay(amplitude, omega, ratio, uneven);
+  for (const auto& [one, other] :
+       {std::pair(&fast.displacement, &slow.displacement), std::pair(&fast.velocity, &slow.velocity),
+        std::pair(&fast.acceleration, &slow.acceleration)})
+    EXPECT_LT((*one - other->head(25000)).cwiseAbs().maxCoeff() / other->cwiseAbs().maxCoeff(), 1e-13);
+}
+
 TEST(FreeDecay, RefusesOverdampedModesAndUnequalLengths) {
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1), two = Eigen::VectorXd::Ones(2);
   EXPECT_THROW(fem::free_decay(one, one, one, one), std::invalid_argument);

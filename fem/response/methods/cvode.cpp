@@ -1,0 +1,77 @@
+// SUNDIALS CVODE: backward differentiation formulas of variable order and step [hindmarsh2005]. Of third order and above
+// they are unstable for motions that are fast and lightly damped, which is what the high modes of a beam are: CVODE
+// then has to follow every one of them. Meant for damped structures and as a second opinion; see arkode. The solver
+// comes from CVODES, which has it whole: a program must not link both.
+#include <cvodes/cvodes.h>
+
+#include "fem/response/sundials.hpp"
+
+namespace beamid::fem {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+void require(int flag, const char* call, double time) {
+  require_success(flag, "cvode", call, time, CVodeGetReturnFlagName);
+}
+
+int linear_system(realtype, N_Vector y, N_Vector, SUNMatrix matrix, booleantype, booleantype* is_current,
+                  realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
+  *is_current = SUNTRUE;
+  return SundialsMotion::set_matrix(matrix, gamma, y, data);
+}
+
+Response cvode(const ResponseProblem& problem, const ResponseOptions& options) {
+  require_option("cvode", options, "tolerance", 1e-14, 0.1, "1e-14 to 0.1");
+  require_option("cvode", options, "absolute_tolerance", 1e-300, 1.0, "above 0, to 1 m");
+  require_option("cvode", options, "order", 1.0, 5.0, "1 to 5");
+  SundialsMotion motion(problem, "cvode", options.at("absolute_tolerance"));
+  struct Free {
+    void operator()(void* memory) const { CVodeFree(&memory); }
+  };
+  const std::unique_ptr<void, Free> memory(CVodeCreate(CV_BDF, motion.context.get()));
+  if (!memory) throw std::bad_alloc();
+  require(CVodeSetErrFile(memory.get(), nullptr), "CVodeSetErrFile",
+          0.0);  // failures are thrown, not printed
+  require(CVodeInit(memory.get(), SundialsMotion::rate, 0.0, motion.state.get()), "CVodeInit", 0.0);
+  require(CVodeSetUserData(memory.get(), &motion), "CVodeSetUserData", 0.0);
+  require(CVodeSVtolerances(memory.get(), options.at("tolerance"), motion.absolute_tolerances.get()),
+          "CVodeSVtolerances", 0.0);
+  require(CVodeSetLinearSolver(memory.get(), motion.solver.get(), motion.matrix.get()),
+          "CVodeSetLinearSolver", 0.0);
+  require(CVodeSetLinSysFn(memory.get(), linear_system), "CVodeSetLinSysFn", 0.0);
+  require(CVodeSetMaxOrd(memory.get(), static_cast<int>(options.at("order"))), "CVodeSetMaxOrd", 0.0);
+  require(CVodeSetMaxNumSteps(memory.get(), 1000000), "CVodeSetMaxNumSteps", 0.0);
+  if (problem.has_inputs())  // else it could step across a short pulse
+    require(CVodeSetMaxStep(memory.get(), problem.grid.interval), "CVodeSetMaxStep", 0.0);
+
+  ResponseRecorder recorder(problem);
+  const Index n = motion.equations.size();
+  VectorXd rate(2 * n), y = view(motion.state.get());
+  motion.equations.rate(0.0, y, rate);
+  recorder.record(0, y.head(n), y.tail(n), rate.tail(n));
+  for (Index sample = 1; sample < problem.grid.samples; ++sample) {
+    const double time = problem.time(sample);
+    realtype reached = 0.0;
+    require(CVode(memory.get(), time, motion.state.get(), &reached, CV_NORMAL), "CVode", time);
+    // The acceleration is that of the interpolating polynomial: M^-1 (...) of a state with errors would
+    // magnify them by the square of the highest frequency of the mesh.
+    require(CVodeGetDky(memory.get(), time, 1, motion.work.get()), "CVodeGetDky", time);
+    y = view(motion.state.get());
+    recorder.record(sample, y.head(n), y.tail(n), view(motion.work.get()).tail(n));
+  }
+  return std::move(recorder.response());
+}
+
+const bool registered = register_response_method(
+    {"cvode",
+     "adaptive, backward differentiation (SUNDIALS CVODE, KLU); for strong damping, slow otherwise",
+     "[hindmarsh2005], [davis2010]",
+     {{"tolerance", 1e-8, "", "relative error allowed per step"},
+      {"absolute_tolerance", 1e-10, "m",
+       "absolute error allowed per step; of velocities, as much per interval"},
+      {"order", 5.0, "", "highest order used, 1 to 5; 2 is stable for undamped motions"}}},
+    cvode);
+
+}  // namespace
+}  // namespace beamid::fem

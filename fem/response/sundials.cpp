@@ -1,0 +1,101 @@
+#include "fem/response/sundials.hpp"
+
+#include <sunlinsol/sunlinsol_klu.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+
+namespace beamid::fem {
+
+// The solver that the integrators see: of the matrix for n unknowns, but given and giving 2n of them.
+struct SundialsMotion::Klu {
+  MotionEquations* equations;
+  Sundials<N_Vector> right, solution;  // (n)
+  Sundials<SUNLinearSolver> klu;
+
+  static Klu& of(SUNLinearSolver solver) { return *static_cast<Klu*>(solver->content); }
+
+  static int solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, realtype tolerance) {
+    Klu& self = of(solver);
+    const Eigen::Index n = self.equations->size();
+    view(self.right.get()) = self.equations->reduce(view(b));
+    const int flag = SUNLinSolSolve(self.klu.get(), matrix, self.solution.get(), self.right.get(), tolerance);
+    if (flag != 0) return flag;
+    const double gamma = self.equations->gamma();
+    view(x).head(n) = view(b).head(n) + gamma * view(self.solution.get());  // x and b may be the same
+    view(x).tail(n) = view(self.solution.get());
+    return 0;
+  }
+
+  static Sundials<SUNLinearSolver> create(MotionEquations& equations, SUNMatrix matrix, SUNContext context) {
+    const auto n = static_cast<sunindextype>(equations.size());
+    auto content = std::make_unique<Klu>();
+    content->equations = &equations;
+    content->right.reset(N_VNew_Serial(n, context));
+    content->solution.reset(N_VNew_Serial(n, context));
+    content->klu.reset(SUNLinSol_KLU(content->right.get(), matrix, context));
+    Sundials<SUNLinearSolver> solver(SUNLinSolNewEmpty(context));
+    if (!content->right || !content->solution || !content->klu || !solver) throw std::bad_alloc();
+    solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; };
+    solver->ops->getid = [](SUNLinearSolver) { return SUNLINEARSOLVER_CUSTOM; };
+    solver->ops->initialize = [](SUNLinearSolver self) { return SUNLinSolInitialize(of(self).klu.get()); };
+    solver->ops->setup = [](SUNLinearSolver self, SUNMatrix a) {
+      return SUNLinSolSetup(of(self).klu.get(), a);
+    };
+    solver->ops->solve = solve;
+    solver->ops->free = [](SUNLinearSolver self) {
+      delete static_cast<Klu*>(self->content);
+      SUNLinSolFreeEmpty(self);
+      return 0;
+    };
+    solver->content = content.release();
+    return solver;
+  }
+};
+
+SundialsMotion::SundialsMotion(const ResponseProblem& problem, const std::string& method, double absolute)
+    : equations(problem, method) {
+  const Eigen::Index n = equations.size();
+  SUNContext created = nullptr;
+  if (SUNContext_Create(nullptr, &created) != 0) throw std::bad_alloc();
+  context.reset(created);
+  for (Sundials<N_Vector>* vector : {&state, &absolute_tolerances, &work}) {
+    vector->reset(N_VNew_Serial(2 * n, created));
+    if (!*vector) throw std::bad_alloc();
+  }
+  view(state.get()) = equations.initial_state();
+  view(absolute_tolerances.get()).head(n).setConstant(absolute);
+  view(absolute_tolerances.get()).tail(n).setConstant(absolute / problem.grid.interval);
+  const SparseMatrix& pattern = equations.effective_matrix(0.0, view(state.get()));
+  matrix.reset(SUNSparseMatrix(n, n, pattern.nonZeros(), CSC_MAT, created));
+  if (!matrix) throw std::bad_alloc();
+  set_matrix(matrix.get(), 0.0, state.get(), this);
+  solver = Klu::create(equations, matrix.get(), created);
+}
+
+int SundialsMotion::rate(realtype t, N_Vector y, N_Vector y_rate, void* data) {
+  static_cast<SundialsMotion*>(data)->equations.rate(t, view(y), view(y_rate));
+  return 0;
+}
+
+int SundialsMotion::set_matrix(SUNMatrix matrix, realtype gamma, N_Vector y, void* data) {
+  const SparseMatrix& from = static_cast<SundialsMotion*>(data)->equations.effective_matrix(gamma, view(y));
+  if (SUNSparseMatrix_NNZ(matrix) != from.nonZeros()) return -1;
+  std::copy_n(from.outerIndexPtr(), from.cols() + 1, SUNSparseMatrix_IndexPointers(matrix));
+  std::copy_n(from.innerIndexPtr(), from.nonZeros(), SUNSparseMatrix_IndexValues(matrix));
+  std::copy_n(from.valuePtr(), from.nonZeros(), SUNSparseMatrix_Data(matrix));
+  return 0;
+}
+
+void require_success(int flag, const std::string& method, const char* call, double time,
+                     char* (*flag_name)(long int)) {
+  if (flag >= 0) return;
+  const std::unique_ptr<char, decltype(&std::free)> name(flag_name(flag), std::free);
+  std::ostringstream message;
+  message << method << ": " << call << " failed at " << time << " s: " << name.get();
+  throw std::runtime_error(message.str());
+}
+
+}  // namespace beamid::fem
