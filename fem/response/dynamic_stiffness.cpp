@@ -57,8 +57,8 @@ DynamicStiffness::DynamicStiffness(const StructuralSystem& system)
   f.damping = entries(damping);
   f.matrix = pattern.cast<Complex>();
   f.matrix.makeCompressed();
-  // The symmetric strategy that UMFPACK would take wants pivots on the diagonal, rejects them for their size, and fills
-  // the matrix: 400 times slower at 1000 elements.
+  // The symmetric strategy that UMFPACK would take wants pivots on the diagonal, rejects them for their size,
+  // and fills the matrix: 400 times slower at 1000 elements.
   f.lu.umfpackControl()[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_UNSYMMETRIC;
 }
 DynamicStiffness::~DynamicStiffness() = default;

@@ -1,7 +1,7 @@
-// SUNDIALS CVODE: backward differentiation formulas of variable order and step [hindmarsh2005]. Of third order and above
-// they are unstable for motions that are fast and lightly damped, which is what the high modes of a beam are: CVODE
-// then has to follow every one of them. Meant for damped structures and as a second opinion; see arkode. The solver
-// comes from CVODES, which has it whole: a program must not link both.
+// SUNDIALS CVODE: backward differentiation formulas of variable order and step [hindmarsh2005]. Of third
+// order and above they are unstable for motions that are fast and lightly damped, which is what the high
+// modes of a beam are: CVODE then has to follow every one of them. Meant for damped structures and as a
+// second opinion; see arkode. The solver comes from CVODES, which has it whole: a program must not link both.
 #include <cvodes/cvodes.h>
 
 #include "fem/response/sundials.hpp"
