@@ -28,9 +28,13 @@ struct Command {
 /// All of them, in the order in which help shows them.
 std::vector<Command> commands();
 
+Command frame_command();
+Command frf_command();
 Command identify_command();
 Command list_command();
+Command modes_command();
 Command new_command();
+Command simulate_command();
 Command validate_command();
 /// Every registered study is a command of its own.
 std::vector<Command> study_commands();

@@ -5,6 +5,7 @@
 #include "experiments/joint_model.hpp"
 #include "experiments/output/table.hpp"
 #include "experiments/study.hpp"
+#include "fem/response/response.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
 #include "reduction/reduction.hpp"
@@ -20,6 +21,15 @@ std::string to_text(const filters::OptionValue& value) {
   }
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   return std::get<std::string>(value);
+}
+
+experiments::Table option_table(const std::string& name) {
+  experiments::Table table{name, ""};
+  table.column({"option", "option"})
+      .column({"default", "default"})
+      .column({"unit", "unit"})
+      .column({"meaning", "meaning"});
+  return table;
 }
 
 template <class Registry>
@@ -39,11 +49,7 @@ void show(const Registry& registry, const std::string& name) {
     std::cout << "no options\n";
     return;
   }
-  experiments::Table table{name, ""};
-  table.column({"option", "option"})
-      .column({"default", "default"})
-      .column({"unit", "unit"})
-      .column({"meaning", "meaning"});
+  experiments::Table table = option_table(name);
   for (const auto& option : entry.options)
     table.row(
         {option.name, to_text(option.fallback), option.unit.empty() ? "-" : option.unit, option.description});
@@ -57,6 +63,40 @@ void list(const Registry& registry, const options::variables_map& values) {
     show(registry, values["name"].as<std::string>());
   else
     show(registry);
+}
+
+void show_option(experiments::Table& table, const fem::ResponseOption& option) {
+  table.row(
+      {option.name, to_text(option.fallback), option.unit.empty() ? "-" : option.unit, option.description});
+}
+
+// Methods of integration have no registry of the filters' kind.
+void list_responses(const options::variables_map& values) {
+  const auto methods = fem::response_methods();
+  if (!values.count("name")) {
+    experiments::Table table{"responses", ""};
+    table.column({"name", "name"}).column({"what it is", "summary"}).column({"source", "source"});
+    for (const auto& method : methods) table.row({method.name, method.summary, method.source});
+    experiments::print(std::cout, table);
+    return;
+  }
+  const std::string name = values["name"].as<std::string>();
+  std::string known;
+  for (const auto& method : methods) {
+    known += (known.empty() ? "" : ", ") + method.name;
+    if (method.name != name) continue;
+    std::cout << name << ": " << method.summary << "\nsource: " << method.source << "\n";
+    if (method.options.empty()) {
+      std::cout << "no options\n";
+      return;
+    }
+    experiments::Table table = option_table(name);
+    for (const auto& option : method.options) show_option(table, option);
+    std::cout << "\n";
+    experiments::print(std::cout, table);
+    return;
+  }
+  throw std::invalid_argument("unknown response method '" + name + "'; known: " + known);
 }
 
 int run(const Command& command, const std::vector<std::string>& arguments) {
@@ -75,17 +115,20 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     list(experiments::model_registry(), values);
   else if (kind == "studies")
     list(experiments::study_registry(), values);
+  else if (kind == "responses")
+    list_responses(values);
   else
-    throw UsageError(kind.empty() ? "list: what? filters, reductions, discretisations, models or studies"
-                                  : "list: unknown kind '" + kind +
-                                        "'; known: discretisations, filters, models, reductions, studies");
+    throw UsageError(kind.empty()
+                         ? "list: what? filters, reductions, discretisations, models, studies or responses"
+                         : "list: unknown kind '" + kind +
+                               "'; known: discretisations, filters, models, reductions, responses, studies");
   return 0;
 }
 
 }  // namespace
 
 Command list_command() {
-  return {"list", "filters|reductions|discretisations|models|studies [NAME]",
+  return {"list", "filters|reductions|discretisations|models|studies|responses [NAME]",
           "what can be chosen by name, and the options of each",
           "  beamid list filters\n  beamid list filters ukf\n  beamid list discretisations\n", run};
 }

@@ -13,14 +13,15 @@ namespace fs = std::filesystem;
 using experiments::InputError;
 
 constexpr const char* starter =
-    R"toml(# An experiment for beamid: the beam, its record, the methods. Put your own values in place of these.
+    R"toml(# An experiment for beamid: the beam and what is done with it. Put your own values in place of these.
 # Numbers are SI, and keys carry the unit. Lines behind # show what else may stand there; docs/configuration.md has
-# every key. Check:     beamid validate FILE
-#          identify:  beamid identify RECORD --config FILE --out results
+# every key.  Check:      beamid validate FILE
+#             compute:    beamid modes --config FILE        (simulate, frf: likewise)
+#             identify:   beamid identify RECORD --config FILE --out results
 title = "steel cantilever with a tip mass"
 
-[beam]                              # a uniform cantilever
-length_m = 1.10                     # from the clamp to the tip mass's centre
+[beam]                              # a uniform cantilever; segments, taper, springs, damage, ...: see every key
+length_m = 1.10
 width_m = 0.060                     # of the section, across the direction of bending
 height_m = 0.006                    # of the section, along the direction of bending
 youngs_modulus_pa = 2.12e11
@@ -30,7 +31,13 @@ mass_kg = 3.055                     # the beam alone
 # density_kg_per_m3 = 7850          # instead of mass_kg, with width_m and height_m
 tip_mass_kg = 0.360                 # 0 without one
 # tip_rotary_inertia_kg_m2 = 1e-4   # of the tip mass about its own centre
-sensor_mass_kg = 0.0                # accelerometer at the tip, added to the tip mass
+# tip_eccentricity_m = 0.02         # of that centre beyond the tip
+sensor_mass_kg = 0.0                # accelerometer at the tip, beside the tip mass
+# support = "clamped-free"          # root-tip: every pair of clamped, pinned, guided, free
+# axial_load_n = 10.0               # positive in compression
+# theory = "timoshenko"             # with poissons_ratio; else Euler-Bernoulli
+# poissons_ratio = 0.3
+# elements = 40
 
 [record]                            # a text file of numbers in columns
 file = "record.csv"                 # relative to this file; a RECORD on the command line comes first
@@ -42,6 +49,21 @@ channels = [                        # what was measured at the tip, in which col
   { quantity = "acceleration", column = 2, unit = "m/s2" },  # m/s2, mm/s2 or g
   # { quantity = "displacement", column = 3, unit = "mm" },  # m, mm or um
 ]
+
+# [damping]                         # for modes, simulate and frf
+# ratio = 0.002                     # of every mode; Rayleigh's law and others: see every key
+
+# [excitation]                      # for simulate: release, static, impulse, harmonic, base, table, none
+# kind = "release"
+# deflection_m = 0.012
+
+# [simulation]                      # for simulate
+# duration_s = 5.0
+# sampling_rate_hz = 1000.0
+
+# [frequency_response]              # for frf
+# from_hz = 1.0
+# to_hz = 200.0
 
 [filter]
 method = "ekf"                      # beamid list filters

@@ -5,8 +5,10 @@
 #include <iostream>
 
 #include "apps/command.hpp"
+#include "experiments/continuum/description.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_experiment.hpp"
+#include "experiments/input/read_frame.hpp"
 #include "experiments/input/read_record.hpp"
 #include "experiments/joint_model.hpp"
 #include "fem/assembly.hpp"
@@ -55,6 +57,16 @@ void check_model(const Experiment& experiment, const fem::StructuralSystem& syst
   });
 }
 
+int validate_frame(const fs::path& file, const TomlTable& root) {
+  const FrameExperiment experiment = read_frame(root);
+  const fem::StructuralSystem system = at_place(
+      {file.string()}, [&] { return fem::assemble(experiment.frame, experiment.elements_per_member); });
+  std::cout << file.string() << ": valid\n"
+            << fmt::format("  {} First mode predicted at {:.4f} Hz.\n", frame_text(experiment, system.size()),
+                           fem::modes(system, 1).frequency_hz()[0]);
+  return 0;
+}
+
 int run(const Command& command, const std::vector<std::string>& arguments) {
   options::options_description described("Options");
   described.add_options()  //
@@ -66,8 +78,12 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   if (!values.count("file")) throw UsageError("validate: which FILE?");
 
   const fs::path file = values["file"].as<std::string>();
-  const Experiment experiment = read_experiment(file);
-  const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
+  const TomlTable root = TomlTable::read(file);
+  if (root.contains("frame") && !root.contains("beam") && !values.count("record"))
+    return validate_frame(file, root);
+  const Experiment experiment = read_experiment(root);
+  const fem::StructuralSystem system =
+      at_place({file.string()}, [&] { return fem::assemble(experiment.beam, experiment.elements); });
   std::string record_line = "none named; " + columns_text(experiment.format);
   fs::path record_file;
   if (values.count("record"))
@@ -84,16 +100,17 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   }
 
   const fem::Beam& beam = experiment.beam;
-  std::cout << file.string() << ": valid\n"
-            << fmt::format(
-                   "  beam     {:g} m, EI = {:.6g} N m2, {:.6g} kg with {:.6g} kg at its tip; first mode "
-                   "predicted at {:.4f} Hz\n",
-                   beam.length(), beam.segments.front().section.bending_stiffness(0.0), beam.mass(),
-                   beam.tip_mass(), fem::modes(system, 1).frequency_hz()[0])
-            << "  record   " << record_line << "\n"
-            << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
-                           experiment.reduction.name, experiment.model.name, experiment.filter.name,
-                           experiment.discretisation);
+  std::cout
+      << file.string() << ": valid\n"
+      << fmt::format(
+             "  beam     {:g} m, EI = {} N m2, {:.6g} kg with {:.6g} kg at its tip; first mode predicted at "
+             "{:.4f} Hz\n",
+             beam.length(), bending_stiffness_text(beam), beam.mass(), beam.tip_mass(),
+             fem::modes(system, 1).frequency_hz()[0])
+      << "  record   " << record_line << "\n"
+      << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
+                     experiment.reduction.name, experiment.model.name, experiment.filter.name,
+                     experiment.discretisation);
   return 0;
 }
 

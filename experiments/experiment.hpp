@@ -1,4 +1,4 @@
-// One identification, as its TOML file describes it (docs/configuration.md).
+// One beam and what is done with it, as its TOML file describes it (docs/configuration.md).
 #pragma once
 
 #include <map>
@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/continuum/settings.hpp"
 #include "experiments/input/input_error.hpp"
 #include "experiments/record.hpp"
 #include "fem/beam.hpp"
+#include "fem/damping.hpp"
 #include "filters/options.hpp"
 
 namespace beamid::experiments {
@@ -50,6 +52,11 @@ struct Experiment {
   std::string title;
   fem::Beam beam;
   int elements = 40;
+  fem::DampingLaw damping;
+  Excitation excitation;
+  std::vector<Sensor> sensors;  ///< none: displacement and acceleration at the natural point
+  Simulation simulation;
+  FrequencyResponseSettings frequency_response;
   std::optional<std::string> record_file;  ///< relative to the TOML file's folder
   RecordFormat format;
   Choice reduction{"rayleigh", {}};

@@ -1,68 +1,93 @@
 #include "experiments/input/read_beam.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
 
 #include "experiments/input/method_choice.hpp"
+#include "experiments/input/read_attachments.hpp"
+#include "experiments/input/read_segment.hpp"
 #include "experiments/input/spelling.hpp"
+#include "experiments/input/useless_keys.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-/// The one key of several that is given. @throws InputError when none or more are.
-std::string only_one(const TomlTable& table, const std::string& what, const std::vector<std::string>& keys) {
-  std::vector<std::string> given;
-  for (const std::string& key : keys)
-    if (table.contains(key)) given.push_back(key);
-  if (given.size() == 1) return given.front();
-  throw InputError(table.place(), fmt::format("{} is given by {}; expected exactly one of {}", what,
-                                              given.empty() ? "nothing" : joined(given), joined(keys)));
+const std::vector<std::string> end_kinds{"clamped", "pinned", "guided", "free"};
+
+void read_segments(const TomlTable& table, fem::Beam& beam) {
+  const std::vector<TomlTable> segments = table.find_tables("segments");
+  if (segments.empty()) {
+    beam.segments = {read_segment(table)};
+    return;
+  }
+  refuse_useless(table, segment_keys(), "beside beam.segments", "it in each of beam.segments");
+  for (const TomlTable& segment : segments) beam.segments.push_back(read_segment(segment));
 }
 
-struct Section {
-  double width, height;
-};
+// An elastic root: a spring where the support would hold.
+void read_root(const TomlTable& table, fem::Beam& beam) {
+  const auto rotational = table.find_number("root_rotational_stiffness_n_m_per_rad", Sign::not_negative);
+  const auto translational = table.find_number("root_translational_stiffness_n_per_m", Sign::not_negative);
+  for (fem::Support& support : beam.supports) {
+    if (support.position != 0.0) continue;
+    support.rotation &= !rotational;
+    support.deflection &= !translational;
+  }
+  std::erase_if(beam.supports, [](const fem::Support& one) { return !one.deflection && !one.rotation; });
+  if (rotational || translational)
+    beam.springs.push_back({0.0, translational.value_or(0.0), rotational.value_or(0.0), 0.0});
+}
 
-/// @param owner the key whose value means nothing without a section.
-Section read_section(const TomlTable& table, const std::string& owner) {
-  for (const std::string key : {"width_m", "height_m"})
-    if (!table.contains(key)) table.miss(key, "a positive number beside " + owner);
-  return {table.number("width_m", Sign::positive), table.number("height_m", Sign::positive)};
+void read_tip(const TomlTable& table, fem::Beam& beam) {
+  const double mass = table.find_number("tip_mass_kg", Sign::not_negative).value_or(0);
+  const double sensor = table.find_number("sensor_mass_kg", Sign::not_negative).value_or(0);
+  const double inertia = table.find_number("tip_rotary_inertia_kg_m2", Sign::not_negative).value_or(0);
+  const double eccentricity = table.find_number("tip_eccentricity_m").value_or(0);
+  const bool together = eccentricity == 0.0;  // the sensor sits on the tip itself
+  const double at_centre = together ? mass + sensor : mass;
+  if (at_centre > 0.0 || inertia > 0.0)
+    beam.bodies.push_back({beam.length(), at_centre, inertia, eccentricity});
+  if (!together && sensor > 0.0) beam.bodies.push_back({beam.length(), sensor, 0.0, 0.0});
 }
 
 }  // namespace
 
+const std::vector<std::string>& end_supports() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const std::string& root : end_kinds)
+      for (const std::string& tip : end_kinds) all.push_back(root + "-" + tip);
+    return all;
+  }();
+  return names;
+}
+
+std::vector<fem::Support> supports_of(const std::string& name, double length) {
+  std::vector<fem::Support> supports;
+  const auto hold = [&](const std::string& kind, double position) {
+    const bool deflection = kind == "clamped" || kind == "pinned",
+               rotation = kind == "clamped" || kind == "guided";
+    if (deflection || rotation) supports.push_back({position, deflection, rotation});
+  };
+  const std::size_t dash = name.find('-');
+  hold(name.substr(0, dash), 0.0);
+  hold(name.substr(dash + 1), length);
+  return supports;
+}
+
 fem::Beam read_beam(const TomlTable& table) {
-  fem::Cantilever beam;
-  beam.length = table.number("length_m", Sign::positive);
-
-  const std::string stiffness =
-      only_one(table, "bending stiffness", {"youngs_modulus_pa", "bending_stiffness_n_m2"});
-  beam.bending_stiffness = table.number(stiffness, Sign::positive);
-  if (stiffness == "youngs_modulus_pa") {
-    const Section section = read_section(table, stiffness);
-    beam.bending_stiffness *= fem::rectangle_second_moment(section.width, section.height);
-  }
-
-  const std::string mass =
-      only_one(table, "mass", {"mass_kg", "mass_per_length_kg_per_m", "density_kg_per_m3"});
-  beam.mass_per_length = table.number(mass, Sign::positive);
-  if (mass == "mass_kg") beam.mass_per_length /= beam.length;
-  if (mass == "density_kg_per_m3") {
-    const Section section = read_section(table, mass);
-    beam.mass_per_length *= section.width * section.height;
-  }
-  for (const std::string key : {"width_m", "height_m"})
-    if (table.contains(key) && stiffness != "youngs_modulus_pa" && mass != "density_kg_per_m3")
-      throw InputError(
-          table.key_place(key),
-          fmt::format(
-              "{} has no use beside {} and {}; expected youngs_modulus_pa or density_kg_per_m3, or no "
-              "section",
-              table.path(key), stiffness, mass));
-
-  beam.tip_mass = table.find_number("tip_mass_kg", Sign::not_negative).value_or(0) +
-                  table.find_number("sensor_mass_kg", Sign::not_negative).value_or(0);
-  beam.tip_rotary_inertia = table.find_number("tip_rotary_inertia_kg_m2", Sign::not_negative).value_or(0);
+  fem::Beam beam;
+  read_segments(table, beam);
+  const std::string support = table.find_text("support").value_or("clamped-free");
+  if (std::find(end_supports().begin(), end_supports().end(), support) == end_supports().end())
+    throw InputError(table.value_place("support"),
+                     "unknown '" + support + "'; known: " + joined(end_supports()));
+  beam.supports = supports_of(support, beam.length());
+  read_root(table, beam);
+  read_tip(table, beam);
+  beam.axial_load = table.find_number("axial_load_n").value_or(0.0);
+  const auto mass_model = table.find_text("mass_model", {"consistent", "lumped"});
+  beam.mass_model = mass_model == "lumped" ? fem::MassModel::lumped : fem::MassModel::consistent;
+  read_attachments(table, beam);
   at_place(table.place(), [&] { fem::validate(beam); });
   return beam;
 }

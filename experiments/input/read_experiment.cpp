@@ -2,7 +2,10 @@
 
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_beam.hpp"
+#include "experiments/input/read_damping.hpp"
+#include "experiments/input/read_frequency_response.hpp"
 #include "experiments/input/read_record_format.hpp"
+#include "experiments/input/read_simulation.hpp"
 #include "experiments/input/units.hpp"
 #include "experiments/input/vocabulary.hpp"
 #include "experiments/joint_model.hpp"
@@ -52,12 +55,30 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
   }
 }
 
+/// What is done with the beam itself.
+void read_continuum(const TomlTable& root, Experiment& experiment) {
+  const double length = experiment.beam.length();
+  if (const auto damping = root.find_table("damping")) experiment.damping = read_damping(*damping);
+  if (const auto excitation = root.find_table("excitation"))
+    experiment.excitation = read_excitation(*excitation, length);
+  experiment.sensors = read_sensors(root, length);
+  if (const auto simulation = root.find_table("simulation"))
+    experiment.simulation = read_simulation(*simulation);
+  if (const auto response = root.find_table("frequency_response"))
+    experiment.frequency_response = read_frequency_response(*response, length);
+}
+
 }  // namespace
 
-Experiment read_experiment(const std::filesystem::path& file) {
-  constexpr int most_elements = 100000;
-  const TomlTable root = TomlTable::read(file);
+Experiment read_experiment(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+  return read_experiment(TomlTable::read(file, overrides));
+}
+
+Experiment read_experiment(const TomlTable& root) {
   refuse_unknown_keys(root);
+  if (root.contains("frame"))
+    throw InputError(root.key_place("frame"),
+                     "frame describes a plane frame, which 'beamid frame' takes; expected a beam");
   Experiment experiment;
   experiment.title = root.find_text("title").value_or("");
   const TomlTable beam = root.table("beam");
@@ -69,6 +90,7 @@ Experiment read_experiment(const std::filesystem::path& file) {
       record->refuse("file", "the name of a file");
     experiment.format = read_record_format(*record);
   }
+  read_continuum(root, experiment);
   read_methods(root, experiment);
   if (const auto prior = root.find_table("prior")) experiment.prior = read_prior(*prior);
   if (const auto noise = root.find_table("noise")) experiment.noise = read_noise(*noise);

@@ -3,6 +3,7 @@
 
 #include <toml++/toml.h>
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -17,7 +18,12 @@ struct TomlTable::Node {
   const toml::table* table;
   std::string file;
   std::string name;
+  /// Where keys come from that the file does not hold, by their path: "beam.length_m" from "--length".
+  std::shared_ptr<const std::map<std::string, std::string>> origins;
 
+  std::shared_ptr<const Node> below(const toml::table* inner, std::string inner_name) const {
+    return std::make_shared<const Node>(Node{root, inner, file, std::move(inner_name), origins});
+  }
   Place at(const toml::source_region& region) const { return {file, region.begin.line, region.begin.column}; }
 };
 

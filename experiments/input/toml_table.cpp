@@ -39,14 +39,43 @@ void refuse_long_lines(const std::string& text, const std::string& file) {
 
 }  // namespace
 
-TomlTable TomlTable::read(const std::filesystem::path& file) {
-  const std::string text = read_text(file, "a TOML file");
-  refuse_long_lines(text, file.string());
+namespace {
+
+toml::table& child(toml::table& root, const std::string& name) {
+  if (!root.contains(name)) root.insert(name, toml::table());
+  return *root.get(name)->as_table();
+}
+
+/// Sets the keys, and gives where each came from by its path.
+std::map<std::string, std::string> apply(const std::vector<Override>& overrides, toml::table& root) {
+  std::map<std::string, std::string> origins;
+  for (const Override& over : overrides) {
+    const toml::node* const present = root.get(over.table);
+    if (present != nullptr && !present->is_table()) continue;  // the reader will refuse it
+    toml::table& table = child(root, over.table);
+    for (const std::string& key : over.instead_of) table.erase(key);
+    std::visit([&](const auto& value) { table.insert_or_assign(over.key, value); }, over.value);
+    origins[over.table + "." + over.key] = over.origin;
+  }
+  return origins;
+}
+
+}  // namespace
+
+TomlTable TomlTable::read(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+  return parse(read_text(file, "a TOML file"), file.string(), overrides);
+}
+
+TomlTable TomlTable::parse(const std::string& text, const std::string& name,
+                           const std::vector<Override>& overrides) {
+  refuse_long_lines(text, name);
   try {
-    auto root = std::make_shared<const toml::table>(toml::parse(text, file.string()));
-    return TomlTable(std::make_shared<const Node>(Node{root, root.get(), file.string(), ""}));
+    auto root = std::make_shared<toml::table>(toml::parse(text, name));
+    auto origins = std::make_shared<const std::map<std::string, std::string>>(apply(overrides, *root));
+    const toml::table* const top = root.get();
+    return TomlTable(std::make_shared<const Node>(Node{std::move(root), top, name, "", std::move(origins)}));
   } catch (const toml::parse_error& error) {
-    throw InputError({file.string(), error.source().begin.line, error.source().begin.column},
+    throw InputError({name, error.source().begin.line, error.source().begin.column},
                      fmt::format("no valid TOML: {}", error.description()));
   }
 }
@@ -79,11 +108,14 @@ Place TomlTable::place() const {
 }
 
 Place TomlTable::key_place(const std::string& key) const {
+  if (const auto origin = node_->origins->find(path(key)); origin != node_->origins->end())
+    return {origin->second, 0, 0};
   const auto it = node_->table->find(key);
   return it == node_->table->end() ? place() : node_->at(it->first.source());
 }
 
 Place TomlTable::value_place(const std::string& key) const {
+  if (node_->origins->contains(path(key))) return key_place(key);
   const toml::node* const value = node_->table->get(key);
   return value == nullptr ? place() : node_->at(value->source());
 }
@@ -101,7 +133,7 @@ std::optional<TomlTable> TomlTable::find_table(const std::string& key) const {
   const toml::node* const node = node_->table->get(key);
   if (node == nullptr) return std::nullopt;
   if (!node->is_table()) refuse(key, "a table");
-  return TomlTable(std::make_shared<const Node>(Node{node_->root, node->as_table(), node_->file, path(key)}));
+  return TomlTable(node_->below(node->as_table(), path(key)));
 }
 
 std::vector<TomlTable> TomlTable::find_tables(const std::string& key) const {
@@ -115,8 +147,7 @@ std::vector<TomlTable> TomlTable::find_tables(const std::string& key) const {
     if (!element.is_table())
       throw InputError(node_->at(element.source()),
                        fmt::format("{} is {}; expected a table", name, found(element)));
-    tables.push_back(
-        TomlTable(std::make_shared<const Node>(Node{node_->root, element.as_table(), node_->file, name})));
+    tables.push_back(TomlTable(node_->below(element.as_table(), name)));
   }
   return tables;
 }
@@ -125,9 +156,7 @@ std::vector<TomlTable> TomlTable::tables_below(const std::string& key) const {
   const toml::node* const node = node_->table->get(key);
   std::vector<TomlTable> tables;
   const auto add = [&](const toml::node& candidate, const std::string& name) {
-    if (candidate.is_table())
-      tables.push_back(TomlTable(
-          std::make_shared<const Node>(Node{node_->root, candidate.as_table(), node_->file, name})));
+    if (candidate.is_table()) tables.push_back(TomlTable(node_->below(candidate.as_table(), name)));
   };
   if (node == nullptr) return tables;
   add(*node, path(key));

@@ -16,12 +16,25 @@ namespace beamid::experiments {
 /// What a number must satisfy beyond being finite.
 enum class Sign { any, not_negative, positive };
 
+/// One key of one table set from outside the file, such as an option of the command line. It takes the place
+/// of the file's own key, and of those that would give the same quantity in another way.
+struct Override {
+  std::string table, key;
+  filters::OptionValue value;
+  std::string origin;                        ///< stands for the place in messages: "--length"
+  std::vector<std::string> instead_of = {};  ///< keys of the table that it removes
+};
+
 /// One table of a TOML file. `find_...` gives nothing where the key is absent, the others throw then; both
 /// throw an InputError at the value's place when it has the wrong type or an impossible value.
 class TomlTable {
  public:
   /// The file's root table. @throws InputError when the file cannot be read or is no valid TOML.
-  static TomlTable read(const std::filesystem::path& file);
+  static TomlTable read(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
+
+  /// The root table of a text. @param name stands for the file in messages.
+  static TomlTable parse(const std::string& text, const std::string& name,
+                         const std::vector<Override>& overrides = {});
 
   const std::string& name() const;                 ///< "record.time"; empty for the root
   std::string path(const std::string& key) const;  ///< "record.time.unit"
@@ -36,7 +49,9 @@ class TomlTable {
   std::optional<std::string> find_text(const std::string& key) const;
   std::optional<std::string> find_text(const std::string& key, const std::vector<std::string>& allowed) const;
   std::optional<std::pair<double, double>> find_interval(
-      const std::string& key) const;                                             ///< [from, to], from < to
+      const std::string& key) const;  ///< [from, to], from < to
+  std::optional<bool> find_truth(const std::string& key) const;
+  std::optional<std::vector<double>> find_numbers(const std::string& key, Sign sign) const;  ///< at least one
   std::optional<filters::OptionValue> find_value(const std::string& key) const;  ///< number, text or truth
   std::optional<TomlTable> find_table(const std::string& key) const;
   std::vector<TomlTable> find_tables(const std::string& key) const;  ///< empty only where the key is absent

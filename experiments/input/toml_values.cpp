@@ -77,6 +77,30 @@ std::optional<std::pair<double, double>> TomlTable::find_interval(const std::str
   return std::pair{*from, *to};
 }
 
+std::optional<bool> TomlTable::find_truth(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_boolean()) refuse(key, "true or false");
+  return node->as_boolean()->get();
+}
+
+std::optional<std::vector<double>> TomlTable::find_numbers(const std::string& key, Sign sign) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* const array = node->as_array();
+  if (array == nullptr || array->empty()) refuse(key, "an array of at least one number");
+  std::vector<double> numbers;
+  for (const toml::node& element : *array) {
+    const std::optional<double> value = element.is_number() ? element.value<double>() : std::nullopt;
+    if (!value || !std::isfinite(*value) || (sign == Sign::positive && *value <= 0) ||
+        (sign == Sign::not_negative && *value < 0))
+      throw InputError(node_->at(element.source()), fmt::format("{} holds {}; expected {}", path(key),
+                                                                found(element), expected_number(sign)));
+    numbers.push_back(*value);
+  }
+  return numbers;
+}
+
 std::optional<filters::OptionValue> TomlTable::find_value(const std::string& key) const {
   const toml::node* const node = node_->table->get(key);
   if (node == nullptr) return std::nullopt;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "experiments/input/read_frame.hpp"
+#include "experiments/input/read_segment.hpp"
 #include "experiments/input/spelling.hpp"
 
 namespace beamid::experiments {
@@ -33,15 +35,46 @@ void collect(const TomlTable& table, const std::string& name, std::vector<Unknow
   }
 }
 
+std::vector<std::string> beam_keys() {
+  std::vector<std::string> keys = segment_keys();
+  for (const char* key :
+       {"support", "root_rotational_stiffness_n_m_per_rad", "root_translational_stiffness_n_per_m",
+        "tip_mass_kg", "tip_rotary_inertia_kg_m2", "tip_eccentricity_m", "sensor_mass_kg", "axial_load_n",
+        "mass_model", "elements", "segments", "bodies", "supports", "springs", "dashpots", "absorbers",
+        "damages", "added_masses"})
+    keys.emplace_back(key);
+  return keys;
+}
+
 }  // namespace
 
 const std::vector<TableVocabulary>& vocabulary() {
   static const std::vector<TableVocabulary> tables{
-      {"", {"title", "beam", "record", "reduction", "model", "filter", "prior", "noise"}},
-      {"beam",
-       {"length_m", "width_m", "height_m", "youngs_modulus_pa", "bending_stiffness_n_m2", "mass_kg",
-        "mass_per_length_kg_per_m", "density_kg_per_m3", "tip_mass_kg", "tip_rotary_inertia_kg_m2",
-        "sensor_mass_kg", "elements"}},
+      {"",
+       {"title", "beam", "damping", "excitation", "sensors", "simulation", "frequency_response", "record",
+        "reduction", "model", "filter", "prior", "noise", "frame"}},
+      {"beam", beam_keys()},
+      {"beam.segments", segment_keys()},
+      {"beam.bodies", {"position_m", "mass_kg", "rotary_inertia_kg_m2", "eccentricity_m"}},
+      {"beam.supports", {"position_m", "kind"}},
+      {"beam.springs", {"position_m", "translational_n_per_m", "rotational_n_m_per_rad", "cubic_n_per_m3"}},
+      {"beam.dashpots",
+       {"position_m", "translational_n_s_per_m", "rotational_n_m_s_per_rad", "quadratic_n_s2_per_m2"}},
+      {"beam.absorbers", {"position_m", "mass_kg", "stiffness_n_per_m", "damping_n_s_per_m"}},
+      {"beam.damages", {"from_m", "to_m", "loss"}},
+      {"beam.added_masses", {"from_m", "to_m", "mass_per_length_kg_per_m"}},
+      {"damping", {"law", "ratio", "ratios", "anchors", "loss_factor"}},
+      {"damping.anchors", {"frequency_hz", "ratio"}},
+      {"excitation",
+       {"kind", "position_m", "deflection_m", "velocity_m_per_s", "mode", "force_n", "momentum_n_s",
+        "duration_s", "amplitude_n", "amplitude_m_per_s2", "frequency_hz", "file"}},
+      {"sensors", {"name", "position_m", "quantity", "noise_m", "noise_m_per_s", "noise_m_per_s2"}},
+      {"simulation",
+       {"duration_s", "sampling_rate_hz", "steps_per_sample", "method", "frames", "seed"},
+       true},
+      {"frequency_response",
+       {"from_hz", "to_hz", "points", "spacing", "kind", "method", "modes", "residual_modes", "pairs"}},
+      {"frequency_response.pairs", {"input_m", "output_m"}},
       {"record", {"file", "separator", "header_lines", "sampling_rate_hz", "window_s", "time", "channels"}},
       {"record.time", {"column", "unit"}},
       {"record.channels", {"quantity", "column", "unit"}},
@@ -51,6 +84,13 @@ const std::vector<TableVocabulary>& vocabulary() {
       {"prior",
        {"stiffness_n_per_m", "stiffness_deviation_n_per_m", "damping_ratio", "damping_ratio_deviation"}},
       {"noise", {"displacement_m", "velocity_m_per_s", "acceleration_m_per_s2"}},
+      {"frame", {"elements_per_member", "mass_model", "joints", "members", "supports", "bodies", "springs"}},
+      {"frame.joints", {"name", "x_m", "y_m"}},
+      {"frame.members", member_keys()},
+      {"frame.supports", {"joint", "kind"}},
+      {"frame.bodies", {"joint", "mass_kg", "rotary_inertia_kg_m2"}},
+      {"frame.springs",
+       {"joint", "translational_x_n_per_m", "translational_y_n_per_m", "rotational_n_m_per_rad"}},
   };
   return tables;
 }

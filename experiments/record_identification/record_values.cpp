@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/beam_description.hpp"
+
 namespace beamid::experiments {
 
 using Json = nlohmann::ordered_json;
@@ -77,11 +79,7 @@ Json configuration(const Experiment& experiment, const Record& record, const Rec
   Json json{{"title", experiment.title},
             {"record", record_name},
             {"sampling_rate_hz", 1.0 / record.interval()},
-            {"beam",
-             {{"length_m", experiment.beam.length()},
-              {"mass_kg", experiment.beam.mass()},
-              {"tip_mass_kg", experiment.beam.tip_mass()},
-              {"elements", experiment.elements}}},
+            {"beam", describe(experiment.beam, experiment.elements)},
             {"reduction", choice(experiment.reduction)},
             {"model", choice(experiment.model)},
             {"filter", choice(experiment.filter)}};

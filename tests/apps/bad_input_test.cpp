@@ -65,14 +65,17 @@ INSTANTIATE_TEST_SUITE_P(
               "cantilever.toml:18:10: unknown filter 'ufk'; known: ekf, ukf"},
         Fault{"UnknownDiscretisation", toml, "\"exponential\"", "\"euler\"",
               "cantilever.toml:19:18: unknown discretisation 'euler'; known: backward_euler, cvode, "
-              "exponential, "
-              "forward_euler, implicit_midpoint, runge_kutta_2, runge_kutta_4"},
+              "exponential, forward_euler, implicit_midpoint, runge_kutta_2, runge_kutta_4"},
         Fault{
             "UnknownKey", toml, "length_m", "lenght_m",
             "cantilever.toml:6:1: unknown key 'lenght_m' in beam; did you mean 'length_m'? known: length_m, "
-            "width_m, height_m, youngs_modulus_pa, bending_stiffness_n_m2, mass_kg, "
-            "mass_per_length_kg_per_m, density_kg_per_m3, tip_mass_kg, tip_rotary_inertia_kg_m2, "
-            "sensor_mass_kg, elements"},
+            "width_m, height_m, diameter_m, end_width_m, end_height_m, end_diameter_m, youngs_modulus_pa, "
+            "bending_stiffness_n_m2, mass_kg, mass_per_length_kg_per_m, density_kg_per_m3, theory, "
+            "poissons_ratio, shear_modulus_pa, shear_factor, shear_stiffness_n, rotary_inertia, "
+            "rotary_inertia_kg_m, support, root_rotational_stiffness_n_m_per_rad, "
+            "root_translational_stiffness_n_per_m, tip_mass_kg, tip_rotary_inertia_kg_m2, "
+            "tip_eccentricity_m, sensor_mass_kg, axial_load_n, mass_model, elements, segments, bodies, "
+            "supports, springs, dashpots, absorbers, damages, added_masses"},
         Fault{"WrongUnit", toml, "\\[record\\]",
               "[record]\nchannels = [{ quantity = \"acceleration\", column = 2, unit = \"m/s\" }]",
               "cantilever.toml:14:61: record.channels[1].unit is the text \"m/s\"; expected a unit of "
@@ -106,12 +109,12 @@ INSTANTIATE_TEST_SUITE_P(
               "interval 0.004 within 5 %"},
         Fault{"TimeRunsBack", record, "\n0\\.4,", "\n0.3,",
               "tip_acceleration.csv:102:1: time 0.3 after 0.396; expected increasing times"},
-        Fault{"UnknownUnit", record, "acceleration_tip_m_per_s2", "acceleration_tip_ft_per_s2",
-              "tip_acceleration.csv:1: unknown column 'acceleration_tip_ft_per_s2'; expected names with "
-              "units (time_s, "
-              "time_ms, time_us, displacement_m, displacement_mm, displacement_um, velocity_m_per_s, "
-              "velocity_mm_per_s, acceleration_m_per_s2, acceleration_mm_per_s2, acceleration_g, force_n, "
-              "force_kn), or record.channels in the configuration"}),
+        Fault{
+            "UnknownUnit", record, "acceleration_tip_m_per_s2", "acceleration_tip_ft_per_s2",
+            "tip_acceleration.csv:1: unknown column 'acceleration_tip_ft_per_s2'; expected names with units "
+            "(time_s, time_ms, time_us, displacement_m, displacement_mm, displacement_um, velocity_m_per_s, "
+            "velocity_mm_per_s, acceleration_m_per_s2, acceleration_mm_per_s2, acceleration_g, force_n, "
+            "force_kn), or record.channels in the configuration"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -122,8 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
               "identify --config cantilever.toml --out taken"},
         Fault{"WindowOutside", toml, "", "",
               "--window: window 2 to 20 s; expected at least 16 samples inside the record, which runs from 0 "
-              "to "
-              "10 s",
+              "to 10 s",
               "identify --config cantilever.toml --window 2 20"},
         Fault{"HalfAWindow", toml, "", "", "beamid: identify: --window needs two times: FROM TO",
               "identify --config cantilever.toml --window 2"},

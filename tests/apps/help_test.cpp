@@ -45,7 +45,9 @@ TEST_P(EveryCommand, RefusesAnUnknownOption) {
             "beamid: " + std::string(GetParam()) + ": unrecognised option '--sed'");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryCommand, testing::Values("paper", "identify", "new", "validate", "list"),
+INSTANTIATE_TEST_SUITE_P(All, EveryCommand,
+                         testing::Values("paper", "identify", "modes", "frame", "simulate", "frf", "new",
+                                         "validate", "list"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
@@ -53,7 +55,8 @@ TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(outcome.first_error_line(),
-            "beamid: unknown command 'indentify'; known: paper, identify, new, validate, list");
+            "beamid: unknown command 'indentify'; known: paper, identify, modes, frame, simulate, frf, new, "
+            "validate, list");
 }
 
 struct Kind {
@@ -81,7 +84,9 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ListOf,
                                          Kind{"discretisations",
                                               {"forward_euler", "backward_euler", "implicit_midpoint",
                                                "runge_kutta_2", "runge_kutta_4", "exponential", "cvode"}},
-                                         Kind{"models", {"sdof"}}, Kind{"studies", {"paper"}}),
+                                         Kind{"models", {"sdof"}}, Kind{"studies", {"paper"}},
+                                         Kind{"responses",
+                                              {"modal", "newmark", "hht_alpha", "generalised_alpha"}}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(ListOfOneFilter, ShowsItsOptionsWithDefaults) {
@@ -93,9 +98,9 @@ TEST(ListOfOneFilter, ShowsItsOptionsWithDefaults) {
 }
 
 TEST(List, RefusesUnknownKindsAndNames) {
-  EXPECT_EQ(
-      Workplace().run("list fliters").first_error_line(),
-      "beamid: list: unknown kind 'fliters'; known: discretisations, filters, models, reductions, studies");
+  EXPECT_EQ(Workplace().run("list fliters").first_error_line(),
+            "beamid: list: unknown kind 'fliters'; known: discretisations, filters, models, reductions, "
+            "responses, studies");
   EXPECT_EQ(Workplace().run("list filters ufk").first_error_line(),
             "beamid: unknown filter 'ufk'; known: ekf, ukf");
   EXPECT_EQ(Workplace().run("list filters ufk").code, 2);

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "experiments/input/read_experiment.hpp"
+#include "experiments/input/read_frame.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
 namespace beamid::experiments {
@@ -33,40 +34,94 @@ std::set<std::string> known_keys() {
   return keys;
 }
 
+/// What a table needs beside the key under test; a key of the same quantity makes way for it.
+std::vector<std::string> needed_in(const std::string& table, const std::string& key) {
+  const bool member = table == "frame.members", beam = table == "beam" || table == "beam.segments" || member;
+  if (table == "record.channels") return {"quantity = \"force\"", "column = 1", "unit = \"N\""};
+  if (table == "record.time") return {"column = 1", "unit = \"s\""};
+  if (table == "beam.absorbers") return {"position_m = 0", "mass_kg = 1", "stiffness_n_per_m = 1"};
+  if (table == "beam.supports") return {"position_m = 0", "kind = \"pinned\""};
+  if (table == "beam.damages") return {"from_m = 0", "to_m = 0.5", "loss = 0.1"};
+  if (table == "beam.added_masses") return {"from_m = 0", "to_m = 0.5", "mass_per_length_kg_per_m = 1"};
+  if (table == "frame.joints") return {"x_m = 0", "y_m = 0"};
+  if (table == "frame.supports") return {"joint = 1", "kind = \"pinned\""};
+  if (table.starts_with("frame.") && !member) return {"joint = 1"};
+  if (table == "damping.anchors") return {"frequency_hz = 1", "ratio = 0.1"};
+  if (table.starts_with("beam.") && !beam) return {"position_m = 0"};
+  if (!beam) return {};
+  std::vector<std::string> needed{"length_m = 1"};
+  if (member) needed = {"first = 1", "second = 2"};
+  const bool round = key.ends_with("diameter_m");
+  if (key == "bending_stiffness_n_m2")
+    needed.push_back("mass_kg = 1");
+  else if (key == "mass_per_length_kg_per_m" || key == "density_kg_per_m3")
+    needed.push_back("youngs_modulus_pa = 1");
+  else
+    needed.insert(needed.end(), {"mass_kg = 1", "youngs_modulus_pa = 1"});
+  if (round)
+    needed.push_back("diameter_m = 1");
+  else
+    needed.insert(needed.end(), {"width_m = 1", "height_m = 1"});
+  return needed;
+}
+
+/// A frame that holds one key, likewise.
+std::string frame_with_date(const std::string& table, const std::string& key) {
+  std::string text, tested = table == "frame" ? "[frame]\n" : "[[" + table + "]]\n";
+  if (table != "frame")
+    for (const std::string& line : needed_in(table, key))
+      if (!line.starts_with(key + " ")) tested += line + "\n";
+  tested += key + " = 2009-01-01\n";
+  if (table != "frame.joints")
+    text += "[[frame.joints]]\nx_m = 0\ny_m = 0\n[[frame.joints]]\nx_m = 1\ny_m = 0\n";
+  if (table != "frame.joints" && table != "frame.members")
+    text +=
+        "[[frame.members]]\nfirst = 1\nsecond = 2\nbending_stiffness_n_m2 = 1\naxial_stiffness_n = 1\n"
+        "mass_kg = 1\n";
+  return table == "frame" ? tested + text : text + tested;
+}
+
 /// An experiment that holds one key, with a value of a type no key has, beside what makes it valid otherwise.
-std::string with_date(const std::string& path) {
-  const std::map<std::string, std::string> needed{{"beam.length_m", "1"},
-                                                  {"beam.mass_kg", "1"},
-                                                  {"beam.youngs_modulus_pa", "1"},
-                                                  {"beam.width_m", "1"},
-                                                  {"beam.height_m", "1"}};
-  const std::map<std::string, std::string> instead{{"beam.bending_stiffness_n_m2", "beam.youngs_modulus_pa"},
-                                                   {"beam.mass_per_length_kg_per_m", "beam.mass_kg"},
-                                                   {"beam.density_kg_per_m3", "beam.mass_kg"}};
-  const std::string channel = "record.channels.", date = " = 2009-01-01\n";
-  if (path.starts_with(channel)) {
-    std::string text =
-        "beam = {length_m = 1, mass_kg = 1, bending_stiffness_n_m2 = 1}\n[[record.channels]]\n";
-    for (const std::string key : {"quantity = \"force\"", "column = 1", "unit = \"N\""})
-      text += key.starts_with(path.substr(channel.size())) ? path.substr(channel.size()) + date : key + "\n";
-    return text;
-  }
-  std::string text = path + date;
-  for (const auto& [key, value] : needed)
-    if (key != path && (!instead.contains(path) || instead.at(path) != key))
-      text += key + " = " + value + "\n";
-  if (path == "record.time.unit") text += "record.time.column = 1\n";
-  return text;
+std::string with_date(const std::string& table, const std::string& key) {
+  const std::set<std::string> arrays{"beam.segments",
+                                     "beam.bodies",
+                                     "beam.supports",
+                                     "beam.springs",
+                                     "beam.dashpots",
+                                     "beam.absorbers",
+                                     "beam.damages",
+                                     "beam.added_masses",
+                                     "damping.anchors",
+                                     "sensors",
+                                     "frequency_response.pairs",
+                                     "record.channels"};
+  if (table.starts_with("frame")) return frame_with_date(table, key);
+  std::string text;
+  if (table.empty()) text += key + " = 2009-01-01\n";
+  if (table != "beam" && table != "beam.segments")
+    text += "[beam]\nlength_m = 1\nmass_kg = 1\nbending_stiffness_n_m2 = 1\n";
+  if (table.empty()) return text;
+  text += arrays.contains(table) ? "[[" + table + "]]\n" : "[" + table + "]\n";
+  for (const std::string& line : needed_in(table, key))
+    if (!line.starts_with(key + " ")) text += line + "\n";
+  return text + key + " = 2009-01-01\n";
 }
 
 TEST(Vocabulary, HoldsNoKeyThatIsNotRead) {
-  for (const std::string& key : known_keys()) {
-    const TemporaryFile file("date.toml", with_date(key));
-    std::string named = key;
-    if (const std::size_t at = named.find("channels."); at != std::string::npos) named.insert(at + 8, "[1]");
-    const std::string message = input_error_of(file, [&] { read_experiment(file.path()); });
-    EXPECT_NE(message.find(": " + named + " is a date or time; expected "), std::string::npos)
-        << key << ": " << message;
+  for (const std::string& path : known_keys()) {
+    const std::size_t dot = path.rfind('.');
+    const std::string table = dot == std::string::npos ? "" : path.substr(0, dot), key = path.substr(dot + 1);
+    const TemporaryFile file("date.toml", with_date(table, key));
+    std::string message = input_error_of(file, [&] {
+      if (table.starts_with("frame"))
+        read_frame(file.path());
+      else
+        read_experiment(file.path());
+    });
+    for (std::size_t at; (at = message.find("[1]")) != std::string::npos;) message.erase(at, 3);
+    EXPECT_NE(message.find(": " + path + " is a date or time; expected "), std::string::npos)
+        << path << ": " << message << "\n"
+        << with_date(table, key);
   }
 }
 
@@ -93,19 +148,35 @@ TEST(Vocabulary, IsTheDocumentsToTheLastKey) {
   EXPECT_EQ(documented_keys(), known_keys());
 }
 
-TEST(ConfigurationDocument, HoldsAnExampleThatIsValid) {
+/// The document's examples, in its order.
+std::vector<std::string> examples() {
   const std::string text = document(), fence = "```toml\n";
-  const std::size_t begin = text.find(fence);
-  ASSERT_NE(begin, std::string::npos);
-  const std::string example =
-      text.substr(begin + fence.size(), text.find("```", begin + 3) - begin - fence.size());
-  const TemporaryFile file("example.toml", example);
-  const Experiment experiment = read_experiment(file.path());
-  EXPECT_EQ(experiment.record_file, "massa1_test1-1.txt");
-  EXPECT_DOUBLE_EQ(experiment.beam.tip_mass(), 1.437 + 0.054);
-  for (const std::string& key : known_keys()) {  // also what it leaves at its default, as a comment
+  std::vector<std::string> found;
+  for (std::size_t at = 0; (at = text.find(fence, at)) != std::string::npos;) {
+    at += fence.size();
+    found.push_back(text.substr(at, text.find("```", at) - at));
+  }
+  return found;
+}
+
+TEST(ConfigurationDocument, HoldsExamplesThatAreValid) {
+  ASSERT_EQ(examples().size(), 3u);
+  const TemporaryFile record("record.toml", examples()[0]), beam("beam.toml", examples()[1]);
+  const Experiment with_record = read_experiment(record.path()),
+                   with_everything = read_experiment(beam.path());
+  EXPECT_EQ(with_record.record_file, "massa1_test1-1.txt");
+  EXPECT_DOUBLE_EQ(with_record.beam.tip_mass(), 1.437 + 0.054);
+  EXPECT_EQ(with_everything.beam.segments.size(), 3u);
+  EXPECT_EQ(with_everything.sensors.size(), 2u);
+  EXPECT_EQ(read_frame(TomlTable::parse(examples()[2], "frame.toml")).frame.members.size(), 4u);
+}
+
+TEST(ConfigurationDocument,
+     ShowsEveryKeyInItsExamples) {  // also what they leave at its default, as a comment
+  const std::string shown = examples().at(0) + examples().at(1) + examples().at(2);
+  for (const std::string& key : known_keys()) {
     const std::string name = key.substr(key.rfind('.') + 1);
-    EXPECT_NE(example.find(name + " ="), std::string::npos) << "the example does not show " << key;
+    EXPECT_NE(shown.find(name + " ="), std::string::npos) << "the examples do not show " << key;
   }
 }
 

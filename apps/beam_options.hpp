@@ -1,0 +1,47 @@
+// The beam of `modes`, `simulate` and `frf`: an experiment file, the options for its common numbers, or both.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "apps/command.hpp"
+#include "experiments/experiment.hpp"
+#include "experiments/input/toml_table.hpp"
+#include "experiments/output/results.hpp"
+
+namespace beamid::apps {
+
+/// --config, --length, --width, ... Each option takes the place of one quantity of the file, however the file
+/// gives it; the rest of the file stays. Without a file they change the study's steel beam.
+options::options_description beam_options();
+
+/// An option that sets one key of the experiment file.
+struct KeyOption {
+  const char* option;
+  const char* table;
+  const char* key;
+  std::vector<std::string> instead_of;  ///< keys of the same quantity
+  const char* value_name;               ///< "M"; a number where `is_text` is false
+  const char* help;
+  bool is_text = false;
+};
+
+/// Describes such options, for parse().
+void describe(const std::vector<KeyOption>& keys, options::options_description& described);
+
+struct BeamSource {
+  experiments::Experiment experiment;
+  std::filesystem::path config;  ///< empty without --config
+};
+
+/// @param more options of the command's own.
+/// @throws UsageError, and InputError with the option in the place of the file.
+BeamSource read_beam(const Command& command, const options::variables_map& values,
+                     const std::vector<KeyOption>& more = {});
+
+/// Runs `find`; what a library finds wrong with the experiment becomes an InputError of its file, if there is
+/// one.
+experiments::Results blame_config(const BeamSource& source,
+                                  const std::function<experiments::Results()>& find);
+
+}  // namespace beamid::apps

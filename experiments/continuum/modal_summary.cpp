@@ -1,0 +1,116 @@
+#include "experiments/continuum/modal_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "experiments/beam_description.hpp"
+#include "experiments/continuum/description.hpp"
+#include "experiments/continuum/mode_trust.hpp"
+#include "fem/damping.hpp"
+#include "fem/exact/exact_modes.hpp"
+#include "fem/free_decay.hpp"
+#include "fem/stiffness_solver.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+VectorXd unknowns(Index count) {
+  return VectorXd::Constant(count, unknown);
+}
+
+// Two meshes tell the error of the finer one, when its order is known.
+VectorXd coarser_mesh_error(const Experiment& experiment, const ModalSummary& fine) {
+  const int half = experiment.elements / 2;
+  if (half < 1) return unknowns(fine.modes.size());
+  const auto coarse = fem::assemble(experiment.beam, half, {fine.observed});
+  const auto ratio = static_cast<double>(fine.elements) / static_cast<double>(coarse.mesh.elements.size());
+  if (ratio == 1.0) return unknowns(fine.modes.size());  // breaks leave no coarser mesh
+  const double order = experiment.beam.mass_model == fem::MassModel::lumped ? 2.0 : 4.0;
+  return discretisation_error(fine.modes, fem::modes(coarse, std::min(fine.modes.size(), coarse.size())),
+                              ratio, order);
+}
+
+void compare_with_exact(const fem::Beam& beam, ModalSummary& summary) {
+  constexpr Index most_places = 2000;  // tell a shape as well as a million
+  const VectorXd nodes = summary.system.mesh.positions();
+  const Index step = std::max<Index>(1, nodes.size() / most_places),
+              places = (nodes.size() + step - 1) / step;
+  const auto thinned = [&](const VectorXd& all) { return VectorXd(all(Eigen::seqN(0, places, step))); };
+  const auto exact = fem::exact_modes(beam, summary.modes.size(), thinned(nodes));
+  if (!exact) return;
+  for (Index i = 0; i < summary.modes.size(); ++i) {
+    summary.exact_frequency_hz[i] = exact->angular_frequency[i] / (2.0 * std::numbers::pi);
+    if (i < summary.modes.rigid) continue;  // any combination of rigid motions is as good as another
+    const VectorXd found = thinned(fem::nodal_deflection(summary.system, summary.modes.shape.col(i)));
+    const VectorXd known = exact->deflection.col(i);
+    summary.mac[i] = std::pow(found.dot(known), 2) / (found.squaredNorm() * known.squaredNorm());
+  }
+}
+
+void release(ModalSummary& summary) {
+  if (summary.modes.rigid > 0) return;  // a force has no static shape
+  const fem::StiffnessSolver solver(summary.system.stiffness);
+  const VectorXd deflected = solver.solve(VectorXd(summary.system.inputs.col(0)));
+  const double there = (summary.system.outputs * deflected)(0);
+  summary.static_stiffness = 1.0 / there;
+  summary.release_amplitude = fem::modal_amplitudes(summary.system, summary.modes, deflected / there);
+}
+
+void doubt(ModalSummary& summary) {
+  summary.notes = doubts(summary.modes);
+  if (summary.modes.rigid > 0)
+    summary.notes.push_back(fmt::format(
+        "{} rigid-body mode{}: the beam can move without strain, and has no static shape to be released "
+        "from.",
+        summary.modes.rigid, summary.modes.rigid == 1 ? "" : "s"));
+}
+
+}  // namespace
+
+VectorXd ModalSummary::exact_error() const {
+  VectorXd error = unknowns(modes.size());
+  for (Index i = modes.rigid; i < modes.size(); ++i)
+    error[i] = frequency_hz()[i] / exact_frequency_hz[i] - 1.0;
+  return error;
+}
+
+ModalSummary summarise_modes(const Experiment& experiment, Index count, const Progress& progress) {
+  ModalSummary summary;
+  summary.observed = fem::natural_point(experiment.beam);
+  progress("assembling");
+  summary.system = fem::assemble(experiment.beam, experiment.elements, {summary.observed});
+  summary.elements = static_cast<Index>(summary.system.mesh.elements.size());
+  summary.degrees_of_freedom = summary.system.size();
+  summary.total_mass = total_mass(experiment.beam);
+  count = std::min(count, summary.system.size());
+  progress("modes");
+  summary.modes = fem::modes(summary.system, count);
+  for (VectorXd* values : {&summary.exact_frequency_hz, &summary.mac, &summary.release_amplitude})
+    *values = unknowns(count);
+  const VectorXd base = summary.system.inputs.col(summary.system.inputs.cols() - 1);
+  summary.effective_mass = (summary.modes.shape.transpose() * base).cwiseAbs2();
+  summary.damping_ratio = fem::damping_ratios(experiment.damping, summary.modes.angular_frequency);
+  release(summary);
+  progress("exact modes");
+  compare_with_exact(experiment.beam, summary);
+  if (summary.system.damping.nonZeros() > 0 && summary.modes.rigid == 0) {
+    progress("complex modes");
+    summary.complex = fem::complex_modes(summary.system, count);
+  }
+  if (experiment.elements > most_drawn_elements) {  // a million elements take half a gigabyte
+    summary.system = {};
+    summary.modes.shape.resize(0, 0);
+  }
+  progress("modes of half the elements");
+  summary.discretisation_error = coarser_mesh_error(experiment, summary);
+  doubt(summary);
+  return summary;
+}
+
+}  // namespace beamid::experiments

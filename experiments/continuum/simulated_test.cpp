@@ -1,0 +1,137 @@
+#include "experiments/continuum/simulated_test.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/continuum/excitation_history.hpp"
+#include "experiments/random.hpp"
+#include "fem/modes.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+std::vector<Sensor> default_sensors() {
+  return {{"", {}, Quantity::displacement, 0.0}, {"", {}, Quantity::acceleration, 0.0}};
+}
+
+std::vector<Index> evenly_spread(int count, Index samples) {
+  std::vector<Index> frames;
+  const Index kept = std::min<Index>(count, samples);
+  for (Index i = 0; i < kept; ++i) frames.push_back(kept == 1 ? 0 : i * (samples - 1) / (kept - 1));
+  return frames;
+}
+
+VectorXd clean_history(const SimulatedTest& test, Quantity quantity, Index output, const VectorXd& base) {
+  const fem::Response& r = test.response;
+  if (quantity == Quantity::displacement) return r.displacement.row(output);
+  if (quantity == Quantity::velocity) return r.velocity.row(output);
+  VectorXd acceleration = r.acceleration.row(output);
+  if (base.size() > 0) acceleration += base;
+  return acceleration;
+}
+
+// Modes below half the sampling rate: what an instrument's anti-aliasing filter lets through. One above
+// appears in the record at another frequency.
+struct Audible {
+  Index count = 0;       ///< 200 at most
+  double next_hz = 0.0;  ///< frequency of the first above; 0: there is none
+};
+
+Audible audible_modes(const fem::StructuralSystem& system, double limit_hz) {
+  constexpr Index most = 200;
+  for (Index few = std::min<Index>(system.size(), 25);;
+       few = std::min(2 * few, std::min(system.size(), most))) {
+    const VectorXd frequency = fem::modes(system, few).frequency_hz();
+    const Index below = (frequency.array() < limit_hz).count();
+    if (below < few) return {below, frequency[below]};
+    if (few == std::min(system.size(), most)) return {few, 0.0};
+  }
+}
+
+/// The modal method gets as many modes as the record can show, unless told; with the others a note says what
+/// is heard.
+fem::ResponseMethod completed(const Simulation& settings, SimulatedTest& test) {
+  fem::ResponseMethod method = settings.method;
+  const double limit = 0.5 * settings.sampling_rate;
+  const Audible audible = audible_modes(test.system, limit);
+  if (method.name == "modal" && !method.options.contains("modes")) {
+    method.options["modes"] = static_cast<double>(std::max<Index>(1, audible.count));
+    test.notes.push_back(fmt::format("Of {} modes {} are taken: {}. simulation.modes sets another number.",
+                                     test.system.size(), method.options["modes"],
+                                     audible.next_hz > 0.0
+                                         ? fmt::format("those below {:g} Hz, half the sampling rate", limit)
+                                         : "the lowest"));
+  } else if (audible.next_hz > 0.0 && (method.name != "modal" || method.options["modes"] == 0.0 ||
+                                       method.options["modes"] > static_cast<double>(audible.count))) {
+    test.notes.push_back(fmt::format(
+        "Half the sampling rate is {:g} Hz, the frequency of mode {} is {:.5g} Hz: this mode and those "
+        "above it appear in the record at other frequencies.",
+        limit, audible.count + 1, audible.next_hz));
+  }
+  return method;
+}
+
+// A field of so many numbers at all frames together fits into the memory of any machine.
+int affordable_frames(int frames, Index coordinates, std::vector<std::string>& notes) {
+  constexpr double most_numbers = 2e7;
+  const int affordable = static_cast<int>(most_numbers / static_cast<double>(coordinates));
+  if (frames <= affordable) return frames;
+  notes.push_back(
+      fmt::format("{} of the {} pictures of the whole beam are kept: more would not fit into memory.",
+                  affordable, frames));
+  return affordable;
+}
+
+}  // namespace
+
+SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path& folder, int frames,
+                       const Progress& progress) {
+  const Simulation& settings = experiment.simulation;
+  SimulatedTest test;
+  test.sensors = experiment.sensors.empty() ? default_sensors() : experiment.sensors;
+  test.excitation = experiment.excitation;
+  BeamPoints points(experiment.beam);
+  std::vector<Index> outputs;
+  for (Sensor& sensor : test.sensors) {
+    outputs.push_back(points.add(sensor.position));
+    sensor.position = points[outputs.back()].position;
+    if (sensor.name.empty()) sensor.name = points[outputs.back()].name;
+  }
+  const Index input = points.add(test.excitation.position);
+  test.excitation.position = points[input].position;
+  progress("assembling");
+  test.system = fem::assemble(experiment.beam, experiment.elements, points.all());
+
+  const int steps = settings.steps_per_sample;
+  const auto samples = static_cast<Index>(std::llround(settings.duration * settings.sampling_rate)) + 1;
+  fem::TimeGrid grid{1.0 / (settings.sampling_rate * steps), (samples - 1) * steps + 1, {}};
+  ExcitationHistory history = excite(test.excitation, test.system, input, grid, folder);
+  test.notes = std::move(history.notes);
+  for (const Index sample : evenly_spread(affordable_frames(frames, test.system.size(), test.notes), samples))
+    grid.frames.push_back(sample * steps);
+  test.step = grid.interval;
+  progress("modes");
+  test.method = completed(settings, test);
+  progress("integrating");
+  test.response = fem::respond(test.system, experiment.damping, history.loading, grid, test.method);
+  for (const std::string& remark : test.response.remarks) test.notes.push_back(remark);
+
+  const auto at_samples = Eigen::seqN(Index{0}, samples, Index{steps});
+  test.record.time =
+      VectorXd::LinSpaced(samples, 0, static_cast<double>(samples - 1)) / settings.sampling_rate;
+  test.record.samples.resize(static_cast<Index>(test.sensors.size()), samples);
+  for (std::size_t i = 0; i < test.sensors.size(); ++i) {
+    const Sensor& sensor = test.sensors[i];
+    VectorXd values = clean_history(test, sensor.quantity, outputs[i], history.base_acceleration)(at_samples);
+    if (sensor.noise > 0.0) values += sensor.noise * standard_normal(samples, settings.seed, i);
+    test.record.samples.row(static_cast<Index>(i)) = values.transpose();
+    test.record.channels.push_back({sensor.quantity, sensor.name});
+  }
+  return test;
+}
+
+}  // namespace beamid::experiments
