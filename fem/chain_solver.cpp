@@ -41,7 +41,10 @@ ChainSolver::ChainSolver(const StrainFactors& stiffness, StrainSweeps sweeps, co
     }
   small_.compute(scale_.asDiagonal() * system * scale_.asDiagonal());
   if (!small_.isInvertible())
-    throw std::runtime_error("the stiffness is singular: an axial load buckles the structure");
+    throw std::runtime_error(
+        "the stiffness is singular in double precision: the mesh is too fine for so many supports and loops, "
+        "or an "
+        "axial load buckles the structure");
   constexpr Index worth_keeping = 4;  // columns as long as the chain
   if (system.rows() > worth_keeping) return;
   MatrixXd unit_coordinates(coordinates.size(), system.rows()), unit_forces(forces.size(), system.rows());
