@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fem/element.hpp"
+#include "fem/elements/element.hpp"
 
 namespace beamid::fem {
 namespace {
@@ -277,7 +277,9 @@ Point natural_point(const Beam& beam) {
   for (const Support& support : beam.supports)
     if (support.deflection) held.push_back(support.position);
   std::sort(held.begin(), held.end());
-  if (held.empty() || held.back() < length - same_place) return {"tip", length};
+  const bool sharp_tip = beam.segments.back().section.bending_stiffness(1.0) <= 0.0;  // bears no force
+  if (!sharp_tip && (held.empty() || held.back() < length - same_place)) return {"tip", length};
+  if (held.empty() || sharp_tip) return {"midspan", 0.5 * length};
   held.insert(held.begin(), 0.0);  // a free root bounds the first span
   std::size_t longest = 1;
   for (std::size_t i = 1; i < held.size(); ++i)

@@ -15,7 +15,7 @@ struct Point {
   double position = 0.0;  ///< [m]
 };
 
-/// Finite elements (element.hpp) over the mesh that cut() makes.
+/// Finite elements (elements/element.hpp) over the mesh that cut() makes.
 ///
 /// Coordinates, node after node from the root, those held by supports left out: deflection w [m] and scaled
 /// rotation s theta [m], s being the length of the element before the node; then the displacement [m] of each
@@ -28,8 +28,8 @@ struct Point {
 /// supported.
 StructuralSystem assemble(const Beam& beam, int elements, const std::vector<Point>& points);
 
-/// The same with one point: "tip", or where the tip's deflection is held "midspan", the middle of the longest
-/// span.
+/// The same with one point: "tip", or where the tip's deflection is held or the tip is sharp "midspan", the
+/// middle of the longest span.
 StructuralSystem assemble(const Beam& beam, int elements);
 
 /// The point that the short form uses.

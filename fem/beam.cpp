@@ -69,13 +69,21 @@ void validate(const Beam& beam) {
   const auto on_beam = [&](double x, const char* what) {
     require(x >= 0.0 && x <= length, what, x, span.str());
   };
+  // The deflection there under a force, the integral of x^2 / EI, has no bound.
+  const bool sharp_root = beam.segments.front().section.bending_stiffness(0.0) <= 0.0,
+             sharp_tip = beam.segments.back().section.bending_stiffness(1.0) <= 0.0;
+  const auto carried = [&](double x, const char* what) {
+    on_beam(x, what);
+    require(!(sharp_root && x == 0.0) && !(sharp_tip && x == length), what, x,
+            "a place off the sharp end, which can carry nothing");
+  };
   const auto stretch = [&](double from, double to, const char* what) {
     on_beam(from, what), on_beam(to, what);
     require(from < to, what, from, "a begin before its end");
   };
   for (const Body& body : beam.bodies) {
     const char* const name = body.position == length ? "tip" : "body";
-    on_beam(body.position, "position of a body");
+    carried(body.position, "position of a body");
     require(body.mass >= 0.0, std::string(name) + " mass", body.mass, "zero or a positive number of kg");
     require(body.rotary_inertia >= 0.0, std::string(name) + " rotary inertia", body.rotary_inertia,
             "zero or a positive number of kg m2");
@@ -93,7 +101,7 @@ void validate(const Beam& beam) {
   }
   for (const Support& support : beam.supports) on_beam(support.position, "position of a support");
   for (const Spring& spring : beam.springs) {
-    on_beam(spring.position, "position of a spring");
+    carried(spring.position, "position of a spring");
     require(spring.translational >= 0.0, "spring stiffness", spring.translational,
             "zero or a positive number of N/m");
     require(spring.rotational >= 0.0, "rotational spring stiffness", spring.rotational,
@@ -101,7 +109,7 @@ void validate(const Beam& beam) {
     require(true, "cubic spring stiffness", spring.cubic, "a finite number of N/m3");
   }
   for (const Dashpot& dashpot : beam.dashpots) {
-    on_beam(dashpot.position, "position of a dashpot");
+    carried(dashpot.position, "position of a dashpot");
     require(dashpot.translational >= 0.0, "dashpot", dashpot.translational,
             "zero or a positive number of N s/m");
     require(dashpot.rotational >= 0.0, "rotational dashpot", dashpot.rotational,
@@ -110,7 +118,7 @@ void validate(const Beam& beam) {
             "zero or a positive number of N s2/m2");
   }
   for (const Absorber& absorber : beam.absorbers) {
-    on_beam(absorber.position, "position of an absorber");
+    carried(absorber.position, "position of an absorber");
     require(absorber.mass > 0.0, "absorber mass", absorber.mass, "a positive number of kg");
     require(absorber.stiffness > 0.0, "absorber stiffness", absorber.stiffness, "a positive number of N/m");
     require(absorber.damping >= 0.0, "absorber damping", absorber.damping,

@@ -2,10 +2,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "fem/element.hpp"
+#include "fem/elements/element.hpp"
+#include "fem/elements/frame_element.hpp"
+#include "fem/elements/frame_walk.hpp"
 #include "fem/frame.hpp"
-#include "fem/frame_element.hpp"
-#include "fem/frame_walk.hpp"
 
 namespace beamid::fem {
 namespace {

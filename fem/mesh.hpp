@@ -30,8 +30,9 @@ struct Mesh {
 };
 
 /// Cuts a beam into `elements` of nearly equal length, with a node wherever something begins, ends or sits:
-/// segments, bodies, supports, springs, dashpots, absorbers, damage, added mass, and the points [m] asked for. Between
-/// two such breaks the elements are equally long. There are never fewer elements than breaks demand.
+/// segments, bodies, supports, springs, dashpots, absorbers, damage, added mass, and the points [m] asked
+/// for. Between two such breaks the elements are equally long. There are never fewer elements than breaks
+/// demand.
 /// @throws std::invalid_argument when the beam is impossible, elements < 1 or a point is off the beam.
 Mesh cut(const Beam& beam, int elements, const std::vector<double>& points = {});
 

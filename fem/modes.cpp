@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "fem/dense_modes.hpp"
-#include "fem/lanczos.hpp"
-#include "fem/repeated_rows.hpp"
+#include "fem/solvers/dense_modes.hpp"
+#include "fem/solvers/lanczos.hpp"
+#include "fem/solvers/repeated_rows.hpp"
 
 namespace beamid::fem {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "fem/chain_solver.hpp"
-#include "fem/mixed_solver.hpp"
+#include "fem/solvers/chain_solver.hpp"
+#include "fem/solvers/mixed_solver.hpp"
 
 namespace beamid::fem {
 namespace {

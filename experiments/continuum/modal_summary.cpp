@@ -102,6 +102,9 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
   if (summary.system.damping.nonZeros() > 0 && summary.modes.rigid == 0) {
     progress("complex modes");
     summary.complex = fem::complex_modes(summary.system, count);
+  } else if (summary.system.damping.nonZeros() > 0) {
+    summary.notes.emplace_back(
+        "What dashpots do to the modes is not worked out for a structure that can move without strain.");
   }
   if (experiment.elements > most_drawn_elements) {  // a million elements take half a gigabyte
     summary.system = {};

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "fem/assembly.hpp"
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 #include "filters/fisher_information.hpp"
 #include "reduction/reduction.hpp"
 

@@ -171,6 +171,12 @@ Response integrate(const ResponseProblem& problem, const OneStepScheme& scheme) 
   ResponseRecorder recorder(problem);
   for (Index sample = 0; sample < problem.grid.samples; ++sample) {
     if (sample > 0) integrator.advance(sample);
+    if (!integrator.displacement().allFinite() || !integrator.acceleration().allFinite()) {
+      std::ostringstream message;
+      message << scheme.name << ": the motion has grown beyond all numbers at " << problem.time(sample)
+              << " s; expected a stable scheme, a shorter interval, or a motion that has bounds";
+      throw std::runtime_error(message.str());
+    }
     recorder.record(sample, integrator.displacement(), integrator.velocity(), integrator.acceleration());
   }
   return std::move(recorder.response());

@@ -9,6 +9,8 @@
 
 namespace beamid::fem {
 
+using Eigen::Index, Eigen::VectorXd;
+
 // The solver that the integrators see: of the matrix for n unknowns, but given and giving 2n of them.
 struct SundialsMotion::Klu {
   MotionEquations* equations;
@@ -19,7 +21,7 @@ struct SundialsMotion::Klu {
 
   static int solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, realtype tolerance) {
     Klu& self = of(solver);
-    const Eigen::Index n = self.equations->size();
+    const Index n = self.equations->size();
     view(self.right.get()) = self.equations->reduce(view(b));
     const int flag = SUNLinSolSolve(self.klu.get(), matrix, self.solution.get(), self.right.get(), tolerance);
     if (flag != 0) return flag;
@@ -57,7 +59,7 @@ struct SundialsMotion::Klu {
 
 SundialsMotion::SundialsMotion(const ResponseProblem& problem, const std::string& method, double absolute)
     : equations(problem, method) {
-  const Eigen::Index n = equations.size();
+  const Index n = equations.size();
   SUNContext created = nullptr;
   if (SUNContext_Create(nullptr, &created) != 0) throw std::bad_alloc();
   context.reset(created);
@@ -73,6 +75,20 @@ SundialsMotion::SundialsMotion(const ResponseProblem& problem, const std::string
   if (!matrix) throw std::bad_alloc();
   set_matrix(matrix.get(), 0.0, state.get(), this);
   solver = Klu::create(equations, matrix.get(), created);
+}
+
+Response SundialsMotion::follow(const ResponseProblem& problem, const std::function<void(double)>& advance) {
+  ResponseRecorder recorder(problem);
+  const Index n = equations.size();
+  VectorXd y = view(state.get()), y_rate(2 * n);
+  equations.rate(0.0, y, y_rate);
+  recorder.record(0, y.head(n), y.tail(n), y_rate.tail(n));
+  for (Index sample = 1; sample < problem.grid.samples; ++sample) {
+    advance(problem.time(sample));
+    y = view(state.get());
+    recorder.record(sample, y.head(n), y.tail(n), view(work.get()).tail(n));
+  }
+  return std::move(recorder.response());
 }
 
 int SundialsMotion::rate(realtype t, N_Vector y, N_Vector y_rate, void* data) {

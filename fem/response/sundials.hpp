@@ -7,6 +7,7 @@
 #include <sundials/sundials_linearsolver.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -40,6 +41,11 @@ class SundialsMotion {
   Sundials<N_Vector> state, absolute_tolerances, work;
   Sundials<SUNMatrix> matrix;  ///< M + gamma C + gamma^2 K (n x n)
   Sundials<SUNLinearSolver> solver;
+
+  /// Records the motion at every sample of the problem. `advance(time)` takes `state` there and leaves in
+  /// `work` the derivative of the interpolating polynomial, for the acceleration: M^-1 (...) of a state with
+  /// errors would magnify them by the square of the mesh's highest frequency.
+  Response follow(const ResponseProblem& problem, const std::function<void(double)>& advance);
 
   /// The callbacks; `data` is this object.
   static int rate(realtype t, N_Vector y, N_Vector y_rate, void* data);

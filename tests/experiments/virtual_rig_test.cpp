@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 #include "tests/fem/five_beams.hpp"
 
 namespace beamid::experiments {

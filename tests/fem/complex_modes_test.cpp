@@ -7,7 +7,7 @@
 
 #include "fem/assembly.hpp"
 #include "fem/damping.hpp"
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 #include "fem/modes.hpp"
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"

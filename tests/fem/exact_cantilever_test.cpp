@@ -1,4 +1,4 @@
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 
 #include <gtest/gtest.h>
 

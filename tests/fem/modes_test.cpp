@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fem/assembly.hpp"
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 

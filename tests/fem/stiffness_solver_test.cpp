@@ -7,7 +7,7 @@
 #include <random>
 
 #include "fem/assembly.hpp"
-#include "fem/mixed_solver.hpp"
+#include "fem/solvers/mixed_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
 namespace beamid {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "fem/assembly.hpp"
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 #include "fem/modes.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/five_beams.hpp"

@@ -7,8 +7,6 @@
 namespace beamid::fem {
 namespace {
 
-using Eigen::Index, Eigen::VectorXd;
-
 void require(int flag, const char* call, double time) {
   require_success(flag, "arkode", call, time, ARKStepGetReturnFlagName);
 }
@@ -44,22 +42,12 @@ Response arkode(const ResponseProblem& problem, const ResponseOptions& options) 
   if (problem.has_inputs())  // else it could step across a short pulse
     require(ARKStepSetMaxStep(memory.get(), problem.grid.interval), "ARKStepSetMaxStep", 0.0);
 
-  ResponseRecorder recorder(problem);
-  const Index n = motion.equations.size();
-  VectorXd rate(2 * n), y = view(motion.state.get());
-  motion.equations.rate(0.0, y, rate);
-  recorder.record(0, y.head(n), y.tail(n), rate.tail(n));
-  for (Index sample = 1; sample < problem.grid.samples; ++sample) {
-    const double time = problem.time(sample);
+  return motion.follow(problem, [&](double time) {
     realtype reached = 0.0;
     require(ARKStepEvolve(memory.get(), time, motion.state.get(), &reached, ARK_NORMAL), "ARKStepEvolve",
             time);
-    // As in cvode.cpp: the acceleration of the interpolating polynomial.
     require(ARKStepGetDky(memory.get(), time, 1, motion.work.get()), "ARKStepGetDky", time);
-    y = view(motion.state.get());
-    recorder.record(sample, y.head(n), y.tail(n), view(motion.work.get()).tail(n));
-  }
-  return std::move(recorder.response());
+  });
 }
 
 const bool registered = register_response_method(

@@ -9,8 +9,6 @@
 namespace beamid::fem {
 namespace {
 
-using Eigen::Index, Eigen::VectorXd;
-
 void require(int flag, const char* call, double time) {
   require_success(flag, "cvode", call, time, CVodeGetReturnFlagName);
 }
@@ -45,22 +43,16 @@ Response cvode(const ResponseProblem& problem, const ResponseOptions& options) {
   if (problem.has_inputs())  // else it could step across a short pulse
     require(CVodeSetMaxStep(memory.get(), problem.grid.interval), "CVodeSetMaxStep", 0.0);
 
-  ResponseRecorder recorder(problem);
-  const Index n = motion.equations.size();
-  VectorXd rate(2 * n), y = view(motion.state.get());
-  motion.equations.rate(0.0, y, rate);
-  recorder.record(0, y.head(n), y.tail(n), rate.tail(n));
-  for (Index sample = 1; sample < problem.grid.samples; ++sample) {
-    const double time = problem.time(sample);
+  Response response = motion.follow(problem, [&](double time) {
     realtype reached = 0.0;
     require(CVode(memory.get(), time, motion.state.get(), &reached, CV_NORMAL), "CVode", time);
-    // The acceleration is that of the interpolating polynomial: M^-1 (...) of a state with errors would
-    // magnify them by the square of the highest frequency of the mesh.
     require(CVodeGetDky(memory.get(), time, 1, motion.work.get()), "CVodeGetDky", time);
-    y = view(motion.state.get());
-    recorder.record(sample, y.head(n), y.tail(n), view(motion.work.get()).tail(n));
-  }
-  return std::move(recorder.response());
+  });
+  response.remarks.emplace_back(
+      "cvode: accelerations are those of its interpolating polynomial and can err far more than "
+      "displacements; compare "
+      "them with arkode");
+  return response;
 }
 
 const bool registered = register_response_method(

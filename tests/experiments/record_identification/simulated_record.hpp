@@ -6,7 +6,7 @@
 #include "experiments/oscillator.hpp"
 #include "experiments/random.hpp"
 #include "experiments/record_identification/record_identification.hpp"
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 #include "fem/free_decay.hpp"
 #include "tests/fem/five_beams.hpp"
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "fem/assembly.hpp"
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"
 

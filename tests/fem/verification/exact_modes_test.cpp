@@ -2,7 +2,7 @@
 // equations in the other files here.
 #include "fem/exact/exact_modes.hpp"
 
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 #include "tests/fem/verification/oracle.hpp"
 
 namespace beamid {

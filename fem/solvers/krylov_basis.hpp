@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fem/repeated_rows.hpp"
-#include "fem/rigid_complement.hpp"
+#include "fem/solvers/repeated_rows.hpp"
+#include "fem/solvers/rigid_complement.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "fem/structural_system.hpp"
 

@@ -1,4 +1,4 @@
-#include "fem/rigid_motions.hpp"
+#include "fem/solvers/rigid_motions.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "fem/mixed_solver.hpp"
+#include "fem/solvers/mixed_solver.hpp"
 
 #include <Eigen/UmfPackSupport>
 #include <stdexcept>

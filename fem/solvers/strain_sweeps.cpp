@@ -1,4 +1,4 @@
-#include "fem/strain_sweeps.hpp"
+#include "fem/solvers/strain_sweeps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "fem/repeated_rows.hpp"
+#include "fem/solvers/repeated_rows.hpp"
 
 namespace beamid::fem {
 

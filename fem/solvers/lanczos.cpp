@@ -1,4 +1,4 @@
-#include "fem/lanczos.hpp"
+#include "fem/solvers/lanczos.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fem/krylov_basis.hpp"
+#include "fem/solvers/krylov_basis.hpp"
 
 namespace beamid::fem {
 namespace {

@@ -1,4 +1,4 @@
-#include "fem/element_shapes.hpp"
+#include "fem/elements/element_shapes.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "fem/krylov_basis.hpp"
+#include "fem/solvers/krylov_basis.hpp"
 
 #include <algorithm>
 #include <cmath>

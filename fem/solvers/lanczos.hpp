@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "fem/rigid_complement.hpp"
+#include "fem/solvers/rigid_complement.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "fem/structural_system.hpp"
 

@@ -1,8 +1,8 @@
-#include "fem/element.hpp"
+#include "fem/elements/element.hpp"
 
 #include <Eigen/LU>
 
-#include "fem/element_shapes.hpp"
+#include "fem/elements/element_shapes.hpp"
 
 namespace beamid::fem {
 namespace {

@@ -1,4 +1,4 @@
-#include "fem/dense_modes.hpp"
+#include "fem/solvers/dense_modes.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -1,4 +1,4 @@
-#include "fem/rigid_complement.hpp"
+#include "fem/solvers/rigid_complement.hpp"
 
 #include <Eigen/Cholesky>
 #include <stdexcept>

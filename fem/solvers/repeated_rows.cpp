@@ -1,4 +1,4 @@
-#include "fem/repeated_rows.hpp"
+#include "fem/solvers/repeated_rows.hpp"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "fem/rigid_motions.hpp"
-#include "fem/strain_sweeps.hpp"
+#include "fem/solvers/rigid_motions.hpp"
+#include "fem/solvers/strain_sweeps.hpp"
 #include "fem/structural_system.hpp"
 
 namespace beamid::fem {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fem/strain_sweeps.hpp"
+#include "fem/solvers/strain_sweeps.hpp"
 
 namespace beamid::fem {
 

@@ -1,4 +1,4 @@
-#include "fem/chain_solver.hpp"
+#include "fem/solvers/chain_solver.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,9 +1,9 @@
-#include "fem/frame_element.hpp"
+#include "fem/elements/frame_element.hpp"
 
 #include <cmath>
 
-#include "fem/element.hpp"
-#include "fem/element_shapes.hpp"
+#include "fem/elements/element.hpp"
+#include "fem/elements/element_shapes.hpp"
 
 namespace beamid::fem {
 namespace {

@@ -1,4 +1,4 @@
-#include "fem/frame_walk.hpp"
+#include "fem/elements/frame_walk.hpp"
 
 #include <algorithm>
 #include <deque>

@@ -1,4 +1,4 @@
-#include "fem/exact_cantilever.hpp"
+#include "fem/exact/exact_cantilever.hpp"
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
