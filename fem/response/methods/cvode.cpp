@@ -50,8 +50,7 @@ Response cvode(const ResponseProblem& problem, const ResponseOptions& options) {
   });
   response.remarks.emplace_back(
       "cvode: accelerations are those of its interpolating polynomial and can err far more than "
-      "displacements; compare "
-      "them with arkode");
+      "displacements; compare them with arkode");
   return response;
 }
 
