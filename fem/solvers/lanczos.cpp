@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "fem/solvers/krylov_basis.hpp"
 
@@ -72,8 +73,7 @@ Found find_missed(const StructuralSystem& system, const StiffnessSolver& solver,
                   const RigidComplement& complement, const Found& found, std::uint64_t seed) {
   MatrixXd known(system.size(), complement.count() + found.shapes.cols());
   known << complement.modes(), found.shapes;
-  const RigidComplement rest(system.mass, known);
-  known.resize(0, 0);
+  const RigidComplement rest(system.mass, std::move(known));
   const double limit = found.theta[found.theta.size() - 1] * (1.0 + same_theta);
   const Index most = std::min(system.size() - rest.count(), 20 * found.theta.size() + 200);
   if (most < 1) return {};

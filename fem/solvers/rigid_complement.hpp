@@ -14,7 +14,7 @@ class RigidComplement {
  public:
   /// @param motions basis of the rigid-body motions (n x k).
   /// @throws std::runtime_error when one of them has no mass.
-  RigidComplement(const SparseMatrix& mass, const Eigen::MatrixXd& motions);
+  RigidComplement(const SparseMatrix& mass, Eigen::MatrixXd motions);
 
   const Eigen::MatrixXd& modes() const { return modes_; }
   Eigen::Index count() const { return modes_.cols(); }
