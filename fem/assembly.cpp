@@ -240,7 +240,7 @@ class Assembly {
     }
     for (Eigen::Index i = 0; i < n; ++i)
       if (base_[i] != 0.0) inputs.emplace_back(static_cast<int>(i), count, base_[i]);
-    system_.input_names.push_back("base_acceleration");
+    system_.input_names.emplace_back("base_acceleration");
     system_.inputs = sparse(n, count + 1, inputs);
     system_.outputs = sparse(count, n, outputs);
   }

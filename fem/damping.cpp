@@ -107,7 +107,7 @@ struct Rates {
 };
 
 VectorXd checked_rates(const DampingLaw& law, const VectorXd& omega) {
-  const VectorXd rates = std::visit(Rates{omega}, law);
+  VectorXd rates = std::visit(Rates{omega}, law);
   for (Index i = 0; i < omega.size(); ++i) {
     if (rates[i] >= 0.0) continue;
     std::ostringstream message;
