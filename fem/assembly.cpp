@@ -7,19 +7,12 @@
 #include <string>
 
 #include "fem/elements/element.hpp"
+#include "fem/triplets.hpp"
 
 namespace beamid::fem {
 namespace {
 
-using Triplets = std::vector<Eigen::Triplet<double>>;
 using Kind = Coordinate::Kind;
-
-SparseMatrix sparse(Eigen::Index rows, Eigen::Index columns, const Triplets& entries) {
-  SparseMatrix matrix(rows, columns);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  matrix.makeCompressed();
-  return matrix;
-}
 
 double added_mass(const Beam& beam, const Mesh& mesh, const Mesh::Element& element) {
   const double middle = 0.5 * (mesh.nodes[element.first].x + mesh.nodes[element.second].x);

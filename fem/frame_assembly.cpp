@@ -6,19 +6,12 @@
 #include "fem/elements/frame_element.hpp"
 #include "fem/elements/frame_walk.hpp"
 #include "fem/frame.hpp"
+#include "fem/triplets.hpp"
 
 namespace beamid::fem {
 namespace {
 
-using Triplets = std::vector<Eigen::Triplet<double>>;
 using Kind = Coordinate::Kind;
-
-SparseMatrix sparse(Eigen::Index rows, Eigen::Index columns, const Triplets& entries) {
-  SparseMatrix matrix(rows, columns);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  matrix.makeCompressed();
-  return matrix;
-}
 
 // A rotation, and the length that scales it.
 struct Turn {

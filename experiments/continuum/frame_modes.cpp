@@ -28,11 +28,6 @@ VectorXd coarser_mesh_error(const FrameExperiment& experiment, const fem::Modes&
                               static_cast<double>(experiment.elements_per_member) / half, order);
 }
 
-// Rounding's share of what symmetry makes zero would read like a result.
-double rounded(double value, double total) {
-  return value < 1e-12 * total ? 0.0 : value;
-}
-
 Table mode_table(const FrameModes& found) {
   Table table{"modes", ""};
   table.column({"mode", "mode"})

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "experiments/continuum/description.hpp"
+#include "experiments/continuum/mode_trust.hpp"
 #include "experiments/output/mode_figure.hpp"
 #include "experiments/output/mode_shapes.hpp"
 
@@ -21,9 +22,9 @@ VectorXd release_acceleration(const ModalSummary& s) {
   return s.release_amplitude.cwiseProduct(s.modes.angular_frequency.cwiseAbs2());
 }
 
-// Rounding's share of what symmetry makes zero would read like a result.
-double rounded(double value, const VectorXd& among) {
-  return std::abs(value) < 1e-12 * among.cwiseAbs().maxCoeff() ? 0.0 : value;
+// A value as it reads among others.
+double rounded_among(double value, const VectorXd& among) {
+  return rounded(value, among.cwiseAbs().maxCoeff());
 }
 
 Table mode_table(const ModalSummary& s) {
@@ -42,13 +43,13 @@ Table mode_table(const ModalSummary& s) {
   const VectorXd frequency = s.frequency_hz(), error = s.exact_error(),
                  acceleration = release_acceleration(s);
   const VectorXd mass =
-      s.effective_mass.unaryExpr([&](double value) { return rounded(value, s.effective_mass); });
+      s.effective_mass.unaryExpr([&](double value) { return rounded_among(value, s.effective_mass); });
   for (Index i = 0; i < s.modes.size(); ++i) {
     const bool rigid = i < s.modes.rigid;
     table.row({fmt::format("{}{}", i + 1, rigid ? " rigid" : ""), frequency[i], s.discretisation_error[i],
                error[i], rigid ? std::nan("") : s.modes.digits(i), mass[i], 100.0 * mass[i] / s.total_mass,
-               100.0 * rounded(s.release_amplitude[i], s.release_amplitude),
-               1e-3 * rounded(acceleration[i], acceleration), s.mac[i], 100.0 * s.damping_ratio[i]});
+               100.0 * rounded_among(s.release_amplitude[i], s.release_amplitude),
+               1e-3 * rounded_among(acceleration[i], acceleration), s.mac[i], 100.0 * s.damping_ratio[i]});
   }
   table.note = fmt::format(
       "mesh error: relative, estimated from half the elements; exact: against the continuum, where its "

@@ -36,4 +36,8 @@ std::vector<std::string> doubts(const fem::Modes& modes) {
   return notes;
 }
 
+double rounded(double value, double scale) {
+  return std::abs(value) < 1e-12 * scale ? 0.0 : value;
+}
+
 }  // namespace beamid::experiments

@@ -19,4 +19,8 @@ Eigen::VectorXd discretisation_error(const fem::Modes& fine, const fem::Modes& c
 /// to the Rayleigh quotient of its shape, or a residual above 1e-6.
 std::vector<std::string> doubts(const fem::Modes& modes);
 
+/// The value, or 0 where it is below 1e-12 of `scale`: rounding's share of what symmetry makes zero would
+/// read like a result.
+double rounded(double value, double scale);
+
 }  // namespace beamid::experiments

@@ -116,7 +116,7 @@ MatrixXd lowest_shapes(const StructuralSystem& system, const StiffnessSolver& so
   constexpr std::uint64_t first_seed = 1;
   for (std::uint64_t seed = first_seed + 1;; ++seed) {
     const Found missed = find_missed(system, solver, complement, found, seed);
-    if (missed.theta.size() == 0) return found.shapes;
+    if (missed.theta.size() == 0) return std::move(found.shapes);
     take_in(found, missed);
   }
 }
