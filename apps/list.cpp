@@ -19,6 +19,11 @@ std::string to_text(const filters::OptionValue& value) {
     text << *number;
     return text.str();
   }
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+    std::ostringstream text;
+    for (std::size_t i = 0; i < numbers->size(); ++i) text << (i ? ", " : "") << (*numbers)[i];
+    return numbers->empty() ? "none" : text.str();
+  }
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   return std::get<std::string>(value);
 }

@@ -53,7 +53,8 @@ void check_model(const Experiment& experiment, const fem::StructuralSystem& syst
       reduction::reduction_registry().make(experiment.reduction.name, experiment.reduction.options);
   const reduction::ReducedModel reduced = reduce(system, *method);
   at_place(experiment.model.place, [&] {
-    return model_registry().make(experiment.model.name, experiment.model.options, reduced.system, observed);
+    return model_registry().make(experiment.model.name, experiment.model.options,
+                                 at_one_point(reduced.system, observed));
   });
 }
 

@@ -21,7 +21,6 @@ Identification identify(const JointModel& model, const filters::Measurements& re
   const auto filter = filters::filter_registry().make(
       settings.filter, settings.filter_options,
       filters::discretise(model.motion, dt, settings.discretisation, {{}, settings.output_noise}));
-  const Eigen::Index parameters = model.motion->parameter_size();
   filters::Gaussian initial = settings.initial;
   Identification result;
   for (int pass = 1; pass <= settings.passes; ++pass) {
@@ -29,7 +28,8 @@ Identification identify(const JointModel& model, const filters::Measurements& re
     result.run =
         filters::run(*filter, initial, record, last ? keep : filters::Keep::last_belief, settings.start);
     if (result.run.failure) break;
-    initial.mean.tail(parameters) = result.run.last.mean.tail(parameters);
+    const Eigen::Index constants = initial.mean.size() - 2 * model.motion_size();
+    initial.mean.tail(constants) = result.run.last.mean.tail(constants);
   }
   const Eigen::VectorXd& mean = result.run.last.mean;
   const Eigen::Matrix2d covariance = result.run.last.covariance.block<2, 2>(2, 2);

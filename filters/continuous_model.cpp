@@ -1,6 +1,7 @@
 #include "filters/continuous_model.hpp"
 
 #include "filters/central_differences.hpp"
+#include "filters/discrete_model.hpp"
 
 namespace beamid::filters {
 
@@ -15,6 +16,10 @@ void ContinuousModel::output_jacobian(const VectorXd& state, const VectorXd& inp
                                       MatrixXd& jacobian) const {
   const auto h = [&](const VectorXd& z, VectorXd& value) { output(z, input, value); };
   central_differences(h, state, static_cast<Index>(output_labels().size()), jacobian);
+}
+
+std::unique_ptr<DiscreteModel> ContinuousModel::structured(double, const std::string&, const Noise&) const {
+  return nullptr;
 }
 
 void LinearMotion::input_matrix(const VectorXd&, MatrixXd& matrix) const {

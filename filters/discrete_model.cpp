@@ -16,6 +16,12 @@ void DiscreteModel::linearised_transition(const VectorXd& state, const VectorXd&
   transition(state, input, next);
 }
 
+void DiscreteModel::move(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd& directions) {
+  MatrixXd jacobian;
+  linearised_transition(state, input, next, jacobian);
+  directions = jacobian * directions;
+}
+
 void DiscreteModel::output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) {
   central_differences([&](const VectorXd& z, VectorXd& value) { output(z, input, value); }, state,
                       static_cast<Index>(output_labels().size()), jacobian);
@@ -69,9 +75,11 @@ std::unique_ptr<DiscreteModel> discretise(std::shared_ptr<const ContinuousModel>
   if (!(dt > 0.0))
     throw std::invalid_argument("interval is " + std::to_string(dt) + " s; expected more than 0");
   const auto states = static_cast<Index>(model->state_labels().size());
-  if (noise.process.size() == 0) noise.process.setZero(states, states);
-  require_square(noise.process, states, "process noise");
+  if (noise.process.size() > 0) require_square(noise.process, states, "process noise");
   require_square(noise.output, static_cast<Index>(model->output_labels().size()), "output noise");
+  scheme_registry().find(scheme);
+  if (auto structured = model->structured(dt, scheme, noise)) return structured;
+  if (noise.process.size() == 0) noise.process.setZero(states, states);
   return std::make_unique<Discretised>(std::move(model), dt, scheme_registry().make(scheme, {}),
                                        std::move(noise));
 }

@@ -19,7 +19,7 @@ class DiscreteModel {
 
   virtual std::vector<Label> state_labels() const = 0;       ///< n
   virtual std::vector<Label> output_labels() const = 0;      ///< p
-  virtual const Eigen::MatrixXd& process_noise() const = 0;  ///< Q (n x n)
+  virtual const Eigen::MatrixXd& process_noise() const = 0;  ///< Q (n x n); may be empty: none
   virtual const Eigen::MatrixXd& output_noise() const = 0;   ///< R (p x p)
 
   virtual void transition(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
@@ -27,6 +27,11 @@ class DiscreteModel {
   /// F(z, u) and its Jacobian (n x n); central differences unless overridden.
   virtual void linearised_transition(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
                                      Eigen::VectorXd& next, Eigen::MatrixXd& jacobian);
+
+  /// F(z, u) and the directions J d of a block of directions d (n x r), in place. Where J has structure this
+  /// costs O(n r), and J is never formed; the default forms it.
+  virtual void move(const Eigen::VectorXd& state, const Eigen::VectorXd& input, Eigen::VectorXd& next,
+                    Eigen::MatrixXd& directions);
 
   virtual void output(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
                       Eigen::VectorXd& output) = 0;

@@ -6,7 +6,8 @@
 namespace beamid::filters {
 
 namespace {
-constexpr const char* type_names[] = {"a number", "a text", "true or false"};  // in the order of OptionValue
+constexpr const char* type_names[] = {"a number", "a text", "true or false",
+                                      "a list of numbers"};  // in the order of OptionValue
 }
 
 Options Options::completed(const std::vector<OptionSpec>& specs, const std::string& owner) const {

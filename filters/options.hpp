@@ -8,7 +8,7 @@
 
 namespace beamid::filters {
 
-using OptionValue = std::variant<double, std::string, bool>;
+using OptionValue = std::variant<double, std::string, bool, std::vector<double>>;
 
 /// An option a method understands.
 struct OptionSpec {
@@ -28,6 +28,9 @@ class Options {
   double number(const std::string& name) const { return std::get<double>(values_.at(name)); }
   bool flag(const std::string& name) const { return std::get<bool>(values_.at(name)); }
   const std::string& text(const std::string& name) const { return std::get<std::string>(values_.at(name)); }
+  const std::vector<double>& numbers(const std::string& name) const {
+    return std::get<std::vector<double>>(values_.at(name));
+  }
   const std::map<std::string, OptionValue>& values() const { return values_; }
 
   /// These values, completed by the fallbacks of `specs`.

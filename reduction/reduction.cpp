@@ -68,8 +68,9 @@ ReducedModel project(const fem::StructuralSystem& system, const Bases& bases) {
   return model;
 }
 
-ReducedModel reduce(const fem::StructuralSystem& system, const Reduction& reduction) {
-  return project(system, reduction.bases(system));
+ReducedModel reduce(const fem::StructuralSystem& system, const Reduction& reduction,
+                    const Training& training) {
+  return project(system, reduction.bases(system, training));
 }
 
 }  // namespace beamid::reduction

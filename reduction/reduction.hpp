@@ -3,23 +3,38 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <string>
 
 #include "fem/structural_system.hpp"
 #include "filters/registry.hpp"
 
 namespace beamid::reduction {
 
+/// Deflections seen at some points: a shape from a file (N = 1), or a response for the POD.
+struct Training {
+  Eigen::VectorXd positions;    ///< (p) [m] along the beam
+  Eigen::MatrixXd deflections;  ///< (p x N), a column per instant; only their ratios matter
+
+  bool empty() const { return deflections.size() == 0; }
+};
+
 /// Shapes Phi (n x r): the full motion is assumed to be q = Phi z.
 struct Bases {
   Eigen::MatrixXd shapes;
+
+  /// How much each shape carries, where the method says so: Hankel singular values, singular values of the
+  /// snapshots. All that were found, not only the r that are kept; empty where the method has none.
+  Eigen::VectorXd significance = {};
+  std::string significance_name = {};  ///< with its unit: "Hankel singular value [m/N]"
 };
 
 /// A way to choose shapes for a system.
 class Reduction {
  public:
   virtual ~Reduction() = default;
-  /// @throws std::invalid_argument when the system cannot be reduced this way.
-  virtual Bases bases(const fem::StructuralSystem& system) const = 0;
+  /// @param training what a method learns from, for those that do; the others do not look at it.
+  /// @throws std::invalid_argument when the system cannot be reduced this way, or training is missing.
+  virtual Bases bases(const fem::StructuralSystem& system, const Training& training = {}) const = 0;
 };
 
 /// A small system and the way back to the mesh.
@@ -38,7 +53,8 @@ struct ReducedModel {
 ReducedModel project(const fem::StructuralSystem& system, const Bases& bases);
 
 /// bases + project.
-ReducedModel reduce(const fem::StructuralSystem& system, const Reduction& reduction);
+ReducedModel reduce(const fem::StructuralSystem& system, const Reduction& reduction,
+                    const Training& training = {});
 
 /// Contracts a reduction may declare; the conformance tests hold it to them.
 namespace contract {

@@ -54,7 +54,18 @@ std::map<std::string, std::string> apply(const std::vector<Override>& overrides,
     if (present != nullptr && !present->is_table()) continue;  // the reader will refuse it
     toml::table& table = child(root, over.table);
     for (const std::string& key : over.instead_of) table.erase(key);
-    std::visit([&](const auto& value) { table.insert_or_assign(over.key, value); }, over.value);
+    if (const auto* numbers = std::get_if<std::vector<double>>(&over.value)) {
+      toml::array array;
+      for (const double number : *numbers) array.push_back(number);
+      table.insert_or_assign(over.key, std::move(array));
+    } else {
+      std::visit(
+          [&](const auto& value) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, std::vector<double>>)
+              table.insert_or_assign(over.key, value);
+          },
+          over.value);
+    }
     origins[over.table + "." + over.key] = over.origin;
   }
   return origins;

@@ -4,6 +4,7 @@
 //     x' = v,   v' = -(K x + C v) / M,   K' = C' = b' = 0
 //
 // Observed: displacement x, velocity v or acceleration -(K x + C v) / M + b, in any mix.
+#include <cmath>
 #include <stdexcept>
 
 #include "experiments/joint_model.hpp"
@@ -70,24 +71,44 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
   Index parameters_;
 };
 
-std::unique_ptr<JointModel> make(const fem::StructuralSystem& system, const std::vector<Quantity>& observed,
-                                 const filters::Options& options) {
+// The beam's own stiffness and damping, to 30 % and to as much again.
+std::vector<Unknown> unknowns(double mass, double stiffness, const fem::DampingLaw& law) {
+  constexpr double stiffness_doubt = 0.3, usual_damping_ratio = 0.01;
+  const double omega = std::sqrt(stiffness / mass);
+  const bool described = !std::holds_alternative<fem::Undamped>(law);
+  const double ratio =
+      described ? fem::damping_ratios(law, VectorXd::Constant(1, omega))[0] : usual_damping_ratio;
+  const double damping = 2.0 * ratio * omega * mass;
+  return {{"stiffness", "N/m", stiffness, stiffness_doubt * stiffness},
+          {"damping", "N s/m", damping, damping}};
+}
+
+std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+  const fem::StructuralSystem system = reduced(setting).system;
   if (system.size() != 1)
     throw std::invalid_argument("model 'sdof' needs a reduction to one coordinate; this one keeps " +
                                 std::to_string(system.size()));
-  bool acceleration = false;
-  for (const Quantity quantity : observed) {
-    if (quantity == Quantity::force)
+  std::vector<Quantity> observed;
+  auto model = std::make_unique<JointModel>();
+  for (const Observation& observation : setting.observations) {
+    if (observation.quantity == Quantity::force)
       throw std::invalid_argument(
           "model 'sdof' observes displacement, velocity or acceleration; found force");
-    acceleration |= quantity == Quantity::acceleration;
+    if (observation.quantity == Quantity::acceleration && options.flag("sensor_bias"))
+      model->offsets.push_back({4, static_cast<Index>(observed.size())});
+    observed.push_back(observation.quantity);
   }
   if (observed.empty()) throw std::invalid_argument("model 'sdof' needs at least one observed quantity");
   const double reading = system.outputs.coeff(0, 0);  // output per unit of the coordinate
   const double mass = system.mass.coeff(0, 0) / (reading * reading);
-  const bool sensor_bias = acceleration && options.flag("sensor_bias");
-  return std::make_unique<JointModel>(
-      JointModel{std::make_shared<SingleDegreeOfFreedom>(mass, observed, sensor_bias), mass});
+  const double stiffness = system.stiffness.assembled().coeff(0, 0) / (reading * reading);
+  model->motion = std::make_shared<SingleDegreeOfFreedom>(mass, observed, !model->offsets.empty());
+  model->unknowns = unknowns(mass, stiffness, setting.damping);
+  model->unknown_places = {2, 3};
+  model->mode_shapes = MatrixXd::Ones(1, 1);
+  model->mode_frequencies = VectorXd::Constant(1, std::sqrt(stiffness / mass));
+  model->equivalent_mass = mass;
+  return model;
 }
 
 const bool registered = model_registry().add(

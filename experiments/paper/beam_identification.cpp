@@ -14,8 +14,8 @@ namespace {
 // Standard deviations that no unbiased estimate of K and C from the whole acceleration record falls below.
 Eigen::Vector2d bound(const fem::StructuralSystem& reduced, const Oscillator& truth,
                       const ReleasedBeam& released) {
-  const auto model =
-      model_registry().make("sdof", {{"sensor_bias", false}}, reduced, {Quantity::acceleration});
+  const auto model = model_registry().make("sdof", {{"sensor_bias", false}},
+                                           at_one_point(reduced, {Quantity::acceleration}));
   const double dt = released.time[1] - released.time[0];
   const auto discrete = filters::discretise(
       model->motion, dt, "exponential", {{}, Eigen::MatrixXd::Constant(1, 1, sensor_noise * sensor_noise)});
@@ -34,8 +34,8 @@ BeamCase prepare(const TestBeam& test) {
   beam.exact_frequency_hz = exact.frequency_hz();
   const auto rayleigh = reduction::reduction_registry().make("rayleigh", {});
   const auto reduced = reduce(fem::assemble(settings.beam, settings.elements), *rayleigh);
-  beam.model =
-      *model_registry().make("sdof", {}, reduced.system, {Quantity::displacement, Quantity::velocity});
+  beam.model = *model_registry().make(
+      "sdof", {}, at_one_point(reduced.system, {Quantity::displacement, Quantity::velocity}));
   beam.reference = Oscillator::from_frequency(beam.model.equivalent_mass, exact.angular_frequency(),
                                               test.first_damping_ratio);
   const Eigen::Vector2d bounds = bound(reduced.system, beam.reference, beam.released);

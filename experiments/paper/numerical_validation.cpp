@@ -61,7 +61,8 @@ ValidationSettings bias_settings() {
 Identification validate(const std::string& filter, const std::string& scheme,
                         const ValidationSettings& settings, filters::Keep keep) {
   const Oscillator truth = validation_truth();
-  const auto model = model_registry().make("sdof", {}, one_coordinate(truth), settings.observed);
+  const auto model =
+      model_registry().make("sdof", {}, at_one_point(one_coordinate(truth), settings.observed));
   const auto outputs = static_cast<Eigen::Index>(settings.observed.size());
   IdentificationSettings identification;
   identification.filter = filter;

@@ -99,8 +99,8 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
       reduction::reduction_registry().make(experiment.reduction.name, experiment.reduction.options);
   const reduction::ReducedModel reduced = reduce(system, *method);
   result.model = at_place(experiment.model.place, [&] {
-    return *model_registry().make(experiment.model.name, experiment.model.options, reduced.system,
-                                  observed(record));
+    return *model_registry().make(experiment.model.name, experiment.model.options,
+                                  at_one_point(reduced.system, observed(record)));
   });
 
   const double dt = record.interval();

@@ -27,7 +27,7 @@ class ExtendedKalmanFilter final : public Filter {
     belief_.mean.swap(next_);
     work_.noalias() = tangent_ * belief_.covariance;
     belief_.covariance.noalias() = work_ * tangent_.transpose();
-    belief_.covariance += model_->process_noise();
+    if (model_->process_noise().size() > 0) belief_.covariance += model_->process_noise();
     check_finite(belief_);
   }
 

@@ -52,7 +52,7 @@ class UnscentedKalmanFilter final : public Filter {
     belief_.mean += shift_;
     belief_.covariance.noalias() = weight() * moved_ * moved_.transpose();
     belief_.covariance.noalias() += centre_ * shift_ * shift_.transpose();
-    belief_.covariance += model_->process_noise();
+    if (model_->process_noise().size() > 0) belief_.covariance += model_->process_noise();
     check_finite(belief_);
   }
 

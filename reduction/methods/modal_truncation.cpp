@@ -16,7 +16,7 @@ class ModalTruncation final : public Reduction {
     modes_ = static_cast<Eigen::Index>(modes);
   }
 
-  Bases bases(const fem::StructuralSystem& system) const override {
+  Bases bases(const fem::StructuralSystem& system, const Training&) const override {
     Eigen::MatrixXd shapes = fem::modes(system, modes_).shape;
     const Eigen::MatrixXd seen = system.outputs * shapes;
     for (Eigen::Index i = 0; i < modes_; ++i)

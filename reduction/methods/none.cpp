@@ -6,7 +6,7 @@ namespace {
 
 class None final : public Reduction {
  public:
-  Bases bases(const fem::StructuralSystem& system) const override {
+  Bases bases(const fem::StructuralSystem& system, const Training&) const override {
     return {Eigen::MatrixXd::Identity(system.size(), system.size())};
   }
 };

@@ -42,7 +42,7 @@ class Rayleigh final : public Reduction {
                                   "' of reduction 'rayleigh'; known: " + "one_minus_cosine, static_tip_load");
   }
 
-  Bases bases(const fem::StructuralSystem& system) const override {
+  Bases bases(const fem::StructuralSystem& system, const Training&) const override {
     return {shape_ == "static_tip_load" ? fem::static_shape(system) : one_minus_cosine(system)};
   }
 

@@ -22,7 +22,10 @@ const std::vector<std::vector<Quantity>> observations{
 class EveryModel : public testing::TestWithParam<std::string> {
  protected:
   std::shared_ptr<const filters::LinearMotion> make(const std::vector<Quantity>& observed) {
-    return model_registry().make(GetParam(), {}, test::one_coordinate(3.0, 515.8), observed)->motion;
+    return std::dynamic_pointer_cast<const filters::LinearMotion>(
+        model_registry()
+            .make(GetParam(), {}, at_one_point(test::one_coordinate(3.0, 515.8), observed))
+            ->motion);
   }
   // A state with nothing zero in it, parameters of the right size for the system above.
   static VectorXd state_of(const filters::LinearMotion& motion) {
@@ -106,16 +109,17 @@ TEST_P(EveryModel, LeavesItsParametersAtRest) {
 
 TEST_P(EveryModel, TellsTheMassAtItsOutput) {
   // Oracle: y = r q and M q'' make M / r^2 at y.
-  const auto model =
-      model_registry().make(GetParam(), {}, test::one_coordinate(3.0, 515.8, 0.5), {Quantity::velocity});
+  const auto model = model_registry().make(
+      GetParam(), {}, at_one_point(test::one_coordinate(3.0, 515.8, 0.5), {Quantity::velocity}));
   EXPECT_DOUBLE_EQ(model->equivalent_mass, 12.0);
 }
 
 TEST_P(EveryModel, RefusesUnknownOptionsAndWhatItCannotObserve) {
   const auto system = test::one_coordinate(3.0, 515.8);
-  EXPECT_THROW(model_registry().make(GetParam(), {{"no_such_option", 1.0}}, system, {Quantity::velocity}),
+  EXPECT_THROW(model_registry().make(GetParam(), {{"no_such_option", 1.0}},
+                                     at_one_point(system, {Quantity::velocity})),
                std::invalid_argument);
-  EXPECT_THROW(model_registry().make(GetParam(), {}, system, {}), std::invalid_argument);
+  EXPECT_THROW(model_registry().make(GetParam(), {}, at_one_point(system, {})), std::invalid_argument);
 }
 
 std::vector<std::string> names() {

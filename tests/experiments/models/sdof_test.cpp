@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 std::unique_ptr<JointModel> sdof(const std::vector<Quantity>& observed, const filters::Options& options = {},
                                  const fem::StructuralSystem& system = test::one_coordinate(3.0, 515.8)) {
-  return model_registry().make("sdof", options, system, observed);
+  return model_registry().make("sdof", options, at_one_point(system, observed));
 }
 
 std::string refusal(const std::vector<Quantity>& observed, const fem::StructuralSystem& system) {
@@ -53,9 +53,9 @@ TEST(Sdof, ReadsAccelerationWithTheSensorsBias) {
 
 TEST(Sdof, EstimatesABiasOnlyWhereThereIsASensorOfAcceleration) {
   const filters::Options without{{"sensor_bias", false}};
-  EXPECT_EQ(sdof({Quantity::acceleration})->motion->parameter_size(), 3);
-  EXPECT_EQ(sdof({Quantity::acceleration}, without)->motion->parameter_size(), 2);
-  EXPECT_EQ(sdof({Quantity::displacement, Quantity::velocity})->motion->parameter_size(), 2);
+  EXPECT_EQ(sdof({Quantity::acceleration})->offsets.size(), 1u);
+  EXPECT_EQ(sdof({Quantity::acceleration}, without)->offsets.size(), 0u);
+  EXPECT_EQ(sdof({Quantity::displacement, Quantity::velocity})->offsets.size(), 0u);
   VectorXd state(4);
   state << 0.012, -0.3, 515.8, 8.0;
   EXPECT_NEAR(output_of(*sdof({Quantity::acceleration}, without), state)[0],
