@@ -106,7 +106,7 @@ std::optional<filters::OptionValue> TomlTable::find_value(const std::string& key
   if (node == nullptr) return std::nullopt;
   if (node->is_string()) return *find_text(key);
   if (node->is_boolean()) return node->as_boolean()->get();
-  if (node->is_array()) return *find_numbers(key);
+  if (node->is_array()) return *find_numbers(key, Sign::any);
   if (!node->is_number()) refuse(key, "a number, a text in quotes, true or false, or an array of numbers");
   return *find_number(key);
 }
