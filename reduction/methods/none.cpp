@@ -6,18 +6,20 @@ namespace {
 
 class None final : public Reduction {
  public:
-  Bases bases(const fem::StructuralSystem& system, const Training&) const override {
-    return {Eigen::MatrixXd::Identity(system.size(), system.size())};
+  Bases bases(const fem::StructuralSystem&, const Training&) const override {
+    Bases bases;
+    bases.identity = true;
+    return bases;
   }
 };
 
-const bool registered =
-    reduction_registry().add({"none",
-                              "every coordinate kept",
-                              "",
-                              {},
-                              {contract::static_exact, contract::modes_exact, contract::complete},
-                              [](const filters::Options&) { return std::make_unique<None>(); }});
+const bool registered = reduction_registry().add(
+    {"none",
+     "every coordinate kept",
+     "",
+     {},
+     {contract::static_exact, contract::modes_exact, contract::complete, contract::rigid_exact},
+     [](const filters::Options&) { return std::make_unique<None>(); }});
 
 }  // namespace
 }  // namespace beamid::reduction
