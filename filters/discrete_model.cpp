@@ -47,6 +47,11 @@ class Discretised final : public DiscreteModel {
                              MatrixXd& jacobian) override {
     scheme_->step(*model_, state, input, dt_, next, &jacobian);
   }
+  void move(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd& directions) override {
+    scheme_->step(*model_, state, input, dt_, next, &tangent_);
+    moved_.noalias() = tangent_ * directions;
+    directions.swap(moved_);
+  }
   void output(const VectorXd& state, const VectorXd& input, VectorXd& output) override {
     model_->output(state, input, output);
   }
@@ -59,6 +64,7 @@ class Discretised final : public DiscreteModel {
   double dt_;
   std::unique_ptr<Scheme> scheme_;
   Noise noise_;
+  MatrixXd tangent_, moved_;
 };
 
 void require_square(const MatrixXd& matrix, Index size, const char* name) {

@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "filters/discrete_model.hpp"
 #include "filters/gaussian.hpp"
@@ -39,8 +41,14 @@ class Filter {
   /// z_k | y_0..k-1  ->  z_k | y_0..k, given y_k (p). @throws FilterFailure
   virtual const Correction& correct(const Eigen::VectorXd& output, const Eigen::VectorXd& input) = 0;
 
+  /// Valid until the next step; a filter that carries a factor may form it only now.
   virtual const Gaussian& belief() const = 0;
+  /// The belief about some entries of the state alone, as cheaply as the filter can tell it.
+  virtual Gaussian marginal(const std::vector<Eigen::Index>& entries) const;
   virtual const DiscreteModel& model() const = 0;
+
+  /// What a reader of the result should know, in words: approximations made, and what they cost.
+  virtual std::vector<std::string> remarks() const { return {}; }
 };
 
 /// Contracts a filter may declare; the conformance tests hold it to them.

@@ -6,7 +6,7 @@
 namespace beamid::filters {
 
 FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements, Keep keep,
-              Start start) {
+              Start start, const Trace& trace) {
   const Eigen::Index samples = measurements.time.size();
   const auto outputs = static_cast<Eigen::Index>(filter.model().output_labels().size());
   if (measurements.outputs.rows() != outputs || measurements.outputs.cols() != samples)
@@ -16,11 +16,19 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
   if (measurements.inputs.size() > 0 && measurements.inputs.cols() != samples)
     throw std::invalid_argument("inputs have " + std::to_string(measurements.inputs.cols()) +
                                 " columns; expected " + std::to_string(samples));
+  const Eigen::Index states = initial.mean.size();
+  for (const Eigen::Index entry : trace.entries)
+    if (entry < 0 || entry >= states)
+      throw std::invalid_argument("traced entry is " + std::to_string(entry) + "; expected 0 to " +
+                                  std::to_string(states - 1));
 
   FilterRun result;
   result.innovations.setZero(outputs, samples);
   result.whitened_innovations.setZero(outputs, samples);
   result.normalised_squares.setZero(samples);
+  const auto traced = static_cast<Eigen::Index>(trace.entries.size());
+  result.means.setZero(traced, samples);
+  result.deviations.setZero(traced, samples);
   Eigen::VectorXd input, output(outputs);
   filter.reset(initial);
   Eigen::Index step = 0;
@@ -36,6 +44,10 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
       result.normalised_squares[step] = correction.normalised_square;
       result.log_likelihood += correction.log_likelihood;
       if (keep == Keep::all_beliefs) result.filtered.push_back(filter.belief());
+      if (traced == 0) continue;
+      const Gaussian belief = filter.marginal(trace.entries);
+      result.means.col(step) = belief.mean;
+      result.deviations.col(step) = belief.deviations();
     }
   } catch (const FilterFailure& trouble) {
     result.failure = Failure{step, measurements.time[step], trouble.what(), trouble.smallest_eigenvalue};
@@ -44,6 +56,7 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
     result.failure = Failure{step, measurements.time[step], trouble.what(), unknown};
   }
   result.last = filter.belief();
+  result.remarks = filter.remarks();
   return result;
 }
 

@@ -32,18 +32,28 @@ struct FilterRun {
   Eigen::MatrixXd whitened_innovations;  ///< L^-1 innovation, S = L L^T (p x N)
   Eigen::VectorXd normalised_squares;    ///< innovation^T S^-1 innovation (N)
   double log_likelihood = 0.0;
-  Gaussian last;  ///< the last filtered belief
+  Eigen::MatrixXd means;       ///< filtered, of the traced entries (k x N)
+  Eigen::MatrixXd deviations;  ///< their standard deviations (k x N)
+  Gaussian last;               ///< the last filtered belief
   std::optional<Failure> failure;
+  std::vector<std::string> remarks;  ///< of the filter: approximations made, and what they cost
 };
 
 enum class Keep { last_belief, all_beliefs };
+
+/// Entries of the state (k) whose filtered mean and deviation are recorded at every sample. For states of
+/// thousands of entries, of which all beliefs would fill the memory.
+struct Trace {
+  std::vector<Eigen::Index> entries;
+};
+
 /// Whether the initial belief is about the first sample, or about one interval before it.
 enum class Start { at_first_sample, one_interval_before };
 
-/// Runs the filter over the record.
-/// @throws std::invalid_argument when shapes disagree; numerical trouble of the filter or of its
-/// discretisation ends the run and is told in `failure`.
+/// Runs the filter over the record. Where it fails, what was not reached remains zero.
+/// @throws std::invalid_argument when shapes disagree or a traced entry does not exist; numerical trouble of
+/// the filter or of its discretisation ends the run and is told in `failure`.
 FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements,
-              Keep keep = Keep::last_belief, Start start = Start::at_first_sample);
+              Keep keep = Keep::last_belief, Start start = Start::at_first_sample, const Trace& trace = {});
 
 }  // namespace beamid::filters

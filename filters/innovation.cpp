@@ -65,14 +65,27 @@ void check_finite(const Gaussian& belief) {
 
 void check_belief(const Gaussian& belief, const DiscreteModel& model) {
   const auto n = static_cast<Eigen::Index>(model.state_labels().size());
-  if (belief.mean.size() != n || belief.covariance.rows() != n || belief.covariance.cols() != n)
+  const MatrixXd &covariance = belief.covariance, &factor = belief.factor;
+  const bool has_covariance = covariance.size() > 0 || factor.size() == 0;
+  const auto size = [](const MatrixXd& matrix) {
+    return std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols());
+  };
+  if (belief.mean.size() != n || (has_covariance && (covariance.rows() != n || covariance.cols() != n)))
     throw std::invalid_argument("initial belief has a mean of " + std::to_string(belief.mean.size()) +
-                                " and a covariance of " + std::to_string(belief.covariance.rows()) + " x " +
-                                std::to_string(belief.covariance.cols()) + "; expected " + std::to_string(n));
-  const bool finite = belief.mean.allFinite() && belief.covariance.allFinite();
-  if (!finite || !belief.covariance.isApprox(belief.covariance.transpose(), 1e-12) ||
-      smallest_eigenvalue(belief.covariance) < -1e-12 * belief.covariance.norm())
+                                " and a covariance of " + size(has_covariance ? covariance : factor) +
+                                "; expected " + std::to_string(n));
+  if (factor.size() > 0 && factor.rows() != n)
+    throw std::invalid_argument("initial belief has a factor of " + size(factor) + "; expected " +
+                                std::to_string(n) + " rows");
+  if (!belief.mean.allFinite() || !factor.allFinite())
+    throw std::invalid_argument("initial mean and factor must be finite");
+  if (has_covariance && (!covariance.allFinite() || !covariance.isApprox(covariance.transpose(), 1e-12) ||
+                         smallest_eigenvalue(covariance) < -1e-12 * covariance.norm()))
     throw std::invalid_argument("initial covariance must be finite, symmetric and positive semidefinite");
+  if (covariance.size() > 0 && factor.size() > 0 &&
+      (covariance - factor * factor.transpose()).norm() > 1e-9 * covariance.norm())
+    throw std::invalid_argument(
+        "initial covariance and factor disagree; expected the same belief, or only one");
 }
 
 }  // namespace beamid::filters

@@ -22,8 +22,8 @@ void symmetrise(Eigen::MatrixXd& covariance);
 /// @throws FilterFailure when the mean or the covariance's diagonal is not finite, or a variance is negative.
 void check_finite(const Gaussian& belief);
 
-/// @throws std::invalid_argument when the belief does not fit the model or its covariance is not symmetric
-/// positive semidefinite.
+/// @throws std::invalid_argument when the belief does not fit the model, has neither covariance nor factor
+/// or two that disagree, or its covariance is not symmetric positive semidefinite.
 void check_belief(const Gaussian& belief, const DiscreteModel& model);
 
 }  // namespace beamid::filters

@@ -5,6 +5,7 @@
 //               m += G (y - h(m, u)),   P = (I - G H) P (I - G H)^T + G R G^T
 //
 // The last line is Joseph's form [bucy1968]: symmetric and positive for any gain, rounding included.
+#include "filters/covariance_factor.hpp"
 #include "filters/filter.hpp"
 #include "filters/innovation.hpp"
 
@@ -20,6 +21,7 @@ class ExtendedKalmanFilter final : public Filter {
   void reset(const Gaussian& belief) override {
     check_belief(belief, *model_);
     belief_ = belief;
+    if (belief.factor.size() > 0) belief_ = {belief.mean, with_covariance(belief).covariance};
   }
 
   void predict(const VectorXd& input) override {

@@ -12,6 +12,7 @@
 // is, as in Joseph's form,
 //
 //     P = W sum (d_i - G e_i)(d_i - G e_i)^T + (beta - alpha^2)(s - G t)(s - G t)^T + G R G^T.
+#include "filters/covariance_factor.hpp"
 #include "filters/filter.hpp"
 #include "filters/innovation.hpp"
 
@@ -42,6 +43,7 @@ class UnscentedKalmanFilter final : public Filter {
   void reset(const Gaussian& belief) override {
     check_belief(belief, *model_);
     belief_ = belief;
+    if (belief.factor.size() > 0) belief_ = {belief.mean, with_covariance(belief).covariance};
   }
 
   void predict(const VectorXd& input) override {

@@ -91,11 +91,9 @@ INSTANTIATE_TEST_SUITE_P(Registered, EveryScheme, testing::ValuesIn(names()),
 
 TEST(Schemes, ConvergeAtTheirOrder) {
   // Oracle: the exact exponential; halving the step divides the error over 1 s by 2^order.
-  const std::pair<const char*, int> orders[] = {{"forward_euler", 1},
-                                                {"backward_euler", 1},
-                                                {"implicit_midpoint", 2},
-                                                {"runge_kutta_2", 2},
-                                                {"runge_kutta_4", 4}};
+  const std::pair<const char*, int> orders[] = {{"forward_euler", 1},     {"backward_euler", 1},
+                                                {"implicit_midpoint", 2}, {"runge_kutta_2", 2},
+                                                {"runge_kutta_4", 4},     {"pade", 4}};
   const test::Oscillator model(3.0);
   const auto end = [&](const char* name, int steps) {
     const auto scheme = scheme_registry().make(name, {});

@@ -1,0 +1,157 @@
+// Extended Kalman filter on a factor of the covariance, P = (S T)(S T)^T: S (n x r) directions in the state,
+// T (r x r) upper triangular.
+//
+// Without process noise the covariance keeps the rank r of what is uncertain at first. The model moves the
+// directions, S := J S, and the measurements turn to T alone, so that a step costs O(n r) and no n x n matrix
+// is formed. With the noise R = L diag(d) L^T, Y = H S and Z = Y T,
+//
+//     innovation covariance   Z Z^T + R
+//     mean                    m += S (T Z^T (Z Z^T + R)^-1 (y - h(m)))
+//     factor                  T := T M, output after output of L^-1 y     [carlson1973], triangular_root.hpp
+//
+// S T itself is formed only when the belief is asked for, or when the directions have become so much alike
+// that what T makes of them cancels (docs/theory/low_rank.md).
+//
+// Process noise Q adds a square root of Q as further columns; RankLimit cuts them back.
+#include <Eigen/Cholesky>
+#include <limits>
+
+#include "filters/covariance_factor.hpp"
+#include "filters/filter.hpp"
+#include "filters/innovation.hpp"
+#include "filters/rank_limit.hpp"
+#include "filters/triangular_root.hpp"
+
+namespace beamid::filters {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+class LowRankExtendedKalmanFilter final : public Filter {
+ public:
+  LowRankExtendedKalmanFilter(std::unique_ptr<DiscreteModel> model, double rank)
+      : model_(std::move(model)), limit_(rank, "low_rank_ekf") {}
+
+  void reset(const Gaussian& belief) override {
+    check_belief(belief, *model_);
+    with_covariance_ = belief.covariance.size() > 0;
+    belief_ = {belief.mean, {}};
+    corrections_ = 0;
+    directions_ = belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance);
+    limit_.start(directions_);
+    restart();
+    const MatrixXd& q = model_->process_noise();
+    process_ = q.size() > 0 && !q.isZero(0.0) ? factor_of(q) : MatrixXd();
+  }
+
+  void predict(const VectorXd& input) override {
+    model_->move(belief_.mean, input, next_, directions_);
+    belief_.mean.swap(next_);
+    formed_ = false;
+    if (process_.size() > 0) {
+      MatrixXd wide(directions_.rows(), directions_.cols() + process_.cols());
+      wide << formed_factor(), process_;
+      limit_(wide);
+      directions_.swap(wide);
+      restart();
+    }
+    check();
+  }
+
+  const Correction& correct(const VectorXd& output, const VectorXd& input) override {
+    model_->output(belief_.mean, input, expected_);
+    model_->output_jacobian(belief_.mean, input, sensor_);
+    correction_.innovation = output - expected_;
+    seen_.noalias() = sensor_ * directions_;
+    weighed_.noalias() = seen_ * triangle();
+    correction_.innovation_covariance = model_->output_noise();
+    correction_.innovation_covariance.noalias() += weighed_ * weighed_.transpose();
+    cross_.noalias() = triangle() * weighed_.transpose();
+    gain_ = weigh(correction_, cross_, innovation_factor_);
+    step_.noalias() = gain_ * correction_.innovation;
+    belief_.mean.noalias() += directions_ * step_;
+    take_in_outputs();
+    formed_ = false;
+    check();
+    return correction_;
+  }
+
+  const Gaussian& belief() const override {
+    if (formed_) return belief_;
+    belief_.factor = formed_factor();
+    if (with_covariance_) belief_.covariance = covariance_of(belief_.factor);
+    formed_ = true;
+    return belief_;
+  }
+  Gaussian marginal(const std::vector<Index>& entries) const override {
+    return {belief_.mean(entries), {}, directions_(entries, Eigen::all) * root_.matrix()};
+  }
+  const DiscreteModel& model() const override { return *model_; }
+  std::vector<std::string> remarks() const override { return limit_.remarks(); }
+
+ private:
+  void restart() {
+    root_.restart(directions_.cols());
+    formed_ = false;
+  }
+
+  Eigen::TriangularView<const MatrixXd, Eigen::Upper> triangle() const {
+    return root_.matrix().triangularView<Eigen::Upper>();
+  }
+  MatrixXd formed_factor() const { return directions_ * triangle(); }
+
+  // Outputs of independent noise: L^-1 P y with R = P^T L diag(d) L^T P.
+  void take_in_outputs() {
+    if (!same(noise_, model_->output_noise())) decorrelate();
+    independent_.noalias() = decorrelation_ * seen_;
+    root_.take_in(independent_, variances_);
+    if (++corrections_ % TriangularRoot::interval == 0 && root_.cancels()) {
+      directions_ = formed_factor();
+      restart();
+    }
+  }
+
+  void decorrelate() {
+    noise_ = model_->output_noise();
+    const Eigen::LDLT<MatrixXd> factor(noise_);
+    variances_ = factor.vectorD();
+    decorrelation_ = factor.transpositionsP() * MatrixXd::Identity(noise_.rows(), noise_.rows());
+    factor.matrixL().solveInPlace(decorrelation_);
+  }
+
+  void check() const {
+    if (!belief_.mean.allFinite())
+      throw FilterFailure("the mean is not finite", std::numeric_limits<double>::quiet_NaN());
+    if (!root_.matrix().allFinite())
+      throw FilterFailure("the covariance is not finite", std::numeric_limits<double>::quiet_NaN());
+  }
+
+  std::unique_ptr<DiscreteModel> model_;
+  RankLimit limit_;
+  TriangularRoot root_;
+  mutable Gaussian belief_;
+  mutable bool formed_ = false;
+  bool with_covariance_ = false;
+  Index corrections_ = 0;
+  Correction correction_;
+  VectorXd next_, expected_, step_;
+  MatrixXd directions_, process_, sensor_, seen_, weighed_, cross_, gain_;
+  MatrixXd noise_, decorrelation_, independent_;
+  VectorXd variances_;
+  Eigen::LLT<MatrixXd> innovation_factor_;
+};
+
+const bool registered = filter_registry().add(
+    {"low_rank_ekf",
+     "extended Kalman filter on a factor of the covariance: O(n r) a step",
+     "[carlson1973], [jazwinski1970]",
+     {{"rank", 0.0, "",
+       "largest rank kept where process noise raises it; 0: the state's size up to 64, else the rank of the "
+       "initial belief"}},
+     {contract::exact_on_linear_gaussian, contract::consistent},
+     [](std::unique_ptr<DiscreteModel> model, const Options& options) {
+       return std::make_unique<LowRankExtendedKalmanFilter>(std::move(model), options.number("rank"));
+     }});
+
+}  // namespace
+}  // namespace beamid::filters
