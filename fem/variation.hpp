@@ -48,6 +48,22 @@ class Variation {
     return sum / static_cast<double>(degree_ + 1);
   }
 
+  /// The part from s = begin to s = end, stretched over 0 to 1: the first n - i arguments of its polar form
+  /// are begin, the others end [farouki2012].
+  constexpr Variation part(double begin, double end) const {
+    Variation result;
+    result.degree_ = degree_;
+    for (std::size_t i = 0; i <= degree_; ++i) {
+      std::array<double, most + 1> mean = coefficients_;
+      for (std::size_t left = degree_; left > 0; --left) {
+        const double s = degree_ - left < degree_ - i ? begin : end;
+        for (std::size_t k = 0; k < left; ++k) mean[k] = (1.0 - s) * mean[k] + s * mean[k + 1];
+      }
+      result.coefficients_[i] = mean[0];
+    }
+    return result;
+  }
+
   /// @throws std::invalid_argument when the product's degree is above four.
   friend constexpr Variation operator*(const Variation& a, const Variation& b) {
     if (a.degree_ + b.degree_ > most)

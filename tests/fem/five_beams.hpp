@@ -1,4 +1,4 @@
-// The five steel beams of the 2009 paper and their exact frequencies (SCIENCE: roots of the frequency
+// The five steel beams of the 2009 paper and their exact frequencies (roots of the frequency
 // equation, found outside this project).
 #pragma once
 

@@ -1,0 +1,209 @@
+// The values of a beam's parameters, and beams with others.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "fem/parametric_system.hpp"
+
+namespace beamid::fem {
+namespace {
+
+using Quantity = BeamParameter::Quantity;
+using Region = std::pair<double, double>;
+
+Region region_of(const Beam& beam, const BeamParameter& parameter) {
+  const double length = beam.length();
+  if (!parameter.region) return {0.0, length};
+  const auto [from, to] = *parameter.region;
+  if (parameter.quantity == Quantity::bending_stiffness && from >= 0.0 && from < to && to <= length)
+    return *parameter.region;
+  std::ostringstream message;
+  message << "region is " << from << " to " << to << " m; expected ";
+  if (parameter.quantity == Quantity::bending_stiffness)
+    message << "a begin before its end, both between 0 and the beam's length, " << length << " m";
+  else
+    message << "none: only the bending stiffness has regions";
+  throw std::invalid_argument(message.str());
+}
+
+// Calls f(segment, begin, end) for the part of each segment in the region, s from 0 to 1.
+template <class Function>
+void for_each_part(const Beam& beam, const Region& region, const Function& f) {
+  double start = 0.0;
+  for (const Segment& segment : beam.segments) {
+    const double begin = std::clamp((region.first - start) / segment.length, 0.0, 1.0);
+    const double end = std::clamp((region.second - start) / segment.length, 0.0, 1.0);
+    if (begin < end) f(segment, start, begin, end);
+    start += segment.length;
+  }
+}
+
+// Integral of E I, damage included, over the region [N m3].
+double bending_integral(const Beam& beam, const Region& region) {
+  std::vector<double> places{region.first, region.second};
+  for (const Damage& damage : beam.damages)
+    for (const double x : {damage.from, damage.to})
+      if (region.first < x && x < region.second) places.push_back(x);
+  std::sort(places.begin(), places.end());
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    const double middle = 0.5 * (places[i] + places[i + 1]);
+    double remaining = 1.0;
+    for (const Damage& damage : beam.damages)
+      if (damage.from < middle && middle < damage.to) remaining *= 1.0 - damage.loss;
+    for_each_part(beam, {places[i], places[i + 1]}, [&](const Segment& segment, double, double s, double e) {
+      sum += remaining * segment.length * (e - s) * segment.section.bending_stiffness.part(s, e).mean();
+    });
+  }
+  return sum;
+}
+
+Section stretched(const Section& section, double begin, double end, double factor) {
+  Section result = section;
+  for (Variation* quantity : {&result.bending_stiffness, &result.mass_per_length, &result.rotary_inertia,
+                              &result.outline.width, &result.outline.height})
+    *quantity = quantity->part(begin, end);
+  for (auto* quantity : {&result.shear_stiffness, &result.axial_stiffness})
+    if (*quantity) *quantity = (*quantity)->part(begin, end);
+  result.bending_stiffness = Variation(factor) * result.bending_stiffness;
+  if (result.shear_stiffness) result.shear_stiffness = Variation(factor) * *result.shear_stiffness;
+  return result;
+}
+
+// Segments cut at the region's ends, those inside stiffer by the factor; the length is kept to the last bit,
+// for bodies sit at its end.
+void scale_bending(Beam& beam, const Region& region, double factor) {
+  const double length = beam.length();
+  std::vector<Segment> segments;
+  double start = 0.0;
+  for (const Segment& segment : beam.segments) {
+    const double begin = std::clamp((region.first - start) / segment.length, 0.0, 1.0);
+    const double end = std::clamp((region.second - start) / segment.length, 0.0, 1.0);
+    if (begin == 0.0 && end == 1.0) {
+      segments.push_back({segment.length, stretched(segment.section, 0.0, 1.0, factor)});
+    } else if (begin >= end) {
+      segments.push_back(segment);
+    } else {
+      const auto piece = [&](double from, double to, double scale) {
+        if (from < to)
+          segments.push_back({(to - from) * segment.length, stretched(segment.section, from, to, scale)});
+      };
+      piece(0.0, begin, 1.0);
+      piece(begin, end, factor);
+      piece(end, 1.0, 1.0);
+    }
+    start += segment.length;
+  }
+  beam.segments = std::move(segments);
+  for (int i = 0; i < 4 && beam.length() != length; ++i)
+    beam.segments.back().length += length - beam.length();
+}
+
+// The bodies at the tip keep their proportions; without one that has any, the first one gets all of it.
+void set_at_tip(Beam& beam, double Body::*property, double found, double value) {
+  const double length = beam.length();
+  bool given = false;
+  for (Body& body : beam.bodies)
+    if (body.position == length) {
+      body.*property = found > 0.0 ? body.*property / found * value : given ? 0.0 : value;
+      given = true;
+    }
+  if (given) return;
+  Body body{length};
+  body.*property = value;
+  beam.bodies.push_back(body);
+}
+
+double sum_at_root(const Beam& beam, double Spring::*property) {
+  double sum = 0.0;
+  for (const Spring& spring : beam.springs)
+    if (spring.position == 0.0) sum += spring.*property;
+  return sum;
+}
+
+double elastic_root(const Beam& beam, const BeamParameter& parameter) {
+  const bool turns = parameter.quantity == Quantity::root_rotational_stiffness;
+  const double sum = sum_at_root(beam, turns ? &Spring::rotational : &Spring::translational);
+  if (sum > 0.0) return sum;
+  throw std::invalid_argument(std::string("the beam has no elastic root: the stiffness of its root in ") +
+                              (turns ? "rotation" : "translation") +
+                              " is zero or infinite; expected a spring there that is positive");
+}
+
+}  // namespace
+
+double value_of(const Beam& beam, const BeamParameter& parameter) {
+  validate(beam);
+  const Region region = region_of(beam, parameter);
+  switch (parameter.quantity) {
+    case Quantity::bending_stiffness:
+      return bending_integral(beam, region) / (region.second - region.first);
+    case Quantity::tip_mass:
+      return beam.tip_mass();
+    case Quantity::tip_rotary_inertia: {
+      double sum = 0.0;
+      for (const Body& body : beam.bodies)
+        if (body.position == beam.length()) sum += body.rotary_inertia;
+      return sum;
+    }
+    case Quantity::root_rotational_stiffness:
+    case Quantity::root_translational_stiffness:
+      return elastic_root(beam, parameter);
+    case Quantity::axial_load:
+      break;
+  }
+  return beam.axial_load;
+}
+
+Beam with_value(const Beam& beam, const BeamParameter& parameter, double value) {
+  const double found = value_of(beam, parameter);
+  Beam changed = beam;
+  const auto scale_at_root = [&](double Spring::*property) {
+    for (Spring& spring : changed.springs)
+      if (spring.position == 0.0) spring.*property *= value / found;
+  };
+  switch (parameter.quantity) {
+    case Quantity::bending_stiffness:
+      if (!(value > 0.0 && std::isfinite(value))) {
+        std::ostringstream message;
+        message << "bending stiffness is " << value << "; expected a positive number of N m2";
+        throw std::invalid_argument(message.str());
+      }
+      scale_bending(changed, region_of(beam, parameter), value / found);
+      break;
+    case Quantity::tip_mass:
+      set_at_tip(changed, &Body::mass, found, value);
+      break;
+    case Quantity::tip_rotary_inertia:
+      set_at_tip(changed, &Body::rotary_inertia, found, value);
+      break;
+    case Quantity::root_rotational_stiffness:
+      scale_at_root(&Spring::rotational);
+      break;
+    case Quantity::root_translational_stiffness:
+      scale_at_root(&Spring::translational);
+      break;
+    case Quantity::axial_load:
+      changed.axial_load = value;
+      break;
+  }
+  validate(changed);
+  return changed;
+}
+
+Beam with_nodes(const Beam& beam, const std::vector<double>& positions) {
+  Beam result = beam;
+  const double length = beam.length();
+  for (const double x : positions) {
+    if (!(x >= 0.0 && x <= length)) {
+      std::ostringstream message;
+      message << "node is at " << x << " m; expected between 0 and the beam's length, " << length << " m";
+      throw std::invalid_argument(message.str());
+    }
+    if (x > 0.0 && x < length) result.damages.push_back({0.0, x, 0.0});
+  }
+  return result;
+}
+
+}  // namespace beamid::fem

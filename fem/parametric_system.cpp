@@ -1,0 +1,160 @@
+#include "fem/parametric_system.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "fem/elements/element.hpp"
+#include "fem/triplets.hpp"
+
+namespace beamid::fem {
+namespace {
+
+using Eigen::Index;
+using Quantity = BeamParameter::Quantity;
+
+// (b - a) / step without the entries that are the same in both.
+SparseMatrix difference(const SparseMatrix& a, const SparseMatrix& b, double step) {
+  SparseMatrix result = b - a;
+  result.prune([](Index, Index, double value) { return value != 0.0; });
+  return result / step;
+}
+
+// All sections twice as stiff, in shear as in bending: the difference is what the sections contribute to D.
+Beam twice_as_stiff(Beam beam) {
+  for (Segment& segment : beam.segments) {
+    Section& section = segment.section;
+    section.bending_stiffness = Variation(2.0) * section.bending_stiffness;
+    if (section.shear_stiffness) section.shear_stiffness = Variation(2.0) * *section.shear_stiffness;
+  }
+  return beam;
+}
+
+// The element of each strain that bends one, in their order; -1 for springs, absorbers and chords.
+std::vector<int> element_of_strain(const Beam& beam, const Mesh& mesh, const SparseMatrix& bending) {
+  std::vector<int> owner(static_cast<std::size_t>(bending.rows()), -1);
+  std::size_t element = 0;
+  int left = 0;
+  for (Index row = 0; row < bending.rows(); ++row) {
+    if (bending.coeff(row, row) == 0.0) continue;
+    if (left == 0) {
+      const Mesh::Element& next = mesh.elements[element++];
+      left =
+          has_interior(beam.segments[static_cast<std::size_t>(next.segment)].section, next, beam.mass_model)
+              ? 4
+              : 2;
+    }
+    owner[static_cast<std::size_t>(row)] = static_cast<int>(element) - 1;
+    --left;
+  }
+  return owner;
+}
+
+class Differentiation {
+ public:
+  Differentiation(const Beam& beam, int elements, const std::vector<Point>& points,
+                  const std::vector<BeamParameter>& parameters)
+      : beam_(beam), elements_(elements), points_(points) {
+    for (const BeamParameter& parameter : parameters) {
+      result_.values.conservativeResize(result_.values.size() + 1);
+      result_.values[result_.values.size() - 1] = value_of(beam, parameter);
+      if (parameter.region) beam_ = with_nodes(beam_, {parameter.region->first, parameter.region->second});
+      needs_chords_ |= parameter.quantity == Quantity::axial_load && beam.axial_load == 0.0;
+    }
+    result_.system = assemble(beam_, elements_, points_);
+    loaded_ = beam_;
+    if (needs_chords_) loaded_.axial_load = load_step();
+    const StructuralSystem chorded = needs_chords_ ? assembled(loaded_) : result_.system;
+    result_.strain = chorded.stiffness.strain;
+    rigidity_ = chorded.stiffness.rigidity;
+    const bool bends = std::any_of(parameters.begin(), parameters.end(), [](const BeamParameter& p) {
+      return p.quantity == Quantity::bending_stiffness;
+    });
+    if (bends) {
+      bending_ = difference(rigidity_, assembled(twice_as_stiff(loaded_)).stiffness.rigidity, 1.0);
+      owner_ = element_of_strain(beam_, result_.system.mesh, bending_);
+    }
+  }
+
+  ParametricSystem finish(const std::vector<BeamParameter>& parameters) {
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      const double value = result_.values[static_cast<Index>(j)];
+      ParametricSystem::Derivative derivative = parameters[j].quantity == Quantity::bending_stiffness
+                                                    ? of_bending(parameters[j], value)
+                                                    : of_other(parameters[j], value);
+      if (derivative.mass.nonZeros() + derivative.rigidity.nonZeros() == 0)
+        throw std::invalid_argument("parameter " + std::to_string(j + 1) +
+                                    " has no effect: what it would move is held by a support");
+      result_.derivatives.push_back(std::move(derivative));
+    }
+    return std::move(result_);
+  }
+
+ private:
+  Beam beam_, loaded_;
+  int elements_;
+  const std::vector<Point>& points_;
+  ParametricSystem result_;
+  SparseMatrix rigidity_;  // D on the strains of the derivatives
+  SparseMatrix bending_;   // what the sections contribute to it
+  std::vector<int> owner_;
+  bool needs_chords_ = false;
+
+  StructuralSystem assembled(const Beam& beam) const { return assemble(beam, elements_, points_); }
+
+  // A tension so large that its share of an element's rigidity is as large as the section's: with less, the
+  // difference would lose the digits by which the section's is larger.
+  double load_step() const {
+    double h = beam_.length();
+    for (const Mesh::Element& element : result_.system.mesh.elements) h = std::min(h, element.length);
+    return -value_of(beam_, {Quantity::bending_stiffness, {}}) / (h * h);
+  }
+
+  ParametricSystem::Derivative of_bending(const BeamParameter& parameter, double value) const {
+    const Mesh& mesh = result_.system.mesh;
+    const double slack = 1e-9 * beam_.length();
+    const auto [from, to] = parameter.region.value_or(std::pair{0.0, beam_.length()});
+    const auto inside = [&](Index row) {
+      const int element = owner_[static_cast<std::size_t>(row)];
+      if (element < 0) return false;
+      const Mesh::Element& e = mesh.elements[static_cast<std::size_t>(element)];
+      return mesh.nodes[static_cast<std::size_t>(e.first)].x > from - slack &&
+             mesh.nodes[static_cast<std::size_t>(e.second)].x < to + slack;
+    };
+    SparseMatrix rigidity = bending_;
+    rigidity.prune([&](Index row, Index, double) { return inside(row); });
+    return {SparseMatrix(size(), size()), rigidity / value,
+            SparseMatrix(size(), result_.system.inputs.cols())};
+  }
+
+  ParametricSystem::Derivative of_other(const BeamParameter& parameter, double value) const {
+    const double length = beam_.length(), mass = beam_.mass();
+    const double step = parameter.quantity == Quantity::axial_load ? load_step()
+                        : parameter.quantity == Quantity::tip_mass ? std::max(value, mass)
+                        : parameter.quantity == Quantity::tip_rotary_inertia
+                            ? std::max(value, mass * length * length)
+                            : value;
+    const bool axial = parameter.quantity == Quantity::axial_load;
+    const StructuralSystem moved = assembled(axial ? with_load(loaded_.axial_load + step)
+                                                   : with_value(loaded_, parameter, value + step));
+    const SparseMatrix mass_slope = difference(result_.system.mass, moved.mass, step);
+    return {mass_slope, difference(rigidity_, moved.stiffness.rigidity, step),
+            difference(result_.system.inputs, moved.inputs, step)};
+  }
+
+  Beam with_load(double load) const {
+    Beam beam = loaded_;
+    beam.axial_load = load;
+    return beam;
+  }
+
+  Index size() const { return result_.system.size(); }
+};
+
+}  // namespace
+
+ParametricSystem assemble_parametric(const Beam& beam, int elements, const std::vector<Point>& points,
+                                     const std::vector<BeamParameter>& parameters) {
+  return Differentiation(beam, elements, points, parameters).finish(parameters);
+}
+
+}  // namespace beamid::fem
