@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/input/input_error.hpp"
+#include "experiments/parameter_choice.hpp"
 #include "experiments/record.hpp"
 #include "experiments/unknown.hpp"
 #include "fem/assembly.hpp"
@@ -22,20 +22,6 @@ namespace beamid::experiments {
 struct Observation {
   Quantity quantity = Quantity::acceleration;
   std::string name = {};
-};
-
-/// A parameter as [[parameters]] of an experiment file names it; what is absent the model fills in.
-struct ParameterChoice {
-  std::string quantity;                             ///< "bending_stiffness", "damping_ratio", ...
-  std::string name = {};                            ///< absent: made from the quantity
-  std::optional<std::pair<double, double>> region;  ///< [m]
-  std::optional<int> mode;                          ///< from 1; absent: all modes together
-  std::optional<double> guess, deviation;           ///< [unit of the quantity]
-  std::optional<double> relative_deviation;         ///< of the guess, instead of the deviation
-  std::optional<Form> form;
-  std::optional<double> lower, upper;
-  bool known = false;  ///< a nuisance: known to its deviation
-  Place place = {};    ///< for messages
 };
 
 /// Everything a model may be made from.

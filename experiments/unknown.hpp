@@ -2,7 +2,9 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace beamid::experiments {
 
@@ -26,6 +28,10 @@ struct Unknown {
   /// Not asked about but not known exactly either: its deviation is what is known of it beforehand, carried
   /// along into the others'.
   bool nuisance = false;
+
+  std::string quantity = {};                             ///< what it is, as [[parameters]] calls it
+  std::optional<std::pair<double, double>> region = {};  ///< of the beam that it is about [m]; absent: all
+  std::optional<int> mode = {};                          ///< that it is about, from 1; absent: all
 
   /// eta of p. @throws std::invalid_argument when p is outside what the form allows.
   double to_state(double physical) const;

@@ -1,9 +1,14 @@
-// One degree of freedom with known mass: state [x, v, K, C] and, where acceleration is observed, its sensor's
-// bias b,
+// One degree of freedom: state [x, v, K, C] with known mass M and, where acceleration is observed, its
+// sensor's bias b,
 //
 //     x' = v,   v' = -(K x + C v) / M,   K' = C' = b' = 0
 //
-// Observed: displacement x, velocity v or acceleration -(K x + C v) / M + b, in any mix.
+// Where a force f on the structure was measured, its mass is unknown too: [x, v, K, C, M, b] and
+// v' = (e f - K x - C v) / M. An acceleration of the base enters as a force that grows with M and tells
+// nothing of it.
+//
+// Observed: displacement x, velocity v or acceleration v' + b (absolute, with that of the base), in any mix.
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -14,15 +19,28 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+// What is known of the oscillator.
+struct Known {
+  double mass = 0.0;          // [kg]; the guess where it is unknown
+  bool mass_unknown = false;  // asked about
+  VectorXd forces;            // e: force on x per force measured (m); of the base acceleration e / M
+  Index base = -1;            // which of them is an acceleration of the base
+};
+
 class SingleDegreeOfFreedom final : public filters::LinearMotion {
  public:
-  SingleDegreeOfFreedom(double mass, std::vector<Quantity> observed, bool sensor_bias)
-      : mass_(mass), observed_(std::move(observed)), parameters_(sensor_bias ? 3 : 2) {}
+  SingleDegreeOfFreedom(Known known, std::vector<Quantity> observed, bool sensor_bias)
+      : known_(std::move(known)),
+        observed_(std::move(observed)),
+        bias_(sensor_bias ? (known_.mass_unknown ? 5 : 4) : 0),
+        parameters_(2 + (known_.mass_unknown ? 1 : 0) + (sensor_bias ? 1 : 0)) {}
 
+  Index input_size() const override { return known_.forces.size(); }
   std::vector<filters::Label> state_labels() const override {
     std::vector<filters::Label> labels{
         {"displacement", "m"}, {"velocity", "m/s"}, {"stiffness", "N/m"}, {"damping", "N s/m"}};
-    if (parameters_ == 3) labels.push_back({"sensor_bias", "m/s2"});
+    if (known_.mass_unknown) labels.push_back({"mass", "kg"});
+    if (bias_ > 0) labels.push_back({"sensor_bias", "m/s2"});
     return labels;
   }
   std::vector<filters::Label> output_labels() const override {
@@ -35,52 +53,97 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
 
   void motion_matrix(const VectorXd& state, MatrixXd& matrix) const override {
     matrix.resize(2, 2);
-    matrix << 0.0, 1.0, -state[2] / mass_, -state[3] / mass_;
+    matrix << 0.0, 1.0, -state[2] / mass(state), -state[3] / mass(state);
   }
-  void motion_matrix_derivative(const VectorXd&, Index j, MatrixXd& matrix) const override {
+  void motion_matrix_derivative(const VectorXd& state, Index j, MatrixXd& matrix) const override {
     matrix.setZero(2, 2);
-    if (j < 2) matrix(1, j) = -1.0 / mass_;
+    if (j < 2) matrix(1, j) = -1.0 / mass(state);
+    if (is_mass(j)) matrix.row(1) << state[2], state[3];
+    if (is_mass(j)) matrix.row(1) /= mass(state) * mass(state);
+  }
+  void input_matrix(const VectorXd& state, MatrixXd& matrix) const override {
+    matrix.setZero(2, input_size());
+    for (Index i = 0; i < input_size(); ++i)
+      matrix(1, i) = i == known_.base ? known_.forces[i] : known_.forces[i] / mass(state);
+  }
+  void input_matrix_derivative(const VectorXd& state, Index j, MatrixXd& matrix) const override {
+    matrix.setZero(2, input_size());
+    for (Index i = 0; is_mass(j) && i < input_size(); ++i)
+      if (i != known_.base) matrix(1, i) = -known_.forces[i] / (mass(state) * mass(state));
   }
 
-  void output(const VectorXd& state, const VectorXd&, VectorXd& output) const override {
+  void output(const VectorXd& state, const VectorXd& input, VectorXd& output) const override {
     output.resize(static_cast<Index>(observed_.size()));
     for (Index i = 0; i < output.size(); ++i) {
       if (observed_[i] == Quantity::displacement) output[i] = state[0];
       if (observed_[i] == Quantity::velocity) output[i] = state[1];
-      if (observed_[i] == Quantity::acceleration)
-        output[i] =
-            -(state[2] * state[0] + state[3] * state[1]) / mass_ + (parameters_ == 3 ? state[4] : 0.0);
+      if (observed_[i] != Quantity::acceleration) continue;
+      output[i] =
+          -(state[2] * state[0] + state[3] * state[1]) / mass(state) + (bias_ > 0 ? state[bias_] : 0.0);
+      if (input.size() == 0) continue;
+      output[i] += pushed(state, input);
+      if (known_.base >= 0) output[i] += input[known_.base];
     }
   }
-  void output_jacobian(const VectorXd& state, const VectorXd&, MatrixXd& jacobian) const override {
+  void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) const override {
     jacobian.setZero(static_cast<Index>(observed_.size()), 2 + parameters_);
     for (Index i = 0; i < jacobian.rows(); ++i) {
       if (observed_[i] == Quantity::displacement) jacobian(i, 0) = 1.0;
       if (observed_[i] == Quantity::velocity) jacobian(i, 1) = 1.0;
       if (observed_[i] == Quantity::acceleration) {
         jacobian.row(i).head<4>() << -state[2], -state[3], -state[0], -state[1];
-        jacobian.row(i) /= mass_;
-        if (parameters_ == 3) jacobian(i, 4) = 1.0;
+        jacobian.row(i) /= mass(state);
+        if (known_.mass_unknown) {
+          jacobian(i, 4) = (state[2] * state[0] + state[3] * state[1]) / (mass(state) * mass(state));
+          for (Index k = 0; k < input.size(); ++k)
+            if (k != known_.base) jacobian(i, 4) -= known_.forces[k] * input[k] / (mass(state) * mass(state));
+        }
+        if (bias_ > 0) jacobian(i, bias_) = 1.0;
       }
     }
   }
 
  private:
-  double mass_;  // [kg]
+  Known known_;
   std::vector<Quantity> observed_;
+  Index bias_;  // its place in the state; 0: none
   Index parameters_;
+
+  double mass(const VectorXd& state) const { return known_.mass_unknown ? state[4] : known_.mass; }
+  bool is_mass(Index j) const { return known_.mass_unknown && j == 2; }
+  double pushed(const VectorXd& state, const VectorXd& input) const {
+    double sum = 0.0;
+    for (Index k = 0; k < input.size(); ++k)
+      sum += (k == known_.base ? known_.forces[k] : known_.forces[k] / mass(state)) * input[k];
+    return sum;
+  }
 };
 
-// The beam's own stiffness and damping, to 30 % and to as much again.
-std::vector<Unknown> unknowns(double mass, double stiffness, const fem::DampingLaw& law) {
-  constexpr double stiffness_doubt = 0.3, usual_damping_ratio = 0.01;
-  const double omega = std::sqrt(stiffness / mass);
-  const bool described = !std::holds_alternative<fem::Undamped>(law);
+// The beam's own stiffness and damping, to 30 % and to as much again, and its mass to 10 %, unless the
+// setting believes otherwise.
+std::vector<Unknown> unknowns(const Known& known, double stiffness, const ModelSetting& setting) {
+  constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1, usual_damping_ratio = 0.01;
+  const double omega = std::sqrt(stiffness / known.mass);
+  const bool described = !std::holds_alternative<fem::Undamped>(setting.damping);
   const double ratio =
-      described ? fem::damping_ratios(law, VectorXd::Constant(1, omega))[0] : usual_damping_ratio;
-  const double damping = 2.0 * ratio * omega * mass;
-  return {{"stiffness", "N/m", stiffness, stiffness_doubt * stiffness},
-          {"damping", "N s/m", damping, damping}};
+      described ? fem::damping_ratios(setting.damping, VectorXd::Constant(1, omega))[0] : usual_damping_ratio;
+  const double damping = 2.0 * ratio * omega * known.mass;
+  std::vector<Unknown> unknowns{{"stiffness", "N/m", stiffness, stiffness_doubt * stiffness},
+                                {"damping", "N s/m", damping, damping}};
+  if (known.mass_unknown) unknowns.push_back({"mass", "kg", known.mass, mass_doubt * known.mass});
+  for (Unknown& unknown : unknowns) unknown.quantity = unknown.name;
+  for (const ParameterChoice& choice : setting.parameters) {
+    require_quantity(choice, {"stiffness", "damping", "mass"}, "sdof");
+    const auto same = [&](const Unknown& unknown) { return unknown.quantity == choice.quantity; };
+    const auto unknown = std::find_if(unknowns.begin(), unknowns.end(), same);
+    if (unknown == unknowns.end())
+      refuse(choice, "model 'sdof' asks about its mass where a force was measured; this record has none");
+    *unknown = unknown_of(choice, {unknown->guess, unknown->deviation / unknown->guess});
+    if (unknown->form != Form::linear)
+      refuse(choice,
+             std::string("model 'sdof' has linear parameters only; found form ") + to_string(unknown->form));
+  }
+  return unknowns;
 }
 
 std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
@@ -89,31 +152,45 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
     throw std::invalid_argument("model 'sdof' needs a reduction to one coordinate; this one keeps " +
                                 std::to_string(system.size()));
   std::vector<Quantity> observed;
+  std::vector<Index> accelerometers;
   auto model = std::make_unique<JointModel>();
   for (const Observation& observation : setting.observations) {
-    if (observation.quantity == Quantity::force)
+    if (observation.quantity == Quantity::force || observation.quantity == Quantity::strain)
       throw std::invalid_argument(
-          "model 'sdof' observes displacement, velocity or acceleration; found force");
+          std::string("model 'sdof' observes displacement, velocity or acceleration; found ") +
+          to_string(observation.quantity));
     if (observation.quantity == Quantity::acceleration && options.flag("sensor_bias"))
-      model->offsets.push_back({4, static_cast<Index>(observed.size())});
+      accelerometers.push_back(static_cast<Index>(observed.size()));
     observed.push_back(observation.quantity);
   }
   if (observed.empty()) throw std::invalid_argument("model 'sdof' needs at least one observed quantity");
   const double reading = system.outputs.coeff(0, 0);  // output per unit of the coordinate
-  const double mass = system.mass.coeff(0, 0) / (reading * reading);
+  Known known;
+  known.mass = system.mass.coeff(0, 0) / (reading * reading);
   const double stiffness = system.stiffness.assembled().coeff(0, 0) / (reading * reading);
-  model->motion = std::make_shared<SingleDegreeOfFreedom>(mass, observed, !model->offsets.empty());
-  model->unknowns = unknowns(mass, stiffness, setting.damping);
-  model->unknown_places = {2, 3};
+  known.forces.resize(static_cast<Index>(setting.forces.size()));
+  for (std::size_t i = 0; i < setting.forces.size(); ++i) {
+    const Index input = setting.forces[i];
+    const auto& names = setting.system.input_names;
+    const bool base = input < static_cast<Index>(names.size()) && names[input] == "base_acceleration";
+    if (base) known.base = static_cast<Index>(i);
+    known.mass_unknown |= !base;
+    known.forces[static_cast<Index>(i)] = system.inputs.coeff(0, input) / reading / (base ? known.mass : 1.0);
+  }
+  const Index unknown_count = known.mass_unknown ? 3 : 2;
+  for (const Index channel : accelerometers) model->offsets.push_back({2 + unknown_count, channel});
+  model->unknowns = unknowns(known, stiffness, setting);
+  for (Index j = 0; j < unknown_count; ++j) model->unknown_places.push_back(2 + j);
+  model->motion = std::make_shared<SingleDegreeOfFreedom>(known, observed, !model->offsets.empty());
   model->mode_shapes = MatrixXd::Ones(1, 1);
-  model->mode_frequencies = VectorXd::Constant(1, std::sqrt(stiffness / mass));
-  model->equivalent_mass = mass;
+  model->mode_frequencies = VectorXd::Constant(1, std::sqrt(stiffness / known.mass));
+  model->equivalent_mass = known.mass;
   return model;
 }
 
 const bool registered = model_registry().add(
     {"sdof",
-     "one degree of freedom: stiffness K and damping C unknown, mass known",
+     "one degree of freedom: stiffness K and damping C unknown, mass too where a force was measured",
      "[inverse2009]",
      {{"sensor_bias", true, "",
        "estimate the accelerometer's constant offset too, where acceleration is observed"}},

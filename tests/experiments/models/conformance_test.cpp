@@ -5,7 +5,8 @@
 
 #include "experiments/joint_model.hpp"
 #include "filters/central_differences.hpp"
-#include "tests/experiments/models/one_coordinate.hpp"
+#include "filters/discrete_model.hpp"
+#include "tests/experiments/models/beam_setting.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -19,39 +20,63 @@ const std::vector<std::vector<Quantity>> observations{
     {Quantity::displacement, Quantity::velocity},
     {Quantity::acceleration, Quantity::displacement, Quantity::velocity}};
 
-class EveryModel : public testing::TestWithParam<std::string> {
+// The smallest setting that every model can be made from: a beam reduced to one coordinate. Half of the tests
+// push it, too.
+ModelSetting setting_of(const std::vector<Quantity>& observed, bool pushed) {
+  std::vector<test::SensorAt> sensors;
+  for (const Quantity quantity : observed) sensors.push_back({quantity, 1.10});
+  ModelSetting setting = test::beam_setting(test::steel_beam(0.36049), 8, sensors,
+                                            pushed ? std::vector<double>{1.10} : std::vector<double>{});
+  test::reduce_by(setting, "rayleigh");
+  return setting;
+}
+
+class EveryModel : public testing::TestWithParam<std::tuple<std::string, bool>> {
  protected:
-  std::shared_ptr<const filters::LinearMotion> make(const std::vector<Quantity>& observed) {
-    return std::dynamic_pointer_cast<const filters::LinearMotion>(
-        model_registry()
-            .make(GetParam(), {}, at_one_point(test::one_coordinate(3.0, 515.8), observed))
-            ->motion);
+  std::unique_ptr<JointModel> make(const std::vector<Quantity>& observed) {
+    return model_registry().make(std::get<0>(GetParam()), {}, setting_of(observed, std::get<1>(GetParam())));
   }
-  // A state with nothing zero in it, parameters of the right size for the system above.
-  static VectorXd state_of(const filters::LinearMotion& motion) {
-    const Index l = motion.motion_size(), q = motion.parameter_size();
-    VectorXd state = VectorXd::LinSpaced(l + q, 0.3, 1.7);
-    state[l] = 480.0;
-    state[l + 1] = 9.0;
+  // A state with nothing zero in it, the unknowns near their guesses.
+  static VectorXd state_of(const JointModel& model) {
+    VectorXd state = VectorXd::LinSpaced(static_cast<Index>(model.motion->state_labels().size()), 0.3, 1.7);
+    for (std::size_t j = 0; j < model.unknowns.size(); ++j)
+      state[model.unknown_places[j]] = model.unknowns[j].to_state(1.1 * model.unknowns[j].guess);
     return state;
+  }
+  static VectorXd input_of(const JointModel& model) {
+    return VectorXd::Constant(model.motion->input_size(), 2.5);
+  }
+  // Columns of unknowns are as large as one over them: they are compared on their own scale.
+  static void expect_near(const MatrixXd& a, const MatrixXd& b, double tolerance) {
+    ASSERT_EQ(a.rows(), b.rows());
+    ASSERT_EQ(a.cols(), b.cols());
+    for (Index j = 0; j < a.cols(); ++j)
+      EXPECT_LE((a.col(j) - b.col(j)).norm(), tolerance * b.col(j).norm()) << j << "\n" << a << "\n\n" << b;
   }
 };
 
 TEST_P(EveryModel, LabelsEveryStateAndOutput) {
-  // Oracle: state [z, z', theta], of which K and C come first; outputs as observed, in that order.
+  // Oracle: outputs are those observed, in that order; an unknown's own name and unit are its state's.
   for (const auto& observed : observations) {
-    const auto motion = make(observed);
-    const auto states = motion->state_labels();
-    const auto l = static_cast<std::size_t>(motion->motion_size());
-    ASSERT_EQ(states.size(), l + static_cast<std::size_t>(motion->parameter_size()));
-    EXPECT_EQ(states[l].name + " " + states[l].unit, "stiffness N/m");
-    EXPECT_EQ(states[l + 1].name + " " + states[l + 1].unit, "damping N s/m");
+    const auto model = make(observed);
+    const auto states = model->motion->state_labels();
     std::set<std::string> names;
     for (const filters::Label& label : states) {
       EXPECT_FALSE(label.unit.empty()) << label.name;
       EXPECT_TRUE(names.insert(label.name).second) << label.name << " is there twice";
     }
-    const auto outputs = motion->output_labels();
+    ASSERT_FALSE(model->unknowns.empty());
+    ASSERT_EQ(model->unknowns.size(), model->unknown_places.size());
+    for (std::size_t j = 0; j < model->unknowns.size(); ++j) {
+      const Unknown& unknown = model->unknowns[j];
+      const filters::Label& label = states.at(static_cast<std::size_t>(model->unknown_places[j]));
+      EXPECT_EQ(label.name, unknown.name);
+      EXPECT_EQ(label.unit, unknown.unit.empty() ? "1" : unknown.unit);
+      EXPECT_FALSE(unknown.quantity.empty());
+      EXPECT_GT(unknown.guess, 0.0);
+      EXPECT_GT(unknown.deviation, 0.0);
+    }
+    const auto outputs = model->motion->output_labels();
     ASSERT_EQ(outputs.size(), observed.size());
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       EXPECT_EQ(outputs[i].name, to_string(observed[i]));
@@ -62,64 +87,97 @@ TEST_P(EveryModel, LabelsEveryStateAndOutput) {
 
 TEST_P(EveryModel, GivesTheDerivativesOfItsRateAndOutput) {
   // Oracle: central differences.
-  const VectorXd no_input;
   for (const auto& observed : observations) {
-    const auto motion = make(observed);
-    const VectorXd state = state_of(*motion);
+    const auto model = make(observed);
+    const VectorXd state = state_of(*model), input = input_of(*model);
     MatrixXd given, difference;
-    motion->rate_jacobian(state, no_input, given);
-    const auto rate = [&](const VectorXd& z, VectorXd& value) { motion->rate(z, no_input, value); };
+    model->motion->rate_jacobian(state, input, given);
+    const auto rate = [&](const VectorXd& z, VectorXd& value) { model->motion->rate(z, input, value); };
     filters::central_differences(rate, state, state.size(), difference);
-    EXPECT_LT((given - difference).cwiseAbs().maxCoeff(), 1e-7 * given.cwiseAbs().maxCoeff());
-    motion->output_jacobian(state, no_input, given);
-    const auto output = [&](const VectorXd& z, VectorXd& value) { motion->output(z, no_input, value); };
+    expect_near(given, difference, 1e-6);
+    model->motion->output_jacobian(state, input, given);
+    const auto output = [&](const VectorXd& z, VectorXd& value) { model->motion->output(z, input, value); };
     filters::central_differences(output, state, static_cast<Index>(observed.size()), difference);
-    ASSERT_EQ(given.rows(), difference.rows());
-    EXPECT_LT((given - difference).cwiseAbs().maxCoeff(), 1e-7 * given.cwiseAbs().maxCoeff());
+    expect_near(given, difference, 1e-6);
   }
 }
 
-TEST_P(EveryModel, GivesTheDerivativesOfItsMotionMatrix) {
-  // Oracle: central differences of A, parameter by parameter.
-  const auto motion = make({Quantity::displacement});
-  const Index l = motion->motion_size();
-  const VectorXd state = state_of(*motion);
-  for (Index j = 0; j < motion->parameter_size(); ++j) {
-    MatrixXd given, above, below;
-    VectorXd moved = state;
-    const double step = 1e-4 * state[l + j];
-    moved[l + j] = state[l + j] + step;
-    motion->motion_matrix(moved, above);
-    moved[l + j] = state[l + j] - step;
-    motion->motion_matrix(moved, below);
-    motion->motion_matrix_derivative(state, j, given);
-    EXPECT_LT((given - (above - below) / (2.0 * step)).cwiseAbs().maxCoeff(), 1e-8) << j;
+TEST_P(EveryModel, GivesTheDerivativesOfItsStep) {
+  // Oracle: central differences of the step, of the registered scheme or of the model's own.
+  const auto model = make({Quantity::acceleration, Quantity::displacement});
+  const VectorXd state = state_of(*model), input = input_of(*model);
+  for (const char* const scheme : {"exponential", "pade"}) {
+    const auto step = filters::discretise(model->motion, 1e-3, scheme, {{}, MatrixXd::Identity(2, 2)});
+    VectorXd next;
+    MatrixXd given, difference;
+    step->linearised_transition(state, input, next, given);
+    const auto move = [&](const VectorXd& z, VectorXd& value) { step->transition(z, input, value); };
+    filters::central_differences(move, state, state.size(), difference);
+    expect_near(given, difference, 1e-6);
   }
 }
 
 TEST_P(EveryModel, LeavesItsParametersAtRest) {
   // Oracle: theta' = 0, whatever the motion does.
   for (const auto& observed : observations) {
-    const auto motion = make(observed);
+    const auto model = make(observed);
     VectorXd rate;
-    motion->rate(state_of(*motion), {}, rate);
-    EXPECT_EQ(rate.tail(motion->parameter_size()).cwiseAbs().maxCoeff(), 0.0);
+    model->motion->rate(state_of(*model), input_of(*model), rate);
+    for (const Index place : model->unknown_places) EXPECT_EQ(rate[place], 0.0);
+    for (const JointModel::Offset& offset : model->offsets) EXPECT_EQ(rate[offset.place], 0.0);
   }
 }
 
+TEST_P(EveryModel, GivesEveryAccelerometerAnOffset) {
+  // Oracle: a unit offset moves its own channel by one, and no other.
+  const auto model = make({Quantity::acceleration, Quantity::displacement});
+  ASSERT_EQ(model->offsets.size(), 1u);
+  EXPECT_EQ(model->offsets[0].channel, 0);
+  VectorXd state = state_of(*model), before, after;
+  model->motion->output(state, input_of(*model), before);
+  state[model->offsets[0].place] += 1.0;
+  model->motion->output(state, input_of(*model), after);
+  EXPECT_NEAR(after[0] - before[0], 1.0, 1e-12 * std::abs(after[0]));
+  EXPECT_EQ(after[1], before[1]);
+}
+
 TEST_P(EveryModel, TellsTheMassAtItsOutput) {
-  // Oracle: y = r q and M q'' make M / r^2 at y.
-  const auto model = model_registry().make(
-      GetParam(), {}, at_one_point(test::one_coordinate(3.0, 515.8, 0.5), {Quantity::velocity}));
-  EXPECT_DOUBLE_EQ(model->equivalent_mass, 12.0);
+  // Oracle: Rayleigh's 33/140 of the beam's mass, and the tip's.
+  const auto model = make({Quantity::displacement});
+  EXPECT_NEAR(model->equivalent_mass, 33.0 / 140.0 * 3.055 + 0.36049, 1e-9);
+  EXPECT_EQ(model->motion_size(), 1);
+  EXPECT_EQ(model->mode_frequencies.size(), 1);
+}
+
+TEST_P(EveryModel, MovesInItsModeAtTheGuess) {
+  // Oracle: z'' = -omega^2 z in the first mode's shape where nothing is damped or pushed.
+  const auto model = make({Quantity::displacement});
+  const Index r = model->motion_size();
+  VectorXd state = VectorXd::Zero(static_cast<Index>(model->motion->state_labels().size())), rate, output;
+  for (std::size_t j = 0; j < model->unknowns.size(); ++j)
+    state[model->unknown_places[j]] = model->unknowns[j].to_state(model->unknowns[j].guess);
+  state.head(r) = model->mode_shapes.col(0);
+  model->motion->rate(state, VectorXd::Zero(model->motion->input_size()), rate);
+  const double square = model->mode_frequencies[0] * model->mode_frequencies[0];
+  EXPECT_LE((rate.segment(r, r) + square * state.head(r)).norm(), 1e-9 * square * state.head(r).norm());
+  model->motion->output(state, VectorXd::Zero(model->motion->input_size()), output);
+  EXPECT_NEAR(std::abs(output[0]), 1.0, 1e-12);
 }
 
 TEST_P(EveryModel, RefusesUnknownOptionsAndWhatItCannotObserve) {
-  const auto system = test::one_coordinate(3.0, 515.8);
-  EXPECT_THROW(model_registry().make(GetParam(), {{"no_such_option", 1.0}},
-                                     at_one_point(system, {Quantity::velocity})),
-               std::invalid_argument);
-  EXPECT_THROW(model_registry().make(GetParam(), {}, at_one_point(system, {})), std::invalid_argument);
+  const std::string name = std::get<0>(GetParam());
+  ModelSetting setting = setting_of({Quantity::velocity}, std::get<1>(GetParam()));
+  EXPECT_THROW(model_registry().make(name, {{"no_such_option", 1.0}}, setting), std::invalid_argument);
+  setting.observations[0].quantity = Quantity::force;
+  EXPECT_THROW(model_registry().make(name, {}, setting), std::invalid_argument);
+  setting.observations.clear();
+  EXPECT_THROW(model_registry().make(name, {}, setting), std::invalid_argument);
+}
+
+TEST_P(EveryModel, RefusesParametersItDoesNotHave) {
+  ModelSetting setting = setting_of({Quantity::velocity}, std::get<1>(GetParam()));
+  setting.parameters = {test::parameter("colour")};
+  EXPECT_THROW(model_registry().make(std::get<0>(GetParam()), {}, setting), std::invalid_argument);
 }
 
 std::vector<std::string> names() {
@@ -127,8 +185,12 @@ std::vector<std::string> names() {
   for (const auto& [name, entry] : model_registry().entries()) result.push_back(name);
   return result;
 }
-INSTANTIATE_TEST_SUITE_P(Registered, EveryModel, testing::ValuesIn(names()),
-                         [](const auto& tested) { return tested.param; });
+INSTANTIATE_TEST_SUITE_P(Registered, EveryModel,
+                         testing::Combine(testing::ValuesIn(names()), testing::Bool()),
+                         [](const auto& tested) {
+                           return std::get<0>(tested.param) +
+                                  (std::get<1>(tested.param) ? "_pushed" : "_free");
+                         });
 
 }  // namespace
 }  // namespace beamid::experiments

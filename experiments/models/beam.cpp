@@ -1,0 +1,135 @@
+// The finite-element beam itself, on any reduction, none included:
+//
+//     M(p) q'' + C(p) q' + K(p) q = E(p) f,    q = Phi z
+//
+// with the beam's properties p and its damping unknown. Phi is that of the guess and stays. What the filter
+// sees of a reduced model are its modes at the guess, z, each scaled to 1 at the output where it is largest:
+// the same space, in coordinates in [m] that are independent at the guess.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "experiments/motion/banded/continuum_motion.hpp"
+#include "experiments/motion/beam_damping.hpp"
+#include "experiments/motion/beam_equations.hpp"
+#include "experiments/motion/sensor_options.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// A mesh with more coordinates than this is not made into dense matrices.
+constexpr Index most_dense = 30;
+
+const std::vector<std::string> quantities{"bending_stiffness",
+                                          "tip_mass",
+                                          "tip_rotary_inertia",
+                                          "root_rotational_stiffness",
+                                          "root_translational_stiffness",
+                                          "axial_load",
+                                          "damping_ratio",
+                                          "mass_damping",
+                                          "stiffness_damping"};
+
+std::vector<ParameterChoice> choices_of(const ModelSetting& setting) {
+  if (setting.parameters.empty()) return {{"bending_stiffness"}, {"damping_ratio"}};
+  for (const ParameterChoice& choice : setting.parameters) require_quantity(choice, quantities, "beam");
+  return setting.parameters;
+}
+
+void add_drives(const fem::ParametricSystem& equations, MotionDescription& description) {
+  description.reference = equations.values;
+  Index property = 0;
+  for (const Unknown& unknown : description.unknowns) {
+    Drive drive;
+    if (unknown.quantity == "damping_ratio")
+      drive.kind = Drive::Kind::damping_ratio;
+    else if (unknown.quantity == "mass_damping")
+      drive.kind = Drive::Kind::mass_damping;
+    else if (unknown.quantity == "stiffness_damping")
+      drive.kind = Drive::Kind::stiffness_damping;
+    else
+      drive.index = property++;
+    description.drives.push_back(drive);
+  }
+}
+
+VectorXd elastic(const fem::Modes& modes) {
+  return modes.angular_frequency.tail(modes.size() - modes.rigid);
+}
+
+std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+  MotionDescription description = describe_sensors("beam", setting, options);
+  const std::vector<ParameterChoice> choices = choices_of(setting);
+  if (!setting.continuum) beam_equations(setting, {});  // says what is missing
+  std::vector<ParameterDefault> defaults = beam_defaults(setting.continuum->beam, choices);
+
+  // The equations need no more than the guesses of the beam's own properties.
+  std::vector<Unknown> properties;
+  for (std::size_t j = 0; j < choices.size(); ++j)
+    if (beam_quantity(choices[j].quantity)) properties.push_back(unknown_of(choices[j], defaults[j]));
+  fem::ParametricSystem equations = beam_equations(setting, properties);
+  reduction::ReducedModel reduced;
+  if (setting.reduction)
+    reduced = reduce(equations.system, *setting.reduction, setting.training);
+  else
+    reduced = {equations.system, {}, true};
+  const bool dense = reduced.system.size() <= most_dense || !reduced.identity;
+  const double kept = options.number("modes");
+  if (!(kept >= 1.0 && kept == std::floor(kept)))
+    throw std::invalid_argument(fmt::format("modes is {:g}; expected a whole number of at least 1", kept));
+  const fem::Modes modes =
+      fem::modes(reduced.system, dense ? reduced.system.size()
+                                       : std::min<Index>(static_cast<Index>(kept), reduced.system.size()));
+
+  add_damping_defaults(setting.damping, elastic(modes), choices, defaults);
+  description.unknowns = unknowns_of(choices, defaults);
+  add_drives(equations, description);
+  auto model = std::make_unique<JointModel>();
+  model->unknowns = description.unknowns;
+  model->mode_frequencies = modes.angular_frequency;
+  MatrixXd shapes = reduced.lift(modes.shape);
+  const VectorXd scale = scale_of_modes(equations.system, description.observations, shapes);
+  shapes *= scale.asDiagonal();
+  StateLayout places;
+  if (dense) {
+    ReducedEquations small = on_shapes(equations, shapes, modes.angular_frequency, description.forces);
+    describe_damping(setting.damping, elastic(modes), damped_modes(small), description);
+    const MatrixXd rows = equations.system.outputs * shapes;
+    if (modes.size() == 1 && rows(0, 0) != 0.0)
+      model->equivalent_mass = small.mass[0] / (rows(0, 0) * rows(0, 0));
+    model->mode_shapes.setIdentity(modes.size(), modes.size());
+    places = layout(description, modes.size());
+    model->motion = std::make_shared<ReducedMotion>(std::move(small), std::move(description), rows, "mode");
+  } else {
+    describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
+    model->mode_shapes = shapes;
+    places = layout(description, equations.system.size());
+    model->motion = std::make_shared<ContinuumMotion>(std::move(equations), std::move(description));
+  }
+  for (Index j = 0; j < static_cast<Index>(model->unknowns.size()); ++j)
+    model->unknown_places.push_back(places.unknowns + j);
+  model->offsets = places.offsets;
+  return model;
+}
+
+std::vector<filters::OptionSpec> options() {
+  std::vector<filters::OptionSpec> specs = sensor_options();
+  specs.push_back(
+      {"modes", 5.0, "",
+       "of a mesh that is not reduced: how many modes the start is uncertain in, and are damped"});
+  return specs;
+}
+
+const bool registered = model_registry().add({"beam",
+                                              "the finite-element beam: stiffness, masses, root, axial load "
+                                              "and damping unknown, as [[parameters]] asks",
+                                              "[rayleigh1877]",
+                                              options(),
+                                              {},
+                                              make});
+
+}  // namespace
+}  // namespace beamid::experiments

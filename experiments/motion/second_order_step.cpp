@@ -1,0 +1,145 @@
+#include "experiments/motion/second_order_step.hpp"
+
+#include <optional>
+
+#include "experiments/motion/rational_step.hpp"
+#include "filters/schemes/matrix_exponential.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::Matrix2d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
+
+class SecondOrderStep final : public filters::DiscreteModel {
+ public:
+  SecondOrderStep(std::shared_ptr<const SecondOrderMotion> motion, double dt, const std::string& scheme,
+                  filters::Noise noise)
+      : motion_(std::move(motion)), dt_(dt), noise_(std::move(noise)) {
+    const bool exact = scheme == "exponential";
+    if (!exact || !motion_->decoupled() || motion_->input_size() > 0)
+      rational_.emplace(exact ? RationalStep::Scheme::exponential : RationalStep::Scheme::pade, dt,
+                        motion_->frequencies());
+  }
+
+  std::vector<filters::Label> state_labels() const override { return motion_->state_labels(); }
+  std::vector<filters::Label> output_labels() const override { return motion_->output_labels(); }
+  const MatrixXd& process_noise() const override { return noise_.process; }
+  const MatrixXd& output_noise() const override { return noise_.output; }
+
+  void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
+    step(state, input, next, nullptr);
+  }
+  void linearised_transition(const VectorXd& state, const VectorXd& input, VectorXd& next,
+                             MatrixXd& jacobian) override {
+    step(state, input, next, &jacobian);
+  }
+  // Below the rows of the motion the tangent is the identity.
+  void move(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd& directions) override {
+    step(state, input, next, &tangent_);
+    const StateLayout& at = motion_->layout();
+    moved_.noalias() = tangent_.topRows(at.motion) * directions;
+    directions.topRows(at.motion) = moved_;
+  }
+  void output(const VectorXd& state, const VectorXd& input, VectorXd& output) override {
+    evaluate(state, false);
+    motion_->read(state, input, form_, output);
+  }
+  void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) override {
+    evaluate(state, true);
+    motion_->read_jacobian(state, input, form_, slopes_, jacobian);
+  }
+
+ private:
+  std::shared_ptr<const SecondOrderMotion> motion_;
+  double dt_;
+  filters::Noise noise_;
+  std::optional<RationalStep> rational_;  // absent: oscillators in closed form
+  // The equations at unknowns_, and what is known of them: a step and the outputs after it share them.
+  VectorXd unknowns_, held_input_;
+  bool has_form_ = false, has_slopes_ = false, is_set_ = false;
+  SecondOrderForm form_;
+  std::vector<SecondOrderForm> slopes_;
+  MatrixXd tangent_, moved_;
+
+  void evaluate(const VectorXd& state, bool slopes) {
+    const StateLayout& at = motion_->layout();
+    const auto unknowns =
+        state.segment(at.unknowns, static_cast<Index>(motion_->description().unknowns.size()));
+    if (!has_form_ || unknowns != unknowns_) {
+      has_form_ = has_slopes_ = is_set_ = false;
+      unknowns_ = unknowns;
+    }
+    if (has_slopes_ || (has_form_ && !slopes)) return;
+    motion_->evaluate(state, form_, slopes ? &slopes_ : nullptr);
+    has_form_ = true;
+    has_slopes_ = slopes;
+  }
+
+  void step(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
+    const StateLayout& at = motion_->layout();
+    evaluate(state, tangent != nullptr);
+    next = state;
+    if (tangent) tangent->setIdentity(at.size, at.size);
+    for (std::size_t i = 0; i < at.drifts.size(); ++i) {
+      if (at.drifts[i] < 0) continue;
+      next[at.biases[i]] += dt_ * state[at.drifts[i]];
+      if (tangent) (*tangent)(at.biases[i], at.drifts[i]) = dt_;
+    }
+    if (rational_)
+      step_together(state, input, next, tangent);
+    else
+      step_apart(state, next, tangent);
+  }
+
+  void step_together(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
+    if (!is_set_ || held_input_.size() != input.size() || held_input_ != input) {
+      rational_->set(form_, input);
+      held_input_ = input;
+      is_set_ = true;
+    }
+    rational_->apply(state, next);
+    if (!tangent) return;
+    const StateLayout& at = motion_->layout();
+    const Index moving = 2 * at.coordinates;
+    rational_->tangent(tangent->topLeftCorner(moving, moving));
+    rational_->tangent_by_unknowns(
+        state, slopes_, input, tangent->block(0, at.unknowns, moving, static_cast<Index>(slopes_.size())));
+  }
+
+  void step_apart(const VectorXd& state, VectorXd& next, MatrixXd* tangent) {
+    const StateLayout& at = motion_->layout();
+    const Index r = at.coordinates;
+    Matrix2d a, slope;
+    for (Index i = 0; i < r; ++i) {
+      a << 0.0, dt_, -dt_ * form_.stiffness(i, i), -dt_ * form_.damping(i, i);
+      const filters::Exponential2x2 exponential(a);
+      const Vector2d before(state[i], state[r + i]), after = exponential.value() * before;
+      next[i] = after[0];
+      next[r + i] = after[1];
+      if (!tangent) continue;
+      (*tangent)(i, i) = exponential.value()(0, 0);
+      (*tangent)(i, r + i) = exponential.value()(0, 1);
+      (*tangent)(r + i, i) = exponential.value()(1, 0);
+      (*tangent)(r + i, r + i) = exponential.value()(1, 1);
+      for (std::size_t j = 0; j < slopes_.size(); ++j) {
+        const double w = slopes_[j].stiffness(i, i), d = slopes_[j].damping(i, i);
+        if (w == 0.0 && d == 0.0) continue;
+        slope << 0.0, 0.0, -dt_ * w, -dt_ * d;
+        const Vector2d moved = exponential.derivative(slope) * before;
+        (*tangent)(i, at.unknowns + static_cast<Index>(j)) = moved[0];
+        (*tangent)(r + i, at.unknowns + static_cast<Index>(j)) = moved[1];
+      }
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<filters::DiscreteModel> second_order_step(std::shared_ptr<const SecondOrderMotion> motion,
+                                                          double dt, const std::string& scheme,
+                                                          const filters::Noise& noise) {
+  if (scheme != "exponential" && scheme != "pade") return nullptr;
+  return std::make_unique<SecondOrderStep>(std::move(motion), dt, scheme, noise);
+}
+
+}  // namespace beamid::experiments
