@@ -7,10 +7,13 @@ namespace beamid::apps {
 std::vector<Command> commands() {
   std::vector<Command> all = study_commands();
   all.push_back(identify_command());
+  all.push_back(compare_command());
+  all.push_back(identifiability_command());
   all.push_back(modes_command());
   all.push_back(frame_command());
   all.push_back(simulate_command());
   all.push_back(frf_command());
+  all.push_back(reduce_command());
   all.push_back(new_command());
   all.push_back(validate_command());
   all.push_back(list_command());

@@ -28,12 +28,15 @@ struct Command {
 /// All of them, in the order in which help shows them.
 std::vector<Command> commands();
 
+Command compare_command();
 Command frame_command();
 Command frf_command();
+Command identifiability_command();
 Command identify_command();
 Command list_command();
 Command modes_command();
 Command new_command();
+Command reduce_command();
 Command simulate_command();
 Command validate_command();
 /// Every registered study is a command of its own.

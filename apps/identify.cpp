@@ -4,6 +4,8 @@
 #include "apps/deliver.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/read_record.hpp"
+#include "experiments/model_setting.hpp"
+#include "experiments/record_comparison/comparison.hpp"
 #include "experiments/record_identification/record_identification.hpp"
 
 namespace beamid::apps {
@@ -11,6 +13,24 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace experiments;
+
+/// K and C of a free decay have a report of their own; any other model is a comparison of one run.
+bool is_free_oscillator(const Experiment& experiment, const Record& record) {
+  return experiment.model.name == "sdof" && experiment.parameters.empty() && force_channels(record).empty();
+}
+
+Results identify_generally(Experiment experiment, const Record& record, const fs::path& file,
+                           const fs::path& folder) {
+  experiment.reductions = {experiment.reduction};
+  experiment.filters = {experiment.filter};
+  experiment.discretisations = {experiment.discretisation};
+  ComparedRecord compared;
+  compared.name = file.filename().string();
+  compared.record = record;
+  Results results = report(experiment, compare(experiment, std::move(compared), folder, show_progress()));
+  results.command = "identify";
+  return results;
+}
 
 int run(const Command& command, const std::vector<std::string>& arguments) {
   options::options_description described("Options");
@@ -40,6 +60,8 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   const Record record = read_record(file, experiment.format);
   deliver(values, [&] {
     try {
+      if (!is_free_oscillator(experiment, record))
+        return identify_generally(experiment, record, file, config.parent_path());
       return report(experiment, record, file.filename().string(), identify_record(experiment, record));
     } catch (const std::invalid_argument& error) {
       throw InputError({config.string()}, error.what());

@@ -15,7 +15,7 @@ void print_help(std::ostream& stream) {
             "  beamid COMMAND [OPTIONS]\n\nCommands\n";
   for (const Command& command : commands()) {
     std::string name = command.name;
-    name.resize(12, ' ');
+    name.resize(17, ' ');
     stream << "  " << name << command.summary << "\n";
   }
   stream << "\n  beamid COMMAND --help   options and examples of a command\n"

@@ -11,6 +11,7 @@
 #include "experiments/input/read_frame.hpp"
 #include "experiments/input/read_record.hpp"
 #include "experiments/joint_model.hpp"
+#include "experiments/model_setting.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "reduction/reduction.hpp"
@@ -46,16 +47,10 @@ std::string record_text(const fs::path& file, const Record& record) {
 }
 
 // What the model says of the record's channels shows only when it is made.
-void check_model(const Experiment& experiment, const fem::StructuralSystem& system, const Record& record) {
-  std::vector<Quantity> observed;
-  for (const Channel& channel : record.channels) observed.push_back(channel.quantity);
-  const auto method =
-      reduction::reduction_registry().make(experiment.reduction.name, experiment.reduction.options);
-  const reduction::ReducedModel reduced = reduce(system, *method);
-  at_place(experiment.model.place, [&] {
-    return model_registry().make(experiment.model.name, experiment.model.options,
-                                 at_one_point(reduced.system, observed));
-  });
+void check_model(const Experiment& experiment, const fs::path& folder, const Record& record) {
+  const ModelSetting setting = model_setting(experiment, record, experiment.reduction, folder);
+  at_place(experiment.model.place,
+           [&] { return model_registry().make(experiment.model.name, experiment.model.options, setting); });
 }
 
 int validate_frame(const fs::path& file, const TomlTable& root) {
@@ -93,7 +88,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     record_file = file.parent_path() / *experiment.record_file;
   if (values.count("record") || (!record_file.empty() && fs::exists(record_file))) {
     const Record record = read_record(record_file, experiment.format);
-    check_model(experiment, system, record);
+    check_model(experiment, file.parent_path(), record);
     record_line = record_text(record_file, record);
   } else if (!record_file.empty()) {
     record_line = fmt::format("'{}' is not there and was not checked; {}", record_file.string(),

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "experiments/continuum/settings.hpp"
+#include "experiments/identifiability/settings.hpp"
 #include "experiments/input/input_error.hpp"
+#include "experiments/parameter_choice.hpp"
 #include "experiments/record.hpp"
 #include "fem/beam.hpp"
 #include "fem/damping.hpp"
@@ -21,14 +23,18 @@ struct Choice {
   std::string name;
   filters::Options options;
   Place place = {};  ///< where it was chosen, for messages; empty when it was not
+  std::string shape_file =
+      {};  ///< of a reduction that takes a given shape; relative to the TOML file's folder; empty: none
 };
 
 /// One column of a delimited file: by number, from 1, or by the name in the header.
 struct ColumnDescription {
   Quantity quantity = Quantity::acceleration;
-  std::string name;   ///< in the header; empty when chosen by number
-  int number = 0;     ///< from 1; 0 when chosen by name
-  double factor = 1;  ///< to SI units
+  std::string name;                     ///< in the header; empty when chosen by number
+  int number = 0;                       ///< from 1; 0 when chosen by name
+  double factor = 1;                    ///< to SI units
+  std::optional<double> position = {};  ///< of the sensor or the force [m]; absent: the natural point
+  double distance = 0.0;                ///< strain: of the surface from the axis [m]
 };
 
 /// How a delimited text file is to be read.
@@ -60,9 +66,16 @@ struct Experiment {
   std::optional<std::string> record_file;  ///< relative to the TOML file's folder
   RecordFormat format;
   Choice reduction{"rayleigh", {}};
+  std::vector<Choice>
+      reductions;  ///< to be compared, in the order of the file; none: a choice of the command
   Choice model{"sdof", {}};
+  std::vector<ParameterChoice> parameters;  ///< none: what the model asks about by itself
   Choice filter{"ekf", {}};
   std::string discretisation = "exponential";
+  std::vector<Choice> filters;               ///< to be compared; none: `filter`
+  std::vector<std::string> discretisations;  ///< likewise; none: `discretisation`
+  int passes = 3;                            ///< over the record, of every run of a comparison
+  IdentifiabilitySettings identifiability;
   PriorBelief prior;
   std::map<Quantity, double> noise;  ///< standard deviation per quantity [SI]; absent: from the record
 };

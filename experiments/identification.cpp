@@ -1,5 +1,6 @@
 #include "experiments/identification.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,25 +13,51 @@ double deviation(const Eigen::Matrix2d& covariance, double by_stiffness, double 
   return std::sqrt(slope.dot(covariance * slope));
 }
 
+// What the next pass takes over: constants of the record. A bias that drifts is not one.
+std::vector<Eigen::Index> kept_places(const JointModel& model) {
+  std::vector<Eigen::Index> places;
+  for (std::size_t j = 0; j < model.unknowns.size(); ++j)
+    if (!model.unknowns[j].nuisance) places.push_back(model.unknown_places[j]);
+  for (const JointModel::Offset& offset : model.offsets) {
+    const bool drifts = std::any_of(model.offsets.begin(), model.offsets.end(), [&](const auto& other) {
+      return other.drift && other.channel == offset.channel;
+    });
+    if (!drifts) places.push_back(offset.place);
+  }
+  return places;
+}
+
 }  // namespace
 
-Identification identify(const JointModel& model, const filters::Measurements& record,
-                        const IdentificationSettings& settings, filters::Keep keep) {
+filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& initial,
+                             const filters::Gaussian& last) {
+  filters::Gaussian next = initial;
+  for (const Eigen::Index place : kept_places(model)) next.mean[place] = last.mean[place];
+  return next;
+}
+
+filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
+                                 const IdentificationSettings& settings, filters::Keep keep) {
   const double dt =
       (record.time[record.time.size() - 1] - record.time[0]) / static_cast<double>(record.time.size() - 1);
   const auto filter = filters::filter_registry().make(
       settings.filter, settings.filter_options,
       filters::discretise(model.motion, dt, settings.discretisation, {{}, settings.output_noise}));
   filters::Gaussian initial = settings.initial;
-  Identification result;
+  filters::FilterRun run;
   for (int pass = 1; pass <= settings.passes; ++pass) {
     const bool last = pass == settings.passes;
-    result.run =
-        filters::run(*filter, initial, record, last ? keep : filters::Keep::last_belief, settings.start);
-    if (result.run.failure) break;
-    const Eigen::Index constants = initial.mean.size() - 2 * model.motion_size();
-    initial.mean.tail(constants) = result.run.last.mean.tail(constants);
+    run = filters::run(*filter, initial, record, last ? keep : filters::Keep::last_belief, settings.start);
+    if (run.failure) break;
+    initial = next_start(model, initial, run.last);
   }
+  return run;
+}
+
+Identification identify(const JointModel& model, const filters::Measurements& record,
+                        const IdentificationSettings& settings, filters::Keep keep) {
+  Identification result;
+  result.run = filter_record(model, record, settings, keep);
   const Eigen::VectorXd& mean = result.run.last.mean;
   const Eigen::Matrix2d covariance = result.run.last.covariance.block<2, 2>(2, 2);
   result.found = {model.equivalent_mass, mean[2], mean[3]};

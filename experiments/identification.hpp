@@ -18,12 +18,23 @@ struct IdentificationSettings {
   filters::Start start = filters::Start::at_first_sample;  ///< what instant that belief is about
   Eigen::MatrixXd output_noise;                            ///< R
   /// Times the record is filtered; each pass starts from the parameters the one before ended with, and from
-  /// the same initial covariance. Repeating removes what is left of the linearisation about a poor first
-  /// guess.
+  /// the same initial covariance (next_start). Repeating removes what is left of the linearisation about a
+  /// poor first guess.
   int passes = 1;
 };
 
-/// What was found.
+/// The belief that the next pass over the record starts from: `initial` with the constants that `last` found
+/// but for the nuisance parameters, what is known of which must not be counted twice.
+filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& initial,
+                             const filters::Gaussian& last);
+
+/// The record through the filter, pass after pass; the run of the last one, or of the first that failed.
+/// @throws std::invalid_argument when the settings do not fit the model or the record.
+filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
+                                 const IdentificationSettings& settings,
+                                 filters::Keep keep = filters::Keep::last_belief);
+
+/// What was found of one degree of freedom.
 struct Identification {
   Oscillator found;                ///< K and C at the end of the record
   double stiffness_deviation = 0;  ///< standard deviations the filter reports
@@ -33,7 +44,7 @@ struct Identification {
   filters::FilterRun run;  ///< of the last pass
 };
 
-/// @throws std::invalid_argument when the settings do not fit the model or the record.
+/// K and C by model sdof. @throws std::invalid_argument when the settings do not fit the model or the record.
 Identification identify(const JointModel& model, const filters::Measurements& record,
                         const IdentificationSettings& settings,
                         filters::Keep keep = filters::Keep::last_belief);

@@ -16,6 +16,8 @@ const char* si_unit(Quantity quantity) {
       return "m/s2";
     case Quantity::force:
       return "N";
+    case Quantity::strain:
+      return "m/m";
   }
   return "";
 }
@@ -30,6 +32,8 @@ const char* to_string(Quantity quantity) {
       return "acceleration";
     case Quantity::force:
       return "force";
+    case Quantity::strain:
+      return "strain";
   }
   return "";
 }

@@ -2,20 +2,23 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace beamid::experiments {
 
-enum class Quantity { displacement, velocity, acceleration, force };
+enum class Quantity { displacement, velocity, acceleration, force, strain };
 
-/// SI unit of a quantity: m, m/s, m/s2, N.
+/// SI unit of a quantity: m, m/s, m/s2, N, m/m.
 const char* si_unit(Quantity quantity);
 const char* to_string(Quantity quantity);
 
 struct Channel {
   Quantity quantity = Quantity::acceleration;
   std::string name;
+  std::optional<double> position = {};  ///< along the beam [m]; absent: the natural point
+  double distance = 0.0;                ///< strain: of the surface from the axis, c of -c w'' [m]
 };
 
 /// N samples of p measured channels, in SI units.

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fem/assembly.hpp"
 
 namespace beamid::experiments {
+
+/// "root", "tip" or "x0.4m".
+std::string name_of_place(double position, double length);
 
 /// Points without repetition, numbered as inputs and outputs of fem::assemble.
 class BeamPoints {

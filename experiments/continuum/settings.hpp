@@ -41,6 +41,7 @@ struct Sensor {
   std::optional<double> position;              ///< [m]; absent: the natural point
   Quantity quantity = Quantity::acceleration;  ///< accelerations are absolute, the rest relative to the base
   double noise = 0.0;                          ///< standard deviation [SI]
+  double distance = 0.0;                       ///< strain: of the surface from the axis, c of -c w'' [m]
 };
 
 struct Simulation {

@@ -8,6 +8,7 @@
 #include "experiments/continuum/excitation_history.hpp"
 #include "experiments/random.hpp"
 #include "fem/modes.hpp"
+#include "fem/parametric_system.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -27,11 +28,27 @@ std::vector<Index> evenly_spread(int count, Index samples) {
 
 VectorXd clean_history(const SimulatedTest& test, Quantity quantity, Index output, const VectorXd& base) {
   const fem::Response& r = test.response;
-  if (quantity == Quantity::displacement) return r.displacement.row(output);
+  if (quantity == Quantity::displacement || quantity == Quantity::strain) return r.displacement.row(output);
   if (quantity == Quantity::velocity) return r.velocity.row(output);
   VectorXd acceleration = r.acceleration.row(output);
   if (base.size() > 0) acceleration += base;
   return acceleration;
+}
+
+// An output row for every strain gauge, -c w'' at its node, behind those of the points.
+void add_gauges(SimulatedTest& test, std::vector<Index>& outputs) {
+  for (std::size_t i = 0; i < test.sensors.size(); ++i) {
+    const Sensor& sensor = test.sensors[i];
+    if (sensor.quantity != Quantity::strain) continue;
+    fem::StructuralSystem& system = test.system;
+    outputs[i] = system.outputs.rows();
+    const Eigen::MatrixXd gauge =
+        -sensor.distance * Eigen::MatrixXd(fem::curvature_row(system, *sensor.position));
+    Eigen::MatrixXd rows(system.outputs.rows() + 1, system.size());
+    rows << Eigen::MatrixXd(system.outputs), gauge;
+    system.outputs = rows.sparseView();
+    system.output_names.push_back(sensor.name + "_strain");
+  }
 }
 
 // Modes below half the sampling rate: what an instrument's anti-aliasing filter lets through. One above
@@ -96,7 +113,14 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   test.excitation = experiment.excitation;
   BeamPoints points(experiment.beam);
   std::vector<Index> outputs;
+  std::vector<double> gauges;
   for (Sensor& sensor : test.sensors) {
+    if (sensor.quantity == Quantity::strain) {
+      gauges.push_back(*sensor.position);
+      outputs.push_back(-1);
+      if (sensor.name.empty()) sensor.name = name_of_place(*sensor.position, experiment.beam.length());
+      continue;
+    }
     outputs.push_back(points.add(sensor.position));
     sensor.position = points[outputs.back()].position;
     if (sensor.name.empty()) sensor.name = points[outputs.back()].name;
@@ -104,7 +128,8 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   const Index input = points.add(test.excitation.position);
   test.excitation.position = points[input].position;
   progress("assembling");
-  test.system = fem::assemble(experiment.beam, experiment.elements, points.all());
+  test.system = fem::assemble(fem::with_nodes(experiment.beam, gauges), experiment.elements, points.all());
+  add_gauges(test, outputs);
 
   const int steps = settings.steps_per_sample;
   const auto samples = static_cast<Index>(std::llround(settings.duration * settings.sampling_rate)) + 1;
@@ -129,7 +154,7 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
     VectorXd values = clean_history(test, sensor.quantity, outputs[i], history.base_acceleration)(at_samples);
     if (sensor.noise > 0.0) values += sensor.noise * standard_normal(samples, settings.seed, i);
     test.record.samples.row(static_cast<Index>(i)) = values.transpose();
-    test.record.channels.push_back({sensor.quantity, sensor.name});
+    test.record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance});
   }
   return test;
 }

@@ -2,9 +2,13 @@
 
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_beam.hpp"
+#include "experiments/input/read_comparison.hpp"
 #include "experiments/input/read_damping.hpp"
 #include "experiments/input/read_frequency_response.hpp"
+#include "experiments/input/read_identifiability.hpp"
+#include "experiments/input/read_parameters.hpp"
 #include "experiments/input/read_record_format.hpp"
+#include "experiments/input/read_reduction.hpp"
 #include "experiments/input/read_simulation.hpp"
 #include "experiments/input/units.hpp"
 #include "experiments/input/vocabulary.hpp"
@@ -29,7 +33,8 @@ PriorBelief read_prior(const TomlTable& table) {
 
 std::map<Quantity, double> read_noise(const TomlTable& table) {
   std::map<Quantity, double> noise;
-  for (const Quantity quantity : {Quantity::displacement, Quantity::velocity, Quantity::acceleration}) {
+  for (const Quantity quantity :
+       {Quantity::displacement, Quantity::velocity, Quantity::acceleration, Quantity::strain}) {
     const std::string key = std::string(to_string(quantity)) + "_" + units(quantity).front().suffix;
     if (const auto deviation = table.find_number(key, Sign::positive)) noise[quantity] = *deviation;
   }
@@ -45,7 +50,11 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
     else
       choice = {choice.name, registry.completed(choice.name, choice.options), root.value_place(name)};
   };
-  choose("reduction", "method", experiment.reduction, reduction::reduction_registry(), {});
+  choose("reduction", "method", experiment.reduction, reduction::reduction_registry(), {"shape_file"});
+  if (const auto table = root.find_table("reduction")) read_shape_file(*table, experiment.reduction);
+  for (const TomlTable& table : root.find_tables("reductions"))
+    experiment.reductions.push_back(read_reduction(table));
+  read_comparison(root, experiment);
   choose("model", "name", experiment.model, model_registry(), {});
   choose("filter", "method", experiment.filter, filters::filter_registry(), {"discretisation"});
   if (const auto table = root.find_table("filter")) {
@@ -61,7 +70,8 @@ void read_continuum(const TomlTable& root, Experiment& experiment) {
   if (const auto damping = root.find_table("damping")) experiment.damping = read_damping(*damping);
   if (const auto excitation = root.find_table("excitation"))
     experiment.excitation = read_excitation(*excitation, length);
-  experiment.sensors = read_sensors(root, length);
+  experiment.sensors = read_sensors(root, experiment.beam);
+  experiment.parameters = read_parameters(root, length);
   if (const auto simulation = root.find_table("simulation"))
     experiment.simulation = read_simulation(*simulation);
   if (const auto response = root.find_table("frequency_response"))
@@ -88,10 +98,12 @@ Experiment read_experiment(const TomlTable& root) {
     experiment.record_file = record->find_text("file");
     if (experiment.record_file && experiment.record_file->empty())
       record->refuse("file", "the name of a file");
-    experiment.format = read_record_format(*record);
+    experiment.format = read_record_format(*record, experiment.beam);
   }
   read_continuum(root, experiment);
   read_methods(root, experiment);
+  if (const auto table = root.find_table("identifiability"))
+    experiment.identifiability = read_identifiability(*table);
   if (const auto prior = root.find_table("prior")) experiment.prior = read_prior(*prior);
   if (const auto noise = root.find_table("noise")) experiment.noise = read_noise(*noise);
   return experiment;

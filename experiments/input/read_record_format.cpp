@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "experiments/input/read_gauge.hpp"
 #include "experiments/input/spelling.hpp"
 #include "experiments/input/units.hpp"
 
@@ -35,7 +36,7 @@ ColumnDescription read_column(const TomlTable& table) {
   return column;
 }
 
-ColumnDescription read_channel(const TomlTable& table) {
+ColumnDescription read_channel(const TomlTable& table, const fem::Beam& beam) {
   std::vector<std::string> names;
   for (const Quantity quantity : all_quantities) names.emplace_back(to_string(quantity));
   const std::optional<std::string> name = table.find_text("quantity", names);
@@ -43,12 +44,14 @@ ColumnDescription read_channel(const TomlTable& table) {
   ColumnDescription channel = read_column(table);
   channel.quantity = *find_quantity(*name);
   channel.factor = read_factor(table, *name, units(channel.quantity));
+  channel.position = read_position(table, beam, channel.quantity);
+  channel.distance = read_distance(table, beam, channel.quantity, channel.position);
   return channel;
 }
 
 }  // namespace
 
-RecordFormat read_record_format(const TomlTable& table) {
+RecordFormat read_record_format(const TomlTable& table, const fem::Beam& beam) {
   static const std::map<std::string, char> separators{
       {"auto", '\0'}, {"tab", '\t'}, {"comma", ','}, {"semicolon", ';'}, {"space", ' '}};
   RecordFormat format;
@@ -63,7 +66,7 @@ RecordFormat read_record_format(const TomlTable& table) {
     format.time->factor = read_factor(*time, "time", time_units());
   }
   for (const TomlTable& channel : table.find_tables("channels"))
-    format.channels.push_back(read_channel(channel));
+    format.channels.push_back(read_channel(channel, beam));
   return format;
 }
 

@@ -8,6 +8,6 @@ namespace beamid::experiments {
 
 /// How the record's file is to be read; its name is another key. Units are stated, never guessed.
 /// @throws InputError at the key, for missing ones at the table.
-RecordFormat read_record_format(const TomlTable& table);
+RecordFormat read_record_format(const TomlTable& table, const fem::Beam& beam);
 
 }  // namespace beamid::experiments

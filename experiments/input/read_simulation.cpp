@@ -6,6 +6,7 @@
 #include <map>
 
 #include "experiments/input/read_attachments.hpp"
+#include "experiments/input/read_gauge.hpp"
 #include "experiments/input/spelling.hpp"
 #include "experiments/input/units.hpp"
 #include "experiments/input/useless_keys.hpp"
@@ -81,14 +82,15 @@ Excitation read_excitation(const TomlTable& table, double length) {
   return excitation;
 }
 
-std::vector<Sensor> read_sensors(const TomlTable& table, double length) {
-  const std::vector<std::string> quantities{"displacement", "velocity", "acceleration"};
+std::vector<Sensor> read_sensors(const TomlTable& table, const fem::Beam& beam) {
+  const std::vector<std::string> quantities{"displacement", "velocity", "acceleration", "strain"};
   std::vector<Sensor> sensors;
   for (const TomlTable& one : table.find_tables("sensors")) {
     Sensor sensor;
     sensor.name = one.find_text("name").value_or("");
-    if (one.contains("position_m")) sensor.position = position_on_beam(one, "position_m", length);
     sensor.quantity = *find_quantity(one.find_text("quantity", quantities).value_or("acceleration"));
+    sensor.position = read_position(one, beam, sensor.quantity);
+    sensor.distance = read_distance(one, beam, sensor.quantity, sensor.position);
     for (const std::string& quantity : quantities) {
       const std::string key = "noise_" + units(*find_quantity(quantity)).front().suffix;
       const auto noise = one.find_number(key, Sign::not_negative);

@@ -13,7 +13,7 @@ namespace beamid::experiments {
 Excitation read_excitation(const TomlTable& table, double length);
 
 /// @param table the file's root.
-std::vector<Sensor> read_sensors(const TomlTable& table, double length);
+std::vector<Sensor> read_sensors(const TomlTable& table, const fem::Beam& beam);
 
 /// Keys that are none of its own are options of the method. @throws InputError as above, and for unknown
 /// options.

@@ -12,8 +12,9 @@ namespace {
 
 RecordColumn find_column(const DelimitedText& text, const ColumnDescription& wanted) {
   const std::vector<std::string>& names = text.names();
-  RecordColumn column{
-      static_cast<std::size_t>(wanted.number) - 1, wanted.factor, {wanted.quantity, wanted.name}};
+  RecordColumn column{static_cast<std::size_t>(wanted.number) - 1,
+                      wanted.factor,
+                      {wanted.quantity, wanted.name, wanted.position, wanted.distance}};
   if (wanted.name.empty()) {
     if (column.index >= text.width())
       throw InputError(text.row_place(), fmt::format("{}; expected at least {}, the column asked for",

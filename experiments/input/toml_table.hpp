@@ -52,7 +52,9 @@ class TomlTable {
       const std::string& key) const;  ///< [from, to], from < to
   std::optional<bool> find_truth(const std::string& key) const;
   std::optional<std::vector<double>> find_numbers(const std::string& key, Sign sign) const;  ///< at least one
-  std::optional<filters::OptionValue> find_value(const std::string& key) const;  ///< number, text or truth
+  std::optional<std::vector<std::string>> find_texts(const std::string& key) const;          ///< at least one
+  /// Number, text, truth or numbers.
+  std::optional<filters::OptionValue> find_value(const std::string& key) const;
   std::optional<TomlTable> find_table(const std::string& key) const;
   std::vector<TomlTable> find_tables(const std::string& key) const;  ///< empty only where the key is absent
   std::vector<TomlTable> tables_below(

@@ -101,6 +101,22 @@ std::optional<std::vector<double>> TomlTable::find_numbers(const std::string& ke
   return numbers;
 }
 
+std::optional<std::vector<std::string>> TomlTable::find_texts(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* const array = node->as_array();
+  if (array == nullptr || array->empty()) refuse(key, "an array of at least one text");
+  std::vector<std::string> texts;
+  for (const toml::node& element : *array) {
+    const auto text = element.value<std::string>();
+    if (!text || !element.is_string())
+      throw InputError(node_->at(element.source()),
+                       fmt::format("{} holds {}; expected a text in quotes", path(key), found(element)));
+    texts.push_back(*text);
+  }
+  return texts;
+}
+
 std::optional<filters::OptionValue> TomlTable::find_value(const std::string& key) const {
   const toml::node* const node = node_->table->get(key);
   if (node == nullptr) return std::nullopt;

@@ -10,6 +10,7 @@ const std::vector<Unit>& units(Quantity quantity) {
   static const std::vector<Unit> acceleration{
       {"m/s2", "m_per_s2", 1}, {"mm/s2", "mm_per_s2", 1e-3}, {"g", "g", standard_gravity}};
   static const std::vector<Unit> force{{"N", "n", 1}, {"kN", "kn", 1e3}};
+  static const std::vector<Unit> strain{{"m/m", "m_per_m", 1}, {"um/m", "um_per_m", 1e-6}};
   switch (quantity) {
     case Quantity::displacement:
       return displacement;
@@ -17,6 +18,8 @@ const std::vector<Unit>& units(Quantity quantity) {
       return velocity;
     case Quantity::acceleration:
       return acceleration;
+    case Quantity::strain:
+      return strain;
     case Quantity::force:
       break;
   }

@@ -5,19 +5,20 @@
 #include <algorithm>
 
 #include "experiments/input/read_frame.hpp"
+#include "experiments/input/read_parameters.hpp"
 #include "experiments/input/read_segment.hpp"
 #include "experiments/input/spelling.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-struct Unknown {
+struct UnknownKey {
   Place place;
   std::string message;
 };
 
 /// @param name the table's, without the number that an element of an array has in its own name.
-void collect(const TomlTable& table, const std::string& name, std::vector<Unknown>& unknown) {
+void collect(const TomlTable& table, const std::string& name, std::vector<UnknownKey>& unknown) {
   const auto known = std::find_if(vocabulary().begin(), vocabulary().end(),
                                   [&](const TableVocabulary& candidate) { return candidate.table == name; });
   if (known == vocabulary().end())
@@ -52,7 +53,8 @@ const std::vector<TableVocabulary>& vocabulary() {
   static const std::vector<TableVocabulary> tables{
       {"",
        {"title", "beam", "damping", "excitation", "sensors", "simulation", "frequency_response", "record",
-        "reduction", "model", "filter", "prior", "noise", "frame"}},
+        "reduction", "reductions", "model", "parameters", "filter", "filters", "compare", "identifiability",
+        "prior", "noise", "frame"}},
       {"beam", beam_keys()},
       {"beam.segments", segment_keys()},
       {"beam.bodies", {"position_m", "mass_kg", "rotary_inertia_kg_m2", "eccentricity_m"}},
@@ -68,7 +70,9 @@ const std::vector<TableVocabulary>& vocabulary() {
       {"excitation",
        {"kind", "position_m", "deflection_m", "velocity_m_per_s", "mode", "force_n", "momentum_n_s",
         "duration_s", "amplitude_n", "amplitude_m_per_s2", "frequency_hz", "file"}},
-      {"sensors", {"name", "position_m", "quantity", "noise_m", "noise_m_per_s", "noise_m_per_s2"}},
+      {"sensors",
+       {"name", "position_m", "quantity", "distance_m", "noise_m", "noise_m_per_s", "noise_m_per_s2",
+        "noise_m_per_m"}},
       {"simulation",
        {"duration_s", "sampling_rate_hz", "steps_per_sample", "method", "frames", "seed"},
        true},
@@ -77,13 +81,18 @@ const std::vector<TableVocabulary>& vocabulary() {
       {"frequency_response.pairs", {"input_m", "output_m"}},
       {"record", {"file", "separator", "header_lines", "sampling_rate_hz", "window_s", "time", "channels"}},
       {"record.time", {"column", "unit"}},
-      {"record.channels", {"quantity", "column", "unit"}},
-      {"reduction", {"method"}, true},
+      {"record.channels", {"quantity", "column", "unit", "position_m", "distance_m"}},
+      {"reduction", {"method", "shape_file"}, true},
+      {"reductions", {"method", "shape_file"}, true},
       {"model", {"name"}, true},
+      {"parameters", parameter_keys()},
       {"filter", {"method", "discretisation"}, true},
+      {"filters", {"method"}, true},
+      {"compare", {"discretisations", "passes"}},
+      {"identifiability", {"force_measured", "places", "more_sensors"}},
       {"prior",
        {"stiffness_n_per_m", "stiffness_deviation_n_per_m", "damping_ratio", "damping_ratio_deviation"}},
-      {"noise", {"displacement_m", "velocity_m_per_s", "acceleration_m_per_s2"}},
+      {"noise", {"displacement_m", "velocity_m_per_s", "acceleration_m_per_s2", "strain_m_per_m"}},
       {"frame", {"elements_per_member", "mass_model", "joints", "members", "supports", "bodies", "springs"}},
       {"frame.joints", {"name", "x_m", "y_m"}},
       {"frame.members", member_keys()},
@@ -96,11 +105,11 @@ const std::vector<TableVocabulary>& vocabulary() {
 }
 
 void refuse_unknown_keys(const TomlTable& root) {
-  std::vector<Unknown> unknown;
+  std::vector<UnknownKey> unknown;
   collect(root, "", unknown);
   if (unknown.empty()) return;
   std::stable_sort(unknown.begin(), unknown.end(),
-                   [](const Unknown& a, const Unknown& b) { return a.place.line < b.place.line; });
+                   [](const UnknownKey& a, const UnknownKey& b) { return a.place.line < b.place.line; });
   std::string message = unknown.front().message;
   for (std::size_t i = 1; i < unknown.size(); ++i)
     message.append("\n").append(to_string(unknown[i].place)).append(": ").append(unknown[i].message);

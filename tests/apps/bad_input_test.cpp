@@ -62,10 +62,10 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NegativeMass", toml, "mass_kg = 3.055", "mass_kg = -3.055",
               "cantilever.toml:10:11: beam.mass_kg is -3.055; expected a positive number"},
         Fault{"UnknownFilter", toml, "\"ekf\"", "\"ufk\"",
-              "cantilever.toml:18:10: unknown filter 'ufk'; known: ekf, ukf"},
+              "cantilever.toml:18:10: unknown filter 'ufk'; known: ekf, low_rank_ekf, low_rank_ukf, ukf"},
         Fault{"UnknownDiscretisation", toml, "\"exponential\"", "\"euler\"",
               "cantilever.toml:19:18: unknown discretisation 'euler'; known: backward_euler, cvode, "
-              "exponential, forward_euler, implicit_midpoint, runge_kutta_2, runge_kutta_4"},
+              "exponential, forward_euler, implicit_midpoint, pade, runge_kutta_2, runge_kutta_4"},
         Fault{
             "UnknownKey", toml, "length_m", "lenght_m",
             "cantilever.toml:6:1: unknown key 'lenght_m' in beam; did you mean 'length_m'? known: length_m, "
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
             "tip_acceleration.csv:1: unknown column 'acceleration_tip_ft_per_s2'; expected names with units "
             "(time_s, time_ms, time_us, displacement_m, displacement_mm, displacement_um, velocity_m_per_s, "
             "velocity_mm_per_s, acceleration_m_per_s2, acceleration_mm_per_s2, acceleration_g, force_n, "
-            "force_kn), or record.channels in the configuration"}),
+            "force_kn, strain_m_per_m, strain_um_per_m), or record.channels in the configuration"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -46,8 +46,8 @@ TEST_P(EveryCommand, RefusesAnUnknownOption) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryCommand,
-                         testing::Values("paper", "identify", "modes", "frame", "simulate", "frf", "new",
-                                         "validate", "list"),
+                         testing::Values("paper", "identify", "compare", "identifiability", "modes", "frame",
+                                         "simulate", "frf", "reduce", "new", "validate", "list"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
@@ -55,8 +55,8 @@ TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(outcome.first_error_line(),
-            "beamid: unknown command 'indentify'; known: paper, identify, modes, frame, simulate, frf, new, "
-            "validate, list");
+            "beamid: unknown command 'indentify'; known: paper, identify, compare, identifiability, modes, "
+            "frame, simulate, frf, reduce, new, validate, list");
 }
 
 struct Kind {
@@ -78,16 +78,16 @@ TEST_P(ListOf, NamesEveryMember) {
     EXPECT_THAT(outcome.out, HasSubstr("\n" + member + " "));
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ListOf,
-                         testing::Values(Kind{"filters", {"ekf", "ukf"}},
-                                         Kind{"reductions", {"none", "rayleigh", "modal_truncation"}},
-                                         Kind{"discretisations",
-                                              {"forward_euler", "backward_euler", "implicit_midpoint",
-                                               "runge_kutta_2", "runge_kutta_4", "exponential", "cvode"}},
-                                         Kind{"models", {"sdof"}}, Kind{"studies", {"paper"}},
-                                         Kind{"responses",
-                                              {"modal", "newmark", "hht_alpha", "generalised_alpha"}}),
-                         [](const auto& tested) { return std::string(tested.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, ListOf,
+    testing::Values(Kind{"filters", {"ekf", "low_rank_ekf", "low_rank_ukf", "ukf"}},
+                    Kind{"reductions", {"none", "rayleigh", "modal_truncation"}},
+                    Kind{"discretisations",
+                         {"forward_euler", "backward_euler", "implicit_midpoint", "pade", "runge_kutta_2",
+                          "runge_kutta_4", "exponential", "cvode"}},
+                    Kind{"models", {"beam", "modal", "sdof"}}, Kind{"studies", {"paper"}},
+                    Kind{"responses", {"modal", "newmark", "hht_alpha", "generalised_alpha"}}),
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(ListOfOneFilter, ShowsItsOptionsWithDefaults) {
   const Outcome outcome = Workplace().run("list filters ukf");
@@ -102,7 +102,7 @@ TEST(List, RefusesUnknownKindsAndNames) {
             "beamid: list: unknown kind 'fliters'; known: discretisations, filters, models, reductions, "
             "responses, studies");
   EXPECT_EQ(Workplace().run("list filters ufk").first_error_line(),
-            "beamid: unknown filter 'ufk'; known: ekf, ukf");
+            "beamid: unknown filter 'ufk'; known: ekf, low_rank_ekf, low_rank_ukf, ukf");
   EXPECT_EQ(Workplace().run("list filters ufk").code, 2);
 }
 

@@ -71,6 +71,7 @@ TEST(Quantity, HasItsNameAndUnit) {
   EXPECT_STREQ(si_unit(Quantity::velocity), "m/s");
   EXPECT_STREQ(si_unit(Quantity::acceleration), "m/s2");
   EXPECT_STREQ(si_unit(Quantity::force), "N");
+  EXPECT_STREQ(si_unit(Quantity::strain), "m/m");
   EXPECT_STREQ(to_string(Quantity::acceleration), "acceleration");
 }
 

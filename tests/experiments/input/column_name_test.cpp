@@ -23,7 +23,9 @@ TEST(ColumnName, TellsQuantityLabelAndUnit) {
                {"acceleration_tip_2_m_per_s2", Quantity::acceleration, "tip_2", 1},
                {"acceleration_g", Quantity::acceleration, "", 9.80665},
                {"acceleration_g_g", Quantity::acceleration, "g", 9.80665},
-               {"force_kn", Quantity::force, "", 1e3}};
+               {"force_kn", Quantity::force, "", 1e3},
+               {"strain_root_um_per_m", Quantity::strain, "root", 1e-6},
+               {"strain_m_per_m", Quantity::strain, "", 1}};
   for (const auto& expected : known) {
     const auto meaning = parse_column_name(expected.name);
     ASSERT_TRUE(meaning) << expected.name;

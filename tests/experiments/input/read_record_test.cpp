@@ -182,9 +182,10 @@ TEST(ReadRecord, RefusesColumnsThatAreNotThere) {
        {"t,a,acc\n0,1\n1,1\n", "bad.txt:2:1: 2 columns; expected 3 for the column 'acc'"}});
 }
 
-#define KNOWN                                                                                      \
-  "time_s, time_ms, time_us, displacement_m, displacement_mm, displacement_um, velocity_m_per_s, " \
-  "velocity_mm_per_s, acceleration_m_per_s2, acceleration_mm_per_s2, acceleration_g, force_n, force_kn"
+#define KNOWN                                                                                             \
+  "time_s, time_ms, time_us, displacement_m, displacement_mm, displacement_um, velocity_m_per_s, "        \
+  "velocity_mm_per_s, acceleration_m_per_s2, acceleration_mm_per_s2, acceleration_g, force_n, force_kn, " \
+  "strain_m_per_m, strain_um_per_m"
 
 TEST(ReadRecord, RefusesHeadersThatDoNotTellTheUnits) {
   expect_refused(

@@ -34,9 +34,22 @@ std::set<std::string> known_keys() {
   return keys;
 }
 
+/// A parameter whose numbers are in the unit that the key ends with, and a region where the key needs one.
+std::vector<std::string> parameter_with(const std::string& key) {
+  std::vector<std::string> needed{"quantity = \"bending_stiffness\""};
+  if (key == "from_m" || key == "to_m") needed.insert(needed.end(), {"from_m = 0", "to_m = 0.5"});
+  for (const ParameterQuantity& quantity : parameter_quantities())
+    for (const std::string number : {"guess", "deviation", "lower", "upper"})
+      if (key == (quantity.suffix.empty() ? number : number + "_" + quantity.suffix))
+        needed = {"quantity = \"" + quantity.name + "\""};
+  return needed;
+}
+
 /// What a table needs beside the key under test; a key of the same quantity makes way for it.
 std::vector<std::string> needed_in(const std::string& table, const std::string& key) {
   const bool member = table == "frame.members", beam = table == "beam" || table == "beam.segments" || member;
+  if (table == "record.channels" && key == "distance_m")
+    return {"quantity = \"strain\"", "column = 1", "unit = \"m/m\"", "position_m = 0"};
   if (table == "record.channels") return {"quantity = \"force\"", "column = 1", "unit = \"N\""};
   if (table == "record.time") return {"column = 1", "unit = \"s\""};
   if (table == "beam.absorbers") return {"position_m = 0", "mass_kg = 1", "stiffness_n_per_m = 1"};
@@ -47,6 +60,10 @@ std::vector<std::string> needed_in(const std::string& table, const std::string& 
   if (table == "frame.supports") return {"joint = 1", "kind = \"pinned\""};
   if (table.starts_with("frame.") && !member) return {"joint = 1"};
   if (table == "damping.anchors") return {"frequency_hz = 1", "ratio = 0.1"};
+  if (table == "parameters") return parameter_with(key);
+  if (table == "sensors" && key == "distance_m") return {"quantity = \"strain\"", "position_m = 0"};
+  if (table == "sensors" && key == "noise_m_per_m")
+    return {"quantity = \"strain\"", "position_m = 0", "distance_m = 1"};
   if (table.starts_with("beam.") && !beam) return {"position_m = 0"};
   if (!beam) return {};
   std::vector<std::string> needed{"length_m = 1"};
@@ -94,6 +111,9 @@ std::string with_date(const std::string& table, const std::string& key) {
                                      "damping.anchors",
                                      "sensors",
                                      "frequency_response.pairs",
+                                     "reductions",
+                                     "filters",
+                                     "parameters",
                                      "record.channels"};
   if (table.starts_with("frame")) return frame_with_date(table, key);
   std::string text;

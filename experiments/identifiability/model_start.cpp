@@ -1,0 +1,68 @@
+#include "experiments/identifiability/model_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "experiments/reproduction.hpp"
+#include "filters/discrete_model.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double start_periods = 5.0;  // of mode 1, over which the start of the model's motion is found
+
+double slowest_period(const JointModel& model) {
+  for (const double omega : model.mode_frequencies)
+    if (omega > 0.0) return 2.0 * std::numbers::pi / omega;
+  return 0.0;
+}
+
+/// Sensors of the same quantity count alike, quantities by the largest motion that one of them shows.
+MatrixXd weights(const std::vector<Sensor>& sensors, const MatrixXd& outputs) {
+  const VectorXd size = outputs.rowwise().norm();
+  VectorXd variances = VectorXd::Ones(size.size());
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    double largest = 0.0;
+    for (std::size_t j = 0; j < sensors.size(); ++j)
+      if (sensors[j].quantity == sensors[i].quantity)
+        largest = std::max(largest, size[static_cast<Index>(j)]);
+    if (largest > 0.0) variances[static_cast<Index>(i)] = largest * largest;
+  }
+  return variances.asDiagonal();
+}
+
+}  // namespace
+
+SimulatedTest clean_test(const Experiment& experiment, const std::filesystem::path& folder,
+                         const std::vector<Sensor>& sensors, double duration, const Progress& progress) {
+  Experiment clean = experiment;
+  clean.sensors = sensors;
+  for (Sensor& sensor : clean.sensors) sensor.noise = 0.0;
+  clean.simulation.duration = duration;
+  return simulate(clean, folder, 0, progress);
+}
+
+VectorXd model_start(const ObservedMotion& motion, Experiment experiment, const std::filesystem::path& folder,
+                     const std::vector<Sensor>& sensors, Index begin, const Progress& progress) {
+  const double rate = 1.0 / motion.interval;
+  const Index samples =
+      std::max(fewest_start_samples,
+               static_cast<Index>(std::ceil(start_periods * slowest_period(motion.model) * rate)));
+  if (experiment.simulation.method.name == "modal")
+    experiment.simulation.method.options["modes"] = static_cast<double>(motion.model.mode_shapes.cols());
+  const Record record =
+      clean_test(experiment, folder, sensors, static_cast<double>(begin + samples) / rate, progress).record;
+  const MatrixXd outputs = record.samples.middleCols(begin, samples);
+  const auto discrete = filters::discretise(motion.model.motion, motion.interval, motion.discretisation,
+                                            {{}, weights(sensors, outputs)});
+  VectorXd state = reproduce(*discrete, motion.initial_state, motion.directions,
+                             {record.time.segment(begin, samples), outputs, {}})
+                       .initial_state;
+  for (const JointModel::Offset& offset : motion.model.offsets) state[offset.place] = 0.0;
+  return state;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,123 @@
+#include "experiments/record_comparison/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/continuum/simulated_test.hpp"
+#include "experiments/input/choice_text.hpp"
+#include "experiments/input/read_reduction.hpp"
+#include "experiments/modal_analysis/dominant_mode.hpp"
+#include "experiments/model_setting.hpp"
+#include "experiments/record_comparison/compared_run.hpp"
+#include "fem/assembly.hpp"
+#include "fem/modes.hpp"
+#include "filters/filter.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+// What to expect of the record's first channel, whatever model looks at it.
+std::optional<double> modal_frequency(const Record& record, double expected_hz) {
+  try {
+    ModalAnalysisSettings settings;
+    settings.expected_frequency_hz = expected_hz;
+    return dominant_mode(record.samples.row(output_channels(record)[0]), record.interval(), settings)
+        .frequency_hz;
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+ComparedRun refused(const std::string& reason) {
+  ComparedRun run;
+  run.status = ComparedRun::Status::refused;
+  run.reason = reason;
+  return run;
+}
+
+}  // namespace
+
+const char* to_string(ComparedRun::Status status) {
+  switch (status) {
+    case ComparedRun::Status::converged:
+      return "converged";
+    case ComparedRun::Status::diverged:
+      return "diverged";
+    case ComparedRun::Status::refused:
+      return "refused";
+  }
+  return "";
+}
+
+std::optional<double> ComparedParameter::error_percent() const {
+  if (!truth || *truth == 0.0 || !std::isfinite(*truth)) return {};
+  return 100.0 * (estimate.value / *truth - 1.0);
+}
+
+std::optional<double> ComparedParameter::bound_ratio() const {
+  if (!bound || !(*bound > 0.0)) return {};
+  return estimate.deviation / *bound;
+}
+
+ComparedRecord simulated_record(const Experiment& truth, const std::filesystem::path& folder,
+                                const Progress& progress) {
+  const SimulatedTest test = simulate(truth, folder, 0, progress);
+  ComparedRecord compared;
+  compared.name = "simulated";
+  compared.record = test.record;
+  compared.sensor_noise.resize(static_cast<Index>(test.sensors.size()));
+  for (std::size_t i = 0; i < test.sensors.size(); ++i)
+    compared.sensor_noise[static_cast<Index>(i)] = test.sensors[i].noise;
+  compared.truth = truth;
+  compared.notes = test.notes;
+  return compared;
+}
+
+Comparison compare(const Experiment& experiment, ComparedRecord record, const std::filesystem::path& folder,
+                   const Progress& progress) {
+  Comparison comparison{std::move(record), {}};
+  const Record& samples = comparison.compared.record;
+  if (output_channels(samples).empty())
+    throw std::invalid_argument("the record holds forces only; expected at least one channel of motion");
+  RunContext context{experiment, comparison.compared, {}};
+  const double beam_frequency =
+      fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+  context.modal_frequency_hz = modal_frequency(samples, beam_frequency);
+  for (const Choice& reduction : experiment.reductions) {
+    std::optional<ModelSetting> setting;
+    std::unique_ptr<JointModel> model;
+    std::string refusal;
+    FirstGuess guess;
+    progress(to_text(reduction));
+    try {
+      setting = model_setting(experiment, samples, reduction, folder);
+      model = model_registry().make(experiment.model.name, experiment.model.options, *setting);
+      guess = first_guess(*model, setting->observations, measurements(samples),
+                          context.modal_frequency_hz.value_or(beam_frequency));
+    } catch (const std::invalid_argument& error) {
+      refusal = error.what();
+    }
+    for (const Choice& filter : experiment.filters)
+      for (const std::string& discretisation : experiment.discretisations) {
+        progress(fmt::format("{}, {}, {}", to_text(reduction), filter.name, discretisation));
+        comparison.runs.push_back(
+            model ? run_once(context, *setting, *model, {filter, discretisation, experiment.passes, guess})
+                  : refused(refusal));
+        comparison.runs.back().reduction = to_text(reduction);
+        comparison.runs.back().filter =
+            choice_text(filter, filters::filter_registry().find(filter.name).options);
+        comparison.runs.back().discretisation = discretisation;
+      }
+  }
+  const bool any = std::any_of(comparison.runs.begin(), comparison.runs.end(), [](const ComparedRun& run) {
+    return run.status != ComparedRun::Status::refused;
+  });
+  if (!any) throw std::invalid_argument(comparison.runs.front().reason);
+  return comparison;
+}
+
+}  // namespace beamid::experiments

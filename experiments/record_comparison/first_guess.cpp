@@ -1,0 +1,128 @@
+#include "experiments/record_comparison/first_guess.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+#include "experiments/identification.hpp"
+#include "experiments/signal/decimation.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double samples_per_period = 8.0;
+constexpr Index fewest = 64;   // samples that are worth a first guess
+constexpr double doubt = 0.3;  // noise of it, of a channel's root mean square: neighbours leak in
+constexpr int passes = 3;
+constexpr double level_ratio = 3.0;  // of the rates of successive levels
+constexpr double widening = 30.0;    // of the deviations found
+
+double interval_of(const filters::Measurements& record) {
+  const Index last = record.time.size() - 1;
+  return (record.time[last] - record.time[0]) / static_cast<double>(last);
+}
+
+MatrixXd decimated(const MatrixXd& channels, double interval, int factor) {
+  MatrixXd kept;
+  for (Index i = 0; i < channels.rows(); ++i) {
+    const VectorXd samples = decimate(channels.row(i).transpose(), interval, factor).samples;
+    if (i == 0) kept.resize(channels.rows(), samples.size());
+    kept.row(i) = samples.transpose();
+  }
+  return kept;
+}
+
+// Covariance of the unknowns alone.
+MatrixXd of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
+  if (belief.covariance.size() > 0) return belief.covariance(model.unknown_places, model.unknown_places);
+  const MatrixXd rows = belief.factor(model.unknown_places, Eigen::all);
+  return rows * rows.transpose();
+}
+
+// The modes that the low-pass lets through; there is always the first.
+JointModel low_modes(const JointModel& model, double highest_hz) {
+  Index count = 1;
+  while (count < model.mode_frequencies.size() &&
+         model.mode_frequencies[count] < 2.0 * std::numbers::pi * highest_hz)
+    ++count;
+  JointModel low = model;
+  low.mode_shapes = model.mode_shapes.leftCols(count);
+  low.mode_frequencies = model.mode_frequencies.head(count);
+  return low;
+}
+
+// Every `factor`-th sample, low-passed; empty when too few remain.
+filters::Measurements decimated(const filters::Measurements& record, double interval, int factor) {
+  filters::Measurements coarse;
+  if (record.time.size() < (fewest + 10) * factor) return coarse;
+  coarse.outputs = decimated(record.outputs, interval, factor);
+  if (record.inputs.size() > 0) coarse.inputs = decimated(record.inputs, interval, factor);
+  coarse.time =
+      interval * factor *
+      VectorXd::LinSpaced(coarse.outputs.cols(), 0.0, static_cast<double>(coarse.outputs.cols() - 1));
+  return coarse;
+}
+
+// The guess after a decimated record; the same where the filter loses the motion.
+FirstGuess hear(const JointModel& low, const std::vector<Observation>& observations,
+                const filters::Measurements& coarse, const FirstGuess& guess) {
+  const Index last = coarse.time.size() - 1;
+  const StartScale scale = start_scale(low, observations, coarse.outputs, coarse.time[last]);
+  filters::Gaussian belief =
+      start_belief(low, with_guess(start_directions(low, observations, scale), low, guess));
+  belief.mean = guess.mean;
+  const VectorXd size = (coarse.outputs.rowwise().squaredNorm() / static_cast<double>(last + 1)).cwiseSqrt();
+  const MatrixXd noise = (doubt * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
+  const bool small = belief.covariance.size() > 0;
+  const auto filter = filters::filter_registry().make(small ? "ekf" : "low_rank_ekf", {},
+                                                      finest(low, interval_of(coarse), noise));
+  MatrixXd found;
+  for (int pass = 0; pass < passes; ++pass) {
+    const filters::FilterRun run = filters::run(*filter, belief, coarse);
+    if (run.failure) return guess;
+    belief = next_start(low, belief, run.last);
+    found = widening * widening * of_unknowns(low, run.last);
+  }
+  // The product of both densities, P (P + F)^-1 F.
+  return {belief.mean, guess.unknowns * (guess.unknowns + found).ldlt().solve(found)};
+}
+
+}  // namespace
+
+StartDirections with_guess(StartDirections directions, const JointModel& model, const FirstGuess& guess) {
+  const MatrixXd& p = guess.unknowns;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> found(0.5 * (p + p.transpose()));
+  directions.unknowns.setZero();
+  directions.unknowns(model.unknown_places, Eigen::all) =
+      found.eigenvectors() * found.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return directions;
+}
+
+std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double interval,
+                                               const MatrixXd& output_noise) {
+  try {
+    return filters::discretise(model.motion, interval, "exponential", {{}, output_noise});
+  } catch (const std::invalid_argument&) {
+    return filters::discretise(model.motion, interval, "pade", {{}, output_noise});
+  }
+}
+
+FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
+                       const filters::Measurements& record, double frequency_hz) {
+  const double dt = interval_of(record);
+  const filters::Gaussian believed = start_belief(
+      model, start_directions(model, observations, start_scale(model, observations, record.outputs, 1.0)));
+  FirstGuess guess{believed.mean, of_unknowns(model, believed)};
+  for (double factor = 1.0 / (samples_per_period * frequency_hz * dt); factor >= 2.0; factor /= level_ratio) {
+    const int whole = static_cast<int>(factor);
+    const filters::Measurements coarse = decimated(record, dt, whole);
+    if (coarse.time.size() > 0)
+      guess = hear(low_modes(model, 0.5 / (whole * dt)), observations, coarse, guess);
+  }
+  return guess;
+}
+
+}  // namespace beamid::experiments
