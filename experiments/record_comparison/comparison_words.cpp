@@ -10,14 +10,17 @@ namespace beamid::experiments {
 namespace {
 
 // "bending_stiffness -2.72 % (interval +-0.01 %)", or how far from the reference where there is no truth.
-std::string parameter_text(const ComparedParameter& p, const ComparedRun& reference, std::size_t j) {
+std::string parameter_text(const ComparedRun& run, const ComparedRun& reference, std::size_t j) {
+  const ComparedParameter& p = run.parameters[j];
   const Estimate& e = p.estimate;
   const double half = 100.0 * quantile_95 * e.deviation / std::abs(e.value);
   if (const auto error = p.error_percent())
     return fmt::format("{} {:+.3g} % (interval +-{:.2g} %)", e.name, *error, half);
+  const std::string text = fmt::format("{} {:.5g}{}{} (interval +-{:.2g} %)", e.name, e.value,
+                                       e.unit.empty() ? "" : " ", e.unit, half);
+  if (&run == &reference) return text;
   const double other = reference.parameters[j].estimate.value;
-  return fmt::format("{} {:.5g}{}{} (interval +-{:.2g} %), {:+.3g} % from the reference", e.name, e.value,
-                     e.unit.empty() ? "" : " ", e.unit, half, 100.0 * (e.value / other - 1.0));
+  return text + fmt::format(", {:+.3g} % from the reference", 100.0 * (e.value / other - 1.0));
 }
 
 std::string time_text(const ComparedRun& run, const ComparedRun& reference) {
@@ -33,7 +36,7 @@ std::string run_text(const Comparison& comparison, const ComparedRun& run, const
                                  &run == &reference && !alone ? ", the reference" : "", run.coordinates,
                                  run.coordinates == 1 ? "" : "s");
   for (std::size_t j = 0; j < run.parameters.size(); ++j)
-    text += (j ? "; " : "") + parameter_text(run.parameters[j], reference, j);
+    text += (j ? "; " : "") + parameter_text(run, reference, j);
   return text + fmt::format(". It reproduces the record to {:.3g} % and took {}.", run.response_error_percent,
                             time_text(run, reference));
 }
