@@ -3,6 +3,7 @@
 
 #include "apps/beam_options.hpp"
 #include "apps/deliver.hpp"
+#include "apps/model_option.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/read_record.hpp"
@@ -38,8 +39,7 @@ void complete(const options::variables_map& values, Experiment& experiment) {
   const auto discretisations = words_of(values, "discretisation");
   if (!discretisations.empty()) experiment.discretisations = discretisations;
   if (experiment.discretisations.empty()) experiment.discretisations = {experiment.discretisation};
-  if (values.count("model")) experiment.model = {values["model"].as<std::string>(), {}, {"--model"}};
-  if (experiment.model.place.line == 0 && !values.count("model")) experiment.model.name = "beam";
+  choose_model(values, experiment);
 }
 
 int run(const Command& command, const std::vector<std::string>& arguments) {

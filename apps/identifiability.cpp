@@ -1,8 +1,8 @@
 // beamid identifiability: what a test can tell about a beam, before it is made.
 #include "apps/beam_options.hpp"
 #include "apps/deliver.hpp"
+#include "apps/model_option.hpp"
 #include "experiments/identifiability/report.hpp"
-#include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_reduction.hpp"
 
 namespace beamid::apps {
@@ -20,13 +20,7 @@ const std::vector<KeyOption>& test_keys() {
 /// What the command line says replaces what the file says; where neither does, the beam itself is asked about
 /// on its first three modes.
 void complete(const options::variables_map& values, Experiment& experiment) {
-  if (values.count("model"))
-    experiment.model = {values["model"].as<std::string>(), {}, {"--model"}};
-  else if (experiment.model.place.line == 0)
-    experiment.model.name = "beam";
-  at_place(experiment.model.place, [&] {
-    experiment.model.options = model_registry().completed(experiment.model.name, experiment.model.options);
-  });
+  choose_model(values, experiment);
   if (values.count("reduction"))
     experiment.reduction = parse_reduction(values["reduction"].as<std::string>(), "--reduction");
   else if (experiment.reduction.place.line == 0)

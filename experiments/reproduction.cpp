@@ -5,48 +5,24 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "filters/information_factor.hpp"
+
 namespace beamid::experiments {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-// Rows of a least squares problem, taken in block by block and kept as their triangular factor.
-class RunningQr {
- public:
-  explicit RunningQr(Index unknowns, Index block_rows)
-      : columns_(unknowns + 1), work_(MatrixXd::Zero(columns_ + block_rows, columns_)) {}
-
-  void add(const MatrixXd& rows, const VectorXd& right_hand_side) {
-    if (filled_ + rows.rows() > work_.rows()) compress();
-    work_.block(filled_, 0, rows.rows(), columns_ - 1) = rows;
-    work_.block(filled_, columns_ - 1, rows.rows(), 1) = right_hand_side;
-    filled_ += rows.rows();
-  }
-
-  VectorXd solution() {
-    compress();
-    // Columns of start directions differ by many orders of magnitude: a unit diagonal first.
-    const Index k = columns_ - 1;
-    const VectorXd scale =
-        work_.topLeftCorner(k, k).colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-    const MatrixXd factor = work_.topLeftCorner(k, k) * scale.asDiagonal();
-    return scale.cwiseProduct(factor.completeOrthogonalDecomposition().solve(work_.col(k).head(k)));
-  }
-
- private:
-  void compress() {
-    const Eigen::HouseholderQR<MatrixXd> qr(work_.topRows(filled_));
-    const Index rows = std::min(filled_, columns_);
-    const MatrixXd triangle = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
-    work_.setZero();
-    work_.topRows(rows) = triangle;
-    filled_ = rows;
-  }
-
-  Index columns_, filled_ = 0;
-  MatrixXd work_;
-};
+// The least squares solution of rows [A b], kept as their triangular factor.
+VectorXd solution(const filters::InformationFactor& equations) {
+  // Columns of start directions differ by many orders of magnitude: a unit diagonal first.
+  const MatrixXd root = equations.root();
+  const Index k = root.cols() - 1;
+  const VectorXd scale =
+      root.topLeftCorner(k, k).colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd factor = root.topLeftCorner(k, k) * scale.asDiagonal();
+  return scale.cwiseProduct(factor.completeOrthogonalDecomposition().solve(root.col(k).head(k)));
+}
 
 }  // namespace
 
@@ -62,7 +38,8 @@ Reproduction reproduce(filters::DiscreteModel& model, const VectorXd& state,
   MatrixXd read(p * samples, k), sensor, moved = directions.motion;
   MatrixXd forced(p, samples);
   VectorXd x = start, next, output(p), input;
-  RunningQr equations(k, 64 * p);
+  filters::InformationFactor equations(k + 1);
+  MatrixXd rows(p, k + 1);
   for (Index step = 0; step < samples; ++step) {
     if (record.inputs.size() > 0) input = record.inputs.col(step);
     model.output(x, input, output);
@@ -72,12 +49,13 @@ Reproduction reproduce(filters::DiscreteModel& model, const VectorXd& state,
     if (!read.middleRows(step * p, p).allFinite() || !output.allFinite())
       throw std::runtime_error("the reproduced motion grows beyond all bounds at " +
                                std::to_string(record.time[step]) + " s");
-    equations.add(noise.matrixL().solve(read.middleRows(step * p, p)),
-                  noise.matrixL().solve(record.outputs.col(step) - output));
+    rows << read.middleRows(step * p, p), record.outputs.col(step) - output;
+    noise.matrixL().solveInPlace(rows);
+    equations.add(rows);
     model.move(x, input, next, moved);
     x.swap(next);
   }
-  const VectorXd found = equations.solution();
+  const VectorXd found = solution(equations);
 
   Reproduction result;
   result.initial_state = start + directions.motion * found;

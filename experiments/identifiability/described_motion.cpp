@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "experiments/continuum/excitation_history.hpp"
+#include "experiments/finest_discretisation.hpp"
 #include "experiments/identifiability/model_start.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/record_comparison/true_value.hpp"
-#include "filters/discrete_model.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -47,21 +47,6 @@ VectorXd described_state(const Experiment& experiment, const JointModel& model) 
     }
   }
   return state;
-}
-
-/// Exact, or where a mesh is too large for that, the scheme that it affords.
-std::string discretisation_of(const ObservedMotion& motion) {
-  const auto channels = static_cast<Index>(motion.model.motion->output_labels().size());
-  for (const char* name : {"exponential", "pade"}) {
-    try {
-      filters::discretise(motion.model.motion, motion.interval, name,
-                          {{}, MatrixXd::Identity(channels, channels)});
-      return name;
-    } catch (const std::invalid_argument&) {
-      continue;
-    }
-  }
-  return "exponential";  // says what is wrong when it is used
 }
 
 /// Zero where a sensor reads 1e-9 of what the beam's other points do: a node of all that moves.
@@ -128,7 +113,7 @@ DescribedMotion described_motion(const Experiment& experiment, const std::filesy
     return model_registry().make(experiment.model.name, experiment.model.options, setting);
   });
   motion.interval = 1.0 / rate;
-  motion.discretisation = discretisation_of(motion);
+  motion.discretisation = finest_discretisation(motion.model);
   motion.initial_state = described_state(experiment, motion.model);
 
   Index begin = 0;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "experiments/continuum/simulated_test.hpp"
+#include "experiments/finest_discretisation.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/input/read_reduction.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
@@ -31,11 +32,6 @@ std::optional<double> modal_frequency(const Record& record, double expected_hz) 
   } catch (const std::invalid_argument&) {
     return {};
   }
-}
-
-// A mesh that nobody has reduced is not made into dense matrices.
-bool is_whole_mesh(const JointModel& model) {
-  return dynamic_cast<const filters::LinearMotion*>(model.motion.get()) == nullptr;
 }
 
 // The same filters with their covariance as a factor, and the exact motion's nearest of the banded schemes.

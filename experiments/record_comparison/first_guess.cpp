@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/finest_discretisation.hpp"
 #include "experiments/identification.hpp"
 #include "experiments/signal/decimation.hpp"
 
@@ -103,11 +104,7 @@ StartDirections with_guess(StartDirections directions, const JointModel& model, 
 
 std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double interval,
                                                const MatrixXd& output_noise) {
-  try {
-    return filters::discretise(model.motion, interval, "exponential", {{}, output_noise});
-  } catch (const std::invalid_argument&) {
-    return filters::discretise(model.motion, interval, "pade", {{}, output_noise});
-  }
+  return filters::discretise(model.motion, interval, finest_discretisation(model), {{}, output_noise});
 }
 
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,

@@ -38,7 +38,7 @@ FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& 
 /// The start directions with the unknowns' covariance of a guess.
 StartDirections with_guess(StartDirections directions, const JointModel& model, const FirstGuess& guess);
 
-/// The exact discretisation, or, of a mesh that has none, the fourth-order one.
+/// The model by its finest discretisation.
 std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double interval,
                                                const Eigen::MatrixXd& output_noise);
 

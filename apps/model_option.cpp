@@ -1,0 +1,19 @@
+#include "apps/model_option.hpp"
+
+#include "experiments/input/method_choice.hpp"
+#include "experiments/joint_model.hpp"
+
+namespace beamid::apps {
+
+void choose_model(const options::variables_map& values, experiments::Experiment& experiment) {
+  experiments::Choice& model = experiment.model;
+  if (values.count("model"))
+    model = {values["model"].as<std::string>(), {}, {"--model"}};
+  else if (model.place.line == 0)
+    model.name = "beam";
+  experiments::at_place(model.place, [&] {
+    model.options = experiments::model_registry().completed(model.name, model.options);
+  });
+}
+
+}  // namespace beamid::apps
