@@ -9,6 +9,12 @@ namespace beamid::filters {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+void DiscreteModel::set_interval(double dt) {
+  if (dt == interval()) return;
+  throw std::invalid_argument("the model moves by " + std::to_string(interval()) +
+                              " s only; found an interval of " + std::to_string(dt) + " s");
+}
+
 void DiscreteModel::linearised_transition(const VectorXd& state, const VectorXd& input, VectorXd& next,
                                           MatrixXd& jacobian) {
   central_differences([&](const VectorXd& z, VectorXd& value) { transition(z, input, value); }, state,
@@ -29,6 +35,11 @@ void DiscreteModel::output_jacobian(const VectorXd& state, const VectorXd& input
 
 namespace {
 
+void require_positive(double dt) {
+  if (!(dt > 0.0))
+    throw std::invalid_argument("interval is " + std::to_string(dt) + " s; expected more than 0");
+}
+
 class Discretised final : public DiscreteModel {
  public:
   Discretised(std::shared_ptr<const ContinuousModel> model, double dt, std::unique_ptr<Scheme> scheme,
@@ -38,6 +49,12 @@ class Discretised final : public DiscreteModel {
   std::vector<Label> state_labels() const override { return model_->state_labels(); }
   std::vector<Label> output_labels() const override { return model_->output_labels(); }
   const MatrixXd& process_noise() const override { return noise_.process; }
+  double interval() const override { return dt_; }
+  void set_interval(double dt) override {
+    if (dt == dt_) return;
+    rescale(noise_, dt_, dt);
+    dt_ = dt;
+  }
   const MatrixXd& output_noise() const override { return noise_.output; }
 
   void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
@@ -76,10 +93,14 @@ void require_square(const MatrixXd& matrix, Index size, const char* name) {
 
 }  // namespace
 
+void rescale(Noise& noise, double from, double dt) {
+  require_positive(dt);
+  noise.process *= dt / from;
+}
+
 std::unique_ptr<DiscreteModel> discretise(std::shared_ptr<const ContinuousModel> model, double dt,
                                           const std::string& scheme, Noise noise) {
-  if (!(dt > 0.0))
-    throw std::invalid_argument("interval is " + std::to_string(dt) + " s; expected more than 0");
+  require_positive(dt);
   const auto states = static_cast<Index>(model->state_labels().size());
   if (noise.process.size() > 0) require_square(noise.process, states, "process noise");
   require_square(noise.output, static_cast<Index>(model->output_labels().size()), "output noise");

@@ -22,6 +22,11 @@ class DiscreteModel {
   virtual const Eigen::MatrixXd& process_noise() const = 0;  ///< Q (n x n); may be empty: none
   virtual const Eigen::MatrixXd& output_noise() const = 0;   ///< R (p x p)
 
+  virtual double interval() const = 0;  ///< between successive states [s]
+  /// Another interval from now on; Q grows in proportion to it, as that of white noise does.
+  /// @throws std::invalid_argument where dt <= 0 or the model has one interval only, as is the default.
+  virtual void set_interval(double dt);
+
   virtual void transition(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
                           Eigen::VectorXd& next) = 0;
   /// F(z, u) and its Jacobian (n x n); central differences unless overridden.
@@ -44,6 +49,9 @@ struct Noise {
   Eigen::MatrixXd process;  ///< Q (n x n) per step; empty: none
   Eigen::MatrixXd output;   ///< R (p x p)
 };
+
+/// Noise for another interval: Q in proportion to it. @throws std::invalid_argument when dt <= 0.
+void rescale(Noise& noise, double from, double dt);
 
 /// The continuous model sampled at interval `dt` [s] by a registered scheme ("exponential", ...).
 /// @throws std::invalid_argument on an unknown scheme, dt <= 0, or noise of the wrong shape.

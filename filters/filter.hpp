@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "filters/discrete_model.hpp"
 #include "filters/gaussian.hpp"
+#include "filters/observed_model.hpp"
 #include "filters/registry.hpp"
 
 namespace beamid::filters {
 
-/// What one measurement said.
+/// What one measurement said; p counts the outputs that were measured.
 struct Correction {
   Eigen::VectorXd innovation;             ///< y - E[y] (p)
   Eigen::MatrixXd innovation_covariance;  ///< S (p x p)
@@ -32,23 +32,38 @@ class FilterFailure : public std::runtime_error {
 /// A filter on one model: p(z_k | y_0 ... y_k) as a Gaussian.
 class Filter {
  public:
+  explicit Filter(std::unique_ptr<DiscreteModel> model) : model_(std::move(model)) {}
   virtual ~Filter() = default;
 
   /// Start from a belief. @throws std::invalid_argument when its size is not the model's.
   virtual void reset(const Gaussian& belief) = 0;
   /// z_k | y_0..k  ->  z_k+1 | y_0..k under the input u_k (m). @throws FilterFailure
   virtual void predict(const Eigen::VectorXd& input) = 0;
-  /// z_k | y_0..k-1  ->  z_k | y_0..k, given y_k (p). @throws FilterFailure
-  virtual const Correction& correct(const Eigen::VectorXd& output, const Eigen::VectorXd& input) = 0;
+  /// z_k | y_0..k-1  ->  z_k | y_0..k, given y_k (p). Entries that are NaN were not measured: the filter sees
+  /// the others alone, and the belief stays as it is where there are none. @throws FilterFailure
+  const Correction& correct(const Eigen::VectorXd& output, const Eigen::VectorXd& input);
 
   /// Valid until the next step; a filter that carries a factor may form it only now.
   virtual const Gaussian& belief() const = 0;
   /// The belief about some entries of the state alone, as cheaply as the filter can tell it.
   virtual Gaussian marginal(const std::vector<Eigen::Index>& entries) const;
-  virtual const DiscreteModel& model() const = 0;
+
+  /// Its interval and noise may be set from step to step.
+  ObservedModel& model() { return model_; }
+  const ObservedModel& model() const { return model_; }
 
   /// What a reader of the result should know, in words: approximations made, and what they cost.
   virtual std::vector<std::string> remarks() const { return {}; }
+
+ protected:
+  /// Of the outputs that the model shows now (p'), all finite, p' > 0; fills correction_.
+  virtual void take_in(const Eigen::VectorXd& output, const Eigen::VectorXd& input) = 0;
+
+  ObservedModel model_;
+  Correction correction_;
+
+ private:
+  Eigen::VectorXd measured_;
 };
 
 /// Contracts a filter may declare; the conformance tests hold it to them.

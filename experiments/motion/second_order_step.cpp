@@ -14,17 +14,24 @@ class SecondOrderStep final : public filters::DiscreteModel {
  public:
   SecondOrderStep(std::shared_ptr<const SecondOrderMotion> motion, double dt, const std::string& scheme,
                   filters::Noise noise)
-      : motion_(std::move(motion)), dt_(dt), noise_(std::move(noise)) {
-    const bool exact = scheme == "exponential";
-    if (!exact || !motion_->decoupled() || motion_->input_size() > 0)
-      rational_.emplace(exact ? RationalStep::Scheme::exponential : RationalStep::Scheme::pade, dt,
-                        motion_->frequencies());
+      : motion_(std::move(motion)),
+        dt_(dt),
+        noise_(std::move(noise)),
+        scheme_(scheme == "exponential" ? RationalStep::Scheme::exponential : RationalStep::Scheme::pade) {
+    prepare();
   }
 
   std::vector<filters::Label> state_labels() const override { return motion_->state_labels(); }
   std::vector<filters::Label> output_labels() const override { return motion_->output_labels(); }
   const MatrixXd& process_noise() const override { return noise_.process; }
   const MatrixXd& output_noise() const override { return noise_.output; }
+  double interval() const override { return dt_; }
+  void set_interval(double dt) override {
+    if (dt == dt_) return;
+    filters::rescale(noise_, dt_, dt);
+    dt_ = dt;
+    prepare();
+  }
 
   void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
     step(state, input, next, nullptr);
@@ -53,6 +60,7 @@ class SecondOrderStep final : public filters::DiscreteModel {
   std::shared_ptr<const SecondOrderMotion> motion_;
   double dt_;
   filters::Noise noise_;
+  RationalStep::Scheme scheme_;
   std::optional<RationalStep> rational_;  // absent: oscillators in closed form
   // The equations at unknowns_, and what is known of them: a step and the outputs after it share them.
   VectorXd unknowns_, held_input_;
@@ -60,6 +68,12 @@ class SecondOrderStep final : public filters::DiscreteModel {
   SecondOrderForm form_;
   std::vector<SecondOrderForm> slopes_;
   MatrixXd tangent_, moved_;
+
+  void prepare() {
+    is_set_ = false;
+    if (scheme_ != RationalStep::Scheme::exponential || !motion_->decoupled() || motion_->input_size() > 0)
+      rational_.emplace(scheme_, dt_, motion_->frequencies());
+  }
 
   void evaluate(const VectorXd& state, bool slopes) {
     const StateLayout& at = motion_->layout();

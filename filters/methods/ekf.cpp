@@ -16,30 +16,30 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 class ExtendedKalmanFilter final : public Filter {
  public:
-  explicit ExtendedKalmanFilter(std::unique_ptr<DiscreteModel> model) : model_(std::move(model)) {}
+  explicit ExtendedKalmanFilter(std::unique_ptr<DiscreteModel> model) : Filter(std::move(model)) {}
 
   void reset(const Gaussian& belief) override {
-    check_belief(belief, *model_);
+    check_belief(belief, model_);
     belief_ = belief;
     if (belief.factor.size() > 0) belief_ = {belief.mean, with_covariance(belief).covariance};
   }
 
   void predict(const VectorXd& input) override {
-    model_->linearised_transition(belief_.mean, input, next_, tangent_);
+    model_.linearised_transition(belief_.mean, input, next_, tangent_);
     belief_.mean.swap(next_);
     work_.noalias() = tangent_ * belief_.covariance;
     belief_.covariance.noalias() = work_ * tangent_.transpose();
-    if (model_->process_noise().size() > 0) belief_.covariance += model_->process_noise();
+    if (model_.process_noise().size() > 0) belief_.covariance += model_.process_noise();
     check_finite(belief_);
   }
 
-  const Correction& correct(const VectorXd& output, const VectorXd& input) override {
-    model_->output(belief_.mean, input, expected_);
-    model_->output_jacobian(belief_.mean, input, sensor_);
+  void take_in(const VectorXd& output, const VectorXd& input) override {
+    model_.output(belief_.mean, input, expected_);
+    model_.output_jacobian(belief_.mean, input, sensor_);
     correction_.innovation = output - expected_;
     cross_.noalias() = belief_.covariance * sensor_.transpose();
     correction_.innovation_covariance.noalias() = sensor_ * cross_;
-    correction_.innovation_covariance += model_->output_noise();
+    correction_.innovation_covariance += model_.output_noise();
     gain_ = weigh(correction_, cross_, factor_);
 
     belief_.mean.noalias() += gain_ * correction_.innovation;
@@ -47,20 +47,16 @@ class ExtendedKalmanFilter final : public Filter {
     kept_.diagonal().array() += 1.0;
     work_.noalias() = kept_ * belief_.covariance;
     belief_.covariance.noalias() = work_ * kept_.transpose();
-    noise_.noalias() = gain_ * model_->output_noise();
+    noise_.noalias() = gain_ * model_.output_noise();
     belief_.covariance.noalias() += noise_ * gain_.transpose();
     symmetrise(belief_.covariance);
     check_finite(belief_);
-    return correction_;
   }
 
   const Gaussian& belief() const override { return belief_; }
-  const DiscreteModel& model() const override { return *model_; }
 
  private:
-  std::unique_ptr<DiscreteModel> model_;
   Gaussian belief_;
-  Correction correction_;
   VectorXd next_, expected_;
   MatrixXd tangent_, sensor_, cross_, gain_, kept_, noise_, work_;
   Eigen::LLT<MatrixXd> factor_;

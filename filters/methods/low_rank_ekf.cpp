@@ -30,22 +30,22 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 class LowRankExtendedKalmanFilter final : public Filter {
  public:
   LowRankExtendedKalmanFilter(std::unique_ptr<DiscreteModel> model, double rank)
-      : model_(std::move(model)), limit_(rank, "low_rank_ekf") {}
+      : Filter(std::move(model)), limit_(rank, "low_rank_ekf") {}
 
   void reset(const Gaussian& belief) override {
-    check_belief(belief, *model_);
+    check_belief(belief, model_);
     with_covariance_ = belief.covariance.size() > 0;
     belief_ = {belief.mean, {}};
     corrections_ = 0;
     directions_ = belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance);
     limit_.start(directions_);
     restart();
-    const MatrixXd& q = model_->process_noise();
-    process_ = q.size() > 0 && !q.isZero(0.0) ? factor_of(q) : MatrixXd();
+    factorise_process_noise();
   }
 
   void predict(const VectorXd& input) override {
-    model_->move(belief_.mean, input, next_, directions_);
+    if (process_noise_changes_ != model_.process_noise_changes()) factorise_process_noise();
+    model_.move(belief_.mean, input, next_, directions_);
     belief_.mean.swap(next_);
     formed_ = false;
     if (process_.size() > 0) {
@@ -58,13 +58,13 @@ class LowRankExtendedKalmanFilter final : public Filter {
     check();
   }
 
-  const Correction& correct(const VectorXd& output, const VectorXd& input) override {
-    model_->output(belief_.mean, input, expected_);
-    model_->output_jacobian(belief_.mean, input, sensor_);
+  void take_in(const VectorXd& output, const VectorXd& input) override {
+    model_.output(belief_.mean, input, expected_);
+    model_.output_jacobian(belief_.mean, input, sensor_);
     correction_.innovation = output - expected_;
     seen_.noalias() = sensor_ * directions_;
     weighed_.noalias() = seen_ * triangle();
-    correction_.innovation_covariance = model_->output_noise();
+    correction_.innovation_covariance = model_.output_noise();
     correction_.innovation_covariance.noalias() += weighed_ * weighed_.transpose();
     cross_.noalias() = triangle() * weighed_.transpose();
     gain_ = weigh(correction_, cross_, innovation_factor_);
@@ -73,7 +73,6 @@ class LowRankExtendedKalmanFilter final : public Filter {
     take_in_outputs();
     formed_ = false;
     check();
-    return correction_;
   }
 
   const Gaussian& belief() const override {
@@ -86,10 +85,15 @@ class LowRankExtendedKalmanFilter final : public Filter {
   Gaussian marginal(const std::vector<Index>& entries) const override {
     return {belief_.mean(entries), {}, directions_(entries, Eigen::all) * root_.matrix()};
   }
-  const DiscreteModel& model() const override { return *model_; }
   std::vector<std::string> remarks() const override { return limit_.remarks(); }
 
  private:
+  void factorise_process_noise() {
+    const MatrixXd& q = model_.process_noise();
+    process_ = q.size() > 0 && !q.isZero(0.0) ? factor_of(q) : MatrixXd();
+    process_noise_changes_ = model_.process_noise_changes();
+  }
+
   void restart() {
     root_.restart(directions_.cols());
     formed_ = false;
@@ -102,7 +106,7 @@ class LowRankExtendedKalmanFilter final : public Filter {
 
   // Outputs of independent noise: L^-1 P y with R = P^T L diag(d) L^T P.
   void take_in_outputs() {
-    if (!same(noise_, model_->output_noise())) decorrelate();
+    if (!same(noise_, model_.output_noise())) decorrelate();
     independent_.noalias() = decorrelation_ * seen_;
     root_.take_in(independent_, variances_);
     if (++corrections_ % TriangularRoot::interval == 0 && root_.cancels()) {
@@ -112,7 +116,7 @@ class LowRankExtendedKalmanFilter final : public Filter {
   }
 
   void decorrelate() {
-    noise_ = model_->output_noise();
+    noise_ = model_.output_noise();
     const Eigen::LDLT<MatrixXd> factor(noise_);
     variances_ = factor.vectorD();
     decorrelation_ = factor.transpositionsP() * MatrixXd::Identity(noise_.rows(), noise_.rows());
@@ -126,14 +130,13 @@ class LowRankExtendedKalmanFilter final : public Filter {
       throw FilterFailure("the covariance is not finite", std::numeric_limits<double>::quiet_NaN());
   }
 
-  std::unique_ptr<DiscreteModel> model_;
   RankLimit limit_;
   TriangularRoot root_;
   mutable Gaussian belief_;
   mutable bool formed_ = false;
   bool with_covariance_ = false;
+  int process_noise_changes_ = 0;
   Index corrections_ = 0;
-  Correction correction_;
   VectorXd next_, expected_, step_;
   MatrixXd directions_, process_, sensor_, seen_, weighed_, cross_, gain_;
   MatrixXd noise_, decorrelation_, independent_;

@@ -34,7 +34,7 @@ class LowRankUnscentedKalmanFilter final : public Filter {
  public:
   LowRankUnscentedKalmanFilter(std::unique_ptr<DiscreteModel> model, double alpha, double beta, double kappa,
                                double rank)
-      : model_(std::move(model)), alpha_(alpha), kappa_(kappa), limit_(rank, "low_rank_ukf") {
+      : Filter(std::move(model)), alpha_(alpha), kappa_(kappa), limit_(rank, "low_rank_ukf") {
     const double centre = beta - alpha * alpha;
     if (!(alpha > 0.0 && kappa > -1.0))
       throw std::invalid_argument("low_rank_ukf: alpha and 1 + kappa must be positive; found alpha " +
@@ -51,17 +51,17 @@ class LowRankUnscentedKalmanFilter final : public Filter {
   }
 
   void reset(const Gaussian& belief) override {
-    check_belief(belief, *model_);
+    check_belief(belief, model_);
     belief_ = {belief.mean, {}, belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance)};
     with_covariance_ = belief.covariance.size() > 0;
     limit_.start(belief_.factor);
-    const MatrixXd& q = model_->process_noise();
-    process_ = q.size() > 0 && !q.isZero(0.0) ? factor_of(q) : MatrixXd();
+    factorise_process_noise();
     formed_ = false;
   }
 
   void predict(const VectorXd& input) override {
-    const auto f = [&](const VectorXd& z, VectorXd& value) { model_->transition(z, input, value); };
+    if (process_noise_changes_ != model_.process_noise_changes()) factorise_process_noise();
+    const auto f = [&](const VectorXd& z, VectorXd& value) { model_.transition(z, input, value); };
     propagate(f, centre_);
     belief_.mean = centre_ + shift_;
     const Index n = belief_.mean.size(), r = odd_.cols();
@@ -79,10 +79,10 @@ class LowRankUnscentedKalmanFilter final : public Filter {
     check();
   }
 
-  const Correction& correct(const VectorXd& output, const VectorXd& input) override {
-    const auto h = [&](const VectorXd& z, VectorXd& value) { model_->output(z, input, value); };
+  void take_in(const VectorXd& output, const VectorXd& input) override {
+    const auto h = [&](const VectorXd& z, VectorXd& value) { model_.output(z, input, value); };
     propagate(h, centre_);
-    const MatrixXd& noise = model_->output_noise();
+    const MatrixXd& noise = model_.output_noise();
     const VectorXd spread = centre_root_ * shift_;
     correction_.innovation = output - centre_ - shift_;
     correction_.innovation_covariance = noise;
@@ -102,7 +102,6 @@ class LowRankUnscentedKalmanFilter final : public Filter {
     belief_.factor *= triangle_.transpose();
     formed_ = false;
     check();
-    return correction_;
   }
 
   const Gaussian& belief() const override {
@@ -113,10 +112,15 @@ class LowRankUnscentedKalmanFilter final : public Filter {
   Gaussian marginal(const std::vector<Index>& entries) const override {
     return {belief_.mean(entries), {}, belief_.factor(entries, Eigen::all)};
   }
-  const DiscreteModel& model() const override { return *model_; }
   std::vector<std::string> remarks() const override { return limit_.remarks(); }
 
  private:
+  void factorise_process_noise() {
+    const MatrixXd& q = model_.process_noise();
+    process_ = q.size() > 0 && !q.isZero(0.0) ? factor_of(q) : MatrixXd();
+    process_noise_changes_ = model_.process_noise_changes();
+  }
+
   // f at the mean, and the parts o, e and s of its differences.
   template <class Function>
   void propagate(const Function& f, VectorXd& centre) {
@@ -137,8 +141,8 @@ class LowRankUnscentedKalmanFilter final : public Filter {
   }
 
   const MatrixXd& factor_of_noise() {
-    if (!same(noise_, model_->output_noise())) {
-      noise_ = model_->output_noise();
+    if (!same(noise_, model_.output_noise())) {
+      noise_ = model_.output_noise();
       noise_root_ = MatrixXd::Zero(noise_.rows(), noise_.rows());
       const MatrixXd root = factor_of(noise_);
       noise_root_.leftCols(root.cols()) = root;
@@ -152,13 +156,12 @@ class LowRankUnscentedKalmanFilter final : public Filter {
     if (!belief_.factor.allFinite()) throw FilterFailure("the covariance is not finite", unknown);
   }
 
-  std::unique_ptr<DiscreteModel> model_;
   double alpha_, kappa_, centre_root_ = 0.0;
   RankLimit limit_;
   mutable Gaussian belief_;
   mutable bool formed_ = false;
   bool with_covariance_ = false;
-  Correction correction_;
+  int process_noise_changes_ = 0;
   VectorXd centre_, shift_, point_, ahead_, behind_, step_;
   MatrixXd odd_, even_, process_, gain_, wide_, triangle_, noise_, noise_root_;
   Eigen::LLT<MatrixXd> innovation_factor_;

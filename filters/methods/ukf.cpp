@@ -24,8 +24,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 class UnscentedKalmanFilter final : public Filter {
  public:
   UnscentedKalmanFilter(std::unique_ptr<DiscreteModel> model, double alpha, double beta, double kappa)
-      : model_(std::move(model)) {
-    const auto n = static_cast<double>(model_->state_labels().size());
+      : Filter(std::move(model)) {
+    const auto n = static_cast<double>(model_.state_labels().size());
     spread_ = alpha * alpha * (n + kappa);
     centre_ = beta - alpha * alpha;
     if (!(alpha > 0.0 && spread_ > 0.0))
@@ -41,7 +41,7 @@ class UnscentedKalmanFilter final : public Filter {
   }
 
   void reset(const Gaussian& belief) override {
-    check_belief(belief, *model_);
+    check_belief(belief, model_);
     belief_ = belief;
     if (belief.factor.size() > 0) belief_ = {belief.mean, with_covariance(belief).covariance};
   }
@@ -49,23 +49,23 @@ class UnscentedKalmanFilter final : public Filter {
   void predict(const VectorXd& input) override {
     draw_deviations();
     const VectorXd mean = belief_.mean;
-    const auto f = [&](const VectorXd& z, VectorXd& value) { model_->transition(z, input, value); };
+    const auto f = [&](const VectorXd& z, VectorXd& value) { model_.transition(z, input, value); };
     propagate(f, mean, belief_.mean, moved_, shift_);
     belief_.mean += shift_;
     belief_.covariance.noalias() = weight() * moved_ * moved_.transpose();
     belief_.covariance.noalias() += centre_ * shift_ * shift_.transpose();
-    if (model_->process_noise().size() > 0) belief_.covariance += model_->process_noise();
+    if (model_.process_noise().size() > 0) belief_.covariance += model_.process_noise();
     check_finite(belief_);
   }
 
-  const Correction& correct(const VectorXd& output, const VectorXd& input) override {
+  void take_in(const VectorXd& output, const VectorXd& input) override {
     draw_deviations();
-    const auto h = [&](const VectorXd& z, VectorXd& value) { model_->output(z, input, value); };
+    const auto h = [&](const VectorXd& z, VectorXd& value) { model_.output(z, input, value); };
     propagate(h, belief_.mean, expected_, seen_, output_shift_);
     correction_.innovation = output - expected_ - output_shift_;
     correction_.innovation_covariance.noalias() = weight() * seen_ * seen_.transpose();
     correction_.innovation_covariance.noalias() += centre_ * output_shift_ * output_shift_.transpose();
-    correction_.innovation_covariance += model_->output_noise();
+    correction_.innovation_covariance += model_.output_noise();
     cross_.noalias() = weight() * deviation_ * seen_.transpose();
     gain_ = weigh(correction_, cross_, factor_);
 
@@ -74,15 +74,13 @@ class UnscentedKalmanFilter final : public Filter {
     shift_.noalias() = gain_ * output_shift_;
     belief_.covariance.noalias() = weight() * deviation_ * deviation_.transpose();
     belief_.covariance.noalias() += centre_ * shift_ * shift_.transpose();
-    work_.noalias() = gain_ * model_->output_noise();
+    work_.noalias() = gain_ * model_.output_noise();
     belief_.covariance.noalias() += work_ * gain_.transpose();
     symmetrise(belief_.covariance);
     check_finite(belief_);
-    return correction_;
   }
 
   const Gaussian& belief() const override { return belief_; }
-  const DiscreteModel& model() const override { return *model_; }
 
  private:
   double weight() const { return 0.5 / spread_; }
@@ -110,11 +108,9 @@ class UnscentedKalmanFilter final : public Filter {
     shift = weight() * differences.rowwise().sum();
   }
 
-  std::unique_ptr<DiscreteModel> model_;
   double spread_ = 0.0;  // c
   double centre_ = 0.0;  // beta - alpha^2
   Gaussian belief_;
-  Correction correction_;
   VectorXd point_, value_, expected_, shift_, output_shift_;
   MatrixXd root_, deviation_, moved_, seen_, cross_, gain_, work_;
   Eigen::LLT<MatrixXd> factor_, covariance_factor_;

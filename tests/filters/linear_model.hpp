@@ -13,6 +13,7 @@ class LinearModel final : public filters::DiscreteModel {
   std::vector<filters::Label> output_labels() const override { return std::vector<filters::Label>(c.rows()); }
   const Eigen::MatrixXd& process_noise() const override { return q; }
   const Eigen::MatrixXd& output_noise() const override { return r; }
+  double interval() const override { return 1.0; }
   void transition(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& next) override {
     next = a * z;
   }

@@ -28,6 +28,14 @@ class ContinuumStep final : public filters::DiscreteModel {
   }
   const MatrixXd& process_noise() const override { return noise_.process; }
   const MatrixXd& output_noise() const override { return noise_.output; }
+  double interval() const override { return dt_; }
+  void set_interval(double dt) override {
+    if (dt == dt_) return;
+    filters::rescale(noise_, dt_, dt);
+    dt_ = dt;
+    step_ = BandedStep(equations_, dt);
+    factored_ = false;
+  }
 
   void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
     set(state);
