@@ -1,6 +1,8 @@
 // Conformance: every registered filter keeps the contracts it declares. A new one is found by itself.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <random>
@@ -200,7 +202,7 @@ TEST_P(EveryFilter, ChangesNothingWhenUnitsChange) {
 TEST_P(EveryFilter, ReportsWhereItFailed) {
   std::mt19937 random(1);
   auto record = decay(1, 100, 1e-3, 0.0, random, 0.012);
-  record.outputs(0, 60) = std::nan("");
+  record.outputs(0, 60) = std::numeric_limits<double>::infinity();
   const Eigen::Vector4d mean(0.012, 0.0, 500.0, 9.0), variance(1e-6, 1e-4, 1e2, 1.0);
   const auto result =
       run(*oscillator(1, 1e-3, 1e-4), {mean, variance.asDiagonal()}, record, filters::Keep::all_beliefs);
