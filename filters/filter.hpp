@@ -68,9 +68,18 @@ class Filter {
 
 /// Contracts a filter may declare; the conformance tests hold it to them.
 namespace contract {
-inline constexpr const char* exact_on_linear_gaussian =
-    "exact_on_linear_gaussian";                          ///< equals the Kalman filter
-inline constexpr const char* consistent = "consistent";  ///< its covariance is that of its errors
+/// Equals the Kalman filter to 1e-10: the published case, readings that are missing, a run that is split.
+inline constexpr const char* exact_on_linear_gaussian = "exact_on_linear_gaussian";
+/// Agrees with the Kalman filter on linear models to within the error of its own sampling.
+inline constexpr const char* sampled_on_linear_gaussian = "sampled_on_linear_gaussian";
+/// Its covariance is that of its errors.
+inline constexpr const char* consistent = "consistent";
+/// Finds stiffness and damping from a record without noise to six digits.
+inline constexpr const char* identifies = "identifies";
+/// Outlying readings move its estimate by a few of its deviations at most.
+inline constexpr const char* robust = "robust";
+/// Refuses models that are not linear, with std::invalid_argument.
+inline constexpr const char* linear_models_only = "linear_models_only";
 }  // namespace contract
 
 using FilterRegistry = Registry<Filter, std::unique_ptr<DiscreteModel>>;

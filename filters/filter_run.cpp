@@ -5,59 +5,81 @@
 
 namespace beamid::filters {
 
-FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements, Keep keep,
-              Start start, const Trace& trace) {
-  const Eigen::Index samples = measurements.time.size();
-  const auto outputs = static_cast<Eigen::Index>(filter.model().output_labels().size());
-  if (measurements.outputs.rows() != outputs || measurements.outputs.cols() != samples)
-    throw std::invalid_argument("outputs are " + std::to_string(measurements.outputs.rows()) + " x " +
-                                std::to_string(measurements.outputs.cols()) + "; expected " +
-                                std::to_string(outputs) + " x " + std::to_string(samples));
-  if (measurements.inputs.size() > 0 && measurements.inputs.cols() != samples)
-    throw std::invalid_argument("inputs have " + std::to_string(measurements.inputs.cols()) +
-                                " columns; expected " + std::to_string(samples));
-  const Eigen::Index states = initial.mean.size();
-  for (const Eigen::Index entry : trace.entries)
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+namespace {
+
+void check_trace(const Trace& trace, Index states) {
+  for (const Index entry : trace.entries)
     if (entry < 0 || entry >= states)
       throw std::invalid_argument("traced entry is " + std::to_string(entry) + "; expected 0 to " +
                                   std::to_string(states - 1));
+}
+
+void take_sample(const Measurements& measurements, Index step, Sample& sample) {
+  sample.time = measurements.time[step];
+  sample.output = measurements.outputs.col(step);
+  if (measurements.inputs.size() > 0) sample.input = measurements.inputs.col(step);
+  if (measurements.output_deviations.size() > 0) sample.deviations = measurements.output_deviations.col(step);
+}
+
+// What a correction told, at the places of the outputs that it took in.
+void store(const Correction& correction, const std::vector<Index>& observed, Index step, FilterRun& result) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const Index told = correction.innovation.size();
+  if (told < result.innovations.rows()) {
+    result.innovations.col(step).setConstant(none);
+    result.whitened_innovations.col(step).setConstant(none);
+  }
+  for (Index i = 0; i < told; ++i) {
+    const Index place = observed[static_cast<std::size_t>(i)];
+    result.innovations(place, step) = correction.innovation[i];
+    result.whitened_innovations(place, step) = correction.whitened[i];
+  }
+  result.normalised_squares[step] = told > 0 ? correction.normalised_square : none;
+  result.log_likelihood += correction.log_likelihood;
+}
+
+}  // namespace
+
+FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements,
+              const RunSettings& settings) {
+  const Index samples = measurements.size(), outputs = filter.model().all_outputs();
+  check_measurements(measurements, outputs);
+  check_trace(settings.trace, initial.mean.size());
 
   FilterRun result;
   result.innovations.setZero(outputs, samples);
   result.whitened_innovations.setZero(outputs, samples);
   result.normalised_squares.setZero(samples);
-  const auto traced = static_cast<Eigen::Index>(trace.entries.size());
+  const auto traced = static_cast<Index>(settings.trace.entries.size());
   result.means.setZero(traced, samples);
   result.deviations.setZero(traced, samples);
-  Eigen::VectorXd input, output(outputs);
-  filter.reset(initial);
-  Eigen::Index step = 0;
-  try {
-    for (; step < samples; ++step) {
-      if (step > 0 || start == Start::one_interval_before) filter.predict(input);
-      if (keep == Keep::all_beliefs) result.predicted.push_back(filter.belief());
-      if (measurements.inputs.size() > 0) input = measurements.inputs.col(step);
-      output = measurements.outputs.col(step);
-      const Correction& correction = filter.correct(output, input);
-      result.innovations.col(step) = correction.innovation;
-      result.whitened_innovations.col(step) = correction.whitened;
-      result.normalised_squares[step] = correction.normalised_square;
-      result.log_likelihood += correction.log_likelihood;
-      if (keep == Keep::all_beliefs) result.filtered.push_back(filter.belief());
-      if (traced == 0) continue;
-      const Gaussian belief = filter.marginal(trace.entries);
-      result.means.col(step) = belief.mean;
-      result.deviations.col(step) = belief.deviations();
-    }
-  } catch (const FilterFailure& trouble) {
-    result.failure = Failure{step, measurements.time[step], trouble.what(), trouble.smallest_eigenvalue};
-  } catch (const std::runtime_error& trouble) {  // a discretisation that cannot take the step
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    result.failure = Failure{step, measurements.time[step], trouble.what(), unknown};
+  RunningFilter running(filter, settings.on_failure, measurements.time_resolution);
+  running.start(initial, settings.start);
+  Sample sample;
+  for (Index step = 0; step < samples; ++step) {
+    take_sample(measurements, step, sample);
+    if (!running.move_to(sample.time)) break;
+    if (settings.keep == Keep::all_beliefs) result.predicted.push_back(running.belief());
+    if (!running.correct(sample)) break;
+    store(running.correction(), filter.model().observed(), step, result);
+    if (settings.keep == Keep::all_beliefs) result.filtered.push_back(running.belief());
+    if (traced == 0) continue;
+    const Gaussian belief = filter.marginal(settings.trace.entries);
+    result.means.col(step) = belief.mean;
+    result.deviations.col(step) = belief.deviations();
   }
-  result.last = filter.belief();
+  result.failure = running.failure();
+  result.events = running.events();
+  result.last = running.belief();
   result.remarks = filter.remarks();
   return result;
+}
+
+FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements, Keep keep,
+              Start start, const Trace& trace) {
+  return run(filter, initial, measurements, {keep, start, trace});
 }
 
 }  // namespace beamid::filters

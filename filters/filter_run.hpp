@@ -6,25 +6,13 @@
 #include <vector>
 
 #include "filters/filter.hpp"
+#include "filters/measurements.hpp"
+#include "filters/running_filter.hpp"
 
 namespace beamid::filters {
 
-/// Where and why a filter stopped. A research result: the run up to there is kept.
-struct Failure {
-  Eigen::Index step = 0;  ///< index of the sample
-  double time = 0.0;      ///< of that sample [s]
-  std::string reason;
-  double smallest_eigenvalue = 0.0;  ///< of the covariance that failed; NaN when none did
-};
-
-/// N samples to filter; a row per channel.
-struct Measurements {
-  Eigen::VectorXd time;     ///< (N) [s]
-  Eigen::MatrixXd outputs;  ///< y (p x N)
-  Eigen::MatrixXd inputs;   ///< u (m x N); empty: no input
-};
-
-/// x(t|t-1) and x(t|t) for every sample t that was reached, and what each said.
+/// x(t|t-1) and x(t|t) for every sample t that was reached, and what each said; NaN where an output was not
+/// measured or could not be taken in.
 struct FilterRun {
   std::vector<Gaussian> predicted;       ///< before each sample; empty unless kept
   std::vector<Gaussian> filtered;        ///< after each sample; empty unless kept
@@ -35,7 +23,9 @@ struct FilterRun {
   Eigen::MatrixXd means;       ///< filtered, of the traced entries (k x N)
   Eigen::MatrixXd deviations;  ///< their standard deviations (k x N)
   Gaussian last;               ///< the last filtered belief
-  std::optional<Failure> failure;
+  std::optional<Failure>
+      failure;  ///< what ended the run; the part up to there is a research result, and kept
+  std::vector<Failure> events = {};  ///< all that went wrong, that included: what was inflated, what diverged
   std::vector<std::string> remarks;  ///< of the filter: approximations made, and what they cost
 };
 
@@ -47,12 +37,19 @@ struct Trace {
   std::vector<Eigen::Index> entries;
 };
 
-/// Whether the initial belief is about the first sample, or about one interval before it.
-enum class Start { at_first_sample, one_interval_before };
+struct RunSettings {
+  Keep keep = Keep::last_belief;
+  Start start = Start::at_first_sample;
+  Trace trace = {};
+  OnFailure on_failure = OnFailure::stop;
+};
 
-/// Runs the filter over the record. Where it fails, what was not reached remains zero.
-/// @throws std::invalid_argument when shapes disagree or a traced entry does not exist; numerical trouble of
-/// the filter or of its discretisation ends the run and is told in `failure`.
+/// Runs the filter over the record, by RunningFilter. Where it fails, what was not reached remains zero.
+/// @throws std::invalid_argument when shapes disagree, stamps do not increase, the model cannot move by the
+/// intervals between them, or a traced entry does not exist; numerical trouble of the filter or of its
+/// discretisation is told in `failure` and `events`.
+FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements,
+              const RunSettings& settings);
 FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements,
               Keep keep = Keep::last_belief, Start start = Start::at_first_sample, const Trace& trace = {});
 

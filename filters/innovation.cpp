@@ -20,8 +20,7 @@ double smallest_eigenvalue(const MatrixXd& matrix) {
 MatrixXd weigh(Correction& correction, const MatrixXd& cross, Eigen::LLT<MatrixXd>& factor) {
   const MatrixXd& s = correction.innovation_covariance;
   factor.compute(s);
-  if (factor.info() != Eigen::Success || !s.allFinite())
-    throw FilterFailure("the innovation covariance is not positive definite", smallest_eigenvalue(s));
+  if (factor.info() != Eigen::Success || !s.allFinite()) refuse(s);
   correction.whitened = factor.matrixL().solve(correction.innovation);
   const auto p = static_cast<double>(s.rows());
   correction.normalised_square = correction.whitened.squaredNorm();
@@ -36,6 +35,8 @@ MatrixXd square_root(const MatrixXd& covariance, Eigen::LLT<MatrixXd>& factor) {
   if (factor.info() == Eigen::Success) return factor.matrixL();
   if (!covariance.allFinite())
     throw FilterFailure("the covariance is not finite", std::numeric_limits<double>::quiet_NaN());
+  if (covariance.diagonal().minCoeff() < 0.0)
+    throw FilterFailure("a variance is negative", smallest_eigenvalue(covariance));
   // Semidefinite to rounding: clip. Correlation form, since the units of the states may differ widely.
   const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
@@ -55,12 +56,25 @@ void symmetrise(MatrixXd& covariance) {
       covariance(i, j) = covariance(j, i) = 0.5 * (covariance(i, j) + covariance(j, i));
 }
 
-void check_finite(const Gaussian& belief) {
-  if (!belief.mean.allFinite())
-    throw FilterFailure("the mean is not finite", smallest_eigenvalue(belief.covariance));
-  const auto variances = belief.covariance.diagonal().array();
+void check_finite(const Eigen::VectorXd& mean, const MatrixXd& covariance) {
+  if (!mean.allFinite()) throw FilterFailure("the mean is not finite", smallest_eigenvalue(covariance));
+  const auto variances = covariance.diagonal().array();
   if (!(variances >= 0.0).all() || !variances.allFinite())
-    throw FilterFailure("a variance is negative or not finite", smallest_eigenvalue(belief.covariance));
+    throw FilterFailure("a variance is negative or not finite", smallest_eigenvalue(covariance));
+}
+
+void check_finite(const Gaussian& belief) {
+  check_finite(belief.mean, belief.covariance);
+}
+
+void refuse(const MatrixXd& innovation_covariance) {
+  throw FilterFailure("the innovation covariance is not positive definite",
+                      smallest_eigenvalue(innovation_covariance));
+}
+
+bool is_covariance(const MatrixXd& matrix) {
+  return matrix.allFinite() && matrix.isApprox(matrix.transpose(), 1e-12) &&
+         smallest_eigenvalue(matrix) >= -1e-12 * matrix.norm();
 }
 
 void check_belief(const Gaussian& belief, const DiscreteModel& model) {
@@ -79,8 +93,7 @@ void check_belief(const Gaussian& belief, const DiscreteModel& model) {
                                 std::to_string(n) + " rows");
   if (!belief.mean.allFinite() || !factor.allFinite())
     throw std::invalid_argument("initial mean and factor must be finite");
-  if (has_covariance && (!covariance.allFinite() || !covariance.isApprox(covariance.transpose(), 1e-12) ||
-                         smallest_eigenvalue(covariance) < -1e-12 * covariance.norm()))
+  if (has_covariance && !is_covariance(covariance))
     throw std::invalid_argument("initial covariance must be finite, symmetric and positive semidefinite");
   if (covariance.size() > 0 && factor.size() > 0 &&
       (covariance - factor * factor.transpose()).norm() > 1e-9 * covariance.norm())

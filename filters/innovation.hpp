@@ -20,7 +20,14 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& covariance, Eigen::LLT<Eigen:
 void symmetrise(Eigen::MatrixXd& covariance);
 
 /// @throws FilterFailure when the mean or the covariance's diagonal is not finite, or a variance is negative.
+void check_finite(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance);
 void check_finite(const Gaussian& belief);
+
+/// @throws FilterFailure that S is not positive definite, with its smallest eigenvalue.
+[[noreturn]] void refuse(const Eigen::MatrixXd& innovation_covariance);
+
+/// Whether a square matrix is finite, symmetric to 1e-12 and positive semidefinite to 1e-12.
+bool is_covariance(const Eigen::MatrixXd& matrix);
 
 /// @throws std::invalid_argument when the belief does not fit the model, has neither covariance nor factor
 /// or two that disagree, or its covariance is not symmetric positive semidefinite.

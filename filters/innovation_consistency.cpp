@@ -1,33 +1,21 @@
 #include "filters/innovation_consistency.hpp"
 
+#include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <vector>
+
+#include "filters/whiteness.hpp"
 
 namespace beamid::filters {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-// Autocorrelation of a series (N) at lags 1..count; one where the series is constant or beyond all bounds.
-VectorXd autocorrelation(const VectorXd& series, Index count) {
-  const VectorXd centred = series.array() - series.mean();
-  const double power = centred.squaredNorm();
-  if (!(power > 0.0 && std::isfinite(power))) return VectorXd::Ones(count);
-  VectorXd result(count);
-  for (Index lag = 1; lag <= count; ++lag) {
-    const Index overlap = centred.size() - lag;
-    result[lag - 1] = centred.head(overlap).dot(centred.tail(overlap)) / power;
-  }
-  return result;
-}
-
-// Bounds that the mean of `samples` chi-square variables of `outputs` degrees, per output, leaves with
-// probability `outside`.
-std::pair<double, double> band(double samples, double outputs, double outside) {
-  const double freedoms = samples * outputs;
+// Bounds that the mean of so many chi-square variables of one degree leaves with probability `outside`.
+std::pair<double, double> band(double freedoms, double outside) {
   const boost::math::chi_squared distribution(freedoms);
   return {quantile(distribution, 0.5 * outside) / freedoms,
           quantile(distribution, 1.0 - 0.5 * outside) / freedoms};
@@ -36,31 +24,38 @@ std::pair<double, double> band(double samples, double outputs, double outside) {
 }  // namespace
 
 InnovationConsistency innovation_consistency(const FilterRun& run) {
-  constexpr Index fewest = 100, parts = 10, lags = 20;
-  const Index samples = run.failure ? run.failure->step : run.normalised_squares.size();
+  constexpr Index fewest = 100, parts = 10;
+  const Index reached = run.failure ? run.failure->step : run.normalised_squares.size();
+  std::vector<Index> told;  // samples that told something, and how many outputs did
+  std::vector<double> outputs;
+  for (Index k = 0; k < reached; ++k)
+    if (const Index count = (!run.innovations.col(k).array().isNaN()).count(); count > 0) {
+      told.push_back(k);
+      outputs.push_back(static_cast<double>(count));
+    }
+  const auto samples = static_cast<Index>(told.size());
   if (samples < fewest)
     throw std::invalid_argument("innovations: " + std::to_string(samples) + "; expected at least " +
                                 std::to_string(fewest));
-  const auto outputs = static_cast<double>(run.innovations.rows());
-  const VectorXd squares = run.normalised_squares.head(samples) / outputs;
+  const VectorXd squares = run.normalised_squares(told);
+  const Eigen::Map<const VectorXd> degrees(outputs.data(), samples);
 
   InnovationConsistency result;
-  result.mean_normalised_square = squares.mean();
-  std::tie(result.lower_95, result.upper_95) = band(static_cast<double>(samples), outputs, 0.05);
+  result.mean_normalised_square = squares.sum() / degrees.sum();
+  std::tie(result.lower_95, result.upper_95) = band(degrees.sum(), 0.05);
   const Index part = samples / parts;
   result.windows.resize(parts);
-  for (Index i = 0; i < parts; ++i) result.windows[i] = squares.segment(i * part, part).mean();
-  std::tie(result.window_lower_95, result.window_upper_95) =
-      band(static_cast<double>(part), outputs, 0.05 / parts);
+  double fewest_degrees = degrees.sum();  // the band is that of the window where the fewest were measured
+  for (Index i = 0; i < parts; ++i) {
+    const double all = degrees.segment(i * part, part).sum();
+    result.windows[i] = squares.segment(i * part, part).sum() / all;
+    fewest_degrees = std::min(fewest_degrees, all);
+  }
+  std::tie(result.window_lower_95, result.window_upper_95) = band(fewest_degrees, 0.05 / parts);
 
-  const VectorXd correlation =
-      autocorrelation(run.whitened_innovations.row(0).head(samples).transpose(), lags);
-  result.lag_one_correlation = correlation[0];
-  const auto n = static_cast<double>(samples);
-  double statistic = 0.0;  // Q = n (n + 2) sum r_k^2 / (n - k), chi-square of as many degrees as lags
-  for (Index k = 1; k <= lags; ++k)
-    statistic += n * (n + 2.0) * correlation[k - 1] * correlation[k - 1] / (n - static_cast<double>(k));
-  result.whiteness_p_value = cdf(complement(boost::math::chi_squared(static_cast<double>(lags)), statistic));
+  const Whiteness whiteness = whiteness_of(run.whitened_innovations.row(0).head(reached).transpose());
+  result.lag_one_correlation = whiteness.autocorrelation[0];
+  result.whiteness_p_value = whiteness.p_value;
   return result;
 }
 

@@ -7,7 +7,8 @@
 
 namespace beamid::filters {
 
-/// Tests of a run's innovations, all of which a consistent filter passes most of the time.
+/// Tests of a run's innovations, all of which a consistent filter passes most of the time. Outputs that were
+/// not measured do not count.
 struct InnovationConsistency {
   double mean_normalised_square = 0;  ///< over the outputs: 1 when S has the right size
   double lower_95 = 0,
@@ -28,7 +29,7 @@ struct InnovationConsistency {
   bool white() const { return whiteness_p_value >= 0.05; }
 };
 
-/// @throws std::invalid_argument when fewer than 100 innovations were reached.
+/// @throws std::invalid_argument when fewer than 100 samples were reached and told something.
 InnovationConsistency innovation_consistency(const FilterRun& run);
 
 }  // namespace beamid::filters

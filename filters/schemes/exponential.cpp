@@ -40,14 +40,17 @@ class Exponential final : public Scheme {
   }
 
   void step_oscillator(const VectorXd& state, double dt, VectorXd& next, MatrixXd* tangent) {
-    const Exponential2x2 exponential(a_ * dt);
+    const Exponential2x2 exponential(a_.topLeftCorner<2, 2>() * dt);
     next.head<2>() = exponential.value() * state.head<2>();
     if (!tangent) return;
-    tangent->setIdentity(state.size(), state.size());
+    tangent->setZero(state.size(), state.size());
+    tangent->diagonal().setOnes();
     tangent->topLeftCorner<2, 2>() = exponential.value();
+    const Eigen::Vector2d motion = state.head<2>();
     for (Index j = 0; j < linear_->parameter_size(); ++j) {
       linear_->motion_matrix_derivative(state, j, derivative_);
-      tangent->col(2 + j).head<2>() = exponential.derivative(derivative_ * dt) * state.head<2>();
+      const Eigen::Matrix2d slope = exponential.derivative(derivative_.topLeftCorner<2, 2>() * dt);
+      tangent->block<2, 1>(0, 2 + j).noalias() = slope * motion;
     }
   }
 

@@ -62,7 +62,9 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NegativeMass", toml, "mass_kg = 3.055", "mass_kg = -3.055",
               "cantilever.toml:10:11: beam.mass_kg is -3.055; expected a positive number"},
         Fault{"UnknownFilter", toml, "\"ekf\"", "\"ufk\"",
-              "cantilever.toml:18:10: unknown filter 'ufk'; known: ekf, low_rank_ekf, low_rank_ukf, ukf"},
+              "cantilever.toml:18:10: unknown filter 'ufk'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, "
+              "iekf, kf, low_rank_ekf, "
+              "low_rank_ukf, particle, robust_ekf, srckf, srukf, ukf"},
         Fault{"UnknownDiscretisation", toml, "\"exponential\"", "\"euler\"",
               "cantilever.toml:19:18: unknown discretisation 'euler'; known: backward_euler, cvode, "
               "exponential, forward_euler, implicit_midpoint, pade, runge_kutta_2, runge_kutta_4"},

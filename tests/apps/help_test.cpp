@@ -101,8 +101,10 @@ TEST(List, RefusesUnknownKindsAndNames) {
   EXPECT_EQ(Workplace().run("list fliters").first_error_line(),
             "beamid: list: unknown kind 'fliters'; known: discretisations, filters, models, reductions, "
             "responses, studies");
-  EXPECT_EQ(Workplace().run("list filters ufk").first_error_line(),
-            "beamid: unknown filter 'ufk'; known: ekf, low_rank_ekf, low_rank_ukf, ukf");
+  EXPECT_EQ(
+      Workplace().run("list filters ufk").first_error_line(),
+      "beamid: unknown filter 'ufk'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, iekf, kf, low_rank_ekf, "
+      "low_rank_ukf, particle, robust_ekf, srckf, srukf, ukf");
   EXPECT_EQ(Workplace().run("list filters ufk").code, 2);
 }
 

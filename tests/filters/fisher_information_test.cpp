@@ -54,7 +54,7 @@ TEST(FisherInformation, GivesTheClosedFormBoundOfADampedSine) {
 
 TEST(FisherInformation, IsWhatAFilterAtTheTruthReports) {
   // Oracle: an EKF that is linearised at the truth, from a diffuse prior, ends with the inverse information.
-  filters::Measurements record{VectorXd::LinSpaced(samples, 0, 1), MatrixXd(1, samples), {}};
+  filters::Measurements record{VectorXd::LinSpaced(samples, 0, dt * (samples - 1)), MatrixXd(1, samples), {}};
   auto discrete = model();
   VectorXd z = truth(), next;
   for (Index k = 0; k < samples; ++k) {

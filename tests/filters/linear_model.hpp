@@ -14,6 +14,7 @@ class LinearModel final : public filters::DiscreteModel {
   const Eigen::MatrixXd& process_noise() const override { return q; }
   const Eigen::MatrixXd& output_noise() const override { return r; }
   double interval() const override { return 1.0; }
+  void set_interval(double) override {}  // a step is a step, whatever the stamps say
   void transition(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& next) override {
     next = a * z;
   }

@@ -30,14 +30,14 @@ TEST(Ukf, WeightsSumToOneForTheSmallestSpread) {
   const auto filter =
       filter_registry().make("ukf", {{"alpha", 1e-3}}, std::make_unique<test::LinearModel>(model));
   const VectorXd far = VectorXd::Constant(2, 1e6);
-  const filters::Measurements record{VectorXd::LinSpaced(1000, 0, 1), MatrixXd::Zero(1, 1000), {}};
+  const filters::Measurements record{VectorXd::LinSpaced(1000, 0, 999), MatrixXd::Zero(1, 1000), {}};
   const auto result = run(*filter, {far, MatrixXd::Identity(2, 2)}, record);
   EXPECT_LT((result.last.mean - far).norm() / far.norm(), 1e-12);
 }
 
 TEST(Ukf, EqualsTheEkfOnALinearModelForAnySpread) {
-  VectorXd time = VectorXd::LinSpaced(200, 0, 1);
-  const filters::Measurements record{time, (10.0 * time.array()).sin().matrix().transpose(), {}};
+  const VectorXd time = VectorXd::LinSpaced(200, 0, 199);
+  const filters::Measurements record{time, (0.05 * time.array()).sin().matrix().transpose(), {}};
   const filters::Gaussian initial{VectorXd::Zero(2), MatrixXd::Identity(2, 2)};
   const auto ekf = filter_registry().make("ekf", {}, std::make_unique<test::LinearModel>(walk()));
   const auto expected = run(*ekf, initial, record).last;

@@ -1,0 +1,65 @@
+// Extended Kalman filter [jazwinski1970], for sizes known or unknown to the compiler and for any scalar:
+//
+//     predict   m = F(m),               P = J P J^T + Q                    J = dF/dz at the filtered mean
+//     correct   S = H P H^T + R,        G = P H^T S^-1                     H = dh/dz at the predicted mean
+//               m += G (y - h(m)),      P = (I - G H) P (I - G H)^T + G R G^T
+//
+// The last line is Joseph's form [bucy1968]: symmetric and positive for any gain, rounding included.
+#pragma once
+
+#include "filters/algorithms/products.hpp"
+#include "filters/algorithms/weighing.hpp"
+
+namespace beamid::filters::algorithms {
+
+/// N states and P outputs, or Eigen::Dynamic; the model as in observed.hpp.
+template <class Scalar, int N, int P>
+class ExtendedKalman {
+ public:
+  Vector<Scalar, N> mean;
+  Matrix<Scalar, N> covariance;
+  Weighing<Scalar, N, P> seen;  ///< of the last measurement
+
+  template <class Model>
+  void predict(Model& model) {
+    model.linearised_transition(mean, next_, tangent_);
+    mean.swap(next_);
+    congruence(tangent_, covariance, work_);
+    if (model.process_noise().size() > 0) covariance += model.process_noise();
+    mirror(covariance);
+  }
+
+  /// The innovation of y (p) and its gain; the belief stays as it is.
+  template <class Model>
+  void look(Model& model, const Vector<Scalar, P>& y) {
+    model.output(mean, expected_);
+    model.output_jacobian(mean, sensor_);
+    seen.innovation = y - expected_;
+    multiply_transposed(covariance, sensor_, cross_);
+    multiply(sensor_, cross_, seen.covariance);
+    seen.covariance += model.output_noise();
+    seen.weigh(cross_);
+  }
+
+  /// Takes in what look() saw.
+  template <class Model>
+  void update(Model& model) {
+    mean.noalias() += seen.gain * seen.innovation;
+    multiply(seen.gain, sensor_, kept_);
+    kept_ *= -1.0;
+    kept_.diagonal().array() += 1.0;
+    congruence(kept_, covariance, work_);
+    multiply(seen.gain, model.output_noise(), cross_);
+    multiply_transposed<Into::old_sum>(cross_, seen.gain, covariance);
+    mirror(covariance);
+  }
+
+ private:
+  Vector<Scalar, N> next_;
+  Vector<Scalar, P> expected_;
+  Matrix<Scalar, N> tangent_, kept_, work_;
+  Matrix<Scalar, P, N> sensor_;
+  Matrix<Scalar, N, P> cross_;
+};
+
+}  // namespace beamid::filters::algorithms

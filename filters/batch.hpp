@@ -1,0 +1,47 @@
+// Many trials of one kind at once, side by side in the lanes of the processor's vectors.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filters/algorithms/quantity.hpp"
+#include "filters/filter_run.hpp"
+
+namespace beamid::filters {
+
+/// The damped oscillator M x'' + C x' + K x = 0 of known mass, its state [x, v, K, C] in [m, m/s, N/m, N
+/// s/m], sampled exactly (algorithms/oscillator.hpp).
+struct OscillatorTrials {
+  double mass = 1.0;               ///< M [kg]
+  double interval = 1.0;           ///< between samples [s]
+  std::vector<Quantity> observed;  ///< the outputs, in their order (p = 1, 2 or 3)
+  Eigen::MatrixXd output_noise;    ///< R (p x p)
+  Eigen::MatrixXd process_noise;   ///< Q per step (4 x 4); empty: none
+};
+
+/// One record, and what was believed before it.
+struct Trial {
+  Eigen::MatrixXd outputs;  ///< y (p x N); NaN: not measured
+  Gaussian initial;         ///< mean (4) and covariance (4 x 4)
+};
+
+/// Where a trial ended.
+struct TrialResult {
+  Gaussian last;                         ///< after the last sample, or after the last one before the failure
+  double log_likelihood = 0.0;           ///< of all samples up to there
+  std::optional<Eigen::Index> failed{};  ///< sample at which the innovation covariance lost its
+                                         ///< positivity, or the belief ceased to be finite
+};
+
+/// The extended Kalman filter on every trial: what `ekf` gives for each alone, to rounding. A trial that
+/// fails leaves the others as they are.
+/// @throws std::invalid_argument when shapes disagree, records differ in length, mass or interval are not
+/// positive, or an initial covariance or noise is not symmetric positive semidefinite.
+std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vector<Trial>& trials,
+                                   Start start = Start::at_first_sample);
+
+/// Instructions that run_batch() uses on this processor: "avx2" or "baseline".
+std::string batch_instructions();
+
+}  // namespace beamid::filters

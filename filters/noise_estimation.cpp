@@ -1,0 +1,160 @@
+#include "filters/noise_estimation.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "filters/noise_levels.hpp"
+
+namespace beamid::filters {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double difference = 3e-4;       // in log s: truncation 1e-8 of the curvature, rounding 1e-6 of it
+constexpr double negligible_gain = 1e-9;  // of the log-likelihood
+constexpr double longest = 1.5;           // step in log s
+
+struct Quadratic {
+  VectorXd slope;
+  MatrixXd curvature;  // of minus the log-likelihood
+};
+
+// The log-likelihood about x to second order, by central differences.
+Quadratic differences(NoiseLevels& levels, const VectorXd& x, double centre) {
+  const Index q = x.size();
+  Quadratic result{VectorXd(q), MatrixXd(q, q)};
+  VectorXd above(q), below(q);
+  const auto at = [&](Index i, double a, Index j, double b) {
+    VectorXd point = x;
+    point[i] += a * difference;
+    point[j] += b * difference;
+    return levels.log_likelihood(point);
+  };
+  for (Index i = 0; i < q; ++i) {
+    above[i] = at(i, 1.0, i, 0.0);
+    below[i] = at(i, -1.0, i, 0.0);
+    result.slope[i] = (above[i] - below[i]) / (2.0 * difference);
+    result.curvature(i, i) = -(above[i] - 2.0 * centre + below[i]) / (difference * difference);
+    for (Index j = 0; j < i; ++j) {
+      const double both = at(i, 1.0, j, 1.0) + at(i, -1.0, j, -1.0);
+      result.curvature(i, j) = result.curvature(j, i) =
+          -(both - above[i] - below[i] - above[j] - below[j] + 2.0 * centre) /
+          (2.0 * difference * difference);
+    }
+  }
+  return result;
+}
+
+// Newton's step uphill, with the curvature's absolute eigenvalues; how much it should gain.
+VectorXd newton_step(const Quadratic& local, double& gain) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(local.curvature);
+  const VectorXd along = eigen.eigenvectors().transpose() * local.slope;
+  const VectorXd curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-12);
+  gain = 0.5 * along.cwiseAbs2().cwiseQuotient(curvature).sum();
+  VectorXd step = eigen.eigenvectors() * along.cwiseQuotient(curvature);
+  if (const double size = step.cwiseAbs().maxCoeff(); size > longest) step *= longest / size;
+  return step;
+}
+
+VectorXd standard_errors(const MatrixXd& curvature) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(curvature);
+  VectorXd result(curvature.rows());
+  for (Index i = 0; i < result.size(); ++i) {
+    double variance = 0.0;
+    for (Index j = 0; j < result.size(); ++j) {
+      const double share = std::pow(eigen.eigenvectors()(i, j), 2);
+      if (share > 1e-12)
+        variance += eigen.eigenvalues()[j] > 1e-6 ? share / eigen.eigenvalues()[j] : infinity;
+    }
+    result[i] = std::sqrt(variance);
+  }
+  return result;
+}
+
+// The highest of x + step, x + step/2, ... that lies above `before`; x itself where none does.
+double climb(NoiseLevels& levels, VectorXd& x, const VectorXd& step, double before) {
+  for (double share = 1.0; share > 1e-4; share *= 0.5) {
+    const VectorXd trial = x + share * step;
+    if (const double found = levels.log_likelihood(trial); found > before) {
+      x = trial;
+      return found;
+    }
+  }
+  return before;
+}
+
+void ascend(NoiseLevels& levels, const NoiseSettings& settings, VectorXd& x, NoiseEstimate& result) {
+  double value = levels.log_likelihood(x), gain = 0.0;
+  result.log_likelihoods.push_back(value);
+  for (int i = 0; i < settings.max_iterations && std::isfinite(value); ++i) {
+    const Quadratic local = differences(levels, x, value);
+    if (!local.slope.allFinite() || !local.curvature.allFinite()) break;
+    const VectorXd step = newton_step(local, gain);
+    if (step.cwiseAbs().maxCoeff() < settings.tolerance || gain < negligible_gain) {
+      result.status = NoiseStatus::converged;
+      return;
+    }
+    const double before = value;
+    value = climb(levels, x, step, before);
+    result.log_likelihoods.push_back(value);
+    if (value == before) {  // flat to rounding
+      result.status = gain < 1e-6 ? NoiseStatus::converged : NoiseStatus::iterations_exhausted;
+      return;
+    }
+  }
+  result.status = std::isfinite(value) ? NoiseStatus::iterations_exhausted : NoiseStatus::failed;
+}
+
+void iterate(NoiseLevels& levels, const NoiseSettings& settings, VectorXd& x, NoiseEstimate& result) {
+  for (int i = 0; i <= settings.max_iterations; ++i) {
+    double value = 0.0;
+    const VectorXd next = levels.expectation_maximisation(x, value);
+    result.log_likelihoods.push_back(value);
+    if (next.size() == 0 || !next.allFinite()) return;  // failed
+    const double gain = i > 0 ? value - result.log_likelihoods[result.log_likelihoods.size() - 2] : 1.0;
+    const bool still =
+        (next - x).cwiseAbs().maxCoeff() < settings.tolerance || std::abs(gain) < negligible_gain;
+    result.status = still ? NoiseStatus::converged : NoiseStatus::iterations_exhausted;
+    if (still) return;
+    if (i < settings.max_iterations) x = next;
+  }
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(const NoisyFilterFactory& make_filter, const Gaussian& initial,
+                             const Measurements& measurements, const NoiseSettings& settings) {
+  if (settings.max_iterations < 1 || !(settings.tolerance > 0.0))
+    throw std::invalid_argument("max_iterations is " + std::to_string(settings.max_iterations) +
+                                " and tolerance " + std::to_string(settings.tolerance) +
+                                "; expected at least 1 and more than 0");
+  NoiseLevels levels(make_filter, initial, measurements, settings);
+  if (measurements.size() == 0)
+    throw std::invalid_argument("the record has no samples; expected at least one");
+  NoiseEstimate result;
+  VectorXd x = VectorXd::Zero(levels.size());
+  if (settings.method == NoiseMethod::maximum_likelihood)
+    ascend(levels, settings, x, result);
+  else
+    iterate(levels, settings, x, result);
+  result.levels = x.array().exp();
+  result.noise = levels.noise(x);
+  result.initial = levels.initial(x);
+  result.log_likelihood = result.log_likelihoods.back();
+  result.relative_deviations.setConstant(levels.size(), std::numeric_limits<double>::infinity());
+  if (result.status != NoiseStatus::failed) {
+    const Quadratic local = differences(levels, x, levels.log_likelihood(x));
+    if (local.curvature.allFinite()) result.relative_deviations = standard_errors(local.curvature);
+  }
+  if (result.status == NoiseStatus::failed) result.reason = "the filter fails at these noise levels";
+  if (result.status == NoiseStatus::iterations_exhausted)
+    result.reason =
+        "not converged after " + std::to_string(result.log_likelihoods.size() - 1) + " iterations";
+  result.runs = levels.runs();
+  return result;
+}
+
+}  // namespace beamid::filters

@@ -1,0 +1,116 @@
+// A filter as samples arrive.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filters/divergence_alarm.hpp"
+#include "filters/filter.hpp"
+#include "filters/sample_clock.hpp"
+
+namespace beamid::filters {
+
+/// Where and why a filter failed or its innovations left their bounds.
+struct Failure {
+  Eigen::Index step = 0;  ///< index of the sample
+  double time = 0.0;      ///< of that sample [s]
+  std::string reason;
+  double smallest_eigenvalue = 0.0;  ///< of the covariance that failed; NaN when none did
+};
+
+/// What a run does when its filter fails.
+enum class OnFailure {
+  stop,     ///< ends there. Innovations that diverge are listed, and change nothing
+  inflate,  ///< goes on from the last good belief, its covariance inflated; also where innovations diverge
+  report    ///< goes on from the belief before the measurement that it could not take, where there is one
+};
+
+/// Whether the initial belief is about the first sample, or about one interval before it.
+enum class Start { at_first_sample, one_interval_before };
+
+/// One measurement.
+struct Sample {
+  double time = 0.0;                ///< [s]
+  Eigen::VectorXd output;           ///< y (p); NaN: not measured
+  Eigen::VectorXd input = {};       ///< u (m), held until the next sample; empty: none
+  Eigen::VectorXd deviations = {};  ///< R = diag(squares) at this sample (p); empty: the model's own
+};
+
+/// All that a run needs to go on elsewhere with the same numbers.
+struct SavedRun {
+  Gaussian belief;        ///< about the last sample, which has been taken in
+  double time = 0.0;      ///< of that sample [s]
+  Eigen::VectorXd input;  ///< held since then
+  Eigen::Index step = 0;  ///< of the sample that comes next
+  DivergenceAlarm alarm;
+};
+
+/// Predicts over the interval since the last sample and corrects, sample after sample: run() is a loop over
+/// it, so that a stream has the numbers of the record. Intervals are those between the stamps, told by
+/// SampleClock; the model gets its own interval and noise back at the end.
+///
+/// Inflation multiplies the covariance by `inflation`, deviations by 10: the record then overrules what was
+/// believed, and the mean is kept as a guess. An infinite reading counts as not measured unless failures
+/// stop the run.
+class RunningFilter {
+ public:
+  static constexpr double inflation = 100.0;
+
+  /// @param resolution of the stamps [s] @throws std::invalid_argument as SampleClock does
+  explicit RunningFilter(Filter& filter, OnFailure on_failure = OnFailure::stop, double resolution = 0.0);
+  ~RunningFilter();
+  RunningFilter(const RunningFilter&) = delete;
+  RunningFilter& operator=(const RunningFilter&) = delete;
+
+  /// @throws std::invalid_argument when the belief does not fit the model
+  void start(const Gaussian& belief, Start start = Start::at_first_sample);
+  void resume(const SavedRun& saved);
+  SavedRun save() const;
+
+  /// move_to() and correct(); whether the run goes on.
+  bool take_in(const Sample& sample);
+  /// belief() becomes that about this time, before its measurement.
+  /// @throws std::invalid_argument when the stamp is not finite or does not lie after the one before.
+  bool move_to(double time);
+  /// belief() becomes that after the measurement. @throws std::invalid_argument when a size does not fit.
+  bool correct(const Sample& sample);
+
+  const Gaussian& belief() const { return filter_.belief(); }
+  const Correction& correction() const {
+    return correction_;
+  }                                              ///< of the last sample; empty if it told nothing
+  Eigen::Index step() const { return step_; }    ///< samples taken in, from the start of the run
+  double time() const { return clock_.time(); }  ///< of the last stamp [s]
+  const std::vector<Failure>& events() const { return events_; }      ///< everything that went wrong
+  const std::optional<Failure>& failure() const { return failure_; }  ///< what ended the run
+  const Filter& filter() const { return filter_; }
+
+ private:
+  template <class Action>
+  std::optional<Failure> attempt(const Action& action);
+  void predict();
+  void update(const Sample& sample);
+  void reset(const Gaussian& belief);
+  void restart(const Gaussian& belief);  // about the sample before, to this one
+  bool go_on_without(const Failure& trouble);
+  bool end(Failure failure);
+  void heed_divergence();
+  void drop_infinite();
+  void check(const Sample& sample) const;
+
+  Filter& filter_;
+  OnFailure on_failure_;
+  double regular_, interval_ = 0.0;  // of the model; that of this step, 0: none
+  SampleClock clock_;
+  DivergenceAlarm alarm_;
+  Eigen::Index step_ = 0;
+  bool first_ = true, interval_before_ = false;
+  Eigen::VectorXd held_, output_;
+  Correction correction_;
+  Gaussian good_;  // before the step that is being taken; kept unless failures stop the run
+  std::vector<Failure> events_;
+  std::optional<Failure> failure_;
+};
+
+}  // namespace beamid::filters

@@ -1,0 +1,46 @@
+// Covariances remain symmetric and positive, at every step.
+#include <Eigen/Eigenvalues>
+
+#include "tests/filters/conformance/every_filter.hpp"
+
+namespace beamid::test {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+void expect_symmetric_and_positive(const filters::Gaussian& belief) {
+  const MatrixXd covariance = belief.marginal(0, belief.mean.size());
+  ASSERT_EQ((covariance - covariance.transpose()).norm(), 0.0);
+  const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  ASSERT_TRUE(scale.allFinite());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> correlation(scale.asDiagonal() * covariance *
+                                                            scale.asDiagonal());
+  ASSERT_GT(correlation.eigenvalues()[0], 0.0);
+}
+
+TEST_P(EveryFilter, KeepsItsCovarianceSymmetricAndPositive) {
+  // The paper's wide prior (variance 1e5 on K and C) against a noise of 1e-5: ten decades, every step
+  // inspected.
+  std::mt19937 random(3);
+  const auto record = decay(2, 2000, 1e-3, 0.0, random);
+  const auto initial = start({0.012, 0.0, 300.0, 2.0}, {1.0, 1.0, 1e5, 1e5});
+  const auto result = run(*oscillator(2, 1e-3, std::sqrt(1e-5)), initial, record, filters::Keep::all_beliefs);
+  ASSERT_FALSE(result.failure) << result.failure->reason;
+  for (const auto& belief : result.predicted) expect_symmetric_and_positive(belief);
+  for (const auto& belief : result.filtered) expect_symmetric_and_positive(belief);
+}
+
+TEST_P(EveryFilter, TakesStatesThatAreKnownExactly) {
+  // A variance of zero stays zero where nothing moves it, and nothing fails.
+  if (linear_only()) GTEST_SKIP() << "the model is not linear";
+  std::mt19937 random(3);
+  const auto record = decay(1, 300, 1e-3, 1e-4, random);
+  const auto initial = start({0.012, 0.0, 500.0, damping}, {1e-6, 1e-4, 1e2, 0.0});
+  const auto result = run(*oscillator(1, 1e-3, 1e-4), initial, record);
+  ASSERT_FALSE(result.failure) << result.failure->reason;
+  EXPECT_NEAR(result.last.mean[3], damping, 1e-9);
+  EXPECT_NEAR(result.last.deviations()[3], 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace beamid::test
