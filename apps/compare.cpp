@@ -8,6 +8,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/read_record.hpp"
 #include "experiments/input/read_reduction.hpp"
+#include "experiments/record_comparison/chosen_channels.hpp"
 #include "experiments/record_comparison/comparison.hpp"
 #include "filters/filter.hpp"
 
@@ -49,6 +50,8 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       ("truth", options::value<std::string>()->value_name("FILE"),
        "experiment file of the beam that a record is simulated from; without it and without RECORD the beam "
        "as described")  //
+      ("channel", options::value<Words>()->value_name("NAME"),
+       "hear this channel of the record; repeat for more; without it all")  //
       ("reduction", options::value<Words>()->value_name("NAME[:OPTION=VALUE,...]"),
        "compare this one; repeat for more")                                                   //
       ("filter", options::value<Words>()->value_name("NAME[:OPTION=VALUE,...]"), "likewise")  //
@@ -80,6 +83,8 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       } else {
         compared = simulated_record(source.experiment, folder, progress);
       }
+      if (values.count("channel"))
+        compared = chosen_channels(std::move(compared), words_of(values, "channel"));
       return report(source.experiment, compare(source.experiment, std::move(compared), folder, progress));
     });
   });

@@ -139,8 +139,9 @@ std::string failure_text(const filters::Failure& failure) {
 
 }  // namespace
 
-ComparedRun run_once(const RunContext& context, const ModelSetting& setting, const JointModel& model,
+ComparedRun run_once(const RunContext& context, const ModelSetting& setting, const StartedModel& started,
                      const RunSettings& settings) {
+  const JointModel& model = started.model;
   ComparedRun result;
   const filters::Measurements record = measurements(context.compared.record);
   const double dt = context.compared.record.interval();
@@ -152,21 +153,20 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
       start_scale(model, setting.observations, record.outputs, dt * static_cast<double>(record.time.size()));
   const StartDirections directions = start_directions(model, setting.observations, scale);
   const KnownNoise known = known_noise(context, record.outputs);
-  IdentificationSettings identification{
-      settings.filter.name,
-      settings.filter.options,
-      settings.discretisation,
-      start_belief(model, with_guess(directions, model, settings.first_guess)),
-      filters::Start::at_first_sample,
-      {},
-      1};
+  IdentificationSettings identification{settings.filter.name,
+                                        settings.filter.options,
+                                        settings.discretisation,
+                                        start_belief(model, with_guess(directions, model, started.guess)),
+                                        filters::Start::at_first_sample,
+                                        {},
+                                        1};
   Reproduction motion;
   try {
     const auto hear = [&](const VectorXd& state) {
       motion = reproduce(*finest(model, dt, unit_noise(record.outputs)), state, directions, record);
     };
     Clock::time_point start = Clock::now();
-    hear(settings.first_guess.mean);
+    hear(started.guess.mean);
     result.response_seconds = seconds_since(start);
     for (int pass = 1; pass <= settings.passes; ++pass) {
       identification.initial.mean = motion.initial_state;

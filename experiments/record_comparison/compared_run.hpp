@@ -1,9 +1,8 @@
 // One way to identify a record, from the model to its score.
 #pragma once
 
-#include "experiments/joint_model.hpp"
 #include "experiments/record_comparison/comparison.hpp"
-#include "experiments/record_comparison/first_guess.hpp"
+#include "experiments/record_comparison/started_model.hpp"
 
 namespace beamid::experiments {
 
@@ -12,7 +11,6 @@ struct RunSettings {
   Choice filter;
   std::string discretisation;
   int passes = 3;
-  FirstGuess first_guess;  ///< that the first pass is linearised about
 };
 
 /// What every run of a comparison shares.
@@ -24,7 +22,7 @@ struct RunContext {
 
 /// Filters the record as often as the settings say, the noise of each pass being what the one before left,
 /// then reproduces the record and works out the Cramer-Rao bound. Numerical trouble is the run's status.
-ComparedRun run_once(const RunContext& context, const ModelSetting& setting, const JointModel& model,
+ComparedRun run_once(const RunContext& context, const ModelSetting& setting, const StartedModel& started,
                      const RunSettings& settings);
 
 }  // namespace beamid::experiments

@@ -13,6 +13,7 @@
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/record_comparison/compared_run.hpp"
+#include "experiments/record_comparison/started_model.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "filters/filter.hpp"
@@ -100,27 +101,25 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
   context.modal_frequency_hz = modal_frequency(samples, beam_frequency);
   for (const Choice& reduction : experiment.reductions) {
     std::optional<ModelSetting> setting;
-    std::unique_ptr<JointModel> model;
+    std::optional<StartedModel> started;
     std::string refusal;
-    FirstGuess guess;
     progress(to_text(reduction));
     try {
       setting = model_setting(experiment, samples, reduction, folder);
-      model = model_registry().make(experiment.model.name, experiment.model.options, *setting);
-      guess = first_guess(*model, setting->observations, measurements(samples),
-                          context.modal_frequency_hz.value_or(beam_frequency));
+      started = started_model(experiment.model, *setting, measurements(samples),
+                              context.modal_frequency_hz.value_or(beam_frequency));
     } catch (const std::invalid_argument& error) {
       refusal = error.what();
     }
     for (const Choice& filter : experiment.filters)
       for (const std::string& discretisation : experiment.discretisations) {
-        const auto [used, scheme] = model && is_whole_mesh(*model)
+        const auto [used, scheme] = started && is_whole_mesh(started->model)
                                         ? forms_for_the_mesh(filter, discretisation)
                                         : std::pair(filter, discretisation);
         progress(fmt::format("{}, {}, {}", to_text(reduction), used.name, scheme));
         comparison.runs.push_back(
-            model ? run_once(context, *setting, *model, {used, scheme, experiment.passes, guess})
-                  : refused(refusal));
+            started ? run_once(context, *setting, *started, {used, scheme, experiment.passes})
+                    : refused(refusal));
         ComparedRun& run = comparison.runs.back();
         run.reduction = to_text(reduction);
         run.filter = choice_text(used, filters::filter_registry().find(used.name).options);

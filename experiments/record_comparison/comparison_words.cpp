@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "experiments/model_setting.hpp"
 #include "experiments/record_comparison/comparison_figures.hpp"
 
 namespace beamid::experiments {
@@ -57,19 +59,57 @@ std::string bias_text(const Comparison& comparison) {
          ": an error of the model or of its discretisation, which no interval of a filter shows.";
 }
 
+// Whether a smaller model, otherwise identified alike, leaves less of the record: impossible on the right
+// branch.
+bool worse_than_smaller(const Comparison& comparison, const ComparedRun& run) {
+  constexpr double clearly = 1.25;
+  return std::any_of(comparison.runs.begin(), comparison.runs.end(), [&](const ComparedRun& smaller) {
+    return smaller.status == ComparedRun::Status::converged && smaller.coordinates < run.coordinates &&
+           smaller.filter == run.filter && smaller.discretisation == run.discretisation &&
+           clearly * smaller.response_error_percent < run.response_error_percent;
+  });
+}
+
 // A model that leaves much of the record is blind to some of its modes, or the filter has settled on a wrong
 // branch: both are told from each other by what a larger model leaves.
 std::string misfit_text(const Comparison& comparison) {
   constexpr double much = 20.0;
-  std::string poor;
-  for (const ComparedRun& run : comparison.runs)
-    if (run.status == ComparedRun::Status::converged && run.response_error_percent > much)
-      poor += fmt::format("{}{} ({:.3g} %)", poor.empty() ? "" : ", ", name_of(comparison, run),
-                          run.response_error_percent);
-  if (poor.empty()) return {};
-  return "Much of the record is left by " + poor +
-         ": modes that the model does not have, or guesses so far off that the filter has settled on a wrong "
-         "answer. If a larger model leaves as much, start from nearer guesses or smaller deviations.";
+  std::string poor, wrong;
+  for (const ComparedRun& run : comparison.runs) {
+    if (run.status != ComparedRun::Status::converged) continue;
+    const bool worse = worse_than_smaller(comparison, run);
+    if (!worse && run.response_error_percent <= much) continue;
+    std::string& list = worse ? wrong : poor;
+    list += fmt::format("{}{} ({:.3g} %)", list.empty() ? "" : ", ", name_of(comparison, run),
+                        run.response_error_percent);
+  }
+  std::string text;
+  if (!poor.empty())
+    text =
+        "Much of the record is left by " + poor +
+        ": modes that the model does not have, or guesses so far off that the filter has settled on a wrong "
+        "answer. If a larger model leaves as much, start from nearer guesses or smaller deviations.";
+  if (!wrong.empty())
+    text += (text.empty() ? "" : " ") + std::string("More of the record than a smaller model is left by ") +
+            wrong +
+            ": the filter has settled on a wrong answer. Start from nearer guesses or smaller deviations.";
+  return text;
+}
+
+// How far the best model is from a sensor's own noise, where that is known.
+std::string excess_text(const Comparison& comparison, const ComparedRun& reference) {
+  constexpr double far = 2.0;
+  const Eigen::VectorXd& sensors = comparison.compared.sensor_noise;
+  double excess = 0.0;
+  const std::vector<Eigen::Index> channels = output_channels(comparison.compared.record);
+  for (std::size_t i = 0; i < channels.size() && sensors.size() > 0; ++i)
+    if (const double own = sensors[channels[i]]; own > 0.0)
+      excess = std::max(excess, reference.noise[static_cast<Eigen::Index>(i)] / own);
+  if (excess < far) return {};
+  return fmt::format(
+      "Even the reference leaves {:.3g} times the noise of a sensor: there is motion in the record "
+      "that no model of this comparison has, or the reference is wrong.",
+      excess);
 }
 
 }  // namespace
@@ -100,7 +140,8 @@ std::vector<std::string> words(const Comparison& comparison) {
       paragraphs.push_back(run_text(comparison, run, *reference));
   }
   if (const std::string text = bias_text(comparison); !text.empty()) paragraphs.push_back(text);
-  if (const std::string text = misfit_text(comparison); !text.empty()) paragraphs.push_back(text);
+  for (const std::string& text : {misfit_text(comparison), excess_text(comparison, *reference)})
+    if (!text.empty()) paragraphs.push_back(text);
   return paragraphs;
 }
 

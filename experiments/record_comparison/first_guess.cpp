@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,9 +16,8 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double samples_per_period = 8.0;
-constexpr Index fewest = 64;   // samples that are worth a first guess
-constexpr double doubt = 0.3;  // noise of it, of a channel's root mean square: neighbours leak in
-constexpr int passes = 3;
+constexpr Index fewest = 64;         // samples that are worth a first guess
+constexpr double doubt = 0.3;        // noise of it, of a channel's root mean square: neighbours leak in
 constexpr double level_ratio = 3.0;  // of the rates of successive levels
 constexpr double widening = 30.0;    // of the deviations found
 
@@ -43,18 +43,6 @@ MatrixXd of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
   return rows * rows.transpose();
 }
 
-// The modes that the low-pass lets through; there is always the first.
-JointModel low_modes(const JointModel& model, double highest_hz) {
-  Index count = 1;
-  while (count < model.mode_frequencies.size() &&
-         model.mode_frequencies[count] < 2.0 * std::numbers::pi * highest_hz)
-    ++count;
-  JointModel low = model;
-  low.mode_shapes = model.mode_shapes.leftCols(count);
-  low.mode_frequencies = model.mode_frequencies.head(count);
-  return low;
-}
-
 // Every `factor`-th sample, low-passed; empty when too few remain.
 filters::Measurements decimated(const filters::Measurements& record, double interval, int factor) {
   filters::Measurements coarse;
@@ -67,28 +55,14 @@ filters::Measurements decimated(const filters::Measurements& record, double inte
   return coarse;
 }
 
-// The guess after a decimated record; the same where the filter loses the motion.
-FirstGuess hear(const JointModel& low, const std::vector<Observation>& observations,
-                const filters::Measurements& coarse, const FirstGuess& guess) {
-  const Index last = coarse.time.size() - 1;
-  const StartScale scale = start_scale(low, observations, coarse.outputs, coarse.time[last]);
-  filters::Gaussian belief =
-      start_belief(low, with_guess(start_directions(low, observations, scale), low, guess));
-  belief.mean = guess.mean;
-  const VectorXd size = (coarse.outputs.rowwise().squaredNorm() / static_cast<double>(last + 1)).cwiseSqrt();
-  const MatrixXd noise = (doubt * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
-  const bool small = belief.covariance.size() > 0;
-  const auto filter = filters::filter_registry().make(small ? "ekf" : "low_rank_ekf", {},
-                                                      finest(low, interval_of(coarse), noise));
-  MatrixXd found;
-  for (int pass = 0; pass < passes; ++pass) {
-    const filters::FilterRun run = filters::run(*filter, belief, coarse);
-    if (run.failure) return guess;
-    belief = next_start(low, belief, run.last);
-    found = widening * widening * of_unknowns(low, run.last);
-  }
+// The guess after a record that holds the low modes only.
+FirstGuess hear(const JointModel& model, const std::vector<Observation>& observations, const LowRecord& low,
+                const FirstGuess& guess) {
+  const FirstGuess found = fit_low_modes(model, observations, low, guess, doubt);
+  const MatrixXd& p = guess.unknowns;
+  const MatrixXd wide = widening * widening * found.unknowns;
   // The product of both densities, P (P + F)^-1 F.
-  return {belief.mean, guess.unknowns * (guess.unknowns + found).ldlt().solve(found)};
+  return {found.mean, p * (p + wide).ldlt().solve(wide)};
 }
 
 }  // namespace
@@ -116,8 +90,7 @@ FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& 
   for (double factor = 1.0 / (samples_per_period * frequency_hz * dt); factor >= 2.0; factor /= level_ratio) {
     const int whole = static_cast<int>(factor);
     const filters::Measurements coarse = decimated(record, dt, whole);
-    if (coarse.time.size() > 0)
-      guess = hear(low_modes(model, 0.5 / (whole * dt)), observations, coarse, guess);
+    if (coarse.size() > 0) guess = hear(model, observations, {coarse, 0.5 / (whole * dt)}, guess);
   }
   return guess;
 }

@@ -5,17 +5,12 @@
 #include <string>
 
 #include "experiments/joint_model.hpp"
+#include "experiments/record_comparison/low_mode_fit.hpp"
 #include "experiments/start_belief.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/filter_run.hpp"
 
 namespace beamid::experiments {
-
-/// Where the filters of a comparison start.
-struct FirstGuess {
-  Eigen::VectorXd mean;      ///< of the state (n), the motion at zero
-  Eigen::MatrixXd unknowns;  ///< covariance of the unknowns in the state (q x q)
-};
 
 /// The constants of the state (unknowns, offsets) after the record has been heard through a low-pass, then
 /// through wider and wider ones.

@@ -1,0 +1,71 @@
+#include "experiments/record_comparison/started_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/finest_discretisation.hpp"
+#include "reduction/reduction.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index most_coordinates = 12;  // a low-pass leaves fewer modes than that
+
+// The same questions, guessed at what a state says.
+std::vector<ParameterChoice> choices_at(const JointModel& model, const Eigen::VectorXd& state) {
+  std::vector<ParameterChoice> choices;
+  for (std::size_t j = 0; j < model.unknowns.size(); ++j) {
+    const Unknown& unknown = model.unknowns[j];
+    ParameterChoice choice{unknown.quantity, unknown.name, unknown.region, unknown.mode};
+    choice.guess = unknown.to_physical(state[model.unknown_places[j]]);
+    choice.deviation = unknown.deviation;
+    choice.form = unknown.form;
+    if (std::isfinite(unknown.lower)) choice.lower = unknown.lower;
+    if (std::isfinite(unknown.upper)) choice.upper = unknown.upper;
+    choice.known = unknown.nuisance;
+    choices.push_back(choice);
+  }
+  return choices;
+}
+
+// Constants of one model's state in the places that another has for them.
+Eigen::VectorXd carried_over(const JointModel& from, const Eigen::VectorXd& state, const JointModel& to) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Index>(to.motion->state_labels().size()));
+  result(to.unknown_places) = state(from.unknown_places);
+  for (std::size_t i = 0; i < to.offsets.size(); ++i)
+    result[to.offsets[i].place] = state[from.offsets[i].place];
+  return result;
+}
+
+}  // namespace
+
+StartedModel started_model(const Choice& model, const ModelSetting& setting,
+                           const filters::Measurements& record, double frequency_hz) {
+  const auto made = [&](const ModelSetting& of) {
+    return std::move(*model_registry().make(model.name, model.options, of));
+  };
+  JointModel first = made(setting);
+  const Index modes = std::max(most_coordinates, first.mode_shapes.cols() + 4);
+  const bool mesh = is_whole_mesh(first);
+  if ((!mesh && first.motion_size() <= most_coordinates) || modes >= setting.system.size() ||
+      first.unknowns.front().quantity.empty()) {
+    FirstGuess guess = first_guess(first, setting.observations, record, frequency_hz);
+    return {std::move(first), std::move(guess)};
+  }
+  ModelSetting truncated = setting;
+  truncated.reduction = reduction::reduction_registry().make(
+      "modal_truncation", {{"modes", static_cast<double>(mesh ? modes : most_coordinates)}});
+  const JointModel small = made(truncated);
+  const FirstGuess heard = first_guess(small, setting.observations, record, frequency_hz);
+  if (mesh) {
+    ModelSetting nearer = setting;
+    nearer.parameters = choices_at(small, heard.mean);
+    first = made(nearer);
+  }
+  const Eigen::VectorXd mean = carried_over(small, heard.mean, first);
+  return {std::move(first), {mean, heard.unknowns}};
+}
+
+}  // namespace beamid::experiments
