@@ -96,6 +96,26 @@ std::string misfit_text(const Comparison& comparison) {
   return text;
 }
 
+// A deviation below the bound, by more than what was believed beforehand explains: the filter was sure before
+// it was right, and the next pass would move.
+std::string surer_text(const Comparison& comparison) {
+  constexpr double clearly = 0.8;
+  std::string surer;
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters) {
+      if (run.status != ComparedRun::Status::converged || !p.bound) continue;
+      const double least = 1.0 / std::hypot(1.0 / *p.bound, 1.0 / p.estimate.prior_deviation);
+      if (p.estimate.deviation < clearly * least)
+        surer += fmt::format("{}{} of {} ({:.2g} of the bound)", surer.empty() ? "" : ", ", p.estimate.name,
+                             name_of(comparison, run), p.estimate.deviation / least);
+    }
+  if (surer.empty()) return {};
+  return "Surer than the record allows is the filter of " + surer +
+         ": it was linearised too far from what it found. Filter more often ([compare] passes), or start "
+         "from "
+         "nearer guesses.";
+}
+
 // How far the best model is from a sensor's own noise, where that is known.
 std::string excess_text(const Comparison& comparison, const ComparedRun& reference) {
   constexpr double far = 2.0;
@@ -140,7 +160,8 @@ std::vector<std::string> words(const Comparison& comparison) {
       paragraphs.push_back(run_text(comparison, run, *reference));
   }
   if (const std::string text = bias_text(comparison); !text.empty()) paragraphs.push_back(text);
-  for (const std::string& text : {misfit_text(comparison), excess_text(comparison, *reference)})
+  for (const std::string& text :
+       {misfit_text(comparison), surer_text(comparison), excess_text(comparison, *reference)})
     if (!text.empty()) paragraphs.push_back(text);
   return paragraphs;
 }

@@ -18,6 +18,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr double samples_per_period = 8.0;
 constexpr Index fewest = 64;         // samples that are worth a first guess
 constexpr double doubt = 0.3;        // noise of it, of a channel's root mean square: neighbours leak in
+constexpr Index longest = 1024;      // samples at the full rate, which filters take up well
 constexpr double level_ratio = 3.0;  // of the rates of successive levels
 constexpr double widening = 30.0;    // of the deviations found
 
@@ -92,6 +93,8 @@ FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& 
     const filters::Measurements coarse = decimated(record, dt, whole);
     if (coarse.size() > 0) guess = hear(model, observations, {coarse, 0.5 / (whole * dt)}, guess);
   }
+  if (record.size() >= fewest)
+    guess = hear(model, observations, {beginning(record, std::min(longest, record.size())), 0.5 / dt}, guess);
   return guess;
 }
 

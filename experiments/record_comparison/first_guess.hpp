@@ -18,15 +18,16 @@ namespace beamid::experiments {
 /// A parameter 10 % off turns the phase of a mode by whole cycles within a few of them, of a mode at 500 Hz
 /// within two samples at 1 kHz; a filter that is linearised there follows a wrong branch. A linear filter on
 /// all channels leaves frequencies and damping as they are. So the record is decimated to about eight samples
-/// per period of the first mode (signal/decimation.hpp), the modes above are taken as still, and what remains
-/// is filtered three times by an EKF; then again at three times that rate, and so on up to the record's own.
+/// per period of the first mode (signal/decimation.hpp), and the motion in the modes below half that rate is
+/// fitted to it (low_mode_fit.hpp); then again at three times that rate, and so on, and at last to the
+/// beginning of the record itself.
 ///
 /// What a level finds, with deviations 30 times as large, bounds what the next believes: near enough for its
 /// linearisation, while the record is counted twice in a thousandth of the information only.
 ///
 /// @param frequency_hz of the first mode, as the record shows it
-/// @returns the guesses and their own deviations where the record is too short for it or the EKF loses the
-/// motion.
+/// @returns the guesses and their own deviations where the record is too short for it, or no motion of the
+/// model is near it.
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
                        const filters::Measurements& record, double frequency_hz);
 

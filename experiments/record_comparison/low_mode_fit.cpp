@@ -30,14 +30,6 @@ MatrixXd root_of(const MatrixXd& p) {
   return found.eigenvectors() * found.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-filters::Measurements beginning(const filters::Measurements& record, Index samples) {
-  filters::Measurements part;
-  part.time = record.time.head(samples);
-  part.outputs = record.outputs.leftCols(samples);
-  if (record.inputs.size() > 0) part.inputs = record.inputs.leftCols(samples);
-  return part;
-}
-
 /// J near some c: 1/2 |R d - q|^2 + 1/2 remainder^2 + 1/2 |c + d|^2.
 struct Linearisation {
   double cost = std::numeric_limits<double>::infinity();  // infinite where there is no motion
@@ -149,6 +141,14 @@ Linearisation descend(const LowModeFit& fit, const filters::Measurements& heard,
 }
 
 }  // namespace
+
+filters::Measurements beginning(const filters::Measurements& record, Index samples) {
+  filters::Measurements part;
+  part.time = record.time.head(samples).array() - record.time[0];
+  part.outputs = record.outputs.leftCols(samples);
+  if (record.inputs.size() > 0) part.inputs = record.inputs.leftCols(samples);
+  return part;
+}
 
 FirstGuess fit_low_modes(const JointModel& model, const std::vector<Observation>& observations,
                          const LowRecord& record, const FirstGuess& guess, double noise) {

@@ -15,9 +15,12 @@ struct FirstGuess {
 
 /// A record that holds the modes up to some frequency only, as decimation leaves it.
 struct LowRecord {
-  const filters::Measurements& measurements;
+  filters::Measurements measurements;
   double highest_hz;
 };
+
+/// Its first samples, from time 0.
+filters::Measurements beginning(const filters::Measurements& record, Eigen::Index samples);
 
 /// Minimises, over the unknowns eta = guess + U c, cov(guess) = U U^T,
 ///

@@ -5,6 +5,9 @@
 
 namespace beamid::filters::algorithms {
 
+/// Squares below this have left the normal numbers: a mode that has died out.
+inline constexpr double nothing = 1e-280;
+
 /// Householder reflections [golub2013, sec. 5.2] that turn F (n x m, m >= n) into F Theta = [L 0], so that
 /// L L^T = F F^T, with L lower triangular and L_jj >= 0.
 ///
@@ -21,7 +24,7 @@ void triangularise(Array& a, Root& l) {
     const Scalar first = a(j, j), square = a.col(j).squaredNorm(), length = square_root(square);
     const auto behind = first > Scalar(0.0);
     const Scalar far = length + magnitude(first), size = length * far;
-    const auto some = size > Scalar(0.0);
+    const auto some = size > Scalar(nothing);
     const Scalar scale = select(some, 1.0 / select(some, size, Scalar(1.0)), Scalar(0.0));
     const Scalar sign = select(behind, Scalar(-1.0), Scalar(1.0));  // the image of column j turned upwards
     a(j, j) = select(behind, far, -far);

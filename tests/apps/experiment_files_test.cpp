@@ -121,11 +121,12 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
   int found = 0;
   for (const auto& entry : fs::recursive_directory_iterator(source("docs/tutorials"))) {
     if (entry.path().extension() != ".toml") continue;
+    if (fs::exists(entry.path().parent_path() / "CMakeLists.txt")) continue;  // for a command of their own
     ++found;
     const Outcome outcome = Workplace().run("validate '" + entry.path().string() + "'");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
-  EXPECT_EQ(found, 11);
+  EXPECT_EQ(found, 13);
 }
 
 }  // namespace

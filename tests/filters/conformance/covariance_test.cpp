@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "tests/filters/conformance/every_filter.hpp"
+#include "tests/filters/linear_model.hpp"
 
 namespace beamid::test {
 namespace {
@@ -40,6 +41,27 @@ TEST_P(EveryFilter, TakesStatesThatAreKnownExactly) {
   ASSERT_FALSE(result.failure) << result.failure->reason;
   EXPECT_NEAR(result.last.mean[3], damping, 1e-9);
   EXPECT_NEAR(result.last.deviations()[3], 0.0, 1e-9);
+}
+
+TEST_P(EveryFilter, FollowsAMotionUntilNothingIsLeftOfIt) {
+  // What dies out leaves the numbers of the machine, its variance at half the time. Oracle: of a constant
+  // seen beside it, sure to 1 and read 5000 times with R = 1, the variance is 1 / 5001.
+  if (!declares(filters::contract::exact_on_linear_gaussian)) GTEST_SKIP() << "not exact";
+  const Eigen::Index samples = 5000;
+  auto model = std::make_unique<LinearModel>();
+  model->a = VectorXd({{1.0, 0.0, 0.0}}).asDiagonal();
+  model->a.bottomRightCorner(2, 2) << 0.6, 0.6, -0.6, 0.6;  // of modulus 0.85
+  model->c = MatrixXd::Zero(2, 3);
+  model->c(0, 0) = model->c(1, 1) = 1.0;
+  model->q = MatrixXd::Zero(3, 3);
+  model->r = MatrixXd::Identity(2, 2);
+  const auto filter = filters::filter_registry().make(GetParam(), {}, std::move(model));
+  const filters::Measurements record{
+      VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)), MatrixXd::Zero(2, samples), {}};
+  const auto result = run(*filter, {VectorXd::Zero(3), MatrixXd::Identity(3, 3)}, record);
+  ASSERT_FALSE(result.failure) << result.failure->reason << " at step " << result.failure->step;
+  EXPECT_NEAR(std::pow(result.last.deviations()[0], 2) * (samples + 1), 1.0, 1e-9);
+  EXPECT_LT(result.last.deviations()[1], 1e-100);
 }
 
 }  // namespace
