@@ -7,8 +7,10 @@ namespace beamid::apps {
 std::vector<Command> commands() {
   std::vector<Command> all = study_commands();
   all.push_back(identify_command());
+  all.push_back(stream_command());
   all.push_back(compare_command());
   all.push_back(identifiability_command());
+  all.push_back(efficiency_command());
   all.push_back(modes_command());
   all.push_back(frame_command());
   all.push_back(simulate_command());

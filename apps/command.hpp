@@ -29,6 +29,7 @@ struct Command {
 std::vector<Command> commands();
 
 Command compare_command();
+Command efficiency_command();
 Command frame_command();
 Command frf_command();
 Command identifiability_command();
@@ -38,6 +39,7 @@ Command modes_command();
 Command new_command();
 Command reduce_command();
 Command simulate_command();
+Command stream_command();
 Command validate_command();
 /// Every registered study is a command of its own.
 std::vector<Command> study_commands();

@@ -2,17 +2,22 @@
 #include <filesystem>
 
 #include "apps/deliver.hpp"
+#include "experiments/diagnostics_report.hpp"
+#include "experiments/failure_response.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/read_record.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/record_comparison/comparison.hpp"
 #include "experiments/record_identification/record_identification.hpp"
+#include "filters/smoother.hpp"
 
 namespace beamid::apps {
 namespace {
 
 namespace fs = std::filesystem;
 using namespace experiments;
+
+constexpr const char* trouble = "The filter had trouble (--on-failure says what it then does). ";
 
 /// K and C of a free decay have a report of their own; any other model is a comparison of one run.
 bool is_free_oscillator(const Experiment& experiment, const Record& record) {
@@ -27,9 +32,37 @@ Results identify_generally(Experiment experiment, const Record& record, const fs
   ComparedRecord compared;
   compared.name = file.filename().string();
   compared.record = record;
-  Results results = report(experiment, compare(experiment, std::move(compared), folder, show_progress()));
+  const Comparison found = compare(experiment, std::move(compared), folder, show_progress());
+  Results results = report(experiment, found);
   results.command = "identify";
+  results.configuration["on_failure"] = to_string(experiment.on_failure);
+  for (const ComparedRun& one : found.runs) {
+    if (const std::string text = words(one.run.events); !text.empty()) results.paragraph(trouble + text);
+    if (!one.diagnostics) continue;
+    std::vector<std::string> outputs;
+    for (const Eigen::Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
+    results.paragraph(words(*one.diagnostics, outputs));
+    for (Figure& figure : figures(*one.diagnostics, outputs)) results.figures.push_back(std::move(figure));
+  }
   return results;
+}
+
+/// What the command line says in place of the experiment file.
+void take_words(const options::variables_map& values, Experiment& experiment) {
+  if (values.count("window")) {
+    const auto& window = values["window"].as<std::vector<double>>();
+    if (window.size() != 2) throw UsageError("identify: --window needs two times: FROM TO");
+    experiment.format.window = {window[0], window[1]};
+    experiment.format.window_place = {"--window"};
+  }
+  try {
+    if (values.count("on-failure"))
+      experiment.on_failure = failure_response(values["on-failure"].as<std::string>());
+    if (values.count("smoother")) experiment.smoother = values["smoother"].as<std::string>();
+    if (!experiment.smoother.empty()) filters::smoother_registry().find(experiment.smoother);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("identify: ") + error.what());
+  }
 }
 
 int run(const Command& command, const std::vector<std::string>& arguments) {
@@ -38,7 +71,11 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       ("config", options::value<std::string>()->value_name("FILE"),
        "experiment file: beam, columns, units, window, filter (docs/configuration.md)")  //
       ("window", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
-       "part of the record to use [s], instead of the experiment file's; after RECORD");
+       "part of the record to use [s], instead of the experiment file's; after RECORD")  //
+      ("on-failure", options::value<std::string>()->value_name("WHAT"),
+       "when the filter fails: stop (default), inflate its covariance and go on, report and go on")  //
+      ("smoother", options::value<std::string>()->value_name("NAME"),
+       "rts or urts: what the whole record says of every instant, in smoothed.csv and a figure");
   described.add(output_options());
   options::variables_map values;
   if (!parse(command, arguments, described, {"record"}, values)) return 0;
@@ -46,18 +83,15 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 
   const fs::path config = values["config"].as<std::string>();
   Experiment experiment = read_experiment(config);
-  if (values.count("window")) {
-    const auto& window = values["window"].as<std::vector<double>>();
-    if (window.size() != 2) throw UsageError("identify: --window needs two times: FROM TO");
-    experiment.format.window = {window[0], window[1]};
-    experiment.format.window_place = {"--window"};
-  }
+  take_words(values, experiment);
   if (!values.count("record") && !experiment.record_file)
     throw UsageError("identify: no RECORD on the command line, and no 'file' under [record] in " +
                      config.string());
   const fs::path file = values.count("record") ? fs::path(values["record"].as<std::string>())
                                                : config.parent_path() / *experiment.record_file;
   const Record record = read_record(file, experiment.format);
+  if (!experiment.smoother.empty() && !is_free_oscillator(experiment, record))
+    throw UsageError("identify: a smoother is there for model sdof without [[parameters]] on a free decay");
   deliver(values, [&] {
     try {
       if (!is_free_oscillator(experiment, record))
@@ -76,7 +110,8 @@ Command identify_command() {
   return {"identify", "[RECORD] --config FILE [--window FROM TO] [--out DIR]",
           "stiffness, damping, frequency and damping ratio from a vibration record",
           "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
-          "  beamid identify --config cantilever.toml --window 0.8 1.6\n",
+          "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
+          "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n",
           run};
 }
 

@@ -15,6 +15,7 @@
 #include "fem/beam.hpp"
 #include "fem/damping.hpp"
 #include "filters/options.hpp"
+#include "filters/running_filter.hpp"
 
 namespace beamid::experiments {
 
@@ -72,6 +73,8 @@ struct Experiment {
   std::vector<ParameterChoice> parameters;  ///< none: what the model asks about by itself
   Choice filter{"ekf", {}};
   std::string discretisation = "exponential";
+  filters::OnFailure on_failure = filters::OnFailure::stop;
+  std::string smoother;                      ///< of the history of an identification; empty: none
   std::vector<Choice> filters;               ///< to be compared; none: `filter`
   std::vector<std::string> discretisations;  ///< likewise; none: `discretisation`
   int passes = 3;                            ///< over the record, of every run of a comparison

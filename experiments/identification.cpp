@@ -47,19 +47,18 @@ filters::FilterRun filter_record(const JointModel& model, const filters::Measure
   filters::FilterRun run;
   for (int pass = 1; pass <= settings.passes; ++pass) {
     const bool last = pass == settings.passes;
-    run = filters::run(*filter, initial, record, last ? keep : filters::Keep::last_belief, settings.start);
+    run = filters::run(*filter, initial, record,
+                       {last ? keep : filters::Keep::last_belief, settings.start, {}, settings.on_failure});
     if (run.failure) break;
     initial = next_start(model, initial, run.last);
   }
   return run;
 }
 
-Identification identify(const JointModel& model, const filters::Measurements& record,
-                        const IdentificationSettings& settings, filters::Keep keep) {
+Identification identification_at(const JointModel& model, const filters::Gaussian& belief) {
   Identification result;
-  result.run = filter_record(model, record, settings, keep);
-  const Eigen::VectorXd& mean = result.run.last.mean;
-  const Eigen::Matrix2d covariance = result.run.last.covariance.block<2, 2>(2, 2);
+  const Eigen::VectorXd& mean = belief.mean;
+  const Eigen::Matrix2d covariance = belief.marginal(2, 2);
   result.found = {model.equivalent_mass, mean[2], mean[3]};
   result.stiffness_deviation = deviation(covariance, 1.0, 0.0);
   result.damping_deviation = deviation(covariance, 0.0, 1.0);
@@ -69,6 +68,14 @@ Identification identify(const JointModel& model, const filters::Measurements& re
       deviation(covariance, 0.25 / (std::numbers::pi * std::sqrt(stiffness * mass)), 0.0);
   result.damping_ratio_deviation = deviation(covariance, -0.5 * result.found.damping_ratio() / stiffness,
                                              0.5 / std::sqrt(stiffness * mass));
+  return result;
+}
+
+Identification identify(const JointModel& model, const filters::Measurements& record,
+                        const IdentificationSettings& settings, filters::Keep keep) {
+  filters::FilterRun run = filter_record(model, record, settings, keep);
+  Identification result = identification_at(model, run.last);
+  result.run = std::move(run);
   return result;
 }
 

@@ -21,6 +21,7 @@ struct IdentificationSettings {
   /// the same initial covariance (next_start). Repeating removes what is left of the linearisation about a
   /// poor first guess.
   int passes = 1;
+  filters::OnFailure on_failure = filters::OnFailure::stop;
 };
 
 /// The belief that the next pass over the record starts from: `initial` with the constants that `last` found
@@ -43,6 +44,9 @@ struct Identification {
   double damping_ratio_deviation = 0;
   filters::FilterRun run;  ///< of the last pass
 };
+
+/// K, C and what follows from them, at a belief about [x, v, K, C, ...]; without a run.
+Identification identification_at(const JointModel& model, const filters::Gaussian& belief);
 
 /// K and C by model sdof. @throws std::invalid_argument when the settings do not fit the model or the record.
 Identification identify(const JointModel& model, const filters::Measurements& record,

@@ -57,6 +57,7 @@ filters::Measurements measurements(const Record& record) {
   const std::vector<Index> outputs = output_channels(record), forces = force_channels(record);
   filters::Measurements result{record.time, record.samples(outputs, Eigen::all), {}};
   if (!forces.empty()) result.inputs = record.samples(forces, Eigen::all);
+  if (record.time_resolution < 0.5 * record.interval()) result.time_resolution = record.time_resolution;
   return result;
 }
 

@@ -44,6 +44,12 @@ Eigen::VectorXd Record::channel(Quantity quantity) const {
   throw std::invalid_argument(std::string("the record has no channel of ") + to_string(quantity));
 }
 
+std::vector<std::string> Record::channel_names() const {
+  std::vector<std::string> names;
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  return names;
+}
+
 Record Record::window(double from, double to) const {
   constexpr Eigen::Index fewest = 16;
   const double slack = 0.5 * interval();
@@ -57,7 +63,7 @@ Record Record::window(double from, double to) const {
             << " s";
     throw std::invalid_argument(message.str());
   }
-  return {time.segment(begin, count), samples.middleCols(begin, count), channels};
+  return {time.segment(begin, count), samples.middleCols(begin, count), channels, time_resolution};
 }
 
 }  // namespace beamid::experiments

@@ -26,6 +26,7 @@ struct Record {
   Eigen::VectorXd time;           ///< (N) [s], strictly increasing
   Eigen::MatrixXd samples;        ///< (p x N), one column per instant
   std::vector<Channel> channels;  ///< p
+  double time_resolution = 0.0;   ///< stamps are as exact as they were printed, within this [s]
 
   Eigen::Index size() const { return time.size(); }
 
@@ -34,6 +35,9 @@ struct Record {
 
   /// One channel's history (N). @throws std::invalid_argument when no channel measures the quantity.
   Eigen::VectorXd channel(Quantity quantity) const;
+
+  /// Their names (p).
+  std::vector<std::string> channel_names() const;
 
   /// The samples whose time lies in [from, to] [s].
   /// @throws std::invalid_argument when the window leaves the record or holds fewer than 16 samples.

@@ -1,5 +1,6 @@
 #include "experiments/input/read_experiment.hpp"
 
+#include "experiments/failure_response.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_beam.hpp"
 #include "experiments/input/read_comparison.hpp"
@@ -15,6 +16,7 @@
 #include "experiments/joint_model.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
+#include "filters/smoother.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
@@ -56,11 +58,18 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
     experiment.reductions.push_back(read_reduction(table));
   read_comparison(root, experiment);
   choose("model", "name", experiment.model, model_registry(), {});
-  choose("filter", "method", experiment.filter, filters::filter_registry(), {"discretisation"});
+  choose("filter", "method", experiment.filter, filters::filter_registry(),
+         {"discretisation", "on_failure", "smoother"});
   if (const auto table = root.find_table("filter")) {
     experiment.discretisation = table->find_text("discretisation").value_or(experiment.discretisation);
     at_place(table->value_place("discretisation"),
              [&] { filters::scheme_registry().find(experiment.discretisation); });
+    if (const auto word = table->find_text("on_failure"))
+      at_place(table->value_place("on_failure"), [&] { experiment.on_failure = failure_response(*word); });
+    experiment.smoother = table->find_text("smoother").value_or("");
+    if (table->contains("smoother"))
+      at_place(table->value_place("smoother"),
+               [&] { filters::smoother_registry().find(experiment.smoother); });
   }
 }
 

@@ -61,6 +61,14 @@ Eigen::VectorXd instants(const std::string& file, const PrintedTimes& times, dou
   return Eigen::Map<const Eigen::VectorXd>(times.values.data(), size) * to_seconds;
 }
 
+/// How finely the instants were printed [s]; 0 where coarser than half of their interval, which the stamps
+/// then are multiples of.
+double resolution(const PrintedTimes& times, double to_seconds, const Record& record) {
+  const double printed = to_seconds * std::max(times.precision.resolution(times.values.front()),
+                                               times.precision.resolution(times.values.back()));
+  return printed < 0.5 * record.interval() ? printed : 0.0;
+}
+
 Record cut(const Record& record, const RecordFormat& format, const std::string& file) {
   try {
     return record.window(format.window->first, format.window->second);
@@ -91,6 +99,8 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   Record record;
   record.time = instants(name, times, columns.time ? columns.time->factor : 1, format.sampling_rate, size);
   record.samples = Eigen::Map<const Eigen::MatrixXd>(samples.data(), channels, size);
+  if (columns.time && !format.sampling_rate)
+    record.time_resolution = resolution(times, columns.time->factor, record);
   for (const RecordColumn& column : columns.channels) record.channels.push_back(column.channel);
   return format.window ? cut(record, format, name) : record;
 }

@@ -86,7 +86,7 @@ const std::vector<TableVocabulary>& vocabulary() {
       {"reductions", {"method", "shape_file"}, true},
       {"model", {"name"}, true},
       {"parameters", parameter_keys()},
-      {"filter", {"method", "discretisation"}, true},
+      {"filter", {"method", "discretisation", "on_failure", "smoother"}, true},
       {"filters", {"method"}, true},
       {"compare", {"discretisations", "passes"}},
       {"identifiability", {"force_measured", "places", "more_sensors"}},

@@ -3,26 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/one_coordinate.hpp"
 #include "fem/free_decay.hpp"
 
 namespace beamid::experiments::paper {
 namespace {
-
-// A system of one coordinate, which is what a reduction would have left.
-fem::StructuralSystem one_coordinate(const Oscillator& oscillator) {
-  const auto scalar = [](double value) {
-    fem::SparseMatrix matrix(1, 1);
-    matrix.insert(0, 0) = value;
-    return matrix;
-  };
-  fem::StructuralSystem system;
-  system.coordinates.resize(1);
-  system.mass = scalar(oscillator.mass);
-  system.damping = scalar(oscillator.damping);
-  system.stiffness = {scalar(1.0), scalar(oscillator.stiffness), scalar(1.0 / oscillator.stiffness)};
-  system.inputs = system.outputs = scalar(1.0);
-  return system;
-}
 
 filters::Measurements simulate(const Oscillator& truth, const ValidationSettings& settings) {
   const auto samples = static_cast<Eigen::Index>(std::lround(settings.duration / validation_interval));

@@ -8,6 +8,7 @@
 #include <complex>
 #include <numbers>
 
+#include "experiments/diagnostics_report.hpp"
 #include "experiments/identification.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/model_setting.hpp"
@@ -159,7 +160,8 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
                                         start_belief(model, with_guess(directions, model, started.guess)),
                                         filters::Start::at_first_sample,
                                         {},
-                                        1};
+                                        1,
+                                        context.experiment.on_failure};
   Reproduction motion;
   try {
     const auto hear = [&](const VectorXd& state) {
@@ -176,6 +178,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
       result.run = filter_record(model, record, identification);
       result.seconds += seconds_since(start);
       result.remarks = result.run.remarks;
+      result.diagnostics = diagnostics_of(result.run, identification.initial, model.unknown_places);
       if (result.run.failure) break;
       start = Clock::now();
       hear(next_start(model, identification.initial, result.run.last).mean);

@@ -10,7 +10,7 @@
 #include "experiments/experiment.hpp"
 #include "experiments/output/results.hpp"
 #include "experiments/progress.hpp"
-#include "filters/filter_run.hpp"
+#include "filters/diagnostics.hpp"
 
 namespace beamid::experiments {
 
@@ -57,6 +57,7 @@ struct ComparedRun {
   double response_seconds = 0.0;       ///< the reproduction and the bound
   Eigen::MatrixXd reproduced;          ///< (p x N)
   filters::FilterRun run;
+  std::optional<filters::Diagnostics> diagnostics;  ///< of the last pass; absent below 100 samples
   std::vector<std::string> remarks;
 };
 

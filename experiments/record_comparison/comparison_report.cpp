@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "experiments/continuum/description.hpp"
+#include "experiments/diagnostics_report.hpp"
 #include "experiments/input/column_name.hpp"
+#include "experiments/model_setting.hpp"
 #include "experiments/record_comparison/comparison.hpp"
 #include "experiments/record_comparison/comparison_figures.hpp"
 #include "experiments/record_comparison/comparison_words.hpp"
@@ -81,12 +83,14 @@ Json optional_number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
-Json values(const ComparedRun& run) {
+Json values(const ComparedRun& run, const std::vector<std::string>& outputs) {
   Json json{{"reduction", run.reduction},
             {"filter", run.filter},
             {"discretisation", run.discretisation},
             {"status", to_string(run.status)}};
   if (!run.reason.empty()) json["reason"] = run.reason;
+  json["events"] = experiments::values(run.run.events);
+  if (run.diagnostics) json["diagnostics"] = experiments::values(*run.diagnostics, outputs);
   json["coordinates"] = run.coordinates;
   json["observed_per_freedom"] = run.observed_per_freedom;
   json["parameters"] = Json::object();
@@ -125,7 +129,9 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
                     {"samples", record.size()},
                     {"sampling_rate_hz", 1.0 / record.interval()},
                     {"runs", Json::array()}};
-  for (const ComparedRun& run : comparison.runs) results.values["runs"].push_back(values(run));
+  std::vector<std::string> outputs;
+  for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
+  for (const ComparedRun& run : comparison.runs) results.values["runs"].push_back(values(run, outputs));
 
   results.heading(experiment.title.empty() ? "Reduced against continuum" : experiment.title);
   std::string channels;

@@ -5,10 +5,13 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "experiments/diagnostics_report.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/modal_analysis/shape_fit.hpp"
+#include "experiments/model_setting.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
+#include "filters/smoother.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
@@ -89,9 +92,20 @@ ModalEstimate analyse(const Experiment& experiment, const Record& record, const 
   }
 }
 
+// What the whole record says of every sample, by the model that the last pass was made with.
+std::vector<filters::Gaussian> smoothed(const Experiment& experiment, const RecordIdentification& found,
+                                        const filters::Measurements& measured) {
+  const auto& settings = found.settings;
+  const double dt =
+      (measured.time[measured.size() - 1] - measured.time[0]) / static_cast<double>(measured.size() - 1);
+  const auto discrete =
+      filters::discretise(found.model.motion, dt, settings.discretisation, {{}, settings.output_noise});
+  return filters::smooth(found.identification.run, *discrete, measured, experiment.smoother).beliefs;
+}
+
 }  // namespace
 
-RecordIdentification identify_record(const Experiment& experiment, const Record& record) {
+RecordIdentification prepare_identification(const Experiment& experiment, const Record& record) {
   RecordIdentification result;
   const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
   result.beam_frequency_hz = fem::modes(system, 1).frequency_hz()[0];
@@ -127,17 +141,26 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
   result.settings.initial = initial_belief(experiment, record, result.model, beam_stiffness);
   result.settings.output_noise = result.noise_deviation.cwiseAbs2().asDiagonal();
   result.settings.passes = passes;
-  const filters::Measurements measurements{record.time, record.samples, {}};
-  result.identification = at_place(experiment.filter.place, [&] {
-    return identify(result.model, measurements, result.settings, filters::Keep::all_beliefs);
-  });
-  if (result.identification.run.failure) return result;
+  result.settings.on_failure = experiment.on_failure;
+  return result;
+}
 
-  if (record.size() >= 100) result.consistency = filters::innovation_consistency(result.identification.run);
+RecordIdentification identify_record(const Experiment& experiment, const Record& record) {
+  RecordIdentification result = prepare_identification(experiment, record);
+  const filters::Measurements measured = measurements(record);
+  result.identification = at_place(experiment.filter.place, [&] {
+    return identify(result.model, measured, result.settings, filters::Keep::all_beliefs);
+  });
+  const filters::FilterRun& run = result.identification.run;
+  result.diagnostics = diagnostics_of(run, result.settings.initial, result.model.unknown_places);
+  if (run.failure) return result;
+
+  if (result.diagnostics) result.consistency = result.diagnostics->consistency;
+  if (!experiment.smoother.empty()) result.smoothed = smoothed(experiment, result, measured);
   if (result.identification.found.damping_ratio() < 1.0)
-    result.reproduced =
-        fit_shapes(record.samples, dt, {result.identification.found.eigenvalue(), 0.0}, {true, false})
-            .reconstruction;
+    result.reproduced = fit_shapes(record.samples, record.interval(),
+                                   {result.identification.found.eigenvalue(), 0.0}, {true, false})
+                            .reconstruction;
   return result;
 }
 

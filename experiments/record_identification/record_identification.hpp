@@ -7,7 +7,7 @@
 #include "experiments/identification.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/output/results.hpp"
-#include "filters/innovation_consistency.hpp"
+#include "filters/diagnostics.hpp"
 
 namespace beamid::experiments {
 
@@ -22,8 +22,14 @@ struct RecordIdentification {
   IdentificationSettings settings;
   Identification identification;
   std::optional<filters::InnovationConsistency> consistency;  ///< absent when the filter failed early
-  Eigen::MatrixXd reproduced;  ///< (p x N): free decay with the identified K and C
+  std::optional<filters::Diagnostics> diagnostics;            ///< absent below 100 samples
+  std::vector<filters::Gaussian> smoothed;  ///< of every sample, where a smoother was asked for
+  Eigen::MatrixXd reproduced;               ///< (p x N): free decay with the identified K and C
 };
+
+/// All but the filtering: model, modal analysis, noise, initial belief and settings. @throws as
+/// identify_record()
+RecordIdentification prepare_identification(const Experiment& experiment, const Record& record);
 
 /// Assemble, reduce, analyse, filter. The initial belief and the noise come from the experiment where it
 /// gives them, else from the beam and the record.

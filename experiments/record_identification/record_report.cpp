@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/diagnostics_report.hpp"
 #include "experiments/discretisation_bias.hpp"
 #include "experiments/record_identification/record_figures.hpp"
 #include "experiments/record_identification/record_values.hpp"
+#include "experiments/record_identification/smoothed_history.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -114,6 +116,10 @@ Results report(const Experiment& experiment, const Record& record, const std::st
                     found.modal.frequency_hz));
   results.table(parameter_table(found));
   results.paragraph(consistency_text(found));
+  const std::vector<std::string> names = record.channel_names();
+  if (found.diagnostics) results.paragraph(words(*found.diagnostics, names));
+  if (const std::string text = words(found.identification.run.events); !text.empty())
+    results.paragraph("The filter had trouble (--on-failure says what it then does). " + text);
   results.paragraph(noise_text(record, found));
   results.paragraph(fmt::format(
       "The finite-element beam as described has its first mode at {:.3f} Hz; the record's is {:+.1f} % "
@@ -121,6 +127,12 @@ Results report(const Experiment& experiment, const Record& record, const std::st
       found.beam_frequency_hz, percent(found.identification.found.frequency_hz(), found.beam_frequency_hz)));
   if (const std::string text = companion_text(found); !text.empty()) results.paragraph(text);
   results.figures = figures(record, found);
+  if (found.diagnostics)
+    for (Figure& figure : figures(*found.diagnostics, names)) results.figures.push_back(std::move(figure));
+  if (!found.smoothed.empty()) {
+    results.figures.push_back(smoothed_figure(record, found));
+    results.attachments.push_back(smoothed_history(record, found));
+  }
   return results;
 }
 

@@ -4,6 +4,8 @@
 #include <numbers>
 
 #include "experiments/beam_description.hpp"
+#include "experiments/diagnostics_report.hpp"
+#include "experiments/failure_response.hpp"
 
 namespace beamid::experiments {
 
@@ -60,6 +62,8 @@ Json values(const RecordIdentification& found, const Record& record) {
   if (found.reproduced.size() > 0)
     json["response_error_percent"] =
         100.0 * (record.samples - found.reproduced).norm() / record.samples.norm();
+  if (found.diagnostics) json["diagnostics"] = values(*found.diagnostics, record.channel_names());
+  json["events"] = values(found.identification.run.events);
   if (const auto& failure = found.identification.run.failure)
     json["failure"] = {{"step", failure->step},
                        {"time_s", failure->time},
@@ -84,6 +88,8 @@ Json configuration(const Experiment& experiment, const Record& record, const Rec
             {"model", choice(experiment.model)},
             {"filter", choice(experiment.filter)}};
   json["filter"]["discretisation"] = experiment.discretisation;
+  json["filter"]["on_failure"] = to_string(experiment.on_failure);
+  if (!experiment.smoother.empty()) json["filter"]["smoother"] = experiment.smoother;
   json["passes"] = found.settings.passes;
   const auto labels = found.model.motion->state_labels();
   for (std::size_t i = 0; i < labels.size(); ++i)

@@ -46,8 +46,9 @@ TEST_P(EveryCommand, RefusesAnUnknownOption) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryCommand,
-                         testing::Values("paper", "identify", "compare", "identifiability", "modes", "frame",
-                                         "simulate", "frf", "reduce", "new", "validate", "list"),
+                         testing::Values("paper", "identify", "stream", "compare", "identifiability",
+                                         "efficiency", "modes", "frame", "simulate", "frf", "reduce", "new",
+                                         "validate", "list"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
@@ -55,8 +56,8 @@ TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(outcome.first_error_line(),
-            "beamid: unknown command 'indentify'; known: paper, identify, compare, identifiability, modes, "
-            "frame, simulate, frf, reduce, new, validate, list");
+            "beamid: unknown command 'indentify'; known: paper, identify, stream, compare, identifiability, "
+            "efficiency, modes, frame, simulate, frf, reduce, new, validate, list");
 }
 
 struct Kind {
@@ -78,16 +79,17 @@ TEST_P(ListOf, NamesEveryMember) {
     EXPECT_THAT(outcome.out, HasSubstr("\n" + member + " "));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, ListOf,
-    testing::Values(Kind{"filters", {"ekf", "low_rank_ekf", "low_rank_ukf", "ukf"}},
-                    Kind{"reductions", {"none", "rayleigh", "modal_truncation"}},
-                    Kind{"discretisations",
-                         {"forward_euler", "backward_euler", "implicit_midpoint", "pade", "runge_kutta_2",
-                          "runge_kutta_4", "exponential", "cvode"}},
-                    Kind{"models", {"beam", "modal", "sdof"}}, Kind{"studies", {"paper"}},
-                    Kind{"responses", {"modal", "newmark", "hht_alpha", "generalised_alpha"}}),
-    [](const auto& tested) { return std::string(tested.param.name); });
+INSTANTIATE_TEST_SUITE_P(Kinds, ListOf,
+                         testing::Values(Kind{"filters", {"ekf", "low_rank_ekf", "low_rank_ukf", "ukf"}},
+                                         Kind{"reductions", {"none", "rayleigh", "modal_truncation"}},
+                                         Kind{"discretisations",
+                                              {"forward_euler", "backward_euler", "implicit_midpoint", "pade",
+                                               "runge_kutta_2", "runge_kutta_4", "exponential", "cvode"}},
+                                         Kind{"models", {"beam", "modal", "sdof"}},
+                                         Kind{"studies", {"paper"}}, Kind{"smoothers", {"rts", "urts"}},
+                                         Kind{"responses",
+                                              {"modal", "newmark", "hht_alpha", "generalised_alpha"}}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(ListOfOneFilter, ShowsItsOptionsWithDefaults) {
   const Outcome outcome = Workplace().run("list filters ukf");
@@ -97,10 +99,43 @@ TEST(ListOfOneFilter, ShowsItsOptionsWithDefaults) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
 }
 
+// Oracle: filters/methods/ukf.cpp and docs/references.md.
+TEST(ListOfOneFilter, TellsSourcesInFullWordsAndPromises) {
+  const Outcome outcome = Workplace().run("list filters ukf");
+  EXPECT_THAT(outcome.out, HasSubstr("\nsource: [julier2004], [wan2000]\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("\n- S. J. Julier, J. K. Uhlmann: Unscented filtering and nonlinear"));
+  EXPECT_THAT(outcome.out, HasSubstr("doi:10.1109/JPROC.2003.823141"));
+  EXPECT_THAT(outcome.out, HasSubstr("\n- its covariance is that of its errors\n"));
+}
+
+TEST(ListOfOneFilter, ShowsUnitsOfItsOptions) {
+  EXPECT_THAT(Workplace().run("list responses cvode").out, HasSubstr("\noption "));
+  EXPECT_THAT(Workplace().run("list filters ekf").out, HasSubstr("\nno options\n"));
+}
+
+// The place in a book that a source names stays with it.
+TEST(ListOfOneDiscretisation, NamesTheChapterOfItsSource) {
+  std::string text = Workplace().run("list discretisations pade").out;
+  for (char& letter : text)
+    if (letter == '\n') letter = ' ';
+  EXPECT_THAT(text, HasSubstr("E. Hairer, G. Wanner: Solving Ordinary"));
+  EXPECT_THAT(text, HasSubstr(", ch. IV.3"));
+}
+
+TEST(List, WithoutAKindShowsEveryEntryWithItsOptions) {
+  const Outcome outcome = Workplace().run("list");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  for (const char* part : {"discretisations\n\n", "\nfilters\n\n", "\nmodels\n\n", "\nreductions\n\n",
+                           "\nresponses\n\n", "\nsmoothers\n\n", "\nstudies\n\n", "\nukf ", "\nrts ",
+                           "\nsdof ", "\nnewmark ", "alpha = 1, beta = 2, kappa = 0"})
+    EXPECT_THAT(outcome.out, HasSubstr(part));
+}
+
 TEST(List, RefusesUnknownKindsAndNames) {
   EXPECT_EQ(Workplace().run("list fliters").first_error_line(),
             "beamid: list: unknown kind 'fliters'; known: discretisations, filters, models, reductions, "
-            "responses, studies");
+            "responses, smoothers, studies");
   EXPECT_EQ(
       Workplace().run("list filters ufk").first_error_line(),
       "beamid: unknown filter 'ufk'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, iekf, kf, low_rank_ekf, "

@@ -3,6 +3,7 @@
 
 #include <complex>
 #include <numbers>
+#include <sstream>
 
 #include "experiments/input/write_record.hpp"
 #include "experiments/virtual_rig.hpp"
@@ -90,10 +91,36 @@ TEST_F(Tutorial, PrintsATableAndWritesTheWholeSet) {
                            "Innovations: ", "\nWritten to results\n"})
     EXPECT_THAT(outcome.out, HasSubstr(text));
   std::vector<std::string> expected{"results/results.json", "results/timing.json", "results/parameters.csv"};
-  for (const char* figure : {"convergence", "reproduction"})
+  for (const char* figure :
+       {"convergence", "reproduction", "innovation_autocorrelation", "innovation_histogram"})
     for (const char* ending : {".svg", ".png", ".gp", ".csv"})
       expected.push_back(std::string("results/") + figure + ending);
   EXPECT_THAT(place_.files(), IsSupersetOf(expected));
+}
+
+// Oracle: the start of a filter knows the prior alone; a smoother knows K as well there as at the end.
+TEST_F(Tutorial, WritesWhatTheSmootherSays) {
+  const Outcome outcome = place_.run("identify --config cantilever.toml --smoother rts --out results");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  std::istringstream history(contents(place_.folder() / "results/smoothed.csv"));
+  std::string header, first, value;
+  std::getline(history, header);
+  std::getline(history, first);
+  EXPECT_EQ(header.substr(0, header.find(",stiffness")),
+            "time_s,displacement_m,displacement_deviation_m,velocity_m_per_s,velocity_deviation_m_per_s");
+  std::istringstream row(first);
+  for (int column = 0; column < 6; ++column) std::getline(row, value, ',');
+  const json stiffness =
+      json::parse(contents(place_.folder() / "results/results.json")).at("stiffness_n_per_m");
+  EXPECT_NEAR(std::stod(value), stiffness.at("estimate").get<double>(),
+              0.1 * stiffness.at("standard_deviation").get<double>());
+}
+
+TEST_F(Tutorial, RefusesUnknownResponsesAndSmoothers) {
+  EXPECT_EQ(place_.run("identify --config cantilever.toml --on-failure hope").first_error_line(),
+            "beamid: identify: on_failure is 'hope'; expected stop, inflate, report");
+  EXPECT_EQ(place_.run("identify --config cantilever.toml --smoother tsr").first_error_line(),
+            "beamid: identify: unknown smoother 'tsr'; known: rts, urts");
 }
 
 TEST_F(Tutorial, WritesTheSameBytesTwice) {

@@ -18,12 +18,11 @@ const std::string beam =
 // A fifth of the stiffness lost in the second quarter, struck, heard in three places.
 Experiment damaged() {
   return read_experiment(TomlTable::parse(
-      beam +
-          "[[beam.damages]]\nfrom_m = 0.275\nto_m = 0.55\nloss = 0.2\n[damping]\nratio = 0.005\n"
-          "[excitation]\nkind = \"impulse\"\nposition_m = 0.4\nmomentum_n_s = 0.1\n"
-          "[simulation]\nduration_s = 2\nsampling_rate_hz = 400\nseed = 3\n"
-          "[[sensors]]\nnoise_m_per_s2 = 0.05\n[[sensors]]\nposition_m = 0.55\nnoise_m_per_s2 = 0.05\n"
-          "[[sensors]]\nposition_m = 0.275\nnoise_m_per_s2 = 0.05\n",
+      beam + "[[beam.damages]]\nfrom_m = 0.275\nto_m = 0.55\nloss = 0.2\n[damping]\nratio = 0.005\n"
+             "[excitation]\nkind = \"impulse\"\nposition_m = 0.4\nmomentum_n_s = 0.1\n"
+             "[simulation]\nduration_s = 2\nsampling_rate_hz = 400\nseed = 3\n"
+             "[[sensors]]\nnoise_m_per_s2 = 0.05\n[[sensors]]\nposition_m = 0.55\nnoise_m_per_s2 = 0.05\n"
+             "[[sensors]]\nposition_m = 0.275\nnoise_m_per_s2 = 0.05\n",
       "damaged.toml"));
 }
 

@@ -1,0 +1,127 @@
+// beamid stream: samples on standard input, stiffness and damping after each on standard output.
+#include <filesystem>
+#include <iostream>
+
+#include "apps/command.hpp"
+#include "experiments/diagnostics_report.hpp"
+#include "experiments/failure_response.hpp"
+#include "experiments/input/method_choice.hpp"
+#include "experiments/input/read_experiment.hpp"
+#include "experiments/input/read_record.hpp"
+#include "experiments/input/text_file.hpp"
+#include "experiments/model_setting.hpp"
+#include "experiments/output/file.hpp"
+#include "experiments/streaming/sample_line.hpp"
+#include "experiments/streaming/streamed_identification.hpp"
+
+namespace beamid::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace experiments;
+
+Record earlier_record(const options::variables_map& values, const Experiment& experiment,
+                      const fs::path& config) {
+  if (values.count("like")) return read_record(values["like"].as<std::string>(), experiment.format);
+  if (experiment.record_file)
+    return read_record(config.parent_path() / *experiment.record_file, experiment.format);
+  throw UsageError(
+      "stream: an earlier record of the rig tells noise, amplitude and sampling interval: --like "
+      "RECORD, or 'file' under [record] in " +
+      config.string());
+}
+
+void resume(StreamedIdentification& stream, const std::string& file) {
+  const std::string text = read_text(file, "a state that --save-state wrote");
+  try {
+    stream.resume(nlohmann::json::parse(text));
+  } catch (const nlohmann::json::exception&) {
+    throw InputError({file}, "not JSON; expected what --save-state wrote");
+  } catch (const std::invalid_argument& error) {
+    throw InputError({file}, error.what());
+  }
+}
+
+// Beside the file first: a state is there as a whole or not at all.
+void save(const StreamedIdentification& stream, const fs::path& file) {
+  fs::path part = file;
+  part += ".part";
+  write_file(part, stream.save().dump(1) + "\n");
+  fs::rename(part, file);
+}
+
+void follow(StreamedIdentification& stream) {
+  std::cout << stream_header() << std::flush;
+  std::string line;
+  std::size_t told = 0;
+  for (std::size_t number = 1; std::getline(std::cin, line); ++number) {
+    const bool heading = number == 1 && line.starts_with("time");
+    if (heading || line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const Place place{"standard input", number, 1};
+    const filters::Sample sample = read_sample(line, stream.outputs(), place);
+    const bool goes_on = at_place(place, [&] { return stream.take_in(sample); });
+    const auto& events = stream.running().events();
+    for (; told < events.size(); ++told) std::cerr << words({events[told]}) << "\n";
+    if (!goes_on) return;
+    std::cout << stream_row(sample.time, stream.found()) << std::flush;
+    if (!std::cout) return;
+  }
+}
+
+int run(const Command& command, const std::vector<std::string>& arguments) {
+  options::options_description described("Options");
+  described.add_options()  //
+      ("config", options::value<std::string>()->value_name("FILE"),
+       "experiment file: beam, columns, filter (docs/configuration.md)")  //
+      ("like", options::value<std::string>()->value_name("RECORD"),
+       "an earlier record of the rig, which tells noise, amplitude and sampling interval; default: that of "
+       "the experiment file")  //
+      ("on-failure", options::value<std::string>()->value_name("WHAT"),
+       "when the filter fails: stop (default), inflate its covariance and go on, report and go on")    //
+      ("resume", options::value<std::string>()->value_name("STATE"), "go on from a saved state")       //
+      ("save-state", options::value<std::string>()->value_name("STATE"), "save the state at the end")  //
+      ("help", "show this help");
+  options::variables_map values;
+  if (!parse(command, arguments, described, {}, values)) return 0;
+  if (!values.count("config")) throw UsageError("stream: --config FILE is missing");
+  const fs::path config = values["config"].as<std::string>();
+  Experiment experiment = read_experiment(config);
+  if (values.count("on-failure")) {
+    try {
+      experiment.on_failure = failure_response(values["on-failure"].as<std::string>());
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(std::string("stream: ") + error.what());
+    }
+  }
+  const Record earlier = earlier_record(values, experiment, config);
+  if (experiment.model.name != "sdof" || !experiment.parameters.empty() || !force_channels(earlier).empty())
+    throw InputError(experiment.model.place.file.empty() ? Place{config.string()} : experiment.model.place,
+                     "beamid stream follows model sdof without [[parameters]] in a free decay");
+  StreamedIdentification stream =
+      at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
+  if (values.count("resume")) resume(stream, values["resume"].as<std::string>());
+  follow(stream);
+  if (!values.count("save-state")) return 0;
+  if (stream.running().failure())
+    std::cerr << "The filter failed, and no state was saved.\n";
+  else
+    save(stream, values["save-state"].as<std::string>());
+  return 0;
+}
+
+}  // namespace
+
+Command stream_command() {
+  return {"stream", "--config FILE [--like RECORD] [--resume STATE] [--save-state STATE] < SAMPLES",
+          "stiffness and damping while samples arrive on standard input",
+          "  beamid stream --config cantilever.toml < tip_acceleration.csv\n"
+          "  logger | beamid stream --config cantilever.toml --save-state now.json\n"
+          "  logger | beamid stream --config cantilever.toml --resume now.json\n\n"
+          "A sample is a line 'time,output[,output...]', in seconds and SI units, the outputs in the order "
+          "of the\n"
+          "record's channels; an output that is empty or nan was not measured. One line of estimates and\n"
+          "standard deviations follows each, from one pass of the filter.\n",
+          run};
+}
+
+}  // namespace beamid::apps

@@ -1,0 +1,59 @@
+// beamid efficiency, end to end: what a user gets.
+#include <gmock/gmock.h>
+
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using nlohmann::json, testing::HasSubstr, testing::StartsWith;
+
+const std::string quick =
+    "efficiency --filter ekf --filter ukf:alpha=0.5 --damping-ratio 0.1 --runs 200 --passes lengthening";
+
+TEST(Efficiency, WritesTablesFigureAndResults) {
+  Workplace place;
+  const Outcome outcome = place.run(quick + " --out found");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* file : {"results.json", "efficiency.csv", "consistency.csv", "efficiency_plot.svg",
+                           "efficiency_plot.png", "efficiency_plot.csv"})
+    EXPECT_TRUE(fs::exists(place.folder() / "found" / file)) << file;
+  EXPECT_THAT(contents(place.folder() / "found" / "efficiency.csv"),
+              StartsWith("damping_ratio,filter,passes,stiffness_rms_over_bound,"));
+  const json found = json::parse(contents(place.folder() / "found" / "results.json"));
+  EXPECT_EQ(found["configuration"]["filters"], json({"ekf", "ukf:alpha=0.5"}));
+  ASSERT_EQ(found["cases"].size(), 2u);
+  // Oracle: the Cramer-Rao bound, with 3.3 standard errors of an rms of 200 runs and 5 % allowed.
+  for (const json& one : found["cases"]) {
+    EXPECT_NEAR(one["stiffness"]["rms_over_bound"].get<double>(), 1.0, 0.05 + 3.3 / 20.0);
+    EXPECT_NEAR(one["damping"]["rms_over_bound"].get<double>(), 1.0, 0.05 + 3.3 / 20.0);
+    EXPECT_EQ(one["lost"]["count"], 0);
+  }
+}
+
+TEST(Efficiency, GivesTheSameBytesForTheSameSeed) {
+  const std::string words = "efficiency --filter ekf --damping-ratio 0.1 --runs 10 --json";
+  const Outcome first = Workplace().run(words);
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_EQ(first.out, Workplace().run(words).out);
+  EXPECT_NE(first.out, Workplace().run(words + " --seed 5").out);
+}
+
+TEST(Efficiency, NamesWhatItRefuses) {
+  const std::pair<const char*, const char*> refused[] = {
+      {"--runs 1", "--runs is 1; expected a whole number from 2 to 1e+06"},
+      {"--damping-ratio 1", "--damping-ratio is 1; expected a number between 0 and 1"},
+      {"--passes twice", "--passes is 'twice'; expected lengthening, single or both"},
+      {"--guess bad", "--guess is 'bad'; expected drawn or ends"},
+      {"--noise 0", "--noise is 0; expected a number above 0, 1 at most"},
+      {"--filter ufk", "--filter: unknown filter 'ufk'"},
+      {"--filter kf", "filter 'kf' takes linear models only"}};
+  for (const auto& [words, message] : refused) {
+    const Outcome outcome = Workplace().run(std::string("efficiency ") + words);
+    EXPECT_EQ(outcome.code, 2) << words;
+    EXPECT_THAT(outcome.err, HasSubstr(message)) << words;
+  }
+}
+
+}  // namespace
+}  // namespace beamid::apps

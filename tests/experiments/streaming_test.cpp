@@ -1,0 +1,128 @@
+// Samples that arrive one by one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiments/model_setting.hpp"
+#include "experiments/streaming/sample_line.hpp"
+#include "experiments/streaming/streamed_identification.hpp"
+#include "tests/experiments/record_identification/simulated_record.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index;
+
+const test::SimulatedBeam simulated;
+
+class EveryFilter : public testing::TestWithParam<const char*> {
+ protected:
+  EveryFilter() { experiment_.filter.name = GetParam(); }
+
+  // The batch: one pass over the whole record.
+  filters::FilterRun batch() const {
+    RecordIdentification prepared = prepare_identification(experiment_, record_);
+    prepared.settings.passes = 1;
+    return filter_record(prepared.model, measurements(record_), prepared.settings,
+                         filters::Keep::all_beliefs);
+  }
+
+  filters::Sample sample(Index k) const { return {record_.time[k], record_.samples.col(k)}; }
+
+  Experiment experiment_ = simulated.experiment();
+  Record record_ = simulated.record({Quantity::displacement, Quantity::acceleration}, 0.01, 11).window(0, 4);
+};
+
+// Oracle: the batch run, to the last digit, and after every sample.
+TEST_P(EveryFilter, HasTheNumbersOfTheBatch) {
+  const filters::FilterRun whole = batch();
+  StreamedIdentification stream(experiment_, record_);
+  for (Index k = 0; k < record_.size(); ++k) {
+    ASSERT_TRUE(stream.take_in(sample(k)));
+    ASSERT_EQ(stream.running().belief().mean, whole.filtered[static_cast<std::size_t>(k)].mean) << k;
+  }
+  EXPECT_EQ(stream.running().belief().covariance, whole.last.covariance);
+}
+
+// Oracle: the batch run. The text of the state is what a file would hold. A filter that carries a factor of
+// the covariance forms it anew: rounding, not more.
+TEST_P(EveryFilter, GoesOnFromASavedState) {
+  const filters::FilterRun whole = batch();
+  const Index half = record_.size() / 2;
+  StreamedIdentification first(experiment_, record_), second(experiment_, record_);
+  for (Index k = 0; k < half; ++k) ASSERT_TRUE(first.take_in(sample(k)));
+  second.resume(nlohmann::json::parse(first.save().dump()));
+  for (Index k = half; k < record_.size(); ++k) ASSERT_TRUE(second.take_in(sample(k)));
+  EXPECT_EQ(second.running().step(), record_.size());
+  const Eigen::VectorXd error = second.running().belief().mean - whole.last.mean,
+                        deviation = whole.last.deviations();
+  if (std::string(GetParam()) == "ekf")
+    EXPECT_EQ(second.running().belief().mean, whole.last.mean);
+  else
+    for (Index i = 0; i < error.size(); ++i) EXPECT_LT(std::abs(error[i]), 1e-6 * deviation[i]) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Filters, EveryFilter, testing::Values("ekf", "ukf", "srukf"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+// Oracle: the batch with NaN at the same places.
+TEST(Stream, LeavesOutWhatWasNotMeasured) {
+  Record record = simulated.record({Quantity::displacement}, 0.01, 12).window(0, 2);
+  const Experiment experiment = simulated.experiment();
+  RecordIdentification prepared = prepare_identification(experiment, record);
+  prepared.settings.passes = 1;
+  StreamedIdentification stream(experiment, record);
+  record.samples.middleCols(100, 20).setConstant(std::nan(""));
+  const filters::FilterRun whole = filter_record(prepared.model, measurements(record), prepared.settings);
+  for (Index k = 0; k < record.size(); ++k) stream.take_in({record.time[k], record.samples.col(k)});
+  EXPECT_EQ(stream.running().belief().mean, whole.last.mean);
+}
+
+TEST(Stream, RefusesAStateThatIsNotItsOwn) {
+  const Record record = simulated.record({Quantity::displacement}, 0.01, 13).window(0, 2);
+  Experiment experiment = simulated.experiment();
+  StreamedIdentification ekf(experiment, record);
+  EXPECT_THROW(ekf.save(), std::invalid_argument);
+  ekf.take_in({0.0, record.samples.col(0)});
+  const nlohmann::json saved = ekf.save();
+  experiment.filter.name = "ukf";
+  StreamedIdentification ukf(experiment, record);
+  try {
+    ukf.resume(saved);
+    FAIL() << "nothing was thrown";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "filter is \"ekf\"; expected \"ukf\"");
+  }
+  EXPECT_THROW(ekf.resume(nlohmann::json::object()), std::invalid_argument);
+  experiment.filter.name = "adaptive_ekf";
+  StreamedIdentification adaptive(experiment, record);
+  adaptive.take_in({0.0, record.samples.col(0)});
+  EXPECT_THROW(adaptive.save(), std::invalid_argument);
+}
+
+TEST(SampleLine, TakesNumbersAndGaps) {
+  const filters::Sample sample = read_sample(" 0.5 ,+1.5e-3,, nan\r", 3, {"standard input", 3, 1});
+  EXPECT_EQ(sample.time, 0.5);
+  EXPECT_EQ(sample.output[0], 1.5e-3);
+  EXPECT_TRUE(std::isnan(sample.output[1]));
+  EXPECT_TRUE(std::isnan(sample.output[2]));
+}
+
+TEST(SampleLine, SaysWhatIsWrongAndWhere) {
+  const auto message = [](const std::string& line) -> std::string {
+    try {
+      read_sample(line, 1, {"standard input", 3, 1});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message("0.5,one"),
+            "standard input:3:5: 'one'; expected a number, or nothing where none was measured");
+  EXPECT_EQ(message("0.5"),
+            "standard input:3:1: 1 fields; expected 2: a time and 1 output, parted by commas");
+  EXPECT_EQ(message(",1"), "standard input:3:1: no time; expected seconds");
+}
+
+}  // namespace
+}  // namespace beamid::experiments
