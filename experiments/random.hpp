@@ -2,16 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
+
+#include "filters/random.hpp"
 
 namespace beamid::experiments {
 
-/// Philox 4x32-10 [salmon2011]: four random words for a counter under a key; no state to carry along.
-std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
-
-/// `count` independent standard normal numbers (Box-Muller on Philox words).
+/// `count` independent standard normal numbers.
 /// @param seed of the study, @param stream of the case within it: different streams are independent.
-Eigen::VectorXd standard_normal(Eigen::Index count, std::uint64_t seed, std::uint64_t stream);
+inline Eigen::VectorXd standard_normal(Eigen::Index count, std::uint64_t seed, std::uint64_t stream) {
+  return filters::RandomStream(seed, stream).normal(count, 1);
+}
 
 }  // namespace beamid::experiments

@@ -27,7 +27,8 @@ std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::a
 
 std::array<std::uint32_t, 4> RandomStream::words() {
   const std::uint64_t here = counter_++;
-  return philox({static_cast<std::uint32_t>(here), static_cast<std::uint32_t>(here >> 32), 0, 0},
+  return philox({static_cast<std::uint32_t>(here), static_cast<std::uint32_t>(here >> 32),
+                 static_cast<std::uint32_t>(stream_), static_cast<std::uint32_t>(stream_ >> 32)},
                 {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)});
 }
 

@@ -1,4 +1,4 @@
-// Oracles: the known answers published with the generator, and what independent normal numbers must do.
+// Oracle: what independent normal numbers must do.
 #include "experiments/random.hpp"
 
 #include <gtest/gtest.h>
@@ -11,18 +11,8 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-using Words = std::array<std::uint32_t, 4>;
 
 constexpr double four_sigma = 4.0;  // 6e-5 of right generators fail a check; seeds are fixed
-
-TEST(Philox, GivesThePublishedWords) {
-  // Oracle: the known-answer vectors of Philox 4x32-10 that come with [salmon2011].
-  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
-  EXPECT_EQ(philox({0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}, {0xffffffff, 0xffffffff}),
-            (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
-  EXPECT_EQ(philox({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
-            (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
-}
 
 TEST(StandardNormal, HasTheMomentsOfTheNormalDistribution) {
   // Oracle: mean 0, variance 1, skewness 0, kurtosis 3; their standard errors over n numbers are
