@@ -1,7 +1,6 @@
 #include "experiments/record_comparison/first_guess.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -69,11 +68,8 @@ FirstGuess hear(const JointModel& model, const std::vector<Observation>& observa
 }  // namespace
 
 StartDirections with_guess(StartDirections directions, const JointModel& model, const FirstGuess& guess) {
-  const MatrixXd& p = guess.unknowns;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> found(0.5 * (p + p.transpose()));
   directions.unknowns.setZero();
-  directions.unknowns(model.unknown_places, Eigen::all) =
-      found.eigenvectors() * found.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  directions.unknowns(model.unknown_places, Eigen::all) = root_of(guess.unknowns);
   return directions;
 }
 

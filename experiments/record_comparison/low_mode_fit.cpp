@@ -24,12 +24,6 @@ constexpr int iterations = 12;
 constexpr double close_enough = 0.02;  // length of the next step, in deviations of what is sought
 constexpr double largest_damping = 1e6;
 
-// L with P = L L^T, whatever the rank of P.
-MatrixXd root_of(const MatrixXd& p) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> found(0.5 * (p + p.transpose()));
-  return found.eigenvectors() * found.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
 /// J near some c: 1/2 |R d - q|^2 + 1/2 remainder^2 + 1/2 |c + d|^2.
 struct Linearisation {
   double cost = std::numeric_limits<double>::infinity();  // infinite where there is no motion
@@ -141,6 +135,11 @@ Linearisation descend(const LowModeFit& fit, const filters::Measurements& heard,
 }
 
 }  // namespace
+
+MatrixXd root_of(const MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> found(0.5 * (covariance + covariance.transpose()));
+  return found.eigenvectors() * found.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
 
 filters::Measurements beginning(const filters::Measurements& record, Index samples) {
   filters::Measurements part;

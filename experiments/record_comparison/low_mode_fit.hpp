@@ -13,6 +13,9 @@ struct FirstGuess {
   Eigen::MatrixXd unknowns;  ///< covariance of the unknowns in the state (q x q)
 };
 
+/// L with P = L L^T (q x q), whatever the rank of P.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance);
+
 /// A record that holds the modes up to some frequency only, as decimation leaves it.
 struct LowRecord {
   filters::Measurements measurements;
