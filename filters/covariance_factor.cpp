@@ -43,6 +43,10 @@ MatrixXd factor_of(const MatrixXd& covariance) {
   return result;
 }
 
+MatrixXd factor_of(const Gaussian& belief) {
+  return belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance);
+}
+
 MatrixXd covariance_of(const MatrixXd& factor) {
   MatrixXd covariance = MatrixXd::Zero(factor.rows(), factor.rows());
   covariance.selfadjointView<Eigen::Lower>().rankUpdate(factor);

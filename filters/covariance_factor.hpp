@@ -11,6 +11,9 @@ namespace beamid::filters {
 /// triangular where the covariance has full rank. @throws FilterFailure when it is not positive semidefinite.
 Eigen::MatrixXd factor_of(const Eigen::MatrixXd& covariance);
 
+/// The factor that a belief carries (n x r), or else one of its covariance. @throws FilterFailure
+Eigen::MatrixXd factor_of(const Gaussian& belief);
+
 /// L L^T (n x n), exactly symmetric.
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& factor);
 

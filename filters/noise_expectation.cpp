@@ -69,11 +69,11 @@ MeanSquares process_squares(const SmoothedRun& smoothed, const VectorXd& growth,
 }
 
 double initial_level(const Gaussian& first, const Gaussian& guess) {
-  const MatrixXd root = guess.factor.size() > 0 ? guess.factor : factor_of(guess.covariance);
+  const MatrixXd root = factor_of(guess);
   const VectorXd lengths = root.rowwise().norm();
   const VectorXd unit = (lengths.array() > 0.0).select(lengths.cwiseInverse(), 1.0);
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse(unit.asDiagonal() * root);
-  const MatrixXd spread = first.factor.size() > 0 ? first.factor : factor_of(first.covariance);
+  const MatrixXd spread = factor_of(first);
   const double square = inverse.solve(unit.asDiagonal() * (first.mean - guess.mean)).squaredNorm() +
                         inverse.solve(unit.asDiagonal() * spread).squaredNorm();
   return 0.5 * std::log(square / static_cast<double>(inverse.rank()));

@@ -85,7 +85,7 @@ class BackwardStep {
 };
 
 Belief as_factor(const Gaussian& belief) {
-  return {belief.mean, belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance)};
+  return {belief.mean, factor_of(belief)};
 }
 
 std::vector<BackwardStep> backward_steps(const FilterRun& run, DiscreteModel& model,

@@ -113,7 +113,7 @@ VectorXd step(const Linearisation& now, const VectorXd& c, double damping) {
   return rows.colPivHouseholderQr().solve(right);
 }
 
-// Levenberg-Marquardt from c; whether it came to rest.
+// Levenberg-Marquardt from c, which it moves; what holds there.
 Linearisation descend(const LowModeFit& fit, const filters::Measurements& heard, VectorXd& c) {
   Linearisation now = fit.at(c, heard);
   double damping = 0.0;

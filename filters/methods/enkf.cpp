@@ -45,7 +45,7 @@ class EnsembleKalmanFilter final : public Filter {
     check_belief(belief, model_);
     random_ = RandomStream(static_cast<std::uint64_t>(seed_));
     plain_draws_ = false;
-    const MatrixXd root = belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance);
+    const MatrixXd root = factor_of(belief);
     belief_.mean = belief.mean;
     anomalies_ = root * draw(root.cols(), MatrixXd(0, members_));
     form();

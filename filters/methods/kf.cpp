@@ -42,7 +42,7 @@ class KalmanFilter final : public Filter {
 
   void reset(const Gaussian& belief) override {
     check_belief(belief, model_);
-    belief_ = {belief.mean, {}, belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance)};
+    belief_ = {belief.mean, {}, factor_of(belief)};
     transition_.forget();
     sensor_.forget();
     formed_ = false;

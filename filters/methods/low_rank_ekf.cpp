@@ -37,7 +37,7 @@ class LowRankExtendedKalmanFilter final : public Filter {
     with_covariance_ = belief.covariance.size() > 0;
     belief_ = {belief.mean, {}};
     corrections_ = 0;
-    directions_ = belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance);
+    directions_ = factor_of(belief);
     limit_.start(directions_);
     restart();
     factorise_process_noise();

@@ -52,7 +52,7 @@ class LowRankUnscentedKalmanFilter final : public Filter {
 
   void reset(const Gaussian& belief) override {
     check_belief(belief, model_);
-    belief_ = {belief.mean, {}, belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance)};
+    belief_ = {belief.mean, {}, factor_of(belief)};
     with_covariance_ = belief.covariance.size() > 0;
     limit_.start(belief_.factor);
     factorise_process_noise();

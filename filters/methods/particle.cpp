@@ -44,7 +44,7 @@ class ParticleFilter final : public Filter {
   void reset(const Gaussian& belief) override {
     check_belief(belief, model_);
     random_ = RandomStream(static_cast<std::uint64_t>(seed_));
-    const MatrixXd root = belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance);
+    const MatrixXd root = factor_of(belief);
     // Draws have the divisor N - 1, the cloud's covariance N.
     const double scale = std::sqrt(static_cast<double>(count_) / static_cast<double>(count_ - 1));
     cloud_.states = scale * root * exact_draws_of(root.cols());

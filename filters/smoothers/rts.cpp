@@ -12,7 +12,7 @@ class RauchTungStriebel final : public Smoother {
   TransitionSpread spread(DiscreteModel& model, const Gaussian& filtered,
                           const Eigen::VectorXd& input) override {
     TransitionSpread result;
-    result.state = filtered.factor.size() > 0 ? filtered.factor : factor_of(filtered.covariance);
+    result.state = factor_of(filtered);
     result.moved = result.state;
     model.move(filtered.mean, input, result.next, result.moved);
     return result;

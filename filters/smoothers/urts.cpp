@@ -20,7 +20,7 @@ class UnscentedRauchTungStriebel final : public Smoother {
   TransitionSpread spread(DiscreteModel& model, const Gaussian& filtered, const VectorXd& input) override {
     const auto [distance, centre, centred] =
         algorithms::scaled_spread("urts", options_, static_cast<std::size_t>(filtered.mean.size()));
-    const MatrixXd root = filtered.factor.size() > 0 ? filtered.factor : factor_of(filtered.covariance);
+    const MatrixXd root = factor_of(filtered);
     const Index n = root.rows(), m = root.cols();
     TransitionSpread result;
     result.state.setZero(n, 2 * m + 1);
