@@ -27,13 +27,21 @@ Region region_of(const Beam& beam, const BeamParameter& parameter) {
   throw std::invalid_argument(message.str());
 }
 
+// How far into a segment a place lies, from 0 to 1; at its end where only the rounding of sums of lengths
+// tells it apart.
+double share_of(const Segment& segment, double start, double place) {
+  constexpr double rounding = 1e-12;
+  const double share = (place - start) / segment.length;
+  return share < rounding ? 0.0 : share > 1.0 - rounding ? 1.0 : share;
+}
+
 // Calls f(segment, begin, end) for the part of each segment in the region, s from 0 to 1.
 template <class Function>
 void for_each_part(const Beam& beam, const Region& region, const Function& f) {
   double start = 0.0;
   for (const Segment& segment : beam.segments) {
-    const double begin = std::clamp((region.first - start) / segment.length, 0.0, 1.0);
-    const double end = std::clamp((region.second - start) / segment.length, 0.0, 1.0);
+    const double begin = share_of(segment, start, region.first),
+                 end = share_of(segment, start, region.second);
     if (begin < end) f(segment, start, begin, end);
     start += segment.length;
   }
@@ -78,8 +86,8 @@ void scale_bending(Beam& beam, const Region& region, double factor) {
   std::vector<Segment> segments;
   double start = 0.0;
   for (const Segment& segment : beam.segments) {
-    const double begin = std::clamp((region.first - start) / segment.length, 0.0, 1.0);
-    const double end = std::clamp((region.second - start) / segment.length, 0.0, 1.0);
+    const double begin = share_of(segment, start, region.first),
+                 end = share_of(segment, start, region.second);
     if (begin == 0.0 && end == 1.0) {
       segments.push_back({segment.length, stretched(segment.section, 0.0, 1.0, factor)});
     } else if (begin >= end) {
