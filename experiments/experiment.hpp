@@ -28,7 +28,7 @@ struct Choice {
       {};  ///< of a reduction that takes a given shape; relative to the TOML file's folder; empty: none
 };
 
-/// One column of a delimited file: by number, from 1, or by the name in the header.
+/// One column of a record's file: by number, from 1, or by its name there.
 struct ColumnDescription {
   Quantity quantity = Quantity::acceleration;
   std::string name;                     ///< in the header; empty when chosen by number
@@ -36,17 +36,23 @@ struct ColumnDescription {
   double factor = 1;                    ///< to SI units
   std::optional<double> position = {};  ///< of the sensor or the force [m]; absent: the natural point
   double distance = 0.0;                ///< strain: of the surface from the axis [m]
+  bool stated = true;                   ///< false: quantity and factor are what the file itself says
 };
 
-/// How a delimited text file is to be read.
+/// How a record's file is to be read, and what is done with the record before anything else sees it.
 struct RecordFormat {
+  std::string reader;     ///< registered; empty: the one that recognises the file
   char separator = '\0';  ///< '\0': the first of tab, semicolon, comma in the first row, else blanks (' ')
   int header_lines = 0;   ///< before the rows, the last non-blank one naming columns; 0 finds a single one
+  char decimal = '\0';    ///< between whole and fraction, '.' or ','; '\0': what the first rows show
+  bool skip_malformed = false;  ///< leave malformed lines out, counted and located in the record's remarks
+  bool irregular = false;       ///< take stamps as they are, at unequal intervals
   std::optional<ColumnDescription> time;  ///< factor to seconds
   std::optional<double> sampling_rate;  ///< [Hz]; replaces the printed times, counted from the first of them
   std::vector<ColumnDescription> channels;          ///< empty: the header's names tell quantities and units
   std::optional<std::pair<double, double>> window;  ///< [s]
   Place window_place;                               ///< where the window is set, for messages
+  std::vector<Choice> preparation;                  ///< registered steps, in their order
 };
 
 /// What is believed before the record is seen; absent values are worked out from the model and the record.
@@ -80,7 +86,9 @@ struct Experiment {
   int passes = 3;                            ///< over the record, of every run of a comparison
   IdentifiabilitySettings identifiability;
   PriorBelief prior;
-  std::map<Quantity, double> noise;  ///< standard deviation per quantity [SI]; absent: from the record
+  std::map<Quantity, double> noise;     ///< standard deviation per quantity [SI]; absent: from the record
+  Choice noise_method{"residual", {}};  ///< how absent ones are found: residual, likelihood, before_event
+  std::string estimator = "filter";     ///< of an identification: filter, batch or both
 };
 
 }  // namespace beamid::experiments

@@ -63,7 +63,7 @@ Record Record::window(double from, double to) const {
             << " s";
     throw std::invalid_argument(message.str());
   }
-  return {time.segment(begin, count), samples.middleCols(begin, count), channels, time_resolution};
+  return {time.segment(begin, count), samples.middleCols(begin, count), channels, time_resolution, remarks};
 }
 
 }  // namespace beamid::experiments

@@ -52,9 +52,24 @@ ParsedNumber parse_number(std::string_view field) {
   return parsed;
 }
 
-bool holds_number(const std::vector<std::string_view>& fields) {
+ParsedNumber parse_number(std::string_view field, char decimal) {
+  if (decimal == '.') return parse_number(field);
+  constexpr std::size_t longest = 64;
+  if (field.size() > longest || field.find('.') != std::string_view::npos) return {};
+  char pointed[longest];
+  std::replace_copy(field.begin(), field.end(), pointed, decimal, '.');
+  return parse_number(std::string_view(pointed, field.size()));
+}
+
+bool holds_number(const std::vector<std::string_view>& fields, char decimal) {
   return std::any_of(fields.begin(), fields.end(),
-                     [](std::string_view field) { return parse_number(field).number; });
+                     [&](std::string_view field) { return parse_number(field, decimal).number; });
+}
+
+bool all_numbers(const std::vector<std::string_view>& fields, char decimal) {
+  return !fields.empty() && std::all_of(fields.begin(), fields.end(), [&](std::string_view field) {
+    return parse_number(field, decimal).number;
+  });
 }
 
 }  // namespace beamid::experiments

@@ -28,6 +28,10 @@ struct ParsedNumber {
 /// A decimal number with a point, in whatever locale: -1, +.5, 2.5E-3.
 ParsedNumber parse_number(std::string_view field);
 
-bool holds_number(const std::vector<std::string_view>& fields);
+/// The same with `decimal` between whole and fraction, '.' or ','.
+ParsedNumber parse_number(std::string_view field, char decimal);
+
+bool holds_number(const std::vector<std::string_view>& fields, char decimal = '.');
+bool all_numbers(const std::vector<std::string_view>& fields, char decimal = '.');
 
 }  // namespace beamid::experiments

@@ -43,6 +43,13 @@ std::map<Quantity, double> read_noise(const TomlTable& table) {
   return noise;
 }
 
+void read_noise_table(const TomlTable& table, Experiment& experiment) {
+  experiment.noise = read_noise(table);
+  const std::vector<std::string> methods{"residual", "likelihood", "before_event"};
+  if (const auto method = table.find_text("method", methods))
+    experiment.noise_method = {*method, {}, table.value_place("method")};
+}
+
 /// The methods; an absent table means the Experiment's own default.
 void read_methods(const TomlTable& root, Experiment& experiment) {
   const auto choose = [&](const char* name, const char* key, Choice& choice, const auto& registry,
@@ -59,13 +66,14 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
   read_comparison(root, experiment);
   choose("model", "name", experiment.model, model_registry(), {});
   choose("filter", "method", experiment.filter, filters::filter_registry(),
-         {"discretisation", "on_failure", "smoother"});
+         {"discretisation", "on_failure", "smoother", "estimator"});
   if (const auto table = root.find_table("filter")) {
     experiment.discretisation = table->find_text("discretisation").value_or(experiment.discretisation);
     at_place(table->value_place("discretisation"),
              [&] { filters::scheme_registry().find(experiment.discretisation); });
     if (const auto word = table->find_text("on_failure"))
       at_place(table->value_place("on_failure"), [&] { experiment.on_failure = failure_response(*word); });
+    experiment.estimator = table->find_text("estimator", {"filter", "both"}).value_or("filter");
     experiment.smoother = table->find_text("smoother").value_or("");
     if (table->contains("smoother"))
       at_place(table->value_place("smoother"),
@@ -114,7 +122,7 @@ Experiment read_experiment(const TomlTable& root) {
   if (const auto table = root.find_table("identifiability"))
     experiment.identifiability = read_identifiability(*table);
   if (const auto prior = root.find_table("prior")) experiment.prior = read_prior(*prior);
-  if (const auto noise = root.find_table("noise")) experiment.noise = read_noise(*noise);
+  if (const auto noise = root.find_table("noise")) read_noise_table(*noise, experiment);
   return experiment;
 }
 

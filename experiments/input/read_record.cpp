@@ -4,68 +4,68 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
-#include "experiments/input/delimited_text.hpp"
 #include "experiments/input/record_columns.hpp"
-#include "experiments/input/sampling.hpp"
-#include "experiments/input/text_file.hpp"
+#include "experiments/input/record_reader.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-/// The printed times in the file's unit, and where they stand.
-struct PrintedTimes {
-  std::vector<double> values;
-  std::vector<std::pair<std::size_t, std::size_t>> places;  ///< line and column
-  PrintedPrecision precision;
+/// The stamps of a record in the file's unit, and where they stand.
+struct Stamps {
+  const RecordTable* table;
+  std::optional<RecordColumn> column;
+  const RecordFormat* format;
 
-  void add(const DelimitedText& text, std::size_t column) {
-    const Place place = text.place(column);
-    values.push_back(text.number(column));
-    places.emplace_back(place.line, place.column);
-    precision.add(text.field(column));
-  }
+  const std::vector<double>& values() const { return table->columns[column->index]; }
+  const PrintedPrecision& precision() const { return table->precision[column->index]; }
+  double factor() const { return column->factor; }
+  double rounding(std::size_t sample) const { return precision().resolution(values()[sample]) * factor(); }
 };
 
-[[noreturn]] void fail(const std::string& file, const PrintedTimes& times, std::size_t sample,
-                       const std::string& message) {
-  throw InputError({file, times.places[sample].first, times.places[sample].second}, message);
+void check_rate(double mean, double rounding, double rate, std::size_t intervals, const Place& place) {
+  constexpr double tolerated = 0.02;
+  if (!(std::abs(mean * rate - 1) <= tolerated + rounding * rate / static_cast<double>(intervals)))
+    throw InputError(place,
+                     fmt::format("times at a mean interval of {:.6g} s; expected {:.6g} s within 2 %, by "
+                                 "the sampling rate of {:.6g} Hz",
+                                 mean, 1 / rate, rate));
 }
 
-void check_rate(const std::string& file, const PrintedTimes& times, double to_seconds, double rate) {
-  constexpr double tolerated = 0.02;
-  const std::size_t last = times.values.size() - 1;
-  const double first_time = times.values[0], last_time = times.values[last];
-  const double mean = (last_time - first_time) * to_seconds / static_cast<double>(last);
-  const double rounding =
-      std::max(times.precision.resolution(first_time), times.precision.resolution(last_time)) * to_seconds;
-  if (!(std::abs(mean * rate - 1) <= tolerated + rounding * rate / static_cast<double>(last)))
-    fail(file, times, last,
-         fmt::format("times at a mean interval of {:.6g} s; expected {:.6g} s within 2 %, by the sampling "
-                     "rate of {:.6g} Hz",
-                     mean, 1 / rate, rate));
+Eigen::VectorXd counted(double start, double interval, std::size_t size) {
+  const auto count = static_cast<Eigen::Index>(size);
+  return start + Eigen::ArrayXd::LinSpaced(count, 0, static_cast<double>(size - 1)) * interval;
 }
 
 /// The instants (N) [s].
-Eigen::VectorXd instants(const std::string& file, const PrintedTimes& times, double to_seconds,
-                         const std::optional<double>& rate, Eigen::Index size) {
-  if (rate) {
-    if (!times.values.empty()) check_rate(file, times, to_seconds, *rate);
-    const double start = times.values.empty() ? 0 : times.values[0] * to_seconds;
-    return start + Eigen::ArrayXd::LinSpaced(size, 0, static_cast<double>(size - 1)) / *rate;
+Eigen::VectorXd instants(const Stamps& stamps) {
+  const RecordTable& table = *stamps.table;
+  const std::size_t size = table.rows();
+  const std::optional<double>& rate = stamps.format->sampling_rate;
+  if (!stamps.column) {
+    if (!table.clock) return counted(0, 1 / *rate, size);
+    if (rate) check_rate(table.clock->interval, 0, *rate, 1, {table.file});
+    return counted(table.clock->start, rate ? 1 / *rate : table.clock->interval, size);
   }
-  if (const auto fault = find_sampling_fault(times.values, times.precision))
-    fail(file, times, fault->sample, fault->message);
-  return Eigen::Map<const Eigen::VectorXd>(times.values.data(), size) * to_seconds;
+  const std::vector<double>& times = stamps.values();
+  if (rate) {
+    const std::size_t last = size - 1;
+    check_rate((times[last] - times[0]) * stamps.factor() / static_cast<double>(last),
+               std::max(stamps.rounding(0), stamps.rounding(last)), *rate, last,
+               table.place(last, stamps.column->index));
+    return counted(times[0] * stamps.factor(), 1 / *rate, size);
+  }
+  const auto fault =
+      stamps.format->irregular ? find_order_fault(times) : find_sampling_fault(times, stamps.precision());
+  if (fault) throw InputError(table.place(fault->sample, stamps.column->index), fault->message);
+  return Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(size)) * stamps.factor();
 }
 
 /// How finely the instants were printed [s]; 0 where coarser than half of their interval, which the stamps
 /// then are multiples of.
-double resolution(const PrintedTimes& times, double to_seconds, const Record& record) {
-  const double printed = to_seconds * std::max(times.precision.resolution(times.values.front()),
-                                               times.precision.resolution(times.values.back()));
+double resolution(const Stamps& stamps, const Record& record) {
+  const double printed = std::max(stamps.rounding(0), stamps.rounding(stamps.table->rows() - 1));
   return printed < 0.5 * record.interval() ? printed : 0.0;
 }
 
@@ -78,31 +78,53 @@ Record cut(const Record& record, const RecordFormat& format, const std::string& 
   }
 }
 
+/// Refuses the first row in which a column that is used holds no finite number, or leaves all such rows out.
+void check_rows(RecordTable& table, const std::vector<std::size_t>& used, bool skip) {
+  std::vector<bool> kept(table.rows(), true);
+  std::vector<std::size_t> lines = table.skipped_lines;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    for (const std::size_t column : used) {
+      if (std::isfinite(table.columns[column][row])) continue;
+      if (!skip) throw table.fault(row, column);
+      if (kept[row]) lines.push_back(row < table.lines.size() ? table.lines[row] : row + 1);
+      kept[row] = false;
+    }
+  std::sort(lines.begin(), lines.end());
+  if (lines.empty()) return;
+  table.remarks.push_back(skipped_text(lines, "is not a row of numbers like the others"));
+  table.keep(kept);
+}
+
 }  // namespace
 
 Record read_record(const std::filesystem::path& file, const RecordFormat& format) {
-  const std::string name = file.string(), content = read_text(file, "a record of numbers in columns");
-  DelimitedText text(name, content, format.separator, format.header_lines);
-  const RecordColumns columns = find_columns(text, format);
-
-  PrintedTimes times;
-  std::vector<double> samples;
-  while (text.next()) {
-    if (columns.time) times.add(text, columns.time->index);
-    for (const RecordColumn& column : columns.channels)
-      samples.push_back(text.number(column.index) * column.factor);
-  }
-  const auto channels = static_cast<Eigen::Index>(columns.channels.size());
-  const Eigen::Index size = static_cast<Eigen::Index>(samples.size()) / channels;
-  if (size < 2) throw InputError(text.row_place(), "one row of numbers; expected at least two");
+  RecordTable table = read_table(file, format);
+  const RecordColumns columns = find_columns(table, format);
+  std::vector<std::size_t> used;
+  if (columns.time) used.push_back(columns.time->index);
+  for (const RecordColumn& column : columns.channels) used.push_back(column.index);
+  check_rows(table, used, format.skip_malformed);
+  if (table.rows() < 2)
+    throw InputError(
+        table.rows() ? table.row_place(table.rows() - 1) : Place{table.file},
+        fmt::format("{} of numbers; expected at least two", table.rows() ? "one row" : "no row"));
 
   Record record;
-  record.time = instants(name, times, columns.time ? columns.time->factor : 1, format.sampling_rate, size);
-  record.samples = Eigen::Map<const Eigen::MatrixXd>(samples.data(), channels, size);
-  if (columns.time && !format.sampling_rate)
-    record.time_resolution = resolution(times, columns.time->factor, record);
-  for (const RecordColumn& column : columns.channels) record.channels.push_back(column.channel);
-  return format.window ? cut(record, format, name) : record;
+  const Stamps stamps{&table, columns.time, &format};
+  record.time = instants(stamps);
+  record.samples.resize(static_cast<Eigen::Index>(columns.channels.size()),
+                        static_cast<Eigen::Index>(table.rows()));
+  for (std::size_t channel = 0; channel < columns.channels.size(); ++channel) {
+    const RecordColumn& column = columns.channels[channel];
+    const std::vector<double>& values = table.columns[column.index];
+    for (std::size_t row = 0; row < values.size(); ++row)
+      record.samples(static_cast<Eigen::Index>(channel), static_cast<Eigen::Index>(row)) =
+          values[row] * column.factor;
+    record.channels.push_back(column.channel);
+  }
+  if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
+  record.remarks = table.remarks;
+  return format.window ? cut(record, format, table.file) : record;
 }
 
 }  // namespace beamid::experiments

@@ -1,4 +1,4 @@
-// Vibration records from delimited text.
+// Vibration records from whatever file holds them.
 #pragma once
 
 #include <filesystem>
@@ -7,13 +7,16 @@
 
 namespace beamid::experiments {
 
-/// Reads the columns that `format` names, in SI units, and cuts its window.
+/// Reads the columns that `format` names, in SI units, and cuts its window. The file is of the kind that the
+/// format names or that it shows to be (record_reader.hpp).
 ///
-/// Without channels in the format, the file's header must name every column by quantity and unit (time_s,
-/// acceleration_m_per_s2, displacement_root_mm). Without a time column in the format, the header's time is
-/// taken. With a sampling rate the times are start + k / rate; printed times then give the start only, and
-/// must have that rate within 2 %. Without one, printed times must increase at one interval within 5 %,
-/// rounding set aside.
+/// Without channels in the format, the file must say itself what its columns are: by names with a quantity
+/// and a unit (time_s, acceleration_m_per_s2, displacement_root_mm) or by units of its own. Without a time
+/// column in the format, the header's time is taken. With a sampling rate the times are start + k / rate;
+/// printed times then give the start only, and must have that rate within 2 %. Without one, printed times
+/// must increase at one interval within 5 %, rounding set aside, or, where the format takes stamps as they
+/// are, only increase. Rows in which a used column holds no finite number are refused, or left out where the
+/// format says so: Record::remarks counts and locates them.
 ///
 /// @throws InputError naming file, line and column, what was found and what was expected; for a window
 /// outside the

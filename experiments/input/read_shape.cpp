@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "experiments/input/delimited_text.hpp"
+#include "experiments/input/record_table.hpp"
 #include "experiments/input/read_reduction.hpp"
 #include "experiments/input/text_file.hpp"
 

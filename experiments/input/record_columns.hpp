@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "experiments/experiment.hpp"
-#include "experiments/input/delimited_text.hpp"
+#include "experiments/input/column_name.hpp"
+#include "experiments/input/record_table.hpp"
 
 namespace beamid::experiments {
 
@@ -20,8 +21,15 @@ struct RecordColumns {
   std::vector<RecordColumn> channels;
 };
 
-/// Finds the columns a format names, or, where it names none, those the header names.
+/// What a column's name says ("acceleration_g"), or else the unit that the file gives it.
+std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index);
+
+/// The column that a description names. @throws InputError at the header or the first row.
+std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted);
+
+/// Finds the columns a format names, or, where it names none, those that the file describes itself. In a file
+/// with units those whose unit says nothing are left out, with a remark.
 /// @throws InputError at the header or the first row.
-RecordColumns find_columns(const DelimitedText& text, const RecordFormat& format);
+RecordColumns find_columns(RecordTable& table, const RecordFormat& format);
 
 }  // namespace beamid::experiments

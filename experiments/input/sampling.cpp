@@ -27,21 +27,32 @@ void PrintedPrecision::add(std::string_view token) {
   digits_ = std::max(digits_, digits);
 }
 
+PrintedPrecision PrintedPrecision::of_digits(int digits) {
+  PrintedPrecision precision;
+  precision.decimals_ = 400;
+  precision.digits_ = digits;
+  return precision;
+}
+
 double PrintedPrecision::resolution(double value) const {
   const double fixed = std::pow(10.0, -decimals_);
   if (value == 0) return fixed;
   return std::max(fixed, std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - digits_));
 }
 
-std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,
-                                                 const PrintedPrecision& precision) {
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    intervals.push_back(times[i] - times[i - 1]);
-    if (intervals.back() <= 0)
+std::optional<SamplingFault> find_order_fault(const std::vector<double>& times) {
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(times[i] > times[i - 1]))
       return SamplingFault{
           i, fmt::format("time {} after {}; expected increasing times", times[i], times[i - 1])};
-  }
+  return std::nullopt;
+}
+
+std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,
+                                                 const PrintedPrecision& precision) {
+  if (auto fault = find_order_fault(times)) return fault;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
   if (intervals.empty()) return std::nullopt;
   std::vector<double> sorted = intervals;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),

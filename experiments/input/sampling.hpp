@@ -14,6 +14,9 @@ class PrintedPrecision {
  public:
   void add(std::string_view token);
 
+  /// That of numbers of so many significant digits: 7 in single precision, 15 in double.
+  static PrintedPrecision of_digits(int digits);
+
   /// Distance between neighbouring printable numbers near `value`, in the column's unit.
   double resolution(double value) const;
 
@@ -33,5 +36,8 @@ struct SamplingFault {
 /// @param times as printed, in the file's unit, in which the message speaks too.
 std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,
                                                  const PrintedPrecision& precision);
+
+/// The first time that is not after its predecessor: all that is asked of stamps at unequal intervals.
+std::optional<SamplingFault> find_order_fault(const std::vector<double>& times);
 
 }  // namespace beamid::experiments

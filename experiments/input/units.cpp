@@ -1,6 +1,7 @@
 #include "experiments/input/units.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace beamid::experiments {
 
@@ -35,6 +36,44 @@ std::optional<Quantity> find_quantity(std::string_view name) {
   const auto* const quantity = std::find_if(std::begin(all_quantities), std::end(all_quantities),
                                             [&](Quantity q) { return to_string(q) == name; });
   return quantity == std::end(all_quantities) ? std::nullopt : std::optional(*quantity);
+}
+
+namespace {
+
+/// Without brackets, blanks, '^', '*' and a raised two.
+std::string plain(std::string_view spelling) {
+  std::string text(spelling);
+  for (const std::string_view raised : {"\u00b2", "\xb2"})
+    for (std::size_t at; (at = text.find(raised)) != std::string::npos;) text.replace(at, raised.size(), "2");
+  for (const std::string_view micro : {"\u00b5", "\u03bc", "\xb5"})
+    for (std::size_t at; (at = text.find(micro)) != std::string::npos;) text.replace(at, micro.size(), "u");
+  text.erase(std::remove_if(text.begin(), text.end(),
+                            [](char c) {
+                              return c == ' ' || c == '[' || c == ']' || c == '(' || c == ')' || c == '^' ||
+                                     c == '*';
+                            }),
+             text.end());
+  return text;
+}
+
+}  // namespace
+
+std::optional<StatedUnit> stated_unit(std::string_view spelling) {
+  static const std::map<std::string, std::string> others{
+      {"m/sec2", "m/s2"}, {"m/s/s", "m/s2"}, {"mm/sec2", "mm/s2"}, {"m/sec", "m/s"},
+      {"mm/sec", "mm/s"}, {"newton", "N"},   {"Newton", "N"},      {"Newtons", "N"},
+      {"meter", "m"},     {"metre", "m"},    {"Meter", "m"},       {"gn", "g"},
+      {"sec", "s"},       {"Sec", "s"},      {"second", "s"},      {"seconds", "s"},
+      {"Seconds", "s"},   {"msec", "ms"},    {"ustrain", "um/m"},  {"microstrain", "um/m"},
+      {"ue", "um/m"},     {"strain", "m/m"}, {"ms-2", "m/s2"},     {"ms-1", "m/s"}};
+  std::string symbol = plain(spelling);
+  if (const auto other = others.find(symbol); other != others.end()) symbol = other->second;
+  for (const Unit& unit : time_units())
+    if (unit.symbol == symbol) return StatedUnit{std::nullopt, unit.factor};
+  for (const Quantity quantity : all_quantities)
+    for (const Unit& unit : units(quantity))
+      if (unit.symbol == symbol || unit.suffix == symbol) return StatedUnit{quantity, unit.factor};
+  return std::nullopt;
 }
 
 std::vector<std::string> symbols(const std::vector<Unit>& units) {

@@ -32,6 +32,15 @@ inline constexpr Quantity all_quantities[] = {Quantity::displacement, Quantity::
 /// The quantity of that name: "acceleration".
 std::optional<Quantity> find_quantity(std::string_view name);
 
+/// What a unit says that a file names in its own spelling: "m/s^2", "m/s**2", "(g)", "Newton".
+struct StatedUnit {
+  std::optional<Quantity> quantity;  ///< absent: time
+  double factor = 1;                 ///< to the SI unit
+};
+
+/// Nothing for a spelling that does not tell a quantity of a record, such as "V" or "deg".
+std::optional<StatedUnit> stated_unit(std::string_view spelling);
+
 /// Symbols, for messages and checks.
 std::vector<std::string> symbols(const std::vector<Unit>& units);
 

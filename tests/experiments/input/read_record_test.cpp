@@ -123,7 +123,7 @@ TEST(ReadRecord, RefusesBadNumbersAtTheirPlaces) {
       two_columns(),
       {{"0,1\n1,abc\n", "bad.txt:2:3: column 2 holds 'abc'; expected a number"},
        {"t,a\n0,1\n1, 2 g\n", "bad.txt:3:4: column 2 holds '2 g'; expected a number"},
-       {"t;a\n0;1\n1;2,5\n", "bad.txt:3:3: column 2 holds '2,5'; expected a number with a decimal point"},
+       {"t;a\n0.5;1\n1;2,5\n", "bad.txt:3:3: column 2 holds '2,5'; expected a number with a decimal point"},
        {"0\t1\n1\tNaN\n",
         "bad.txt:2:3: column 2 holds 'NaN'; expected a finite number within double precision"},
        {"0\t1\n-inf\t2\n",

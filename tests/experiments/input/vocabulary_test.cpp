@@ -114,7 +114,8 @@ std::string with_date(const std::string& table, const std::string& key) {
                                      "reductions",
                                      "filters",
                                      "parameters",
-                                     "record.channels"};
+                                     "record.channels",
+                                     "record.prepare"};
   if (table.starts_with("frame")) return frame_with_date(table, key);
   std::string text;
   if (table.empty()) text += key + " = 2009-01-01\n";

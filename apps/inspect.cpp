@@ -1,0 +1,32 @@
+// beamid inspect: what is in a record's file, and what is wrong with it?
+#include "experiments/inspection/inspection.hpp"
+
+#include "apps/deliver.hpp"
+#include "apps/record_options.hpp"
+
+namespace beamid::apps {
+namespace {
+
+int run(const Command& command, const std::vector<std::string>& arguments) {
+  options::options_description described("Options");
+  described.add(record_options()).add(output_options());
+  options::variables_map values;
+  if (!parse(command, arguments, described, {"record"}, values)) return 0;
+  const RecordRequest request = record_request(values, command.name);
+  deliver(values, [&] { return experiments::report(experiments::inspect(request.file, request.format)); });
+  return 0;
+}
+
+}  // namespace
+
+Command inspect_command() {
+  return {
+      "inspect", "RECORD [OPTIONS]",
+      "what is in a record's file: channels, sampling, noise, clipping, drop-outs, events",
+      "  beamid inspect hammer_test.txt\n"
+      "  beamid inspect impulse.lvm --rate 1651.6129 --out results\n"
+      "  beamid inspect massa1.txt --time 1 --column 3 --quantity acceleration --unit g --window 0.2 1.2\n",
+      run};
+}
+
+}  // namespace beamid::apps

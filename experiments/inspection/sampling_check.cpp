@@ -1,0 +1,42 @@
+#include "experiments/inspection/sampling_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace beamid::experiments {
+
+SamplingCheck check_sampling(const std::vector<double>& times, double resolution) {
+  if (times.size() < 2) throw std::invalid_argument("fewer than two instants; expected at least two");
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
+  std::vector<double> sorted = intervals;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  SamplingCheck check;
+  check.interval = *middle;
+  const double tolerated = 0.05 * check.interval + 1.01 * resolution;
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const double interval = intervals[i];
+    if (interval == 0) {
+      check.repeats.push_back(i + 1);
+    } else if (interval < 0) {
+      check.returns.push_back(i + 1);
+    } else if (interval > 1.5 * check.interval + 1.01 * resolution) {
+      check.gaps.push_back(i + 1);
+      check.longest_gap = std::max(check.longest_gap, interval);
+    } else {
+      sum += interval, count += 1.0;
+    }
+    check.uniform = check.uniform && std::abs(interval - check.interval) <= tolerated;
+  }
+  const double mean = sum / std::max(count, 1.0);
+  for (const double interval : intervals)
+    if (interval > 0 && interval <= 1.5 * check.interval + 1.01 * resolution)
+      check.jitter += (interval - mean) * (interval - mean);
+  check.jitter = std::sqrt(check.jitter / std::max(count, 1.0));
+  return check;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,186 @@
+#include "experiments/preparation/preparation_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "experiments/input/write_record.hpp"
+#include "experiments/modal_analysis/dominant_mode.hpp"
+#include "experiments/preparation/preparation_figure.hpp"
+#include "experiments/preparation/preparation_step.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+double degrees(double angle) {
+  return angle * 180 / std::numbers::pi;
+}
+
+Json values(const StepCost& cost, const PreparationCost& all) {
+  const double damped =
+      2 * std::numbers::pi * all.frequency_hz * std::sqrt(1 - all.damping_ratio * all.damping_ratio);
+  const auto change = [](const ModalChange& found) -> Json {
+    if (std::isnan(found.frequency)) return nullptr;
+    return {{"frequency_percent", 100 * found.frequency},
+            {"damping_ratio_percent", 100 * found.damping_ratio}};
+  };
+  Json json{{"gain", cost.gain()},
+            {"phase_deg", degrees(cost.phase())},
+            {"delay_s", -cost.phase() / damped},
+            {"exact_when_settled", cost.exact},
+            {"transient_begin_s", cost.transient_begin},
+            {"transient_end_s", cost.transient_end},
+            {"change_settled", change(cost.settled)},
+            {"change_of_all", change(cost.whole)}};
+  json["decrement_damping_ratio_percent"] =
+      std::isnan(cost.decrement_damping) ? Json(nullptr) : Json(100 * cost.decrement_damping);
+  return json;
+}
+
+std::string first_words(const PreparedRecord& prepared, const std::string& name) {
+  const Record &raw = prepared.raw, &left = prepared.record;
+  return fmt::format(
+      "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz; prepared: {} from {:.4f} to {:.4f} s at "
+      "{:.2f} Hz.",
+      name, raw.size(), raw.time[0], raw.time[raw.size() - 1], 1 / raw.interval(), left.size(), left.time[0],
+      left.time[left.size() - 1], 1 / left.interval());
+}
+
+/// Evenly sampled stamps are written as such, whatever their file rounded them to.
+Record written(Record record) {
+  try {
+    even_interval(record);
+  } catch (const std::invalid_argument&) {
+    return record;
+  }
+  record.time = Eigen::VectorXd::LinSpaced(record.size(), record.time[0], record.time[record.size() - 1]);
+  return record;
+}
+
+}  // namespace
+
+DominantCost dominant_cost(const PreparedRecord& prepared, const RecordFormat& format) {
+  try {
+    const Record& record = prepared.record;
+    const ModalEstimate mode =
+        dominant_mode(record.samples.row(motion_row(record)).transpose(), even_interval(record));
+    if (!(mode.damping_ratio > 0 && mode.damping_ratio < 1))
+      return {{},
+              fmt::format("the dominant mode's damping ratio, {:.3g}, is no decay's", mode.damping_ratio)};
+    return {preparation_cost(format.preparation, prepared.raw, mode.frequency_hz, mode.damping_ratio,
+                             format.window),
+            ""};
+  } catch (const std::exception& error) {
+    return {{}, error.what()};
+  }
+}
+
+Table cost_table(const PreparationCost& cost) {
+  Table table{"preparation", ""};
+  table.column({"step", "step"})
+      .column({"gain", "gain", "{:.5g}"})
+      .column({"phase [deg]", "phase_deg", "{:.2f}"})
+      .column({"transients [s]", "transients_s"})
+      .column({"settled: f [%]", "settled_frequency_change_percent", "{:+.4f}"})
+      .column({"damping [%]", "settled_damping_ratio_change_percent", "{:+.3f}"})
+      .column({"whole: f [%]", "frequency_change_percent", "{:+.4f}"})
+      .column({"damping [%]", "damping_ratio_change_percent", "{:+.3f}"})
+      .column({"decrement [%]", "decrement_damping_ratio_change_percent", "{:+.3f}"});
+  const auto add = [&](const StepCost& c, const std::string& name) {
+    const double known = c.acts ? 1 : nothing;
+    // What would print as -0.0000 is no change.
+    const auto percent = [&](double x, double least) { return known * (std::abs(x) < least ? 0 : 100 * x); };
+    const std::string ends = c.transient_end > 0
+                                 ? fmt::format("{:.3g}, {:.3g}", c.transient_begin, c.transient_end)
+                                 : fmt::format("{:.3g}", c.transient_begin);
+    table.row({name, known * c.gain(), known * degrees(c.phase()), c.acts ? ends : "-",
+               percent(c.settled.frequency, 5e-7), percent(c.settled.damping_ratio, 5e-6),
+               percent(c.whole.frequency, 5e-7), percent(c.whole.damping_ratio, 5e-6),
+               percent(c.decrement_damping, 5e-6)});
+  };
+  for (std::size_t i = 0; i < cost.steps.size(); ++i)
+    add(cost.steps[i], fmt::format("{}. {}", i + 1, cost.steps[i].step));
+  for (const StepCost& together : cost.together) add(together, "all: " + together.step);
+  table.note = fmt::format(
+      "What the steps make of a clean decay at {:.4f} Hz with a damping ratio of {:.4f} %, the mode that "
+      "dominates the prepared record, begun abruptly. Gain and phase: closed form. Changes of frequency and "
+      "damping ratio: a least-squares fit where transients are below 1e-3 (settled) and over all that is "
+      "left "
+      "(whole), and the logarithmic decrement over the whole.",
+      cost.frequency_hz, 100 * cost.damping_ratio);
+  return table;
+}
+
+Json values(const RecordFormat& format, const DominantCost& found) {
+  Json json{{"steps", Json::array()}};
+  for (std::size_t i = 0; i < format.preparation.size(); ++i) {
+    const Choice& choice = format.preparation[i];
+    Json step{{"step", choice.name}};
+    for (const auto& [name, value] : choice.options.values())
+      std::visit([&, key = name](const auto& v) { step["options"][key] = v; }, value);
+    if (found.cost && found.cost->steps[i].acts) step["cost"] = values(found.cost->steps[i], *found.cost);
+    json["steps"].push_back(step);
+  }
+  if (!found.cost) {
+    json["no_cost"] = found.reason;
+    return json;
+  }
+  json["frequency_hz"] = found.cost->frequency_hz;
+  json["damping_ratio"] = found.cost->damping_ratio;
+  for (const StepCost& together : found.cost->together) {
+    Json one{{"channel", together.step}};
+    one.update(values(together, *found.cost));
+    json["together"].push_back(one);
+  }
+  return json;
+}
+
+void tell_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format) {
+  std::string text;
+  for (const std::string& remark : prepared.record.remarks) text += (text.empty() ? "" : " ") + remark;
+  if (!format.preparation.empty()) {
+    const DominantCost found = dominant_cost(prepared, format);
+    results.values["preparation"] = values(format, found);
+    if (found.cost && !std::isnan(found.cost->together.front().whole.frequency)) {
+      const ModalChange& change = found.cost->together.front().whole;
+      text += fmt::format(
+          " On a clean decay of this mode all steps together change the frequency by {:+.4f} % "
+          "and the damping ratio by {:+.3f} %; `beamid prepare` tells of each.",
+          100 * change.frequency, 100 * change.damping_ratio);
+    }
+  }
+  if (!text.empty()) results.paragraph("Record: " + text);
+}
+
+Results report(const PreparedRecord& prepared, const RecordFormat& format, const std::string& title,
+               const std::string& record_name) {
+  Results results;
+  results.command = "prepare";
+  results.configuration = {{"title", title}, {"record", record_name}};
+  if (format.window) results.configuration["window_s"] = {format.window->first, format.window->second};
+  results.heading(title.empty() ? record_name : title);
+  results.paragraph(first_words(prepared, record_name));
+  for (std::size_t i = 0; i < prepared.record.remarks.size(); ++i)
+    results.paragraph(fmt::format("{}. {}", i + 1, prepared.record.remarks[i]));
+  const DominantCost found = dominant_cost(prepared, format);
+  results.values["preparation"] = values(format, found);
+  results.values["samples"] = prepared.record.size();
+  results.values["sampling_rate_hz"] = 1 / prepared.record.interval();
+  if (found.cost)
+    results.table(cost_table(*found.cost));
+  else
+    results.paragraph("No cost is told, as there is no mode to tell it of: " + found.reason + ".");
+  results.figures.push_back(preparation_figure(prepared));
+  results.attachments.push_back(
+      {{"prepared.csv"}, [record = written(prepared.record)](const std::filesystem::path& folder) {
+         write_record(record, folder / "prepared.csv");
+       }});
+  return results;
+}
+
+}  // namespace beamid::experiments
