@@ -62,21 +62,28 @@ int order_above_noise(const VectorXd& singular_values, const EigensystemSettings
   return std::clamp(static_cast<int>(above), 1, settings.largest_order);
 }
 
-/// Eigenvalues of A, one of each complex pair.
-std::vector<Complex> discrete_poles(const MatrixXd& gram, Index p, EigensystemRealisation& result,
-                                    const EigensystemSettings& settings) {
+/// Singular values of H(0), falling, and left singular vectors, in the opposite order.
+struct Decomposition {
+  VectorXd singular_values;
+  MatrixXd left;
+  MatrixXd shifted;  ///< H(1) H(0)^T
+};
+
+Decomposition decompose(const MatrixXd& gram, Index p) {
   const Index size = gram.rows() - p;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(gram.topLeftCorner(size, size));
-  result.singular_values = solver.eigenvalues().reverse().cwiseMax(0).cwiseSqrt();
-  result.order = settings.order > 0 ? settings.order : order_above_noise(result.singular_values, settings);
-  const int n = result.order;
-  const MatrixXd left = solver.eigenvectors().rightCols(n);
-  const VectorXd root = result.singular_values.head(n)
-                            .cwiseMax(1e-12 * result.singular_values[0])
+  return {solver.eigenvalues().reverse().cwiseMax(0).cwiseSqrt(), solver.eigenvectors(),
+          gram.bottomLeftCorner(size, size)};
+}
+
+/// Eigenvalues of A, one of each complex pair.
+std::vector<Complex> discrete_poles(const Decomposition& cut, int n) {
+  const MatrixXd left = cut.left.rightCols(n);
+  const VectorXd root = cut.singular_values.head(n)
+                            .cwiseMax(1e-12 * cut.singular_values[0])
                             .reverse()
                             .cwiseSqrt();  // S^(1/2), S rising as the solver sorts them
-  const MatrixXd transition = root.cwiseInverse().asDiagonal() *
-                              (left.transpose() * gram.bottomLeftCorner(size, size) * left) *
+  const MatrixXd transition = root.cwiseInverse().asDiagonal() * (left.transpose() * cut.shifted * left) *
                               root.array().pow(-3).matrix().asDiagonal();
   const Eigen::VectorXcd eigenvalues = transition.eigenvalues();
   std::vector<Complex> poles;
@@ -120,23 +127,50 @@ void mark_spurious(std::vector<IdentifiedMode>& modes, const EigensystemSettings
     mode.spurious = mode.spurious || mode.shape.norm() < settings.smallest_amplitude * strongest;
 }
 
-}  // namespace
-
-EigensystemRealisation eigensystem_realisation(const MatrixXd& outputs, double interval,
-                                               const EigensystemSettings& settings) {
-  const Index p = outputs.rows(), count = outputs.cols();
+Index block_rows(const MatrixXd& outputs, const EigensystemSettings& settings) {
   constexpr Index most_rows = 200;
-  const Index rows =
-      settings.rows > 0 ? settings.rows : std::min(count / 3, most_rows / std::max<Index>(p, 1));
-  check(outputs, interval, settings, rows);
+  if (settings.rows > 0) return settings.rows;
+  return std::min(outputs.cols() / 3, most_rows / std::max<Index>(outputs.rows(), 1));
+}
+
+EigensystemRealisation realise(const MatrixXd& outputs, double interval, const Decomposition& cut, int order,
+                               const EigensystemSettings& settings) {
   EigensystemRealisation result;
-  for (const Complex& pole : discrete_poles(hankel_gram(outputs, rows + 1), p, result, settings))
-    result.modes.push_back(mode_of(pole, interval));
+  result.order = order;
+  result.singular_values = cut.singular_values;
+  for (const Complex& pole : discrete_poles(cut, order)) result.modes.push_back(mode_of(pole, interval));
   std::sort(result.modes.begin(), result.modes.end(),
             [](const auto& a, const auto& b) { return a.frequency_hz < b.frequency_hz; });
   add_shapes(outputs, interval, result);
   mark_spurious(result.modes, settings);
   return result;
+}
+
+}  // namespace
+
+EigensystemRealisation eigensystem_realisation(const MatrixXd& outputs, double interval,
+                                               const EigensystemSettings& settings) {
+  const Index rows = block_rows(outputs, settings);
+  check(outputs, interval, settings, rows);
+  const Decomposition cut = decompose(hankel_gram(outputs, rows + 1), outputs.rows());
+  const int order = settings.order > 0 ? settings.order : order_above_noise(cut.singular_values, settings);
+  return realise(outputs, interval, cut, order, settings);
+}
+
+std::vector<EigensystemRealisation> eigensystem_realisations(const MatrixXd& outputs, double interval,
+                                                             int largest_order,
+                                                             const EigensystemSettings& settings) {
+  const Index rows = block_rows(outputs, settings);
+  EigensystemSettings any_order = settings;
+  any_order.order = 0;
+  check(outputs, interval, any_order, rows);
+  const Decomposition cut = decompose(hankel_gram(outputs, rows + 1), outputs.rows());
+  std::vector<EigensystemRealisation> found;
+  for (int order = 2; order <= std::min<Index>(largest_order, rows * outputs.rows()); order += 2) {
+    found.push_back(realise(outputs, interval, cut, order, settings));
+    found.back().reconstruction.resize(0, 0);
+  }
+  return found;
 }
 
 }  // namespace beamid::experiments

@@ -50,4 +50,10 @@ struct EigensystemRealisation {
 EigensystemRealisation eigensystem_realisation(const Eigen::MatrixXd& outputs, double interval,
                                                const EigensystemSettings& settings = {});
 
+/// The same for the orders 2, 4, ... up to largest_order (at most rows p), cut from one decomposition.
+/// `settings.order` is not used. Reconstructions are left out.
+std::vector<EigensystemRealisation> eigensystem_realisations(const Eigen::MatrixXd& outputs, double interval,
+                                                             int largest_order,
+                                                             const EigensystemSettings& settings = {});
+
 }  // namespace beamid::experiments

@@ -1,0 +1,163 @@
+// beamid modal: modes from vibration records, without a beam.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "apps/deliver.hpp"
+#include "apps/record_options.hpp"
+#include "experiments/input/choice_text.hpp"
+#include "experiments/input/read_record.hpp"
+#include "experiments/modal_study/amplitude_report.hpp"
+#include "experiments/modal_study/hammer_study.hpp"
+#include "experiments/modal_study/mass_report.hpp"
+#include "experiments/modal_study/report.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using namespace experiments;
+
+constexpr int most_records = 20;
+
+options::options_description modal_options() {
+  options::options_description described("Options");
+  described.add_options()  //
+      ("method", options::value<std::string>()->value_name("NAME[:OPTION=VALUE,...]")->default_value("era"),
+       "era for free decays, ssi_cov for random vibration, frf_lscf for hammer hits with a measured force "
+       "(beamid list modal_methods)")  //
+      ("band", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
+       "frequencies to look at [Hz]; else all where the spectrum shows something; after RECORD")  //
+      ("order", options::value<double>()->value_name("N")->default_value(30), "largest model order, 4 to 80")(
+          "modes", options::value<double>()->value_name("N"), "the N strongest modes only")  //
+      ("amplitude", "frequency and damping ratio of every mode against its amplitude along the decay")  //
+      ("polish", "refine a free decay's modes by least squares, all together (the default for era)")(
+          "no-polish", "take them as the method finds them");
+  return described;
+}
+
+double whole(const options::variables_map& values, const char* name, double least, double most) {
+  const double value = values[name].as<double>();
+  if (!(value >= least && value <= most && value == std::floor(value)))
+    throw UsageError(fmt::format("modal: --{} is {:g}; expected a whole number from {:g} to {:g}", name,
+                                 value, least, most));
+  return value;
+}
+
+ModalStudySettings settings_of(const options::variables_map& values) {
+  ModalStudySettings settings;
+  settings.method = parse_choice(values["method"].as<std::string>(), "--method", modal_method_registry());
+  if (values.count("band")) {
+    const auto& band = values["band"].as<std::vector<double>>();
+    if (band.size() != 2 || !(band[0] >= 0 && band[0] < band[1]))
+      throw UsageError("modal: --band needs two frequencies [Hz], the first below the second: FROM TO");
+    settings.band_hz = {band[0], band[1]};
+  }
+  settings.largest_order = static_cast<int>(whole(values, "order", 4, 80));
+  if (values.count("modes")) settings.modes = static_cast<int>(whole(values, "modes", 1, 1000));
+  if (values.count("polish") && values.count("no-polish"))
+    throw UsageError("modal: --polish and --no-polish exclude each other");
+  if (values.count("polish")) settings.polish = true;
+  if (values.count("no-polish")) settings.polish = false;
+  return settings;
+}
+
+/// The records named on the command line, or the configuration's one.
+std::vector<RecordRequest> requests_of(const options::variables_map& values,
+                                       const std::vector<std::string>& places) {
+  std::vector<RecordRequest> requests{record_request(values, "modal")};
+  for (std::size_t k = 1; k < places.size() && values.count(places[k]); ++k) {
+    requests.push_back(requests.front());
+    requests.back().file = values[places[k]].as<std::string>();
+  }
+  return requests;
+}
+
+void check_same_channels(const std::vector<Record>& records, const std::vector<RecordRequest>& requests) {
+  for (std::size_t r = 1; r < records.size(); ++r) {
+    bool same = records[r].channels.size() == records[0].channels.size();
+    for (std::size_t i = 0; same && i < records[0].channels.size(); ++i)
+      same = records[r].channels[i].quantity == records[0].channels[i].quantity;
+    if (!same)
+      throw InputError(
+          {requests[r].file.string()},
+          fmt::format("{} channels of other number or quantity than the {} of {}; expected the same, "
+                      "in the same order, to merge the records",
+                      records[r].channels.size(), records[0].channels.size(), requests[0].file.string()));
+  }
+}
+
+int run(const Command& command, const std::vector<std::string>& arguments) {
+  options::options_description described = modal_options();
+  described.add(record_options());
+  described.add(output_options());
+  std::vector<std::string> places{"record"};
+  for (int k = 2; k <= most_records; ++k) places.push_back(fmt::format("record_{}", k));
+  options::variables_map values;
+  if (!parse(command, arguments, described, places, values)) return 0;
+  const ModalStudySettings settings = settings_of(values);
+  const std::vector<RecordRequest> requests = requests_of(values, places);
+  deliver(values, [&] {
+    std::vector<Record> records;
+    for (const RecordRequest& request : requests)
+      records.push_back(read_record(request.file, request.format));
+    check_same_channels(records, requests);
+    if (modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response)) {
+      if (values.count("amplitude"))
+        throw UsageError("modal: --amplitude follows a free decay; take --method era for it");
+      std::vector<std::string> names;
+      for (const RecordRequest& request : requests) names.push_back(request.file.filename().string());
+      try {
+        const HammerStudy study = study_hits(names, records, settings);
+        Results results = report(settings, study);
+        std::vector<std::complex<double>> rates;
+        for (const HammerMode& mode : study.modes) rates.push_back(mode.pole.rate);
+        tell_masses(names, records, std::vector(records.size(), rates), results);
+        return results;
+      } catch (const std::invalid_argument& error) {
+        throw InputError({requests[0].file.string()}, error.what());
+      }
+    }
+    std::vector<RecordModes> found;
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      try {
+        found.push_back(find_modes(requests[r].file.filename().string(), records[r],
+                                   requests[r].format.window.has_value(), settings));
+      } catch (const std::invalid_argument& error) {
+        throw InputError({requests[r].file.string()}, error.what());
+      }
+    }
+    Results results = report(settings, found);
+    std::vector<std::string> names;
+    std::vector<std::vector<std::complex<double>>> rates;
+    for (const RecordModes& one : found) {
+      names.push_back(one.name);
+      rates.emplace_back();
+      for (const ModeEstimate& mode : one.modes) rates.back().push_back(mode.pole.rate);
+    }
+    if (found[0].free_decay) tell_masses(names, records, rates, results);
+    try {
+      if (values.count("amplitude")) tell_amplitude(found, merge_modes(found), results);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(std::string("modal: ") + error.what());
+    }
+    return results;
+  });
+  return 0;
+}
+
+}  // namespace
+
+Command modal_command() {
+  return {"modal", "RECORD... [--window FROM TO] [--band FROM TO] [--method NAME] [--out DIR]",
+          "frequencies, damping ratios and shapes of all modes in vibration records",
+          "  beamid modal tip_acceleration.csv\n"
+          "  beamid modal run1.csv run2.csv --window 0.5 4 --band 2 60 --out results\n"
+          "  beamid modal export.txt --column 3 --quantity acceleration --unit g --rate 1651.6129\n"
+          "  beamid modal wind.csv --method ssi_cov --order 40 --out results\n"
+          "  beamid modal tip_acceleration.csv --amplitude --out results\n"
+          "  beamid modal hits.csv more_hits.csv --method frf_lscf --band 5 200 --out results\n",
+          run};
+}
+
+}  // namespace beamid::apps

@@ -1,0 +1,120 @@
+#include "experiments/modal_analysis/amplitude_dependence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::VectorXd, Eigen::VectorXcd;
+
+constexpr double pi = std::numbers::pi;
+
+VectorXd kaiser(Index half) {
+  constexpr double beta = 5.65;  // 60 dB
+  VectorXd kernel(2 * half + 1);
+  for (Index k = -half; k <= half; ++k) {
+    const double edge = static_cast<double>(k) / static_cast<double>(half + 1);
+    kernel[k + half] = std::cyl_bessel_i(0, beta * std::sqrt(1 - edge * edge));
+  }
+  return kernel / kernel.sum();
+}
+
+/// Slope of a line through log z, and where it belongs.
+struct Line {
+  Complex slope;
+  double time = 0, log_amplitude = 0, deviation = 0;  ///< of either part of the slope
+};
+
+Line line_through(const VectorXd& time, const VectorXcd& logarithm, double freedom_lost_per_sample) {
+  const VectorXd weight = (2 * (logarithm.real().array() - logarithm.real().maxCoeff())).exp();
+  const double sum = weight.sum();
+  Line line;
+  line.time = weight.dot(time) / sum;
+  const Complex mean = (weight.cast<Complex>().array() * logarithm.array()).sum() / sum;
+  line.log_amplitude = mean.real();
+  const VectorXd from_mean = time.array() - line.time;
+  const double moment = (weight.array() * from_mean.array().square()).sum();
+  line.slope = ((weight.array() * from_mean.array()).cast<Complex>() * logarithm.array()).sum() / moment;
+  const VectorXcd left = logarithm.array() - mean - line.slope * from_mean.array().cast<Complex>();
+  const double count = static_cast<double>(time.size());
+  const double independent = std::max(count * freedom_lost_per_sample, 2.5);  // two go into the line
+  const double variance =
+      (weight.array() * left.array().abs2()).sum() / (2 * count) * independent / (independent - 2);
+  line.deviation = std::sqrt(variance / (freedom_lost_per_sample * moment));
+  return line;
+}
+
+}  // namespace
+
+Demodulated demodulate(const VectorXd& signal, double interval, Complex rate,
+                       const std::vector<Complex>& others) {
+  const double w = rate.imag();
+  double apart = w;
+  for (const Complex& other : others)
+    if (other.imag() != w) apart = std::min(apart, std::abs(other.imag() - w));
+  constexpr double first_zero = 2.06;  // of the Kaiser window's transform, times its length
+  const auto half = static_cast<Index>(std::ceil(0.5 * first_zero * 2 * pi / (apart * interval)));
+  const Index length = 2 * half + 1;
+  if (signal.size() < 4 * length)
+    throw std::invalid_argument(
+        fmt::format("{:.3g} s of the mode at {:.4g} Hz, {:.3g} Hz from the next; expected {:.3g} s at least",
+                    static_cast<double>(signal.size()) * interval, w / (2 * pi), apart / (2 * pi),
+                    4 * static_cast<double>(length) * interval));
+  const VectorXd kernel = kaiser(half);
+  VectorXcd turning(length);
+  Complex gain = 0;
+  for (Index k = -half; k <= half; ++k) {
+    turning[k + half] = kernel[k + half] * std::exp(Complex(0, -w * interval * static_cast<double>(k)));
+    gain += kernel[k + half] * std::exp(rate.real() * interval * static_cast<double>(k));
+  }
+  const Index hop = std::max<Index>(1, half / 6), count = (signal.size() - length) / hop + 1;
+  Demodulated found{VectorXcd(count), static_cast<double>(half) * interval,
+                    static_cast<double>(hop) * interval, interval / kernel.squaredNorm()};
+  for (Index m = 0; m < count; ++m) {
+    const double time = found.start + static_cast<double>(m) * found.interval;
+    found.values[m] = (turning.array() * signal.segment(m * hop, length).array().cast<Complex>()).sum() *
+                      std::exp(Complex(0, -w * time)) / gain;
+  }
+  return found;
+}
+
+std::vector<AmplitudePoint> amplitude_dependence(const VectorXd& signal, double interval, Complex rate,
+                                                 const std::vector<Complex>& others,
+                                                 const AmplitudeSettings& settings) {
+  const Demodulated found = demodulate(signal, interval, rate, others);
+  const Index count = found.values.size();
+  VectorXd time(count);
+  VectorXcd logarithm(count);
+  double turned = 0;
+  for (Index m = 0; m < count; ++m) {
+    time[m] = found.start + static_cast<double>(m) * found.interval;
+    if (m > 0) turned += std::arg(found.values[m] * std::conj(found.values[m - 1]));
+    logarithm[m] = {std::log(std::max(std::abs(found.values[m]), 1e-300)), turned};
+  }
+  constexpr double fall = 0.35, fewest_kernels = 4.5;
+  const double wanted =
+      settings.window > 0 ? settings.window
+                          : std::max(fall / std::max(-rate.real(), 1e-9), fewest_kernels * found.correlation);
+  const Index length = std::clamp<Index>(static_cast<Index>(std::lround(wanted / found.interval)), 6, count);
+  std::vector<AmplitudePoint> points;
+  for (Index begin = 0; begin + length <= count; begin += std::max<Index>(1, length / 2)) {
+    const Line line = line_through(time.segment(begin, length), logarithm.segment(begin, length),
+                                   found.interval / found.correlation);
+    const double damping = -line.slope.real(), turn = rate.imag() + line.slope.imag();
+    const double w = std::hypot(damping, turn);
+    AmplitudePoint point{line.time,    2 * std::exp(line.log_amplitude),
+                         w / (2 * pi), line.deviation / (2 * pi),
+                         damping / w,  line.deviation / w};
+    if (!(point.damping_ratio_deviation <= settings.largest_deviation * std::abs(point.damping_ratio))) break;
+    points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace beamid::experiments

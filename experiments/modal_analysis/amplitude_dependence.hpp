@@ -1,0 +1,50 @@
+// Frequency and damping ratio of a mode as functions of its amplitude.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+namespace beamid::experiments {
+
+/// A mode around one instant of its decay. Windows overlap by half: every second point is independent.
+struct AmplitudePoint {
+  double time = 0;                                      ///< after the first sample [s]
+  double amplitude = 0;                                 ///< [unit of the signal]
+  double frequency_hz = 0, frequency_deviation_hz = 0;  ///< undamped
+  double damping_ratio = 0, damping_ratio_deviation = 0;
+};
+
+struct AmplitudeSettings {
+  double window = 0;               ///< [s]; 0: the amplitude falls by e^-0.35, three kernels at least
+  double largest_deviation = 0.2;  ///< of the damping ratio, relative; where it is larger the decay is over
+};
+
+/// z(t) = sum_k h_k y(t + k dt) e^(-i w (t + k dt)), the mode's analytic signal brought to rest
+/// [feldman2011]: h is a Kaiser window (60 dB) so long that neighbours, offset and the image at -w lie beyond
+/// its first zero. A finite h has no poles: a mode e^(s t) leaves as a constant times e^((s - i w) t), from
+/// the first window to the last, where a Hilbert transform would need its ends cut.
+struct Demodulated {
+  Eigen::VectorXcd values;  ///< (M); half the amplitude's complex envelope, gain of h taken off
+  double start = 0;         ///< of the first value, after the signal's first sample [s]
+  double interval = 0;      ///< [s]
+  double correlation = 0;   ///< length over which white noise stays correlated, 1 / integral of h^2 [s]
+};
+
+/// @param signal (N) @param rate of the mode [rad/s] @param others rates of the other modes
+/// @throws std::invalid_argument when the signal is shorter than four kernels.
+Demodulated demodulate(const Eigen::VectorXd& signal, double interval, std::complex<double> rate,
+                       const std::vector<std::complex<double>>& others);
+
+/// Lines through log z over windows, weighted by |z|^2 (the inverse variance of log z): the real part's slope
+/// is minus the damping rate, the imaginary part's the distance from w. The point belongs to the weighted
+/// mean of time and of log amplitude, to which the slope belongs where it varies.
+///
+/// Deviations are those of the slopes, s^2 correlation / integral of |z|^2 (t - mean)^2, with s^2 from the
+/// window's own residuals. The points end where the damping ratio's deviation exceeds `largest_deviation`.
+std::vector<AmplitudePoint> amplitude_dependence(const Eigen::VectorXd& signal, double interval,
+                                                 std::complex<double> rate,
+                                                 const std::vector<std::complex<double>>& others,
+                                                 const AmplitudeSettings& settings = {});
+
+}  // namespace beamid::experiments

@@ -1,0 +1,33 @@
+// All modes of a free decay in all its channels, by nonlinear least squares.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+namespace beamid::experiments {
+
+/// y_i(t) = offset_i + sum_m Re(shape_im e^(rate_m t)), t = 0 at the first sample.
+struct JointDecayFit {
+  std::vector<std::complex<double>> rates;      ///< K [rad/s]
+  Eigen::MatrixXcd shapes;                      ///< (p x K) [unit of the outputs]
+  Eigen::VectorXd offsets;                      ///< (p)
+  Eigen::MatrixXd reconstruction;               ///< (p x N)
+  Eigen::VectorXd residual_standard_deviation;  ///< (p)
+  /// (2K x 2K) of damped angular frequency and damping rate of each mode [rad/s], for noise as dense as the
+  /// residual is near each mode's frequency.
+  Eigen::MatrixXd covariance;
+};
+
+/// Damped sines with the same rates in p channels, each with its own noise level: maximum likelihood by
+/// Gauss-Newton steps (damped where they do not descend) on the rates alone; amplitudes and offsets are
+/// eliminated by variable projection [golub1973], in Kaufman's form [kaufman1975]. For p = 1 it is
+/// fit_damped_sines.
+/// @param outputs (p x N), one column per instant
+/// @param start K rates, each right to about one cycle over the record
+/// @throws std::invalid_argument with fewer than 2 (4K+1) samples, or a rate that does not oscillate.
+/// @throws std::runtime_error when it does not converge.
+JointDecayFit fit_decays_jointly(const Eigen::MatrixXd& outputs, double interval,
+                                 const std::vector<std::complex<double>>& start);
+
+}  // namespace beamid::experiments

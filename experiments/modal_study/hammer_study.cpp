@@ -1,0 +1,130 @@
+#include "experiments/modal_study/hammer_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "experiments/modal_study/signal_band.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXcd, Eigen::VectorXd;
+
+/// How far the hammer and the response reach [Hz].
+std::pair<double, double> reach(const HammerResponses& responses, const Record& record) {
+  const VectorXd& f = responses.frequency_hz;
+  constexpr double least = 0.1;
+  const double peak = responses.force_spectrum.maxCoeff();
+  Index top = 0;
+  while (top + 1 < f.size() && responses.force_spectrum[top] > least * peak) ++top;
+  const double signal = signal_band(record.samples, record.interval()).second;
+  return {2 / responses.duration, std::min(f[top], signal)};
+}
+
+int power_of(const std::vector<Channel>& channels) {
+  const Quantity quantity = channels.front().quantity;
+  for (const Channel& channel : channels)
+    if (channel.quantity != quantity || quantity == Quantity::strain)
+      throw std::invalid_argument(
+          "frequency responses are fitted in one quantity: displacement, velocity or acceleration");
+  return quantity == Quantity::acceleration ? 2 : quantity == Quantity::velocity ? 1 : 0;
+}
+
+void add_modes(HammerStudy& study) {
+  const auto count = static_cast<Index>(study.fit.rates.size());
+  const Index outputs = study.fit.residues.rows();
+  const bool known = study.fit.covariance.size() > 0;
+  for (Index m = 0; m < count; ++m) {
+    HammerMode& mode = study.modes[m];
+    mode.pole.rate = study.fit.rates[m];
+    mode.pole.shape = study.fit.residues.col(m) / study.fit.residues.col(m).cwiseAbs().maxCoeff();
+    if (known) {
+      const ModalDeviations deviations =
+          modal_deviations(mode.pole.rate, study.fit.covariance.block<2, 2>(2 * m, 2 * m));
+      mode.pole.frequency_deviation_hz = deviations.frequency_hz;
+      mode.pole.damping_ratio_deviation = deviations.damping_ratio;
+    }
+    const double turn = mode.pole.rate.imag();
+    for (Index o = 0; o < outputs; ++o) {
+      const std::complex<double> residue = study.fit.residues(o, m);
+      const double size = std::abs(residue), mass = 1 / (2 * turn * size);
+      mode.mass.push_back(mass);
+      mode.phase.push_back(std::arg(std::complex<double>(0, 2 * turn) * residue));
+      const Index at = 2 * count + o * (2 * count + 2) + 2 * m;
+      const Eigen::Vector2d slope(residue.real() / size, residue.imag() / size);
+      mode.deviation.push_back(
+          known ? mass / size * std::sqrt(slope.dot(study.fit.covariance.block<2, 2>(at, at) * slope))
+                : Pole::unknown);
+    }
+  }
+}
+
+}  // namespace
+
+HammerStudy study_hits(const std::vector<std::string>& names, const std::vector<Record>& records,
+                       const ModalStudySettings& settings) {
+  const auto& registry = modal_method_registry();
+  const auto options = registry.completed(settings.method.name, settings.method.options);
+  const auto method = registry.make(settings.method.name, settings.method.options);
+  HammerStudy study;
+  study.names = names;
+  study.remarks = records.front().remarks;
+  study.estimator = options.text("estimator");
+  study.responses = hammer_responses(records, options.number("window_end"));
+  Record motion = records.front();
+  motion.samples.resize(records.front().samples.rows() - 1, Eigen::NoChange);
+  for (Index i = 0, row = 0; i < records.front().samples.rows(); ++i)
+    if (records.front().channels[i].quantity != Quantity::force) {
+      motion.samples.row(row++) = records.front().samples.row(i);
+      study.channels.push_back(records.front().channels[i]);
+    }
+  study.power = power_of(study.channels);
+  study.band_hz = settings.band_hz ? *settings.band_hz : reach(study.responses, motion);
+  check_band(study.band_hz, motion.interval(), motion.size());
+  study.band_hz.first = std::max(study.band_hz.first, 2 / study.responses.duration);
+  const VectorXd& f = study.responses.frequency_hz;
+  study.first = std::lower_bound(f.begin(), f.end(), study.band_hz.first) - f.begin();
+  study.lines = std::upper_bound(f.begin(), f.end(), study.band_hz.second) - f.begin() - study.first;
+  const VectorXd lines = f.segment(study.first, study.lines);
+  const MatrixXcd measured = (study.estimator == "h2" ? study.responses.h2 : study.responses.h1)
+                                 .middleCols(study.first, study.lines);
+  const double shift = study.responses.window_rate;
+  const int order = std::min<int>(settings.largest_order, static_cast<int>(study.lines / 3) * 2 - 2);
+  if (order < 4)
+    throw std::invalid_argument(fmt::format("{} lines of {:.3g} Hz in the band; expected 9 at least",
+                                            study.lines, 1 / study.responses.duration));
+  study.orders = method->search_responses(lines, measured, shift, order);
+  StabilisationSettings stabilisation = settings.stabilisation;
+  stabilisation.band_hz = study.band_hz;
+  stabilisation.resolution_hz = 1 / study.responses.duration;
+  study.stabilisation = stabilise(study.orders, stabilisation);
+  std::vector<std::complex<double>> rates;
+  for (const PoleCluster& cluster : study.stabilisation.modes) {
+    rates.push_back(cluster.pole.rate);
+    study.modes.push_back({cluster.pole, cluster.orders, {}, {}, {}});
+  }
+  if (rates.empty()) return study;
+  const double correlated = std::max(1.0, 0.5 * shift * study.responses.duration);
+  study.fit = fit_residues(lines, measured, shift, study.power, rates);
+  if (settings.polish.value_or(true)) {
+    try {
+      ResidueFit refined = refine_poles(lines, measured, shift, study.power, rates, correlated);
+      for (std::size_t m = 0; m < rates.size(); ++m)
+        if (!(refined.rates[m].real() < 0 && std::abs(refined.rates[m].imag() / rates[m].imag() - 1) < 0.05))
+          throw std::runtime_error(
+              fmt::format("the pole at {:.4g} Hz runs away", study.modes[m].pole.frequency_hz()));
+      study.fit = std::move(refined);
+    } catch (const std::runtime_error& error) {
+      study.warnings.push_back(std::string("Poles are as the stabilisation diagram gives them, without "
+                                           "deviations: ") +
+                               error.what() + ".");
+    }
+  }
+  add_modes(study);
+  return study;
+}
+
+}  // namespace beamid::experiments
