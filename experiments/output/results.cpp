@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "experiments/output/report_page.hpp"
 #include "experiments/output/text.hpp"
 
 namespace beamid::experiments {
@@ -35,7 +36,7 @@ std::string text_of(const Json& json) {
 }
 
 std::vector<std::string> files_of(const Results& results) {
-  std::vector<std::string> files{"results.json", "timing.json"};
+  std::vector<std::string> files{"report.html", "results.json", "timing.json"};
   for (const auto& part : results.report)
     if (const auto* table = std::get_if<Table>(&part)) files.push_back(table->name + ".csv");
   for (const Figure& figure : results.figures)
@@ -77,6 +78,7 @@ void write(const Results& results, ResultDirectory& directory) {
     if (const auto* table = std::get_if<Table>(&part)) directory.write(table->name + ".csv", to_csv(*table));
   for (const Figure& figure : results.figures) write(figure, directory.path());
   for (const Attachment& attachment : results.attachments) attachment.write(directory.path());
+  directory.write("report.html", report_page({report_section(results, directory.path())}));
   Json timing;
   timing["schema_version"] = schema_version;
   for (const auto& [what, seconds] : results.timing) timing[what + "_s"] = seconds;

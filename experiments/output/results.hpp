@@ -35,8 +35,9 @@ struct Attachment {
 };
 
 struct Results {
-  std::string command;                                                      ///< "paper", "identify"
-  std::optional<std::uint64_t> seed;                                        ///< null where nothing is random
+  std::string command;                ///< "paper", "identify"
+  std::string command_line;           ///< what repeats it, "beamid identify ..."; empty: not known
+  std::optional<std::uint64_t> seed;  ///< null where nothing is random
   nlohmann::ordered_json configuration = nlohmann::ordered_json::object();  ///< all of it, defaults included
   nlohmann::ordered_json values = nlohmann::ordered_json::object();  ///< SI units as suffixes of the keys
   std::vector<std::variant<Heading, Paragraph, Table>> report;       ///< in the terminal's order
@@ -58,8 +59,8 @@ struct Results {
 /// @throws std::invalid_argument when a value's key is one of those named here.
 nlohmann::ordered_json to_json(const Results& results);
 
-/// Writes results.json, each table as NAME.csv, figures, attachments and timing.json, the only file that
-/// depends on the clock.
+/// Writes results.json, each table as NAME.csv, figures, attachments, report.html (report_page.hpp) and
+/// timing.json, the only file that depends on the clock.
 /// @throws std::invalid_argument when two files have the same name.
 /// @throws std::runtime_error when a file cannot be written or a figure not drawn.
 void write(const Results& results, ResultDirectory& directory);

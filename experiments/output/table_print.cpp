@@ -5,7 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "experiments/output/table.hpp"
+#include "experiments/output/cell_text.hpp"
 #include "experiments/output/text.hpp"
 
 namespace beamid::experiments {
@@ -43,23 +43,11 @@ struct Strip {
   }
 };
 
-std::string text_of(const Column& column, const Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
-  const double value = std::get<double>(cell);
-  if (std::isnan(value)) return "-";
-  try {
-    return fmt::format(fmt::runtime(column.format), value);
-  } catch (const fmt::format_error& error) {
-    throw std::invalid_argument("column '" + column.key + "': format '" + column.format +
-                                "': " + error.what());
-  }
-}
-
 Strip strip_of(const Column& column) {
   Strip strip{column.heading, false, {column.heading}, {}, experiments::width_of(column.heading)};
   for (const Cell& cell : column.cells) {
     strip.right |= std::holds_alternative<double>(cell);
-    strip.cells.push_back({text_of(column, cell)});
+    strip.cells.push_back({cell_text(column, cell)});
     strip.width = std::max(strip.width, width_of(strip.cells.back()));
   }
   return strip;

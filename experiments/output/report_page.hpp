@@ -1,0 +1,28 @@
+// Results as one page that needs no network and no other file: read in any browser, printed to PDF.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/output/results.hpp"
+
+namespace beamid::experiments {
+
+/// What one command found, as a part of a page: the command that repeats it, what it printed, its figures.
+struct ReportSection {
+  std::string title;
+  std::string html;
+};
+
+/// @param folder where the figures have been written
+/// @throws std::runtime_error when a figure's SVG cannot be read.
+ReportSection report_section(const Results& results, const std::filesystem::path& folder);
+
+/// The page; several sections get a list of contents.
+std::string report_page(const std::vector<ReportSection>& sections);
+
+/// The sections of a page that report_page() made; empty when it did not.
+std::vector<ReportSection> sections_of(const std::string& page);
+
+}  // namespace beamid::experiments
