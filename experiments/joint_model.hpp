@@ -63,6 +63,7 @@ struct JointModel {
     bool drift = false;
   };
   std::vector<Offset> offsets;
+  std::vector<Eigen::Index> slips;  ///< places of displacements that lag behind z and may start anywhere [m]
 
   /// Modes of the model at the guess, in its coordinates z (r x k), each scaled so that the largest
   /// displacement among the outputs is 1: where the initial motion may point.

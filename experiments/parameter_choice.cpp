@@ -35,7 +35,13 @@ const std::vector<ParameterQuantity>& parameter_quantities() {
       {"frequency", "Hz", "hz"},
       {"stiffness", "N/m", "n_per_m"},
       {"damping", "N s/m", "n_s_per_m"},
-      {"mass", "kg", "kg"}};
+      {"mass", "kg", "kg"},
+      {"cubic_stiffness", "N/m3", "n_per_m3"},
+      {"coulomb_friction", "N", "n"},
+      {"quadratic_damping", "N s2/m2", "n_s2_per_m2"},
+      {"post_yield_ratio", "", ""},
+      {"hysteresis_beta", "1/m", "per_m"},
+      {"hysteresis_gamma", "1/m", "per_m"}};
   return quantities;
 }
 

@@ -34,11 +34,15 @@ StartScale start_scale(const JointModel& model, const std::vector<Observation>& 
     state[model.unknown_places[j]] = model.unknowns[j].to_state(model.unknowns[j].guess);
   const VectorXd no_input = VectorXd::Zero(model.motion->input_size());
   VectorXd moving;
-  state.head(r) = model.mode_shapes.col(0);
+  // A motion so small that any model is linear; a power of two costs no digit.
+  constexpr double little = 0x1p-20;
+  state.head(r) = little * model.mode_shapes.col(0);
   model.motion->output(state, no_input, displaced);
   state.head(r).setZero();
-  state.segment(r, r) = omega * model.mode_shapes.col(0);
+  state.segment(r, r) = little * omega * model.mode_shapes.col(0);
   model.motion->output(state, no_input, moving);
+  displaced /= little;
+  moving /= little;
   for (Index i = 0; i < samples.rows(); ++i) {
     const double unit = observations[i].quantity == Quantity::velocity ? moving[i] : displaced[i];
     // A sensor near a node of the mode says nothing about its size.
@@ -61,8 +65,8 @@ StartDirections start_directions(const JointModel& model, const std::vector<Obse
                                  const StartScale& scale) {
   const Index n = state_size(model), r = model.motion_size(), k = model.mode_shapes.cols();
   const auto offsets = static_cast<Index>(model.offsets.size()),
-             q = static_cast<Index>(model.unknowns.size());
-  StartDirections directions{MatrixXd::Zero(n, 2 * k + offsets), MatrixXd::Zero(n, q)};
+             slips = static_cast<Index>(model.slips.size()), q = static_cast<Index>(model.unknowns.size());
+  StartDirections directions{MatrixXd::Zero(n, 2 * k + offsets + slips), MatrixXd::Zero(n, q)};
   const double first = model.mode_frequencies[0];
   for (Index i = 0; i < k; ++i) {
     const double omega = std::max(model.mode_frequencies[i], first);
@@ -75,6 +79,8 @@ StartDirections start_directions(const JointModel& model, const std::vector<Obse
         offset_share * scale.displacement * reading(observations[offset.channel].quantity, first);
     directions.motion(offset.place, 2 * k + i) = offset.drift ? bias / scale.duration : bias;
   }
+  for (Index i = 0; i < slips; ++i)
+    directions.motion(model.slips[i], 2 * k + offsets + i) = scale.displacement;
   for (Index j = 0; j < q; ++j) {
     const Unknown& unknown = model.unknowns[j];
     directions.unknowns(model.unknown_places[j], j) =

@@ -18,12 +18,13 @@ StartScale start_scale(const JointModel& model, const std::vector<Observation>& 
                        const Eigen::MatrixXd& samples, double duration);
 
 /// The directions in which the initial state is uncertain, a column each: displacement and velocity of every
-/// mode of the model, then the sensors' offsets, then the unknowns.
+/// mode of the model, then the sensors' offsets, slips by as much
+/// as the first mode, then the unknowns.
 ///
 /// Mode i moves by up to `displacement` omega_1 / omega_i, which leaves all modes the same velocity: a blow
 /// excites them so, a release the higher ones less.
 struct StartDirections {
-  Eigen::MatrixXd motion;    ///< (n x (2k + offsets))
+  Eigen::MatrixXd motion;    ///< (n x (2k + offsets + slips))
   Eigen::MatrixXd unknowns;  ///< (n x q)
 
   Eigen::MatrixXd all() const;  ///< side by side

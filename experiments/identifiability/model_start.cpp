@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/finest_discretisation.hpp"
+#include "experiments/nonlinear_reproduction.hpp"
 #include "experiments/reproduction.hpp"
 #include "filters/discrete_model.hpp"
 
@@ -58,9 +60,12 @@ VectorXd model_start(const ObservedMotion& motion, Experiment experiment, const 
   const MatrixXd outputs = record.samples.middleCols(begin, samples);
   const auto discrete = filters::discretise(motion.model.motion, motion.interval, motion.discretisation,
                                             {{}, weights(sensors, outputs)});
-  VectorXd state = reproduce(*discrete, motion.initial_state, motion.directions,
-                             {record.time.segment(begin, samples), outputs, {}})
-                       .initial_state;
+  const filters::Measurements heard{record.time.segment(begin, samples), outputs, {}};
+  VectorXd state =
+      (is_nonlinear(motion.model)
+           ? reproduce_nonlinear(motion.model, *discrete, motion.initial_state, motion.directions, heard)
+           : reproduce(*discrete, motion.initial_state, motion.directions, heard))
+          .initial_state;
   for (const JointModel::Offset& offset : motion.model.offsets) state[offset.place] = 0.0;
   return state;
 }

@@ -4,7 +4,9 @@
 //
 // with the beam's properties p and its damping unknown. Phi is that of the guess and stays. What the filter
 // sees of a reduced model are its modes at the guess, z, each scaled to 1 at the output where it is largest:
-// the same space, in coordinates in [m] that are independent at the guess.
+// the same space, in coordinates in [m] that are independent at the guess. A mesh that nobody has reduced is
+// seen in its own coordinates, or, when it decays freely and its shapes depend on what is asked, in its
+// lowest modes as they follow the unknowns (following_motion.hpp).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,6 +15,7 @@
 #include "experiments/motion/banded/continuum_motion.hpp"
 #include "experiments/motion/beam_damping.hpp"
 #include "experiments/motion/beam_equations.hpp"
+#include "experiments/motion/following_motion.hpp"
 #include "experiments/motion/sensor_options.hpp"
 
 namespace beamid::experiments {
@@ -60,6 +63,39 @@ VectorXd elastic(const fem::Modes& modes) {
   return modes.angular_frequency.tail(modes.size() - modes.rigid);
 }
 
+// The stiffness of all of it moves frequencies only.
+bool shapes_depend_on(const std::vector<Unknown>& properties) {
+  return properties.size() > 1 ||
+         (properties.size() == 1 && (properties[0].quantity != "bending_stiffness" || properties[0].region));
+}
+
+// Whether the modes of the mesh as such tell its motion: nothing couples them, and no moving base, whose
+// force depends on the masses asked about, drives them.
+bool moves_in_modes(const fem::ParametricSystem& equations, const fem::Modes& modes,
+                    const MotionDescription& description) {
+  return description.base < 0 && modes.rigid == 0 && equations.system.damping.nonZeros() == 0;
+}
+
+// Forces read as outputs, below those observed: phi^T E of a mode.
+fem::ParametricSystem with_forces_as_outputs(fem::ParametricSystem equations,
+                                             const std::vector<Index>& forces) {
+  fem::StructuralSystem& system = equations.system;
+  const MatrixXd observed = system.outputs, all = system.inputs;
+  MatrixXd rows(observed.rows() + static_cast<Index>(forces.size()), system.size());
+  rows << observed, all(Eigen::all, forces).transpose();
+  system.outputs = rows.sparseView();
+  return equations;
+}
+
+FollowingMotion::Equations equations_at(const ModelSetting& setting, const std::vector<Unknown>& properties,
+                                        const std::vector<Index>& forces) {
+  return [setting, properties, forces](const VectorXd& values) {
+    std::vector<Unknown> there = properties;
+    for (std::size_t j = 0; j < there.size(); ++j) there[j].guess = values[static_cast<Index>(j)];
+    return with_forces_as_outputs(beam_equations(setting, there), forces);
+  };
+}
+
 std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
   MotionDescription description = describe_sensors("beam", setting, options);
   const std::vector<ParameterChoice> choices = choices_of(setting);
@@ -103,6 +139,15 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
     model->mode_shapes.setIdentity(modes.size(), modes.size());
     places = layout(description, modes.size());
     model->motion = std::make_shared<ReducedMotion>(std::move(small), std::move(description), rows, "mode");
+  } else if (shapes_depend_on(properties) && moves_in_modes(equations, modes, description)) {
+    describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
+    model->mode_shapes.setIdentity(modes.size(), modes.size());
+    places = layout(description, modes.size());
+    const std::vector<Index> forces = description.forces;
+    const MatrixXd reading = with_forces_as_outputs(equations, forces).system.outputs * modes.shape;
+    model->motion =
+        std::make_shared<FollowingMotion>(equations_at(setting, properties, forces), std::move(description),
+                                          modes.angular_frequency, reading, scale);
   } else {
     describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
     model->mode_shapes = shapes;
@@ -118,8 +163,7 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
 std::vector<filters::OptionSpec> options() {
   std::vector<filters::OptionSpec> specs = sensor_options();
   specs.push_back(
-      {"modes", 5.0, "",
-       "of a mesh that is not reduced: how many modes the start is uncertain in, and are damped"});
+      {"modes", 5.0, "", "of a mesh that is not reduced: how many modes its start is in, and are damped"});
   return specs;
 }
 

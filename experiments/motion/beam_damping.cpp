@@ -54,6 +54,7 @@ void describe_damping(const fem::DampingLaw& law, const VectorXd& frequencies, s
   }
   const VectorXd ratios = fem::damping_ratios(law, frequencies);
   for (std::size_t i = 0; i < modes.size(); ++i) {
+    modes[i].number = static_cast<Index>(i);
     modes[i].ratio = ratios[static_cast<Index>(i)];
     for (std::size_t j = 0; j < description.unknowns.size(); ++j) {
       if (description.drives[j].kind != Drive::Kind::damping_ratio) continue;

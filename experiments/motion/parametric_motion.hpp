@@ -39,6 +39,7 @@ struct DampedMode {
   Eigen::VectorXd stiffness_slopes;  ///< phi^T K_j phi (a)
   double ratio = 0.0;                ///< xi as described, where no unknown drives it
   Eigen::Index unknown = -1;         ///< that drives xi; -1: none
+  Eigen::Index number = 0;           ///< among the modes that are no rigid motion, from 0
 };
 
 /// A damped mode at some p: c g g^T and its derivatives.

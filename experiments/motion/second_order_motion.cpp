@@ -72,22 +72,23 @@ void SecondOrderMotion::read(const VectorXd& state, const VectorXd& input, const
                              VectorXd& output) const {
   const Index r = layout_.coordinates;
   const auto z = state.head(r), rates = state.segment(r, r);
+  const MatrixXd& rows = form.rows.size() > 0 ? form.rows : rows_;
   VectorXd accelerations;
-  output.resize(rows_.rows());
-  for (Index i = 0; i < rows_.rows(); ++i) {
+  output.resize(rows.rows());
+  for (Index i = 0; i < rows.rows(); ++i) {
     switch (reads(description_.observations[static_cast<std::size_t>(i)].quantity)) {
       case Reads::coordinates:
-        output[i] = rows_.row(i).dot(z);
+        output[i] = rows.row(i).dot(z);
         break;
       case Reads::rates:
-        output[i] = rows_.row(i).dot(rates);
+        output[i] = rows.row(i).dot(rates);
         break;
       case Reads::accelerations:
         if (accelerations.size() == 0) {
           accelerations = -(form.stiffness * z + form.damping * rates);
           if (input.size() > 0) accelerations += form.inputs * input;
         }
-        output[i] = rows_.row(i).dot(accelerations);
+        output[i] = rows.row(i).dot(accelerations);
         if (description_.base >= 0 && input.size() > 0) output[i] += input[description_.base];
         if (const Index bias = layout_.biases[static_cast<std::size_t>(i)]; bias >= 0)
           output[i] += state[bias];
@@ -101,15 +102,16 @@ void SecondOrderMotion::read_jacobian(const VectorXd& state, const VectorXd& inp
                                       MatrixXd& jacobian) const {
   const Index r = layout_.coordinates;
   const auto z = state.head(r), rates = state.segment(r, r);
+  const MatrixXd& rows = form.rows.size() > 0 ? form.rows : rows_;
   MatrixXd by_unknowns;
-  jacobian.setZero(rows_.rows(), layout_.size);
-  for (Index i = 0; i < rows_.rows(); ++i) {
+  jacobian.setZero(rows.rows(), layout_.size);
+  for (Index i = 0; i < rows.rows(); ++i) {
     switch (reads(description_.observations[static_cast<std::size_t>(i)].quantity)) {
       case Reads::coordinates:
-        jacobian.row(i).head(r) = rows_.row(i);
+        jacobian.row(i).head(r) = rows.row(i);
         break;
       case Reads::rates:
-        jacobian.row(i).segment(r, r) = rows_.row(i);
+        jacobian.row(i).segment(r, r) = rows.row(i);
         break;
       case Reads::accelerations:
         if (by_unknowns.size() == 0 && !slopes.empty()) {
@@ -121,16 +123,34 @@ void SecondOrderMotion::read_jacobian(const VectorXd& state, const VectorXd& inp
             if (input.size() > 0) column.noalias() += slopes[j].inputs * input;
           }
         }
-        jacobian.row(i).head(r).noalias() = -(rows_.row(i) * form.stiffness);
-        jacobian.row(i).segment(r, r).noalias() = -(rows_.row(i) * form.damping);
+        jacobian.row(i).head(r).noalias() = -(rows.row(i) * form.stiffness);
+        jacobian.row(i).segment(r, r).noalias() = -(rows.row(i) * form.damping);
         if (!slopes.empty())
-          jacobian.row(i).segment(layout_.unknowns, by_unknowns.cols()).noalias() =
-              rows_.row(i) * by_unknowns;
+          jacobian.row(i).segment(layout_.unknowns, by_unknowns.cols()).noalias() = rows.row(i) * by_unknowns;
         if (const Index bias = layout_.biases[static_cast<std::size_t>(i)]; bias >= 0)
           jacobian(i, bias) = 1.0;
         break;
     }
   }
+  if (form.rows.size() == 0 || slopes.empty()) return;
+  VectorXd accelerations = -(form.stiffness * z + form.damping * rates);
+  if (input.size() > 0) accelerations += form.inputs * input;
+  for (Index i = 0; i < rows.rows(); ++i)
+    for (std::size_t j = 0; j < slopes.size(); ++j) {
+      const auto turned = slopes[j].rows.row(i);
+      double& entry = jacobian(i, layout_.unknowns + static_cast<Index>(j));
+      switch (reads(description_.observations[static_cast<std::size_t>(i)].quantity)) {
+        case Reads::coordinates:
+          entry += turned.dot(z);
+          break;
+        case Reads::rates:
+          entry += turned.dot(rates);
+          break;
+        case Reads::accelerations:
+          entry += turned.dot(accelerations);
+          break;
+      }
+    }
 }
 
 void SecondOrderMotion::output(const VectorXd& state, const VectorXd& input, VectorXd& output) const {

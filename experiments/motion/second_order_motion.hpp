@@ -20,11 +20,12 @@ struct SecondOrderForm {
   Eigen::MatrixXd stiffness;  ///< W = M^-1 K (r x r)
   Eigen::MatrixXd damping;    ///< D = M^-1 C (r x r)
   Eigen::MatrixXd inputs;     ///< B = M^-1 E (r x m)
+  Eigen::MatrixXd rows;       ///< h (p x r) where what sensors read depends on the unknowns too; else empty
 };
 
 class SecondOrderMotion : public filters::LinearMotion {
  public:
-  /// @param rows what the observations read of the coordinates (p x r)
+  /// @param rows what the observations read of the coordinates (p x r), at the guess
   /// @param name of the coordinates in labels
   /// @throws std::invalid_argument when sizes do not fit, or an observation is a force.
   SecondOrderMotion(MotionDescription description, Eigen::MatrixXd rows, std::string name);

@@ -9,9 +9,11 @@
 #include <numbers>
 
 #include "experiments/diagnostics_report.hpp"
+#include "experiments/finest_discretisation.hpp"
 #include "experiments/identification.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/nonlinear_reproduction.hpp"
 #include "experiments/record_comparison/true_value.hpp"
 #include "experiments/reproduction.hpp"
 #include "experiments/start_belief.hpp"
@@ -63,7 +65,8 @@ VectorXd assumed(const KnownNoise& known, const VectorXd& left) {
 }
 
 /// Deviations of the unknowns [their units] that no unbiased estimate falls below, the start unknown;
-/// infinite where the record does not determine them. What is known of nuisance parameters is information.
+/// infinite where the record does not determine them. What is known of nuisance parameters, and of how far a
+/// joint has slipped at the start, is information.
 VectorXd bounds(filters::DiscreteModel& discrete, const JointModel& model, const Reproduction& motion,
                 const StartDirections& directions, const filters::Measurements& record) {
   filters::InformationFactor information = filters::information_factor(
@@ -72,6 +75,8 @@ VectorXd bounds(filters::DiscreteModel& discrete, const JointModel& model, const
   for (std::size_t j = 0; j < model.unknowns.size(); ++j)
     if (model.unknowns[j].nuisance)
       information.add(MatrixXd::Identity(all, all).row(first + static_cast<Index>(j)));
+  const auto slips = static_cast<Index>(model.slips.size());
+  for (Index i = first - slips; i < first; ++i) information.add(MatrixXd::Identity(all, all).row(i));
   VectorXd bound =
       filters::determined_combinations(information, VectorXd::Ones(all)).bounds.tail(all - first);
   for (Index j = 0; j < bound.size(); ++j) {
@@ -165,7 +170,9 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
   Reproduction motion;
   try {
     const auto hear = [&](const VectorXd& state) {
-      motion = reproduce(*finest(model, dt, unit_noise(record.outputs)), state, directions, record);
+      const auto discrete = finest(model, dt, unit_noise(record.outputs));
+      motion = is_nonlinear(model) ? reproduce_nonlinear(model, *discrete, state, directions, record)
+                                   : reproduce(*discrete, state, directions, record);
     };
     Clock::time_point start = Clock::now();
     hear(started.guess.mean);

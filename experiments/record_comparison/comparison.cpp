@@ -12,6 +12,7 @@
 #include "experiments/input/read_reduction.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/motion/following_motion.hpp"
 #include "experiments/record_comparison/compared_run.hpp"
 #include "experiments/record_comparison/started_model.hpp"
 #include "fem/assembly.hpp"
@@ -35,13 +36,23 @@ std::optional<double> modal_frequency(const Record& record, double expected_hz) 
   }
 }
 
-// The same filters with their covariance as a factor, and the exact motion's nearest of the banded schemes.
-std::pair<Choice, std::string> forms_for_the_mesh(Choice filter, const std::string& discretisation) {
-  if (filter.name == "ekf" || filter.name == "ukf") {
-    filter.name = "low_rank_" + filter.name;
-    filter.options = filters::filter_registry().completed(filter.name, filter.options);
-  }
-  return {filter, discretisation == "exponential" ? "pade" : discretisation};
+// The same filter with its covariance as a factor: a mesh has too many coordinates for another form, its
+// modes are of sizes too different.
+Choice by_factor(Choice filter) {
+  if (filter.name != "ekf" && filter.name != "ukf") return filter;
+  filter.name = "low_rank_" + filter.name;
+  filter.options = filters::filter_registry().completed(filter.name, filter.options);
+  return filter;
+}
+
+// The exact motion's nearest of the banded schemes.
+std::string form_for_the_mesh(const std::string& discretisation) {
+  return discretisation == "exponential" ? "pade" : discretisation;
+}
+
+// Schemes of linear motion alone give way to a fourth-order one.
+std::string form_for_nonlinear(const std::string& discretisation) {
+  return discretisation == "exponential" ? "runge_kutta_4" : discretisation;
 }
 
 ComparedRun refused(const std::string& reason) {
@@ -113,9 +124,13 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
     }
     for (const Choice& filter : experiment.filters)
       for (const std::string& discretisation : experiment.discretisations) {
-        const auto [used, scheme] = started && is_whole_mesh(started->model)
-                                        ? forms_for_the_mesh(filter, discretisation)
-                                        : std::pair(filter, discretisation);
+        const JointModel* model = started ? &started->model : nullptr;
+        const bool mesh = model && is_whole_mesh(*model);
+        const bool follows = model && dynamic_cast<const FollowingMotion*>(model->motion.get());
+        const Choice used = mesh || follows ? by_factor(filter) : filter;
+        const std::string scheme = mesh                            ? form_for_the_mesh(discretisation)
+                                   : model && is_nonlinear(*model) ? form_for_nonlinear(discretisation)
+                                                                   : discretisation;
         progress(fmt::format("{}, {}, {}", to_text(reduction), used.name, scheme));
         comparison.runs.push_back(
             started ? run_once(context, *setting, *started, {used, scheme, experiment.passes})

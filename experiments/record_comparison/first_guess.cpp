@@ -75,7 +75,7 @@ StartDirections with_guess(StartDirections directions, const JointModel& model, 
 
 std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double interval,
                                                const MatrixXd& output_noise) {
-  return filters::discretise(model.motion, interval, finest_discretisation(model), {{}, output_noise});
+  return filters::discretise(model.motion, interval, finest_discretisation(model, interval), {{}, output_noise});
 }
 
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,

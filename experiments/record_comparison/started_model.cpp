@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "experiments/finest_discretisation.hpp"
+#include "experiments/record_comparison/nonlinear_guess.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
@@ -49,6 +50,10 @@ StartedModel started_model(const Choice& model, const ModelSetting& setting,
   JointModel first = made(setting);
   const Index modes = std::max(most_coordinates, first.mode_shapes.cols() + 4);
   const bool mesh = is_whole_mesh(first);
+  if (is_nonlinear(first)) {
+    FirstGuess guess = nonlinear_guess(first, setting.observations, record, frequency_hz);
+    return {std::move(first), std::move(guess)};
+  }
   if ((!mesh && first.motion_size() <= most_coordinates) || modes >= setting.system.size() ||
       first.unknowns.front().quantity.empty()) {
     FirstGuess guess = first_guess(first, setting.observations, record, frequency_hz);

@@ -51,6 +51,22 @@ TEST(DamagedRegion, IsFoundFromGuessesAFifthOff) {
   EXPECT_LT(run.noise.maxCoeff(), 2.0 * 0.05);
 }
 
+// The mesh of the truth, in its own modes: nothing is left of the reduction's error.
+TEST(DamagedRegion, IsFoundOnTheMeshItself) {
+  Experiment asked = believed();
+  asked.reductions = {parse_reduction("none", "test")};
+  asked.passes = 5;
+  const Comparison found = compare(asked, simulated_record(damaged(), {}, silent), {}, silent);
+  const ComparedRun& run = found.runs[0];
+  ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
+  for (const ComparedParameter& p : run.parameters) {
+    const Estimate& e = p.estimate;
+    EXPECT_LT(std::abs(e.value - *p.truth), 4.0 * e.deviation) << e.name;
+    EXPECT_NEAR(e.deviation / *p.bound, 1.0, 0.05) << e.name;
+  }
+  EXPECT_LT(run.noise.maxCoeff(), 1.1 * 0.05);
+}
+
 TEST(ChosenChannels, AreKeptInTheirOrder) {
   const ComparedRecord all = simulated_record(damaged(), {}, silent);
   const ComparedRecord two = chosen_channels(all, {"x0.55m", "tip"});

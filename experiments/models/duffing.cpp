@@ -1,0 +1,46 @@
+// The Duffing oscillator: a stiffness that grows, or with K3 < 0 shrinks, with the square of the amplitude,
+//
+//     M x'' + C x' + K x + K3 x^3 = e f
+//
+// At the amplitude a it moves at omega^2 = (K + 3/4 K3 a^2) / M, to first order in K3.
+#include "experiments/motion/oscillator_motion.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+class Duffing final : public OscillatorLaw {
+ public:
+  // p = [K, C, K3]
+  void evaluate(double x, double v, double, const Eigen::VectorXd& p, OscillatorForce& force) const override {
+    const double cube = x * x * x;
+    force.value = p[0] * x + p[1] * v + p[2] * cube;
+    force.by_displacement = p[0] + 3.0 * p[2] * x * x;
+    force.by_velocity = p[1];
+    force.by_parameter << x, v, cube;
+  }
+};
+
+std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+  constexpr double stiffness_doubt = 0.3;
+  const ExpectedOscillator beam = expected_oscillator("duffing", setting);
+  // One per cent of K at the usual amplitude, and a hundred times as much in doubt: of either sign.
+  const double cubic = 0.01 * beam.stiffness / (beam.amplitude * beam.amplitude);
+  return make_oscillator(
+      "duffing", setting, std::make_shared<Duffing>(),
+      {{"stiffness", beam.stiffness, stiffness_doubt * beam.stiffness, true},
+       {"damping", beam.damping, beam.damping, true},
+       {"cubic_stiffness", cubic, 100.0 * cubic, false, true, options.number("cubic_stiffness_n_per_m3")}},
+      options.flag("sensor_bias"));
+}
+
+const bool registered = model_registry().add(
+    {"duffing",
+     "one degree of freedom with a cubic spring: K, C and K3 unknown, mass too where a force was measured",
+     "[kovacic2011]",
+     {{"sensor_bias", true, "", "estimate the constant offset of every accelerometer too"},
+      {"cubic_stiffness_n_per_m3", 0.0, "N/m3", "where [[parameters]] do not ask about it"}},
+     {},
+     make});
+
+}  // namespace
+}  // namespace beamid::experiments
