@@ -9,6 +9,8 @@
 #include "experiments/input/method_choice.hpp"
 #include "experiments/modal_analysis/shape_fit.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/record_identification/batch.hpp"
+#include "experiments/record_identification/noise_source.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "filters/smoother.hpp"
@@ -103,6 +105,22 @@ std::vector<filters::Gaussian> smoothed(const Experiment& experiment, const Reco
   return filters::smooth(found.identification.run, *discrete, measured, experiment.smoother).beliefs;
 }
 
+// Where the noise near the mode is denser than R, intervals are too narrow by this.
+double widening(const RecordIdentification& found) {
+  return std::max(1.0, found.modal.noise_standard_deviation / found.noise_deviation[0]);
+}
+
+void take_quiet_noise(const Eigen::VectorXd& quiet_noise, const Record& record, RecordIdentification& found) {
+  if (quiet_noise.size() != found.noise_deviation.size())
+    throw std::invalid_argument("noise.method is before_event; expected the noise of " +
+                                std::to_string(found.noise_deviation.size()) + " channels before the event");
+  const VectorXd least = smallest_noise * record.samples.cwiseAbs().rowwise().maxCoeff();
+  for (Index i = 0; i < quiet_noise.size(); ++i)
+    if (found.noise_from_record[i]) found.noise_deviation[i] = std::max(quiet_noise[i], least[i]);
+  found.settings.output_noise = found.noise_deviation.cwiseAbs2().asDiagonal();
+  found.interval_factor = widening(found);
+}
+
 }  // namespace
 
 RecordIdentification prepare_identification(const Experiment& experiment, const Record& record) {
@@ -131,7 +149,7 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
       result.noise_deviation[i] = given->second;
       result.noise_from_record[i] = false;
     }
-  result.interval_factor = std::max(1.0, result.modal.noise_standard_deviation / result.noise_deviation[0]);
+  result.interval_factor = widening(result);
 
   const double beam_stiffness =
       result.model.equivalent_mass * std::pow(fem::modes(reduced.system, 1).angular_frequency[0], 2);
@@ -145,12 +163,24 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
   return result;
 }
 
-RecordIdentification identify_record(const Experiment& experiment, const Record& record) {
+RecordIdentification identify_record(const Experiment& experiment, const Record& record,
+                                     const VectorXd& quiet_noise) {
   RecordIdentification result = prepare_identification(experiment, record);
+  result.noise_method = experiment.noise_method.name;
   const filters::Measurements measured = measurements(record);
-  result.identification = at_place(experiment.filter.place, [&] {
-    return identify(result.model, measured, result.settings, filters::Keep::all_beliefs);
-  });
+  const auto filtered = [&] {
+    return at_place(experiment.filter.place, [&] {
+      return identify(result.model, measured, result.settings, filters::Keep::all_beliefs);
+    });
+  };
+  if (result.noise_method == "before_event") take_quiet_noise(quiet_noise, record, result);
+  result.identification = filtered();
+  if (result.noise_method == "likelihood" && !result.identification.run.failure) {
+    take_likeliest_noise(experiment, record, result);
+    result.interval_factor = widening(result);
+    result.identification = filtered();
+  }
+  if (experiment.estimator != "filter") result.batch = identify_batch(result, measured);
   const filters::FilterRun& run = result.identification.run;
   result.diagnostics = diagnostics_of(run, result.settings.initial, result.model.unknown_places);
   if (run.failure) return result;

@@ -7,24 +7,34 @@
 #include "experiments/identification.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/output/results.hpp"
+#include "filters/batch_estimator.hpp"
 #include "filters/diagnostics.hpp"
 
 namespace beamid::experiments {
 
+/// What all samples at once tell.
+struct BatchIdentification {
+  filters::BatchEstimate estimate;
+  std::optional<Identification> identification;  ///< without a run; absent unless the record determines all
+};
+
 /// What a record told, before it is put into words.
 struct RecordIdentification {
   JointModel model;
-  double beam_frequency_hz = 0;         ///< first mode of the finite-element beam
-  ModalEstimate modal;                  ///< of the first channel, without any model
-  Eigen::VectorXd noise_deviation;      ///< of every channel (p)
-  std::vector<bool> noise_from_record;  ///< whether it is what the modal analysis leaves, or configured (p)
+  double beam_frequency_hz = 0;           ///< first mode of the finite-element beam
+  ModalEstimate modal;                    ///< of the first channel, without any model
+  Eigen::VectorXd noise_deviation;        ///< of every channel (p)
+  std::vector<bool> noise_from_record;    ///< whether it is what the modal analysis leaves, or configured (p)
+  std::string noise_method = "residual";  ///< of those from the record
+  Eigen::VectorXd noise_relative_deviation;  ///< standard errors of them (p); empty: not known
   double interval_factor = 1;  ///< >= 1: widens the intervals where the noise near the mode is denser than R
   IdentificationSettings settings;
   Identification identification;
   std::optional<filters::InnovationConsistency> consistency;  ///< absent when the filter failed early
   std::optional<filters::Diagnostics> diagnostics;            ///< absent below 100 samples
-  std::vector<filters::Gaussian> smoothed;  ///< of every sample, where a smoother was asked for
-  Eigen::MatrixXd reproduced;               ///< (p x N): free decay with the identified K and C
+  std::vector<filters::Gaussian> smoothed;   ///< of every sample, where a smoother was asked for
+  Eigen::MatrixXd reproduced;                ///< (p x N): free decay with the identified K and C
+  std::optional<BatchIdentification> batch;  ///< where it was asked for
 };
 
 /// All but the filtering: model, modal analysis, noise, initial belief and settings. @throws as
@@ -34,8 +44,10 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
 /// Assemble, reduce, analyse, filter. The initial belief and the noise come from the experiment where it
 /// gives them, else from the beam and the record.
 /// @throws InputError at the model's or filter's place in the experiment file; std::invalid_argument when the
-/// record shows no mode near the beam's.
-RecordIdentification identify_record(const Experiment& experiment, const Record& record);
+/// record shows no mode near the beam's, or the noise cannot be had as the experiment says.
+/// @param quiet_noise of the channels (p), by noise_before_event(); needed where the experiment wants it.
+RecordIdentification identify_record(const Experiment& experiment, const Record& record,
+                                     const Eigen::VectorXd& quiet_noise = {});
 
 /// Tables, figures, words and results.json keys.
 Results report(const Experiment& experiment, const Record& record, const std::string& record_name,

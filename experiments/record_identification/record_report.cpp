@@ -26,11 +26,25 @@ Table parameter_table(const RecordIdentification& found) {
       .column({"to", "upper_95", "{}"})
       .column({"modal analysis", "modal_analysis", "{}"})
       .column({"difference [%]", "difference_percent", "{:+.3f}"});
+  const bool batch = found.batch && found.batch->identification;
+  std::vector<Parameter> together;
+  if (batch) {
+    table.column({"batch estimate", "batch_estimate"})
+        .column({"batch 95 % from", "batch_lower_95"})
+        .column({"batch to", "batch_upper_95"});
+    together = parameters(found, *found.batch->identification);
+  }
   for (const Parameter& p : parameters(found)) {
     const int digits = decimals(p.shown * p.deviation);
     const auto shown = [&](double value) { return fmt::format("{:.{}f}", p.shown * value, digits); };
-    table.row({p.name, shown(p.estimate), shown(p.lower_95()), shown(p.upper_95()), shown(p.modal),
-               percent(p.estimate, p.modal)});
+    std::vector<Cell> cells{
+        p.name,         shown(p.estimate),           shown(p.lower_95()), shown(p.upper_95()),
+        shown(p.modal), percent(p.estimate, p.modal)};
+    if (batch) {
+      const Parameter& b = together[table.rows()];
+      for (const double value : {b.estimate, b.lower_95(), b.upper_95()}) cells.emplace_back(shown(value));
+    }
+    table.row(cells);
   }
   table.note = fmt::format(
       "Intervals take the mass as known: Meq = {:.4f} kg; a mass wrong by 1 % makes K and C wrong by 1 %. "
@@ -63,13 +77,34 @@ std::string consistency_text(const RecordIdentification& found) {
       c.window_lower_95, c.window_upper_95, c.lag_one_correlation, c.whiteness_p_value, verdict(c));
 }
 
+std::string noise_source(const RecordIdentification& found, Eigen::Index i) {
+  if (!found.noise_from_record[static_cast<std::size_t>(i)]) return "as configured";
+  if (found.noise_method == "before_event") return "as before the first event";
+  if (found.noise_method == "likelihood") {
+    const bool known = found.noise_relative_deviation.size() > 0;
+    return known && std::isfinite(found.noise_relative_deviation[i])
+               ? fmt::format("the likeliest, known to {:.2g} %", 100 * found.noise_relative_deviation[i])
+               : "the likeliest";
+  }
+  return "all that the modal analysis leaves of the record";
+}
+
+std::string batch_text(const RecordIdentification& found) {
+  const filters::BatchEstimate& estimate = found.batch->estimate;
+  std::string text =
+      "Batch: output-error maximum likelihood, all samples at once, without prior; intervals as the "
+      "filter's.";
+  if (estimate.status != filters::BatchStatus::converged)
+    text += " It did not converge: " + estimate.reason + ".";
+  return text;
+}
+
 std::string noise_text(const Record& record, const RecordIdentification& found) {
   std::string text = "Noise (standard deviation):";
   for (Eigen::Index i = 0; i < found.noise_deviation.size(); ++i)
-    text += fmt::format(
-        "{} {} {:.4g} {}, {}", i ? ";" : "", to_string(record.channels[i].quantity), found.noise_deviation[i],
-        si_unit(record.channels[i].quantity),
-        found.noise_from_record[i] ? "all that the modal analysis leaves of the record" : "as configured");
+    text +=
+        fmt::format("{} {} {:.4g} {}, {}", i ? ";" : "", to_string(record.channels[i].quantity),
+                    found.noise_deviation[i], si_unit(record.channels[i].quantity), noise_source(found, i));
   text += ".";
   if (found.interval_factor > 1.0)
     text += fmt::format(" Near the mode it is denser than that: intervals are widened by {:.2f}.",
@@ -115,6 +150,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
                     "discretisation, [prior] and [noise] in the experiment file; below is where it ended.",
                     found.modal.frequency_hz));
   results.table(parameter_table(found));
+  if (found.batch) results.paragraph(batch_text(found));
   results.paragraph(consistency_text(found));
   const std::vector<std::string> names = record.channel_names();
   if (found.diagnostics) results.paragraph(words(*found.diagnostics, names));

@@ -12,7 +12,10 @@ namespace beamid::experiments {
 using Json = nlohmann::ordered_json;
 
 std::vector<Parameter> parameters(const RecordIdentification& found) {
-  const Identification& i = found.identification;
+  return parameters(found, found.identification);
+}
+
+std::vector<Parameter> parameters(const RecordIdentification& found, const Identification& i) {
   const Oscillator modal = Oscillator::from_frequency(
       i.found.mass, 2.0 * std::numbers::pi * found.modal.frequency_hz, found.modal.damping_ratio);
   const double widen = found.interval_factor;
@@ -25,6 +28,40 @@ std::vector<Parameter> parameters(const RecordIdentification& found) {
           {"damping C [N s/m]", "damping_n_s_per_m", 1.0, i.found.damping, widen * i.damping_deviation,
            modal.damping}};
 }
+
+namespace {
+
+Json batch_values(const RecordIdentification& found) {
+  const filters::BatchEstimate& estimate = found.batch->estimate;
+  const bool converged = estimate.status == filters::BatchStatus::converged;
+  Json json{{"status", converged ? "converged" : "failed"}};
+  if (!converged) json["reason"] = estimate.reason;
+  json["passes"] = estimate.passes;
+  json["log_likelihood"] = estimate.log_likelihood;
+  if (found.batch->identification)
+    for (const Parameter& p : parameters(found, *found.batch->identification))
+      json[p.key] = {{"estimate", p.estimate},
+                     {"standard_deviation", p.deviation},
+                     {"lower_95", p.lower_95()},
+                     {"upper_95", p.upper_95()}};
+  return json;
+}
+
+Json noise_values(const RecordIdentification& found, const Record& record) {
+  Json json = Json::array();
+  for (Eigen::Index i = 0; i < found.noise_deviation.size(); ++i) {
+    const bool from_record = found.noise_from_record[static_cast<std::size_t>(i)];
+    json.push_back({{"channel", record.channels[static_cast<std::size_t>(i)].name},
+                    {"standard_deviation_si", found.noise_deviation[i]},
+                    {"method", from_record ? found.noise_method : "configured"}});
+    if (from_record && found.noise_relative_deviation.size() > 0 &&
+        std::isfinite(found.noise_relative_deviation[i]))
+      json.back()["relative_standard_error"] = found.noise_relative_deviation[i];
+  }
+  return json;
+}
+
+}  // namespace
 
 Json values(const RecordIdentification& found, const Record& record) {
   Json json{{"status", lost(found.identification, found.modal.frequency_hz) ? "diverged" : "converged"}};
@@ -39,6 +76,8 @@ Json values(const RecordIdentification& found, const Record& record) {
   json["window_s"] = {record.time[0], record.time[record.size() - 1]};
   json["samples"] = record.size();
   json["interval_factor"] = found.interval_factor;
+  json["noise"] = noise_values(found, record);
+  if (found.batch) json["batch"] = batch_values(found);
   json["log_likelihood"] = found.identification.run.log_likelihood;
   if (found.consistency)
     json["innovations"] = {{"mean_normalised_square", found.consistency->mean_normalised_square},
@@ -99,6 +138,8 @@ Json configuration(const Experiment& experiment, const Record& record, const Rec
         {"unit", labels[i].unit}};
   for (Eigen::Index i = 0; i < found.noise_deviation.size(); ++i)
     json["noise"][to_string(record.channels[i].quantity)] = found.noise_deviation[i];
+  json["noise"]["method"] = found.noise_method;
+  json["filter"]["estimator"] = experiment.estimator;
   return json;
 }
 

@@ -23,6 +23,9 @@ struct Parameter {
 /// Frequency, damping ratio, stiffness and damping; deviations widened by the interval factor.
 std::vector<Parameter> parameters(const RecordIdentification& found);
 
+/// The same of another identification of the same record, such as the batch estimate's.
+std::vector<Parameter> parameters(const RecordIdentification& found, const Identification& identification);
+
 /// The keys of results.json.
 nlohmann::ordered_json values(const RecordIdentification& found, const Record& record);
 
