@@ -9,11 +9,12 @@
 namespace beamid::experiments::paper {
 namespace {
 
-filters::Measurements simulate(const Oscillator& truth, const ValidationSettings& settings) {
-  const auto samples = static_cast<Eigen::Index>(std::lround(settings.duration / validation_interval));
+filters::Measurements simulate(const ValidationSettings& settings) {
+  const Oscillator& truth = settings.truth;
+  const auto samples = static_cast<Eigen::Index>(std::lround(settings.duration / settings.interval));
   const auto one = [](double value) { return Eigen::VectorXd::Constant(1, value); };
   filters::Measurements record;
-  record.time = Eigen::VectorXd::LinSpaced(samples, 1.0, static_cast<double>(samples)) * validation_interval;
+  record.time = Eigen::VectorXd::LinSpaced(samples, 1.0, static_cast<double>(samples)) * settings.interval;
   const fem::Motion motion = fem::free_decay(one(settings.release), one(truth.angular_frequency()),
                                              one(truth.damping_ratio()), record.time);
   record.outputs.resize(static_cast<Eigen::Index>(settings.observed.size()), samples);
@@ -45,9 +46,8 @@ ValidationSettings bias_settings() {
 
 Identification validate(const std::string& filter, const std::string& scheme,
                         const ValidationSettings& settings, filters::Keep keep) {
-  const Oscillator truth = validation_truth();
   const auto model =
-      model_registry().make("sdof", {}, at_one_point(one_coordinate(truth), settings.observed));
+      model_registry().make("sdof", {}, at_one_point(one_coordinate(settings.truth), settings.observed));
   const auto outputs = static_cast<Eigen::Index>(settings.observed.size());
   IdentificationSettings identification;
   identification.filter = filter;
@@ -58,7 +58,7 @@ Identification validate(const std::string& filter, const std::string& scheme,
   identification.output_noise = settings.noise_variance * Eigen::MatrixXd::Identity(outputs, outputs);
   identification.start = filters::Start::one_interval_before;
   identification.passes = settings.passes;
-  return identify(*model, simulate(truth, settings), identification, keep);
+  return identify(*model, simulate(settings), identification, keep);
 }
 
 }  // namespace beamid::experiments::paper

@@ -27,6 +27,8 @@ struct ValidationSettings {
   Eigen::Vector4d initial_variance{1, 1, 1e5, 1e5};  ///< P0: the paper prints 10^-5 for K and C
   double first_stiffness = 300.0, first_damping = 2.0;
   int passes = 1;
+  Oscillator truth = validation_truth();
+  double interval = validation_interval;  ///< [s]
 };
 
 /// The filter's K and C, and its history when kept. The first sample used is one interval after the release.
