@@ -6,7 +6,7 @@
 #include "apps/model_option.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/input/read_experiment.hpp"
-#include "experiments/input/read_record.hpp"
+#include "experiments/preparation/prepared_record.hpp"
 #include "experiments/input/read_reduction.hpp"
 #include "experiments/record_comparison/chosen_channels.hpp"
 #include "experiments/record_comparison/comparison.hpp"
@@ -75,7 +75,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       ComparedRecord compared;
       if (file) {
         compared.name = file->filename().string();
-        compared.record = read_record(*file, source.experiment.format);
+        compared.record = prepared_record(*file, source.experiment.format);
       } else if (values.count("truth")) {
         const fs::path truth = values["truth"].as<std::string>();
         compared = simulated_record(read_experiment(truth), truth.parent_path(), progress);

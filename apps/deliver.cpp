@@ -21,7 +21,8 @@ void deliver(const options::variables_map& values, const std::function<experimen
   const bool writes = values.count("out") > 0;
   if (writes) directory.emplace(values["out"].as<std::string>(), values.count("force") > 0);
 
-  const experiments::Results results = find();
+  experiments::Results results = find();
+  results.command_line = values[command_line_key].as<std::string>();
   if (isatty(STDERR_FILENO)) std::cerr << clear_line;
   if (directory) {
     experiments::write(results, *directory);
@@ -35,7 +36,7 @@ void deliver(const options::variables_map& values, const std::function<experimen
   if (writes)
     std::cout << "\nWritten to " << values["out"].as<std::string>() << "\n";
   else
-    std::cout << "\nFigures, CSV tables and results.json: add --out DIR\n";
+    std::cout << "\nA page with figures, CSV tables and results.json: add --out DIR\n";
 }
 
 }  // namespace beamid::apps

@@ -4,6 +4,9 @@
 #include "apps/command.hpp"
 #include "apps/method_list.hpp"
 #include "experiments/joint_model.hpp"
+#include "experiments/input/record_reader.hpp"
+#include "experiments/modal_analysis/modal_method.hpp"
+#include "experiments/preparation/preparation_step.hpp"
 #include "experiments/study.hpp"
 #include "fem/response/response.hpp"
 #include "filters/filter.hpp"
@@ -43,10 +46,13 @@ const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {"discretisations", [] { return methods_of(filters::scheme_registry()); }},
       {"filters", [] { return methods_of(filters::filter_registry()); }},
+      {"modal_methods", [] { return methods_of(experiments::modal_method_registry()); }},
       {"models", [] { return methods_of(experiments::model_registry()); }},
+      {"readers", [] { return methods_of(experiments::record_reader_registry()); }},
       {"reductions", [] { return methods_of(reduction::reduction_registry()); }},
       {"responses", responses},
       {"smoothers", [] { return methods_of(filters::smoother_registry()); }},
+      {"steps", [] { return methods_of(experiments::step_registry()); }},
       {"studies", [] { return methods_of(experiments::study_registry()); }}};
   return all;
 }
@@ -84,9 +90,11 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command list_command() {
-  return {"list", "[discretisations|filters|models|reductions|responses|smoothers|studies [NAME]]",
-          "what can be chosen by name, and the options of each",
-          "  beamid list\n  beamid list filters\n  beamid list filters ukf\n", run};
+  return {
+      "list",
+      "[discretisations|filters|modal_methods|models|readers|reductions|responses|smoothers|steps|studies [NAME]]",
+      "what can be chosen by name, and the options of each",
+      "  beamid list\n  beamid list filters\n  beamid list filters ukf\n", run};
 }
 
 }  // namespace beamid::apps

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "apps/reference.hpp"
+#include "experiments/modal_analysis/modal_method.hpp"
 #include "experiments/output/table.hpp"
 #include "experiments/output/text.hpp"
 #include "filters/filter.hpp"
@@ -41,6 +42,7 @@ std::string promise(std::string contract) {
       {filter::identifies, "finds stiffness and damping from a record without noise to six digits"},
       {filter::robust, "outlying readings move its estimate by a few of its deviations at most"},
       {filter::linear_models_only, "refuses models that are not linear"},
+      {experiments::contract::free_decay, "takes the record for a free decay; its modes can be polished"},
       {reduced::static_exact, "exact deflection under a static tip force"},
       {reduced::modes_exact, "its r frequencies are the system's r lowest"},
       {reduced::complete, "no approximation at all"},

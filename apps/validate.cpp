@@ -9,9 +9,9 @@
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/read_frame.hpp"
-#include "experiments/input/read_record.hpp"
 #include "experiments/joint_model.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/preparation/prepared_record.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "reduction/reduction.hpp"
@@ -87,7 +87,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   else if (experiment.record_file)
     record_file = file.parent_path() / *experiment.record_file;
   if (values.count("record") || (!record_file.empty() && fs::exists(record_file))) {
-    const Record record = read_record(record_file, experiment.format);
+    const Record record = prepared_record(record_file, experiment.format);
     check_model(experiment, file.parent_path(), record);
     record_line = record_text(record_file, record);
   } else if (!record_file.empty()) {

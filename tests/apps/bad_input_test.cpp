@@ -67,7 +67,8 @@ INSTANTIATE_TEST_SUITE_P(
               "low_rank_ukf, particle, robust_ekf, srckf, srukf, ukf"},
         Fault{"UnknownDiscretisation", toml, "\"exponential\"", "\"euler\"",
               "cantilever.toml:19:18: unknown discretisation 'euler'; known: backward_euler, cvode, "
-              "exponential, forward_euler, implicit_midpoint, pade, runge_kutta_2, runge_kutta_4"},
+              "exponential, forward_euler, implicit_midpoint, pade, runge_kutta_2, runge_kutta_4, "
+              "runge_kutta_4_differences"},
         Fault{
             "UnknownKey", toml, "length_m", "lenght_m",
             "cantilever.toml:6:1: unknown key 'lenght_m' in beam; did you mean 'length_m'? known: length_m, "

@@ -46,18 +46,20 @@ TEST_P(EveryCommand, RefusesAnUnknownOption) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryCommand,
-                         testing::Values("paper", "identify", "stream", "compare", "identifiability",
-                                         "efficiency", "modes", "frame", "simulate", "frf", "reduce", "new",
-                                         "validate", "list"),
+                         testing::Values("paper", "inspect", "prepare", "modal", "identify", "track",
+                                         "stream", "compare", "identifiability", "efficiency", "modes",
+                                         "frame", "simulate", "frf", "reduce", "new", "validate", "list"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   const Outcome outcome = Workplace().run("indentify");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_EQ(outcome.first_error_line(),
-            "beamid: unknown command 'indentify'; known: paper, identify, stream, compare, identifiability, "
-            "efficiency, modes, frame, simulate, frf, reduce, new, validate, list");
+  EXPECT_EQ(
+      outcome.first_error_line(),
+      "beamid: unknown command 'indentify'; known: atlas, paper, inspect, prepare, modal, identify, track, "
+      "stream, compare, identifiability, efficiency, modes, frame, simulate, frf, reduce, report, new, "
+      "validate, list");
 }
 
 struct Kind {
@@ -85,7 +87,10 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ListOf,
                                          Kind{"discretisations",
                                               {"forward_euler", "backward_euler", "implicit_midpoint", "pade",
                                                "runge_kutta_2", "runge_kutta_4", "exponential", "cvode"}},
+                                         Kind{"modal_methods", {"era", "frf_lscf", "ssi_cov"}},
                                          Kind{"models", {"beam", "modal", "sdof"}},
+                                         Kind{"readers", {"delimited_text", "hdf5", "lvm", "mat", "uff58"}},
+                                         Kind{"steps", {"band_pass", "event", "integrate", "resample"}},
                                          Kind{"studies", {"paper"}}, Kind{"smoothers", {"rts", "urts"}},
                                          Kind{"responses",
                                               {"modal", "newmark", "hht_alpha", "generalised_alpha"}}),
@@ -126,16 +131,16 @@ TEST(List, WithoutAKindShowsEveryEntryWithItsOptions) {
   const Outcome outcome = Workplace().run("list");
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.err, IsEmpty());
-  for (const char* part : {"discretisations\n\n", "\nfilters\n\n", "\nmodels\n\n", "\nreductions\n\n",
-                           "\nresponses\n\n", "\nsmoothers\n\n", "\nstudies\n\n", "\nukf ", "\nrts ",
-                           "\nsdof ", "\nnewmark ", "alpha = 1, beta = 2, kappa = 0"})
+  for (const char* part : {"discretisations\n\n", "\nfilters\n\n", "\nmodal_methods\n\n", "\nmodels\n\n",
+                           "\nreductions\n\n", "\nresponses\n\n", "\nsmoothers\n\n", "\nstudies\n\n",
+                           "\nukf ", "\nrts ", "\nsdof ", "\nnewmark ", "alpha = 1, beta = 2, kappa = 0"})
     EXPECT_THAT(outcome.out, HasSubstr(part));
 }
 
 TEST(List, RefusesUnknownKindsAndNames) {
   EXPECT_EQ(Workplace().run("list fliters").first_error_line(),
-            "beamid: list: unknown kind 'fliters'; known: discretisations, filters, models, reductions, "
-            "responses, smoothers, studies");
+            "beamid: list: unknown kind 'fliters'; known: discretisations, filters, modal_methods, models, "
+            "readers, reductions, responses, smoothers, steps, studies");
   EXPECT_EQ(
       Workplace().run("list filters ufk").first_error_line(),
       "beamid: unknown filter 'ufk'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, iekf, kf, low_rank_ekf, "

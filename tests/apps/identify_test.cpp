@@ -90,7 +90,8 @@ TEST_F(Tutorial, PrintsATableAndWritesTheWholeSet) {
   for (const char* text : {"frequency [Hz]", "damping ratio [%]", "stiffness K [N/m]", "damping C [N s/m]",
                            "Innovations: ", "\nWritten to results\n"})
     EXPECT_THAT(outcome.out, HasSubstr(text));
-  std::vector<std::string> expected{"results/results.json", "results/timing.json", "results/parameters.csv"};
+  std::vector<std::string> expected{"results/report.html", "results/results.json", "results/timing.json",
+                                    "results/parameters.csv"};
   for (const char* figure :
        {"convergence", "reproduction", "innovation_autocorrelation", "innovation_histogram"})
     for (const char* ending : {".svg", ".png", ".gp", ".csv"})

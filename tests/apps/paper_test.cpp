@@ -114,7 +114,7 @@ class PaperFiles : public testing::Test {
 TEST_F(PaperFiles, AreTheWholeSet) {
   EXPECT_EQ(first_.code, 0) << first_.err;
   EXPECT_THAT(first_.out, HasSubstr("\nWritten to one\n"));
-  std::vector<std::string> expected{"results.json", "timing.json", "modes.pvd"};
+  std::vector<std::string> expected{"report.html", "results.json", "timing.json", "modes.pvd"};
   for (const char* figure : {"figure_2", "figure_3", "figure_5", "figure_6", "damping_law"})
     for (const char* ending : {".svg", ".png", ".gp", ".csv"})
       expected.push_back(figure + std::string(ending));

@@ -77,6 +77,8 @@ inline const std::vector<Library>& libraries() {
       {"toml++", {"toml"}, {"experiments/input/"}},
       {"nlohmann-json", {"nlohmann/"}, {"experiments/", "apps/"}, true},
       {"fmt", {"fmt/"}, {"experiments/", "apps/"}, true},
+      {"HDF5", {"hdf5"}, {"experiments/"}},
+      {"matio", {"matio"}, {"experiments/record_files/"}},
       {"oneTBB", {"tbb/", "oneapi/"}, {"experiments/"}},
       {"Boost.Math", {"boost/math/"}, {"fem/", "filters/", "experiments/"}},
       {"Boost.Program_options", {"boost/program_options"}, {"apps/"}, true},

@@ -1,0 +1,76 @@
+// report.html beside every command's results, and beamid report. A browser, where one is installed, is the
+// independent reader.
+#include <gmock/gmock.h>
+
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using testing::HasSubstr;
+
+class Report : public testing::Test {
+ protected:
+  Report() {
+    fs::copy(source("docs/tutorials/02_identify_a_record"), place_.folder(), fs::copy_options::recursive);
+  }
+
+  Workplace place_;
+};
+
+TEST_F(Report, RepeatsTheCommandAndShowsEveryFigure) {
+  ASSERT_EQ(place_.run("identify tip_acceleration.csv --config cantilever.toml --out results").code, 0);
+  const std::string page = contents(place_.folder() / "results/report.html");
+  EXPECT_THAT(page, HasSubstr("<pre>beamid identify tip_acceleration.csv --config cantilever.toml</pre>"));
+  EXPECT_THAT(page, HasSubstr("stiffness K [N/m]"));
+  std::size_t pictures = 0, drawn = 0;
+  for (std::size_t at = page.find("<img "); at != std::string::npos; at = page.find("<img ", at + 1))
+    ++pictures;
+  for (const std::string& file : place_.files()) drawn += file.ends_with(".svg");
+  EXPECT_EQ(pictures, drawn);
+}
+
+TEST_F(Report, IsDrawnByABrowser) {
+  if (std::system("command -v chromium > /dev/null") != 0) GTEST_SKIP() << "chromium is not installed";
+  ASSERT_EQ(place_.run("identify --config cantilever.toml --out results").code, 0);
+  const auto printed = [&](const std::string& page) {
+    const fs::path pdf = place_.folder() / (page + ".pdf");
+    const std::string line = "cd '" + place_.folder().string() +
+                             "' && HOME=\"$PWD\" timeout 60 chromium --headless " +
+                             "--no-sandbox --disable-gpu --print-to-pdf='" + pdf.string() + "' 'file://" +
+                             (place_.folder() / page).string() + "' > /dev/null 2>&1";
+    return std::system(line.c_str()) == 0 ? contents(pdf) : std::string();
+  };
+  const std::string whole = printed("results/report.html");
+  ASSERT_TRUE(whole.starts_with("%PDF"));
+  // The same page, its pictures broken: what they drew is missing from the PDF.
+  std::string page = contents(place_.folder() / "results/report.html");
+  for (std::size_t at = page.find("base64,"); at != std::string::npos; at = page.find("base64,", at + 1))
+    page.replace(at + 7, 8, "AAAAAAAA");
+  place_.write("broken.html", page);
+  const std::string broken = printed("broken.html");
+  ASSERT_TRUE(broken.starts_with("%PDF"));
+  EXPECT_GT(whole.size(), broken.size() + 20000);
+}
+
+TEST_F(Report, JoinsResultsAndComparesThem) {
+  place_.run("identify --config cantilever.toml --out early --window 2 6");
+  place_.run("identify --config cantilever.toml --out late --window 6 10");
+  const Outcome outcome = place_.run("report early late --out both.html");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string page = contents(place_.folder() / "both.html");
+  for (const char* text : {"<h1>Side by side</h1>", "stiffness_n_per_m.estimate", "--window 2 6",
+                           "--window 6 10", "early: Steel cantilever", "late: Steel cantilever"})
+    EXPECT_THAT(page, HasSubstr(text));
+  EXPECT_EQ(place_.run("report early --out both.html").code, 2);  // it exists
+}
+
+TEST_F(Report, RefusesWhatBeamidDidNotWrite) {
+  place_.write("results.json", "{\"program\": \"other\"}");
+  EXPECT_EQ(place_.run("report . --out page.html").first_error_line(),
+            "./results.json: not written by beamid; expected the results of one of its commands");
+  EXPECT_EQ(place_.run("report --out page.html").code, 2);
+}
+
+}  // namespace
+}  // namespace beamid::apps
