@@ -36,8 +36,4 @@ std::string reader_of(const std::filesystem::path& file, const RecordFormat& for
 /// The file's columns, by reader_of(). @throws InputError.
 RecordTable read_table(const std::filesystem::path& file, const RecordFormat& format);
 
-/// All bytes of a file. @throws InputError when it is missing, a directory, unreadable or empty.
-/// @param expected for messages: "a Universal File".
-std::string read_bytes(const std::filesystem::path& file, const std::string& expected);
-
 }  // namespace beamid::experiments

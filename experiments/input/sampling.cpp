@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "experiments/signal/median.hpp"
+
 namespace beamid::experiments {
 
 void PrintedPrecision::add(std::string_view token) {
@@ -54,21 +56,18 @@ std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& time
   std::vector<double> intervals;
   for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
   if (intervals.empty()) return std::nullopt;
-  std::vector<double> sorted = intervals;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                   sorted.end());
-  const double median = sorted[sorted.size() / 2];
+  const double usual = median(intervals);
   constexpr double tolerated = 0.05, slack = 1 + 1e-6;
   for (std::size_t i = 1; i < times.size(); ++i) {
-    const double deviation = std::abs(intervals[i - 1] - median);
-    if (deviation <= tolerated * median) continue;
+    const double deviation = std::abs(intervals[i - 1] - usual);
+    if (deviation <= tolerated * usual) continue;
     const double rounding = std::max(precision.resolution(times[i]), precision.resolution(times[i - 1]));
-    const bool coarse = rounding > 0.5 * median * slack;  // a missing sample would look the same
-    if (coarse || deviation > (tolerated * median + rounding) * slack)
+    const bool coarse = rounding > 0.5 * usual * slack;  // a missing sample would look the same
+    if (coarse || deviation > (tolerated * usual + rounding) * slack)
       return SamplingFault{
           i, fmt::format(
                  "time {} after {}, an interval of {:.6g}; expected the median interval {:.6g} within 5 %{}",
-                 times[i], times[i - 1], intervals[i - 1], median,
+                 times[i], times[i - 1], intervals[i - 1], usual,
                  coarse ? " (times printed this coarsely need record.sampling_rate_hz)" : "")};
   }
   return std::nullopt;

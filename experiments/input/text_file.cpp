@@ -16,7 +16,7 @@ bool is_binary(char byte) {
 
 }  // namespace
 
-std::string read_text(const std::filesystem::path& file, const std::string& expected) {
+std::ifstream open_input(const std::filesystem::path& file, const std::string& expected) {
   const Place place{file.string(), 0, 0};
   std::error_code failure;
   const std::filesystem::file_status status = std::filesystem::status(file, failure);
@@ -24,8 +24,20 @@ std::string read_text(const std::filesystem::path& file, const std::string& expe
   if (std::filesystem::is_directory(status)) throw InputError(place, "a directory; expected " + expected);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(place, "cannot be opened; expected " + expected + " that may be read");
-  std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (stream.bad()) throw InputError(place, "cannot be read to its end; expected " + expected);
+  return stream;
+}
+
+std::string read_bytes(const std::filesystem::path& file, const std::string& expected) {
+  std::ifstream stream = open_input(file, expected);
+  std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  if (stream.bad()) throw InputError({file.string()}, "cannot be read to its end; expected " + expected);
+  if (bytes.empty()) throw InputError({file.string()}, "an empty file; expected " + expected);
+  return bytes;
+}
+
+std::string read_text(const std::filesystem::path& file, const std::string& expected) {
+  const Place place{file.string(), 0, 0};
+  std::string text = read_bytes(file, expected);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   if (text.empty()) throw InputError(place, "an empty file; expected " + expected);
   if (const auto byte = std::find_if(text.begin(), text.end(), is_binary); byte != text.end()) {

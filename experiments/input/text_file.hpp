@@ -2,9 +2,19 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace beamid::experiments {
+
+/// The file, ready to be read as it is.
+///
+/// @param expected what the file should hold, for messages: "a TOML file".
+/// @throws InputError when it is missing, a directory or may not be read.
+std::ifstream open_input(const std::filesystem::path& file, const std::string& expected);
+
+/// All its bytes. @throws InputError likewise, and when there are none.
+std::string read_bytes(const std::filesystem::path& file, const std::string& expected);
 
 /// The file's bytes, without the byte-order mark some editors put in front.
 ///

@@ -9,6 +9,7 @@
 #include "experiments/input/record_columns.hpp"
 #include "experiments/input/record_reader.hpp"
 #include "experiments/inspection/noise_floor.hpp"
+#include "experiments/signal/median.hpp"
 #include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
@@ -110,9 +111,7 @@ void analyse(InspectedChannel& channel, double interval) {
     else
       signal[k] = last, ++channel.missing;
   }
-  VectorXd sorted = signal;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  channel.offset = sorted[sorted.size() / 2];
+  channel.offset = median(signal);
   channel.least = signal.minCoeff(), channel.greatest = signal.maxCoeff();
   const VectorXd place = VectorXd::LinSpaced(signal.size(), -0.5, 0.5);
   channel.drift = place.dot(signal) / place.squaredNorm();

@@ -4,17 +4,16 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/signal/median.hpp"
+
 namespace beamid::experiments {
 
 SamplingCheck check_sampling(const std::vector<double>& times, double resolution) {
   if (times.size() < 2) throw std::invalid_argument("fewer than two instants; expected at least two");
   std::vector<double> intervals;
   for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
-  std::vector<double> sorted = intervals;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
   SamplingCheck check;
-  check.interval = *middle;
+  check.interval = median(intervals);
   const double tolerated = 0.05 * check.interval + 1.01 * resolution;
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < intervals.size(); ++i) {

@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/signal/median.hpp"
+
 namespace beamid::experiments {
-namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-
-double median(VectorXd values) {
-  double* const middle = values.data() + values.size() / 2;
-  std::nth_element(values.data(), middle, values.data() + values.size());
-  return *middle;
-}
-
-}  // namespace
 
 std::vector<SignalEvent> find_events(const VectorXd& signal, double interval, double noise,
                                      double frequency_hz) {

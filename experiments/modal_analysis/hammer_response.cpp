@@ -8,18 +8,13 @@
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
 
+#include "experiments/signal/median.hpp"
 #include "experiments/signal/onsets.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::MatrixXcd, Eigen::VectorXd, Eigen::VectorXcd;
-
-double median(VectorXd values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Index force_row(const Record& record) {
   Index row = -1;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "experiments/modal_analysis/pole_clusters.hpp"
+#include "experiments/signal/median.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -25,12 +26,6 @@ Stability stability_of(const Pole& pole, const std::vector<Pole>& before,
     best = std::max(best, full ? Stability::full : Stability::frequency);
   }
   return best;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The one value behind several: (value, deviation).

@@ -69,11 +69,13 @@ bool shapes_depend_on(const std::vector<Unknown>& properties) {
          (properties.size() == 1 && (properties[0].quantity != "bending_stiffness" || properties[0].region));
 }
 
-// Whether the modes of the mesh as such tell its motion: nothing couples them, and no moving base, whose
-// force depends on the masses asked about, drives them.
+// Whether the lowest modes of the mesh tell its motion: nothing couples them, and no moving base, whose force
+// depends on the masses asked about, drives them. A force moves those above, too: the mesh's own coordinates
+// know them, but not what happens to the start when shapes change.
 bool moves_in_modes(const fem::ParametricSystem& equations, const fem::Modes& modes,
-                    const MotionDescription& description) {
-  return description.base < 0 && modes.rigid == 0 && equations.system.damping.nonZeros() == 0;
+                    const MotionDescription& description, const std::vector<Unknown>& properties) {
+  return description.base < 0 && modes.rigid == 0 && equations.system.damping.nonZeros() == 0 &&
+         (description.forces.empty() || shapes_depend_on(properties));
 }
 
 // Forces read as outputs, below those observed: phi^T E of a mode.
@@ -112,6 +114,10 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
     reduced = reduce(equations.system, *setting.reduction, setting.training);
   else
     reduced = {equations.system, {}, true};
+  const std::string& coordinates = options.text("coordinates");
+  if (coordinates != "modes" && coordinates != "mesh")
+    throw std::invalid_argument("coordinates is '" + coordinates + "'; expected modes or mesh");
+  const bool in_modes = coordinates == "modes";
   const bool dense = reduced.system.size() <= most_dense || !reduced.identity;
   const double kept = options.number("modes");
   if (!(kept >= 1.0 && kept == std::floor(kept)))
@@ -139,7 +145,7 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
     model->mode_shapes.setIdentity(modes.size(), modes.size());
     places = layout(description, modes.size());
     model->motion = std::make_shared<ReducedMotion>(std::move(small), std::move(description), rows, "mode");
-  } else if (shapes_depend_on(properties) && moves_in_modes(equations, modes, description)) {
+  } else if (in_modes && moves_in_modes(equations, modes, description, properties)) {
     describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
     model->mode_shapes.setIdentity(modes.size(), modes.size());
     places = layout(description, modes.size());
@@ -163,7 +169,10 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
 std::vector<filters::OptionSpec> options() {
   std::vector<filters::OptionSpec> specs = sensor_options();
   specs.push_back(
-      {"modes", 5.0, "", "of a mesh that is not reduced: how many modes its start is in, and are damped"});
+      {"coordinates", std::string("modes"), "",
+       "of a mesh that is not reduced: modes, its lowest ones, where nothing couples them; or mesh"});
+  specs.push_back(
+      {"modes", 8.0, "", "of a mesh that is not reduced: how many modes its start is in, and are damped"});
   return specs;
 }
 

@@ -8,6 +8,7 @@
 
 #include "experiments/input/collected_signals.hpp"
 #include "experiments/input/record_reader.hpp"
+#include "experiments/input/text_file.hpp"
 
 namespace beamid::experiments {
 namespace {

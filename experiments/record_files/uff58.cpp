@@ -11,6 +11,7 @@
 
 #include "experiments/input/fields.hpp"
 #include "experiments/input/record_reader.hpp"
+#include "experiments/input/text_file.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -7,21 +7,13 @@
 #include <string>
 
 #include "experiments/model_setting.hpp"
+#include "experiments/signal/median.hpp"
 #include "experiments/signal/onsets.hpp"
 #include "filters/noise_estimation.hpp"
 
 namespace beamid::experiments {
-namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-
-double median(VectorXd values) {
-  double* const middle = values.data() + values.size() / 2;
-  std::nth_element(values.data(), middle, values.data() + values.size());
-  return *middle;
-}
-
-}  // namespace
 
 VectorXd noise_before_event(const Record& whole) {
   constexpr Index fewest = 32;

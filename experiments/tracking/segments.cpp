@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "experiments/modal_analysis/damped_sine_fit.hpp"
+#include "experiments/signal/median.hpp"
 #include "experiments/tracking/ringing_model.hpp"
 #include "filters/filter.hpp"
 
@@ -93,9 +94,7 @@ double typical_noise(const Ringing& ringing) {
   }
   if (residuals.empty())
     throw std::invalid_argument("no six cycles of the record are a damped sine within the band");
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return std::max(*middle, 1e-6 * ringing.signal.cwiseAbs().maxCoeff());
+  return std::max(median(residuals), 1e-6 * ringing.signal.cwiseAbs().maxCoeff());
 }
 
 double typical_force(const Ringing& ringing) {

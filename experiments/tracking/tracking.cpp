@@ -9,6 +9,7 @@
 
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/signal/decimation.hpp"
+#include "experiments/signal/median.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/tracking/ringing_model.hpp"
 #include "experiments/tracking/segments.hpp"
@@ -139,9 +140,8 @@ std::pair<double, double> track_band(const VectorXd& signal, double interval) {
     if (span.maxCoeff() > span.minCoeff()) frequencies.push_back(strongest_frequency(span, interval));
   }
   if (frequencies.empty()) throw std::invalid_argument("signal; expected one that varies");
-  const auto middle = frequencies.begin() + static_cast<std::ptrdiff_t>(frequencies.size() / 2);
-  std::nth_element(frequencies.begin(), middle, frequencies.end());
-  return {0.5 * *middle, std::min(2.0 * *middle, 0.45 / interval)};
+  const double middle = median(frequencies);
+  return {0.5 * middle, std::min(2.0 * middle, 0.45 / interval)};
 }
 
 Tracking track(const VectorXd& signal, double start, double interval, const TrackSettings& settings,

@@ -228,7 +228,8 @@ TEST(BeamModel, ReadsEverySensorInTheReducedMotion) {
   // Oracle: the rows of the mesh on the lifted motion, and the equation of motion written out on the mesh.
   ModelSetting setting = rich_setting();
   const auto model =
-      beam(setting, {{"sensor_bias", false}});  // no reduction, 42 coordinates: the mesh itself
+      beam(setting, {{"sensor_bias", false},
+                     {"coordinates", std::string("mesh")}});  // no reduction, 42 coordinates: the mesh itself
   ASSERT_NE(dynamic_cast<const ContinuumMotion*>(model->motion.get()), nullptr);
   const Index n = model->motion_size();
   ASSERT_EQ(n, setting.system.size());

@@ -11,6 +11,7 @@
 
 #include "experiments/input/read_record.hpp"
 #include "experiments/input/record_reader.hpp"
+#include "experiments/input/text_file.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
 namespace beamid::experiments {
