@@ -10,11 +10,13 @@ std::vector<Command> commands() {
   all.push_back(prepare_command());
   all.push_back(modal_command());
   all.push_back(identify_command());
+  all.push_back(check_command());
   all.push_back(track_command());
   all.push_back(stream_command());
   all.push_back(compare_command());
   all.push_back(identifiability_command());
   all.push_back(efficiency_command());
+  all.push_back(sweep_command());
   all.push_back(modes_command());
   all.push_back(frame_command());
   all.push_back(simulate_command());

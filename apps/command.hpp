@@ -28,6 +28,7 @@ struct Command {
 /// All of them, in the order in which help shows them.
 std::vector<Command> commands();
 
+Command check_command();
 Command compare_command();
 Command efficiency_command();
 Command frame_command();
@@ -44,6 +45,7 @@ Command reduce_command();
 Command report_command();
 Command simulate_command();
 Command stream_command();
+Command sweep_command();
 Command track_command();
 Command validate_command();
 /// Every registered study is a command of its own.

@@ -12,6 +12,7 @@
 #include "experiments/input/input_error.hpp"
 #include "experiments/parameter_choice.hpp"
 #include "experiments/record.hpp"
+#include "experiments/sweep/plan.hpp"
 #include "fem/beam.hpp"
 #include "fem/damping.hpp"
 #include "filters/options.hpp"
@@ -89,6 +90,7 @@ struct Experiment {
   std::map<Quantity, double> noise;     ///< standard deviation per quantity [SI]; absent: from the record
   Choice noise_method{"residual", {}};  ///< how absent ones are found: residual, likelihood, before_event
   std::string estimator = "filter";     ///< of an identification: filter, batch or both
+  SweepPlan sweep;
 };
 
 }  // namespace beamid::experiments

@@ -28,7 +28,7 @@ void require_covariance(const MatrixXd& matrix, Index size, const std::string& w
   require(is_covariance(matrix), what, "not a covariance", "finite, symmetric and positive semidefinite");
 }
 
-void check(const OscillatorTrials& kind, const std::vector<Trial>& trials) {
+void check(const OscillatorTrials& kind, const std::vector<LaneTrial>& trials) {
   const auto outputs = static_cast<Index>(kind.observed.size());
   const auto positive = [](double value, const char* what) {
     require(value > 0.0 && std::isfinite(value), what, std::to_string(value), "a positive number");
@@ -40,7 +40,7 @@ void check(const OscillatorTrials& kind, const std::vector<Trial>& trials) {
   if (kind.process_noise.size() > 0) require_covariance(kind.process_noise, 4, "process noise");
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const std::string of = " of trial " + std::to_string(i);
-    const Trial& trial = trials[i];
+    const LaneTrial& trial = trials[i];
     const Index samples = trials[0].outputs.cols();
     require(trial.outputs.rows() == outputs && trial.outputs.cols() == samples, "record" + of,
             size_of(trial.outputs), std::to_string(outputs) + " x " + std::to_string(samples));
@@ -68,7 +68,7 @@ std::string batch_instructions() {
   return avx2() ? "avx2" : "baseline";
 }
 
-std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vector<Trial>& trials,
+std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vector<LaneTrial>& trials,
                                    Start start) {
   check(kind, trials);
   const MatrixXd process =

@@ -21,7 +21,7 @@ struct OscillatorTrials {
 };
 
 /// One record, and what was believed before it.
-struct Trial {
+struct LaneTrial {
   Eigen::MatrixXd outputs;  ///< y (p x N); NaN: not measured
   Gaussian initial;         ///< mean (4) and covariance (4 x 4)
 };
@@ -38,7 +38,7 @@ struct TrialResult {
 /// fails leaves the others as they are.
 /// @throws std::invalid_argument when shapes disagree, records differ in length, mass or interval are not
 /// positive, or an initial covariance or noise is not symmetric positive semidefinite.
-std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vector<Trial>& trials,
+std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vector<LaneTrial>& trials,
                                    Start start = Start::at_first_sample);
 
 /// Instructions that run_batch() uses on this processor: "avx2" or "baseline".

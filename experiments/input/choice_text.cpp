@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "experiments/sweep/plan.hpp"  // word_of
+
 namespace beamid::experiments {
 
 using filters::OptionValue;
@@ -28,13 +30,6 @@ std::optional<double> number(const std::string& text) {
   const auto [rest, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
   return value;
-}
-
-std::string word_of(const OptionValue& value) {
-  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-  if (const bool* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  return fmt::format("{}", fmt::join(std::get<std::vector<double>>(value), "/"));
 }
 
 }  // namespace

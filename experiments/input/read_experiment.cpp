@@ -14,6 +14,7 @@
 #include "experiments/input/units.hpp"
 #include "experiments/input/vocabulary.hpp"
 #include "experiments/joint_model.hpp"
+#include "experiments/sweep/read_sweep.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
 #include "filters/smoother.hpp"
@@ -121,6 +122,7 @@ Experiment read_experiment(const TomlTable& root) {
   read_methods(root, experiment);
   if (const auto table = root.find_table("identifiability"))
     experiment.identifiability = read_identifiability(*table);
+  if (const auto table = root.find_table("sweep")) experiment.sweep = read_sweep(*table);
   if (const auto prior = root.find_table("prior")) experiment.prior = read_prior(*prior);
   if (const auto noise = root.find_table("noise")) read_noise_table(*noise, experiment);
   return experiment;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 
 #include "experiments/input/text_file.hpp"
 #include "experiments/input/toml_node.hpp"
@@ -41,31 +43,63 @@ void refuse_long_lines(const std::string& text, const std::string& file) {
 
 namespace {
 
-toml::table& child(toml::table& root, const std::string& name) {
-  if (!root.contains(name)) root.insert(name, toml::table());
-  return *root.get(name)->as_table();
+/// The table of an override: "beam", "record.time", "sensors[2]". A table that is missing is made, one of an
+/// array is not. @returns null where something else has the name: the reader will refuse it.
+/// @throws InputError where the array has no such table.
+toml::table* table_at(toml::table& root, const Override& over) {
+  toml::table* table = &root;
+  for (std::size_t begin = 0; begin <= over.table.size();) {
+    const std::size_t end = std::min(over.table.find('.', begin), over.table.size());
+    const std::string part = over.table.substr(begin, end - begin);
+    const std::size_t bracket = part.find('[');
+    const std::string name = part.substr(0, bracket);
+    begin = end + 1;
+    toml::node* node = table->get(name);
+    if (bracket != std::string::npos) {
+      toml::array* const array = node ? node->as_array() : nullptr;
+      const std::size_t number = std::strtoul(part.c_str() + bracket + 1, nullptr, 10);
+      if (!array || number < 1 || number > array->size())
+        throw InputError({over.origin, 0, 0}, fmt::format("there is no {}; {} has {} tables, counted from 1",
+                                                          part, name, array ? array->size() : 0));
+      node = array->get(number - 1);
+    } else if (node == nullptr) {
+      table->insert(name, toml::table());
+      node = table->get(name);
+    }
+    table = node->as_table();
+    if (table == nullptr) return nullptr;
+  }
+  return table;
+}
+
+/// A whole number is one to those who read it as a number, too.
+void set(toml::table& table, const std::string& key, const filters::OptionValue& value) {
+  constexpr double largest = 0x1p53;
+  if (const double* const number = std::get_if<double>(&value);
+      number && *number == std::floor(*number) && std::abs(*number) <= largest) {
+    table.insert_or_assign(key, static_cast<std::int64_t>(*number));
+  } else if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+    toml::array array;
+    for (const double number : *numbers) array.push_back(number);
+    table.insert_or_assign(key, std::move(array));
+  } else {
+    std::visit(
+        [&](const auto& plain) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(plain)>, std::vector<double>>)
+            table.insert_or_assign(key, plain);
+        },
+        value);
+  }
 }
 
 /// Sets the keys, and gives where each came from by its path.
 std::map<std::string, std::string> apply(const std::vector<Override>& overrides, toml::table& root) {
   std::map<std::string, std::string> origins;
   for (const Override& over : overrides) {
-    const toml::node* const present = root.get(over.table);
-    if (present != nullptr && !present->is_table()) continue;  // the reader will refuse it
-    toml::table& table = child(root, over.table);
-    for (const std::string& key : over.instead_of) table.erase(key);
-    if (const auto* numbers = std::get_if<std::vector<double>>(&over.value)) {
-      toml::array array;
-      for (const double number : *numbers) array.push_back(number);
-      table.insert_or_assign(over.key, std::move(array));
-    } else {
-      std::visit(
-          [&](const auto& value) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, std::vector<double>>)
-              table.insert_or_assign(over.key, value);
-          },
-          over.value);
-    }
+    toml::table* const table = table_at(root, over);
+    if (table == nullptr) continue;
+    for (const std::string& key : over.instead_of) table->erase(key);
+    set(*table, over.key, over.value);
     origins[over.table + "." + over.key] = over.origin;
   }
   return origins;

@@ -19,7 +19,7 @@ enum class Sign { any, not_negative, positive };
 /// One key of one table set from outside the file, such as an option of the command line. It takes the place
 /// of the file's own key, and of those that would give the same quantity in another way.
 struct Override {
-  std::string table, key;
+  std::string table, key;  ///< a table within another as "record.time", one of an array as "sensors[2]"
   filters::OptionValue value;
   std::string origin;                        ///< stands for the place in messages: "--length"
   std::vector<std::string> instead_of = {};  ///< keys of the table that it removes

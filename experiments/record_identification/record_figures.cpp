@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "experiments/continuum/amplitude_spectrum.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -35,6 +37,40 @@ Figure reproduction(const Record& record, const RecordIdentification& found) {
     figure.panels.push_back(panel);
   }
   return figure;
+}
+
+// Of the first channel: what the model leaves out stands alone, higher modes and coloured noise among it.
+Figure spectrum(const Record& record, const RecordIdentification& found) {
+  constexpr double multiples = 8;  // of the mode's frequency: a cantilever's second mode is at 6.3
+  constexpr double decades = 6;    // below the peak
+  const AmplitudeSpectrum measured = amplitude_spectrum(record.samples.row(0).transpose(), record.interval()),
+                          model = amplitude_spectrum(found.reproduced.row(0).transpose(), record.interval());
+  const double peak = measured.amplitude.maxCoeff(), floor = std::pow(10.0, -decades) * peak;
+  const Channel& channel = record.channels[0];
+  Panel panel{
+      "",
+      {"frequency [Hz]"},
+      {std::string("amplitude of ") + to_string(channel.quantity) + " [" + si_unit(channel.quantity) + "]",
+       true},
+      {}};
+  panel.curves = {{"measured",
+                   measured.frequency_hz,
+                   measured.amplitude.cwiseMax(floor),
+                   CurveStyle::line,
+                   {},
+                   {},
+                   Colour::grey},
+                  {"reproduced with the identified K and C",
+                   model.frequency_hz,
+                   model.amplitude.cwiseMax(floor),
+                   CurveStyle::line,
+                   {},
+                   {},
+                   Colour::blue}};
+  const double last = measured.frequency_hz[measured.frequency_hz.size() - 1];
+  panel.x_axis.range = {0.0, std::min(last, multiples * found.identification.found.frequency_hz())};
+  panel.legend = Legend::below;
+  return {"spectrum", {panel}};
 }
 
 // Estimate and 95 % band of one quantity over time, with the axis around its final value.
@@ -88,7 +124,10 @@ Figure convergence(const Record& record, const RecordIdentification& found) {
 
 std::vector<Figure> figures(const Record& record, const RecordIdentification& found) {
   std::vector<Figure> result;
-  if (found.reproduced.size() > 0) result.push_back(reproduction(record, found));
+  if (found.reproduced.size() > 0) {
+    result.push_back(reproduction(record, found));
+    result.push_back(spectrum(record, found));
+  }
   if (!found.identification.run.filtered.empty()) result.push_back(convergence(record, found));
   return result;
 }

@@ -46,20 +46,22 @@ TEST_P(EveryCommand, RefusesAnUnknownOption) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryCommand,
-                         testing::Values("paper", "inspect", "prepare", "modal", "identify", "track",
-                                         "stream", "compare", "identifiability", "efficiency", "modes",
-                                         "frame", "simulate", "frf", "reduce", "new", "validate", "list"),
+                         testing::Values("budget", "noise", "paper", "inspect", "prepare", "modal",
+                                         "identify", "check", "track", "stream", "compare", "identifiability",
+                                         "efficiency", "sweep", "modes", "frame", "simulate", "frf", "reduce",
+                                         "new", "validate", "list"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   const Outcome outcome = Workplace().run("indentify");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_EQ(
-      outcome.first_error_line(),
-      "beamid: unknown command 'indentify'; known: atlas, paper, inspect, prepare, modal, identify, track, "
-      "stream, compare, identifiability, efficiency, modes, frame, simulate, frf, reduce, report, new, "
-      "validate, list");
+  EXPECT_EQ(outcome.first_error_line(),
+            "beamid: unknown command 'indentify'; known: atlas, budget, noise, paper, inspect, prepare, "
+            "modal, identify, check, track, "
+            "stream, compare, identifiability, efficiency, sweep, modes, frame, simulate, frf, reduce, "
+            "report, new, "
+            "validate, list");
 }
 
 struct Kind {
@@ -91,7 +93,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ListOf,
                                          Kind{"models", {"beam", "modal", "sdof"}},
                                          Kind{"readers", {"delimited_text", "hdf5", "lvm", "mat", "uff58"}},
                                          Kind{"steps", {"band_pass", "event", "integrate", "resample"}},
-                                         Kind{"studies", {"paper"}}, Kind{"smoothers", {"rts", "urts"}},
+                                         Kind{"studies", {"atlas", "budget", "noise", "paper"}},
+                                         Kind{"smoothers", {"rts", "urts"}},
                                          Kind{"responses",
                                               {"modal", "newmark", "hht_alpha", "generalised_alpha"}}),
                          [](const auto& tested) { return std::string(tested.param.name); });

@@ -93,7 +93,7 @@ TEST_F(Tutorial, PrintsATableAndWritesTheWholeSet) {
   std::vector<std::string> expected{"results/report.html", "results/results.json", "results/timing.json",
                                     "results/parameters.csv"};
   for (const char* figure :
-       {"convergence", "reproduction", "innovation_autocorrelation", "innovation_histogram"})
+       {"convergence", "reproduction", "spectrum", "innovation_autocorrelation", "innovation_histogram"})
     for (const char* ending : {".svg", ".png", ".gp", ".csv"})
       expected.push_back(std::string("results/") + figure + ending);
   EXPECT_THAT(place_.files(), IsSupersetOf(expected));

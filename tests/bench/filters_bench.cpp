@@ -113,7 +113,7 @@ void fixed_srukf(benchmark::State& state) {
 void batch_ekf(benchmark::State& state) {
   const filters::OscillatorTrials kind{
       mass, dt, {Quantity::displacement, Quantity::velocity}, noise, process};
-  const std::vector<filters::Trial> trials(batch_size, filters::Trial{record(), {guess, prior}});
+  const std::vector<filters::LaneTrial> trials(batch_size, filters::LaneTrial{record(), {guess, prior}});
   state.SetLabel(filters::batch_instructions());
   time(state, batch_size, [&] { return run_batch(kind, trials)[batch_size / 2].last.mean[2]; });
 }

@@ -18,7 +18,7 @@ namespace beamid {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::Vector4d, Eigen::VectorXd;
-using filters::OscillatorTrials, filters::Quantity, filters::Trial, filters::TrialResult;
+using filters::OscillatorTrials, filters::Quantity, filters::LaneTrial, filters::TrialResult;
 
 constexpr double mass = 3.0, dt = 1e-3;
 
@@ -30,15 +30,15 @@ OscillatorTrials kind() {
 }
 
 // Decays of different stiffness and damping, each with a guess and noise of its own.
-std::vector<Trial> trials(int count, Index samples) {
+std::vector<LaneTrial> trials(int count, Index samples) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal;
-  std::vector<Trial> result;
+  std::vector<LaneTrial> result;
   const filters::algorithms::Oscillator<double, 1> motion(mass, dt, {Quantity::displacement},
                                                           Eigen::Matrix4d::Zero(), MatrixXd::Identity(1, 1));
   for (int i = 0; i < count; ++i) {
     Vector4d z(0.012, 0.0, 400.0 + 30.0 * i, 0.5 + 2.0 * i), next;
-    Trial trial{MatrixXd(2, samples), {z, Vector4d(1e-8, 1e-6, 1e4, 4.0).asDiagonal()}};
+    LaneTrial trial{MatrixXd(2, samples), {z, Vector4d(1e-8, 1e-6, 1e4, 4.0).asDiagonal()}};
     trial.initial.mean[2] *= 0.9;
     for (Index k = 0; k < samples; ++k) {
       trial.outputs.col(k) << z[0] + 1e-4 * normal(random), z[1] + 1e-3 * normal(random);
@@ -50,7 +50,7 @@ std::vector<Trial> trials(int count, Index samples) {
   return result;
 }
 
-filters::FilterRun alone(const Trial& trial, filters::Start start = filters::Start::at_first_sample) {
+filters::FilterRun alone(const LaneTrial& trial, filters::Start start = filters::Start::at_first_sample) {
   const auto filter = filters::filter_registry().make(
       "ekf", {},
       filters::discretise(std::make_shared<test::Oscillator>(mass, 2), dt, "exponential",

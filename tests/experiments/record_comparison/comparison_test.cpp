@@ -121,8 +121,11 @@ TEST(Comparison, KeepsWhatCannotBeMadeAsARefusal) {
 TEST(Comparison, RefusesARecordOfForcesOnly) {
   const Experiment e = released({"rayleigh"});
   ComparedRecord forces;
-  forces.record = {
-      Eigen::VectorXd::LinSpaced(100, 0.0, 0.1), Eigen::MatrixXd::Ones(1, 100), {{Quantity::force, "f"}}};
+  forces.record = {Eigen::VectorXd::LinSpaced(100, 0.0, 0.1),
+                   Eigen::MatrixXd::Ones(1, 100),
+                   {{Quantity::force, "f"}},
+                   0.0,
+                   {}};
   EXPECT_THROW(compare(e, forces, {}, silent), std::invalid_argument);
 }
 

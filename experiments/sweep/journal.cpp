@@ -1,0 +1,141 @@
+#include "experiments/sweep/journal.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <stdexcept>
+
+#include "experiments/input/input_error.hpp"
+#include "experiments/output/file.hpp"
+#include "experiments/sweep/manifest.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Appears whole or not at all.
+void write_whole(const fs::path& file, const std::string& text) {
+  const fs::path beside = file.string() + ".new";
+  write_file(beside, text);
+  fs::rename(beside, file);
+}
+
+}  // namespace
+
+KeptCases read_cases(const fs::path& file, const SweepPlan& plan) {
+  const std::string text = bytes_of(file), header = header_line(plan);
+  KeptCases kept;
+  if (!text.starts_with(header)) {
+    if (text.find('\n') == std::string::npos) return kept;  // a torn header, or nothing yet
+    throw InputError({file.string(), 1, 1},
+                     "another header than this sweep's; expected " + header.substr(0, header.size() - 1));
+  }
+  kept.size = header.size();
+  std::vector<SweepRow> open;  // of the case that is being read
+  std::set<std::size_t> numbers;
+  std::size_t line = 2;
+  for (std::size_t begin = header.size(), end; (end = text.find('\n', begin)) != std::string::npos; ++line) {
+    const auto row = from_line(std::string_view(text).substr(begin, end - begin), plan.varied.size());
+    begin = end + 1;
+    const bool follows = row && row->row == open.size() + 1 && row->row <= row->rows &&
+                         row->number < plan.cases() && (open.empty() || row->number == open.front().number);
+    if (!follows) throw InputError({file.string(), line, 1}, "no row of a sweep's case that belongs here");
+    open.push_back(*row);
+    if (open.size() < row->rows) continue;
+    if (!numbers.insert(row->number).second)
+      throw InputError({file.string(), line, 1}, fmt::format("case {} a second time", row->number));
+    kept.rows.insert(kept.rows.end(), open.begin(), open.end());
+    kept.size = begin;
+    open.clear();
+  }
+  return kept;
+}
+
+Journal::Journal(const fs::path& folder, const nlohmann::ordered_json& manifest, const SweepPlan& plan,
+                 bool resume)
+    : folder_(folder), file_(folder / "cases.csv") {
+  const fs::path described = folder / "manifest.json";
+  if (fs::exists(described)) {
+    if (!resume)
+      throw std::invalid_argument(fmt::format(
+          "'{}' holds an interrupted sweep; --resume continues it, --force begins anew", folder.string()));
+    const nlohmann::ordered_json found = read_manifest(described);
+    if (found["hash"] != manifest["hash"] || found["shard"] != manifest["shard"])
+      throw std::invalid_argument(fmt::format(
+          "'{}' holds another sweep (plan {}, shard {}); expected plan {}, shard {}, with the same "
+          "files, options and version",
+          folder.string(), found["hash"].get<std::string>(), found["shard"].dump(),
+          manifest["hash"].get<std::string>(), manifest["shard"].dump()));
+  } else {
+    std::error_code ignored;
+    fs::create_directories(folder, ignored);  // what is wrong shows when the file is written
+    write_whole(described,
+                manifest.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  }
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail();
+  try {
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+      throw std::invalid_argument(fmt::format("'{}' is in use by another beamid sweep", folder.string()));
+    kept_ = read_cases(file_, plan);
+    if (::ftruncate(descriptor_, static_cast<off_t>(kept_.size)) != 0) fail();
+    if (kept_.size == 0) write(header_line(plan));
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+Journal::~Journal() {
+  ::close(descriptor_);
+}
+
+void Journal::append(const std::vector<SweepRow>& rows) {
+  std::string text;
+  for (const SweepRow& row : rows) text += to_line(row);
+  write(text);
+}
+
+void Journal::write(const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t count = ::write(descriptor_, text.data() + done, text.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      const int reason = errno;
+      if (::ftruncate(descriptor_, static_cast<off_t>(kept_.size)) != 0) {
+      }  // the next process cuts it
+      errno = reason;
+      fail();
+    }
+    done += static_cast<std::size_t>(count);
+  }
+  kept_.size += text.size();
+}
+
+void Journal::fail() const {
+  throw std::runtime_error(
+      fmt::format("cannot write '{}': {}; finished cases are kept, --resume goes on with them",
+                  file_.string(), std::strerror(errno)));
+}
+
+void Journal::remove() {
+  std::error_code ignored;
+  for (const char* name : {"cases.csv", "manifest.json", "manifest.json.new"})
+    fs::remove(folder_ / name, ignored);
+  fs::remove(folder_, ignored);
+}
+
+}  // namespace beamid::experiments

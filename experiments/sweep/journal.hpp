@@ -1,0 +1,52 @@
+// The cases that are finished, kept so that nothing that ends a sweep can lose them.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "experiments/sweep/rows.hpp"
+
+namespace beamid::experiments {
+
+/// The rows of a file, complete cases only, and where the last of these ends.
+struct KeptCases {
+  std::vector<SweepRow> rows;
+  std::size_t size = 0;  ///< bytes up to the end of the last complete case; 0: not even the header is whole
+};
+
+/// @throws InputError at a line that is no row, unless it is the last and torn.
+KeptCases read_cases(const std::filesystem::path& file, const SweepPlan& plan);
+
+/// A folder with manifest.json and cases.csv, to which every case is appended by one write when it is
+/// finished. A process killed within that write leaves a torn case at the end, which the next one cuts off.
+class Journal {
+ public:
+  /// @param resume go on with what the folder holds; without it the folder must not be there.
+  /// @throws std::invalid_argument when it is there, or is that of another sweep or in use.
+  /// @throws std::runtime_error when it cannot be written.
+  Journal(const std::filesystem::path& folder, const nlohmann::ordered_json& manifest, const SweepPlan& plan,
+          bool resume);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  const std::vector<SweepRow>& kept() const { return kept_.rows; }  ///< of earlier processes
+
+  /// All rows of one case. Not to be called by two threads at once.
+  /// @throws std::runtime_error when the disk is full; what was kept before stays whole.
+  void append(const std::vector<SweepRow>& rows);
+
+  /// Removes the folder: its cases are in the results.
+  void remove();
+
+ private:
+  std::filesystem::path folder_, file_;
+  KeptCases kept_;
+  int descriptor_ = -1;
+
+  void write(const std::string& text);
+  [[noreturn]] void fail() const;
+};
+
+}  // namespace beamid::experiments

@@ -1,0 +1,59 @@
+#include "experiments/sweep/manifest.hpp"
+
+#include <fmt/format.h>
+
+#include "experiments/input/input_error.hpp"
+#include "experiments/input/text_file.hpp"
+
+namespace beamid::experiments {
+
+using Json = nlohmann::ordered_json;
+
+std::string hash_of(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return fmt::format("{:016x}", hash);
+}
+
+Json manifest_of(const SweepSource& source, const SweepPlan& plan, const Shard& shard) {
+  Json json{{"program", "beamid sweep"}, {"version", BEAMID_VERSION}};
+  Json& told = json["plan"];
+  told["vary"] = Json::array();
+  for (const VariedKey& one : plan.varied) told["vary"].push_back(one.text);
+  told["random"] = plan.samples;
+  told["seeds"] = plan.seeds;
+  told["seed"] = plan.seed;
+  told["cases"] = plan.cases();
+  json["experiment"] = source.config.text;
+  if (source.truth) json["truth"] = source.truth->text;
+  if (source.record) json["record"] = source.record->filename().string();
+  json["hash"] = hash_of(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  json["shard"] = {{"index", shard.index + 1}, {"count", shard.count}};
+  return json;
+}
+
+Json read_manifest(const std::filesystem::path& file) {
+  const std::string text = read_text(file, "the manifest.json of a sweep");
+  Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded() || !json.is_object() || json.value("program", "") != "beamid sweep" ||
+      !json.contains("hash") || !json["hash"].is_string())
+    throw InputError({file.string()}, "no manifest of a sweep; expected a folder that beamid sweep wrote");
+  return json;
+}
+
+SweepPlan plan_of(const Json& manifest, const std::filesystem::path& file) {
+  SweepPlan plan;
+  try {
+    const Json& told = manifest.at("plan");
+    for (const Json& text : told.at("vary")) plan.varied.push_back(parse_varied(text.get<std::string>()));
+    plan.samples = told.at("random").get<int>();
+    plan.seeds = told.at("seeds").get<int>();
+    plan.seed = told.at("seed").get<std::uint64_t>();
+    check(plan);
+  } catch (const std::exception& error) {
+    throw InputError({file.string()}, fmt::format("no plan of a sweep: {}", error.what()));
+  }
+  return plan;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,83 @@
+#include "experiments/sweep/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <thread>
+#include <tuple>
+
+namespace beamid::experiments {
+namespace {
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+bool CaseQueue::next(std::size_t& number) {
+  const std::lock_guard lock(mutex_);
+  if (given_ >= numbers_.size()) return false;
+  number = numbers_[given_++];
+  return true;
+}
+
+void CaseQueue::stop() {
+  const std::lock_guard lock(mutex_);
+  given_ = numbers_.size();
+}
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+}
+
+CaseProgress::CaseProgress(std::size_t before, std::size_t all, const Progress& progress)
+    : before_(before), all_(all), progress_(progress), started_(now()) {}
+
+void CaseProgress::count() {
+  ++done_;
+  const double time = now();
+  if (time - shown_ < 0.2) return;
+  shown_ = time;
+  const double rate = static_cast<double>(done_) / std::max(time - started_, 1e-9);
+  const std::size_t left = all_ - before_ - done_;
+  progress_(fmt::format("{} of {} cases, {:.3g} per second, {} left", before_ + done_, all_, rate,
+                        duration_text(static_cast<double>(left) / rate)));
+}
+
+void run_cases(CaseQueue& queue, int threads, const CaseRunner& run, const CaseSink& sink) {
+  std::mutex one_at_a_time;
+  std::exception_ptr trouble;
+  const auto work = [&] {
+    try {
+      for (std::size_t number; queue.next(number);) {
+        std::vector<SweepRow> rows = run(number);
+        const std::lock_guard lock(one_at_a_time);
+        if (trouble) return;
+        sink(std::move(rows));
+      }
+    } catch (...) {
+      queue.stop();
+      const std::lock_guard lock(one_at_a_time);
+      if (!trouble) trouble = std::current_exception();
+    }
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < threads; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  if (trouble) std::rethrow_exception(trouble);
+}
+
+void sort_rows(std::vector<SweepRow>& rows) {
+  std::sort(rows.begin(), rows.end(), [](const SweepRow& a, const SweepRow& b) {
+    return std::tie(a.number, a.row) < std::tie(b.number, b.row);
+  });
+}
+
+}  // namespace beamid::experiments

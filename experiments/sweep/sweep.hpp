@@ -1,0 +1,56 @@
+// The cases of a sweep on all cores.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "experiments/progress.hpp"
+#include "experiments/sweep/rows.hpp"
+
+namespace beamid::experiments {
+
+/// Hands out the cases that are left, one by one, to any thread.
+class CaseQueue {
+ public:
+  explicit CaseQueue(std::vector<std::size_t> numbers) : numbers_(std::move(numbers)) {}
+  /// False when there is none any more. @param number of the next case
+  bool next(std::size_t& number);
+  void stop();  ///< hands out no more
+  std::size_t size() const { return numbers_.size(); }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::size_t> numbers_;
+  std::size_t given_ = 0;
+};
+
+/// "137 of 1000 cases, 12.3 per second, 1 min 10 s left"; at most five times a second.
+class CaseProgress {
+ public:
+  CaseProgress(std::size_t before, std::size_t all, const Progress& progress);
+  void count();  ///< one more is finished
+
+ private:
+  std::size_t before_, all_, done_ = 0;
+  const Progress& progress_;
+  double started_, shown_ = 0.0;
+};
+
+using CaseRunner = std::function<std::vector<SweepRow>(std::size_t number)>;
+using CaseSink = std::function<void(std::vector<SweepRow> rows)>;
+
+/// Runs what the queue hands out on so many threads. The sink gets every case when it is finished, in
+/// whatever order, from one thread at a time. The first exception of runner or sink stops the rest and is
+/// thrown when all threads have ended.
+void run_cases(CaseQueue& queue, int threads, const CaseRunner& run, const CaseSink& sink);
+
+/// Rows in the order of their cases.
+void sort_rows(std::vector<SweepRow>& rows);
+
+/// "1 min 10 s"
+std::string duration_text(double seconds);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,91 @@
+// beamid check, end to end: what a user gets.
+#include <gmock/gmock.h>
+
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using nlohmann::json, testing::HasSubstr;
+
+class Check : public testing::Test {
+ protected:
+  Check() {
+    const fs::path tutorial = source("docs/tutorials/02_identify_a_record");
+    for (const char* file : {"cantilever.toml", "tip_acceleration.csv"})
+      fs::copy(tutorial / file, place_.folder() / file);
+  }
+  Workplace place_;
+};
+
+// Oracle: the record was simulated from the beam that the file describes.
+TEST_F(Check, FindsTheTutorialsBeamRightAndWritesItsFigure) {
+  const Outcome outcome = place_.run("check --config cantilever.toml --out found");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("agrees with what was identified"));
+  for (const char* file :
+       {"results.json", "report.html", "modes.csv", "single_changes.csv", "model_check.png"})
+    EXPECT_TRUE(fs::exists(place_.folder() / "found" / file)) << file;
+  EXPECT_EQ(json::parse(contents(place_.folder() / "found" / "results.json"))["status"], "agrees");
+}
+
+// Oracle: the tip mass that the description lacks, 0.05 kg of 0.36 kg.
+TEST_F(Check, NamesAMissingTipMassWithItsSize) {
+  std::string text = contents(place_.folder() / "cantilever.toml");
+  text.replace(text.find("0.36049"), 7, "0.31049");
+  place_.write("lighter.toml", text);
+  const Outcome outcome = place_.run("check --config lighter.toml --candidate tip_mass --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json found = json::parse(outcome.out), change = found["single_changes"][0]["changes"][0];
+  EXPECT_EQ(found["status"], "differs");
+  EXPECT_EQ(found["single_changes"][0]["verdict"], "explains");
+  EXPECT_LT(change["lower_95"].get<double>(), 0.05);
+  EXPECT_GT(change["upper_95"].get<double>(), 0.05);
+  EXPECT_NEAR(change["estimate"].get<double>(), 0.05, 0.001);
+}
+
+TEST_F(Check, RefusesWhatMakesNoSense) {
+  for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
+           {"check", "beamid: check: --config FILE is missing"},
+           {"check --config cantilever.toml --model-error 0",
+            "beamid: check: --model-error is 0; expected 0.01 to 20 percent"},
+           {"check a.csv b.csv c.csv --config cantilever.toml cantilever.toml",
+            "beamid: check: 3 records for 2 --config files; expected one for each, or one file for all"},
+           {"check --config cantilever.toml --method frf_lscf",
+            "beamid: check: --method frf_lscf needs a measured force; expected one of motion alone, era or "
+            "ssi_cov"}}) {
+    const Outcome outcome = place_.run(words);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.first_error_line(), message);
+  }
+  EXPECT_THAT(place_.run("check --config cantilever.toml --candidate clamp").err,
+              HasSubstr("unknown candidate 'clamp'; known: bending_stiffness"));
+}
+
+// Four tip masses on one beam. Oracle: the differences that the catalogue's beam has from an independent fit,
+// +9, +3, 0 and -7 %, of which no root that gives way can make one that is positive.
+TEST(CheckOfMeasuredRecords, FindsNoSingleCauseForFourTipMasses) {
+  const fs::path data = source("../shared/data/unb-tip-mass"),
+                 tutorial = source("docs/tutorials/03_your_own_file");
+  if (!fs::exists(data)) GTEST_SKIP() << "the measured records are not here";
+  std::string records, configs;
+  for (const char* name : {"massa1_test1-1", "massa2_test1-2", "massa3_test2-3", "massa4_test2-4"})
+    records += " '" + (data / (std::string(name) + ".txt")).string() + "'";
+  for (const char* name : {"massa1", "massa2", "massa3", "massa4_test2-4"})
+    configs += " '" + (tutorial / (std::string(name) + ".toml")).string() + "'";
+  const Outcome outcome = Workplace().run("check" + records + " --config" + configs + " --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found["status"], "differs");
+  EXPECT_EQ(found["modes"].size(), 5u);
+  for (const json& single : found["single_changes"]) {
+    EXPECT_EQ(single["verdict"], "does not explain");
+    const json& change = single["changes"][0];
+    if (change["candidate"] == "root_rotational_compliance") {
+      EXPECT_EQ(change["estimate"].get<double>(), 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace beamid::apps

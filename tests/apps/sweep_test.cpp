@@ -1,0 +1,145 @@
+// Oracle: the same sweep in one piece, on one thread, without interruption.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using testing::HasSubstr, testing::IsEmpty;
+
+// Small enough for some hundred cases per second.
+constexpr const char* rig = R"([beam]
+length_m = 1.10
+width_m = 0.060
+height_m = 0.006
+youngs_modulus_pa = 2.12e11
+mass_kg = 3.055
+tip_mass_kg = 0.36
+elements = 8
+[damping]
+ratio = 0.01
+[[sensors]]
+quantity = "displacement"
+noise_m = 0.0003
+[simulation]
+duration_s = 4
+sampling_rate_hz = 40
+[reduction]
+method = "modal_truncation"
+[compare]
+passes = 1
+[sweep]
+vary = ["damping.ratio=0.005,0.02"]
+)";
+
+/// Names of files that hold results, and what is in them; clock and command line left out.
+std::map<std::string, std::string> results_in(const fs::path& folder) {
+  std::map<std::string, std::string> found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "timing.json" && name != "report.html") found[name] = contents(entry.path());
+  }
+  return found;
+}
+
+void expect_same(const Workplace& place, const std::string& one, const std::string& other) {
+  const auto expected = results_in(place.folder() / one), found = results_in(place.folder() / other);
+  EXPECT_TRUE(expected.contains("cases.csv") && expected.contains("cases.h5"));
+  for (const auto& [name, text] : expected)
+    EXPECT_TRUE(found.contains(name) && found.at(name) == text) << name << " differs";
+  EXPECT_EQ(expected.size(), found.size());
+}
+
+class Sweep : public testing::Test {
+ protected:
+  Sweep() { place_.write("rig.toml", rig); }
+  Outcome sweep(const std::string& words) const { return place_.run("sweep --config rig.toml " + words); }
+  void expect_success(const Outcome& outcome) const { EXPECT_EQ(outcome.code, 0) << outcome.err; }
+
+  Workplace place_;
+};
+
+TEST_F(Sweep, IsTheSameOnAnyNumberOfThreads) {
+  expect_success(sweep("--seeds 8 --threads 1 --out one"));
+  expect_success(sweep("--seeds 8 --threads 3 --out three"));
+  expect_same(place_, "one", "three");
+}
+
+TEST_F(Sweep, GoesOnWhereItWasKilled) {
+  expect_success(sweep("--seeds 60 --out whole"));
+  place_.write("kill.sh",
+               "\"$1\" sweep --config rig.toml --seeds 60 --threads 1 --out broken & started=$!\n"
+               "until [ \"$(wc -l 2>/dev/null <broken.partial/cases.csv || echo 0)\" -gt 8 ]; do :; done\n"
+               "kill -9 $started\n"
+               "wait $started\n"
+               "printf '110,1,2,111,0.0' >>broken.partial/cases.csv\n");
+  place_.run("--version >version; sh kill.sh '" BEAMID_COMMAND "'");
+  ASSERT_FALSE(fs::exists(place_.folder() / "broken"));
+  EXPECT_EQ(sweep("--seeds 60 --out broken").code, 2);
+  EXPECT_EQ(sweep("--seeds 59 --out broken --resume").code, 2);
+  expect_success(sweep("--seeds 60 --out broken --resume"));
+  expect_same(place_, "whole", "broken");
+  EXPECT_FALSE(fs::exists(place_.folder() / "broken.partial"));
+}
+
+// A limit on the size of files stands for a full disk: the write fails halfway.
+TEST_F(Sweep, GoesOnAfterAFullDisk) {
+  expect_success(sweep("--seeds 20 --out whole"));
+  place_.write("full.sh",
+               "trap '' XFSZ\nulimit -f 4\n"
+               "\"$1\" sweep --config rig.toml --seeds 20 --out broken >/dev/null; echo $?\n");
+  const Outcome full = place_.run("--version >version; sh full.sh '" BEAMID_COMMAND "'");
+  EXPECT_EQ(full.out, "1\n");
+  EXPECT_THAT(full.err, HasSubstr("finished cases are kept, --resume goes on with them"));
+  EXPECT_FALSE(fs::exists(place_.folder() / "broken"));
+  expect_success(sweep("--seeds 20 --out broken --resume"));
+  expect_same(place_, "whole", "broken");
+  expect_success(sweep("--seeds 20 --out broken --resume"));  // nothing is left to do
+  expect_same(place_, "whole", "broken");
+}
+
+TEST_F(Sweep, IsTheSumOfItsShards) {
+  expect_success(sweep("--seeds 7 --out whole"));
+  for (const std::string part : {"1", "2", "3"})
+    expect_success(sweep("--seeds 7 --shard " + part + "/3 --out part" + part));
+  expect_success(place_.run("sweep --merge part3 part1 part2 --out joined"));
+  expect_same(place_, "whole", "joined");
+  const Outcome missing = place_.run("sweep --merge part1 part3");
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("5 of 14 cases are missing, the first is 1"));
+  EXPECT_THAT(place_.run("sweep --merge part1 part1").err, HasSubstr("case 0 is in another folder too"));
+}
+
+TEST_F(Sweep, CountsACaseThatFailsAsARow) {
+  expect_success(sweep("--vary beam.tip_mass_kg=0.3,-1 --seeds 3 --out results"));
+  const std::string cases = contents(place_.folder() / "results/cases.csv");
+  EXPECT_THAT(cases, HasSubstr("\n9,1,1,10,0.02,-1,,,,failed,,,"));
+  const auto points = nlohmann::json::parse(contents(place_.folder() / "results/results.json"))["points"];
+  ASSERT_EQ(points.size(), 6u);  // two ratios; stiffness and damping where the mass is possible
+  EXPECT_EQ(points[0]["converged"], 3);
+  EXPECT_EQ(points[5]["refused_or_failed"], 3);
+  EXPECT_EQ(sweep("--vary beam.tip_mass_kg=-1").code, 1);  // not one
+}
+
+TEST_F(Sweep, SaysWhatIsWrongWithThePlan) {
+  const auto line = [&](const std::string& words) {
+    const Outcome outcome = sweep(words);
+    EXPECT_EQ(outcome.code, 2) << words;
+    EXPECT_THAT(outcome.out, IsEmpty());
+    return outcome.first_error_line();
+  };
+  EXPECT_THAT(line("--vary beam.tip_mas_kg=1,2"),
+              HasSubstr("--vary: unknown key 'tip_mas_kg' in beam; did you mean 'tip_mass_kg'?"));
+  EXPECT_THAT(line("--vary beam.length_m=1:2:1"), HasSubstr("expected a whole number of steps from 2"));
+  EXPECT_THAT(line("--random 5"), HasSubstr("5 random samples and no key to draw"));
+  EXPECT_THAT(line("--shard 5/4"), HasSubstr("--shard is '5/4'; expected I/N"));
+  EXPECT_THAT(line("--resume"), HasSubstr("--resume needs the --out DIR"));
+  place_.write("rig.toml", std::string(rig) + "seeds = 0\n");
+  EXPECT_THAT(line(""), HasSubstr("rig.toml:23:9: sweep.seeds is 0; expected a whole number from 1"));
+}
+
+}  // namespace
+}  // namespace beamid::apps
