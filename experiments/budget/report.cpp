@@ -36,6 +36,7 @@ Table budget_table(const Budget& budget, std::size_t number, Parameter parameter
              budget.clean.*parameter, "no cause at all"});
   table.row({"total", budget.total.*parameter, budget.total.*parameter, budget.total.*parameter,
              budget.total.*parameter, "every cause"});
+  if (std::isnan(without.*parameter)) table.note = "-: with this cause taken away the filter loses the mode.";
   return table;
 }
 

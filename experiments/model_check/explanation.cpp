@@ -72,10 +72,12 @@ void judge(const ModelCheck& check, Explanation& e) {
     known = known && 2 * 1.96 * e.deviation[i] < c.plausible_upper - c.plausible_lower;
     e.plausible = e.plausible && e.upper_95(i) >= c.plausible_lower && e.lower_95(i) <= c.plausible_upper;
   }
-  e.verdict = e.freedom > 0 && e.chi_square > chi_square_limit(e.freedom) ? Verdict::leaves_much
-              : !known                                                    ? Verdict::undetermined
-              : e.plausible                                               ? Verdict::explains
-                                                                          : Verdict::implausible;
+  // A change held at its limit fits nothing.
+  const Index freedom = e.freedom + std::count(e.at_limit.begin(), e.at_limit.end(), true);
+  e.verdict = freedom > 0 && e.chi_square > chi_square_limit(freedom) ? Verdict::leaves_much
+              : !known                                                ? Verdict::undetermined
+              : e.plausible                                           ? Verdict::explains
+                                                                      : Verdict::implausible;
 }
 
 }  // namespace
