@@ -20,26 +20,26 @@ struct Member {
   std::function<void(const SweepRow&, char*)> put;
 };
 
-Member whole(const std::string& name, std::function<std::int64_t(const SweepRow&)> value) {
+Member whole(const std::string& name, const std::function<std::int64_t(const SweepRow&)>& value) {
   return {name, 8, Member::Kind::whole, [value](const SweepRow& row, char* place) {
             const std::int64_t number = value(row);
             std::memcpy(place, &number, sizeof number);
           }};
 }
 
-Member number(const std::string& name, std::function<double(const SweepRow&)> value) {
+Member number(const std::string& name, const std::function<double(const SweepRow&)>& value) {
   return {name, 8, Member::Kind::number, [value](const SweepRow& row, char* place) {
             const double found = value(row);
             std::memcpy(place, &found, sizeof found);
           }};
 }
 
-Member text(const std::string& name, std::function<const std::string&(const SweepRow&)> value,
+Member text(const std::string& name, const std::function<const std::string&(const SweepRow&)>& value,
             const std::vector<SweepRow>& rows) {
   std::size_t size = 1;
   for (const SweepRow& row : rows) size = std::max(size, value(row).size());
   return {name, size, Member::Kind::text, [value](const SweepRow& row, char* place) {
-            std::memcpy(place, value(row).data(), value(row).size());
+            std::copy(value(row).begin(), value(row).end(), place);
           }};
 }
 
