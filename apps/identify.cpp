@@ -74,7 +74,7 @@ bool keep_out_higher_modes(const fs::path& config, const fs::path& file, Experim
     const auto step = step_against_higher_modes(experiment, prepared.record);
     if (!step) return false;
     experiment.format.preparation = {*step};
-    prepared = read_and_prepare(file, experiment.format);
+    prepared = prepare_and_cut(std::move(prepared.raw), experiment.format, file);
     return true;
   } catch (const std::invalid_argument& error) {
     throw InputError({config.string()}, error.what());

@@ -38,11 +38,10 @@ filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& i
 
 filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
                                  const IdentificationSettings& settings, filters::Keep keep) {
-  const double dt =
-      (record.time[record.time.size() - 1] - record.time[0]) / static_cast<double>(record.time.size() - 1);
   const auto filter = filters::filter_registry().make(
       settings.filter, settings.filter_options,
-      filters::discretise(model.motion, dt, settings.discretisation, {{}, settings.output_noise}));
+      filters::discretise(model.motion, record.interval(), settings.discretisation,
+                          {{}, settings.output_noise}));
   filters::Gaussian initial = settings.initial;
   filters::FilterRun run;
   for (int pass = 1; pass <= settings.passes; ++pass) {

@@ -15,9 +15,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 Index samples_in(const JointModel& model, const filters::Measurements& record, double periods) {
   const Index all = record.time.size();
-  const double interval = (record.time[all - 1] - record.time[0]) / static_cast<double>(all - 1);
   const double period = 2.0 * std::numbers::pi / model.mode_frequencies[0];
-  return std::clamp<Index>(static_cast<Index>(std::ceil(periods * period / interval)),
+  return std::clamp<Index>(static_cast<Index>(std::ceil(periods * period / record.interval())),
                            std::min<Index>(16, all), all);
 }
 

@@ -23,11 +23,11 @@ struct Channel {
 
 /// N samples of p measured channels, in SI units.
 struct Record {
-  Eigen::VectorXd time;              ///< (N) [s], strictly increasing
-  Eigen::MatrixXd samples;           ///< (p x N), one column per instant
-  std::vector<Channel> channels;     ///< p
-  double time_resolution = 0.0;      ///< stamps are as exact as they were printed, within this [s]
-  std::vector<std::string> remarks;  ///< sentences for reports: lines left out, what was done to the samples
+  Eigen::VectorXd time;                   ///< (N) [s], strictly increasing
+  Eigen::MatrixXd samples;                ///< (p x N), one column per instant
+  std::vector<Channel> channels;          ///< p
+  double time_resolution = 0.0;           ///< stamps are as exact as they were printed, within this [s]
+  std::vector<std::string> remarks = {};  ///< for reports: lines left out, what was done to the samples
 
   Eigen::Index size() const { return time.size(); }
 

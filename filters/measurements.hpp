@@ -18,6 +18,9 @@ struct Measurements {
   double time_resolution = 0.0;  ///< stamps are exact to within this [s]; see SampleClock
 
   Eigen::Index size() const { return time.size(); }  ///< N
+
+  /// Mean sampling interval [s].
+  double interval() const { return (time[size() - 1] - time[0]) / static_cast<double>(size() - 1); }
 };
 
 /// @throws std::invalid_argument when shapes disagree with each other or with p outputs, stamps are not

@@ -8,6 +8,7 @@
 #include "experiments/discretisation_bias.hpp"
 #include "experiments/identification.hpp"
 #include "experiments/one_coordinate.hpp"
+#include "experiments/positive.hpp"
 #include "experiments/random.hpp"
 #include "experiments/signal/butterworth.hpp"
 #include "experiments/signal/integration.hpp"
@@ -52,16 +53,11 @@ VectorXd instants(const PipelineSettings& settings, bool stated_rate) {
 }  // namespace
 
 Pipeline::Pipeline(const PipelineSettings& settings) : settings_(settings) {
-  const auto positive = [](double value, const char* name) {
-    if (!(value > 0.0 && std::isfinite(value)))
-      throw std::invalid_argument(std::string(name) + ": " + std::to_string(value) +
-                                  "; expected a positive number");
-  };
   if (settings_.damping_ratios.size() == 0)
     throw std::invalid_argument("damping_ratios: none; expected one per mode");
-  positive(settings_.damping_ratios[0], "damping ratio of the first mode");
-  positive(settings_.deflection, "deflection");
-  positive(settings_.sensor_noise, "sensor_noise");
+  require_positive(settings_.damping_ratios[0], "damping ratio of the first mode");
+  require_positive(settings_.deflection, "deflection");
+  require_positive(settings_.sensor_noise, "sensor_noise");
   fem::StructuralSystem system = fem::assemble(settings_.beam, settings_.elements);
   bare_ = shape(system);
   const double frequency = bare_.frequencies[0] / (2.0 * std::numbers::pi);

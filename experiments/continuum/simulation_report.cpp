@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/continuum/amplitude_spectrum.hpp"
 #include "experiments/continuum/description.hpp"
 #include "experiments/input/column_name.hpp"
 #include "experiments/input/units.hpp"
 #include "experiments/input/write_record.hpp"
 #include "experiments/output/field_history.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {

@@ -17,17 +17,6 @@ namespace {
 constexpr double samples_per_period = 8.0, steps_per_period = 48.0;
 constexpr Index fewest = 64;  // samples that must be left
 
-MatrixXd decimated(const MatrixXd& channels, double interval, int factor, double& start) {
-  MatrixXd kept;
-  for (Index i = 0; i < channels.rows(); ++i) {
-    const DecimatedSignal found = decimate(channels.row(i).transpose(), interval, factor);
-    if (i == 0) kept.resize(channels.rows(), found.samples.size());
-    kept.row(i) = found.samples.transpose();
-    start = found.start;
-  }
-  return kept;
-}
-
 }  // namespace
 
 MatrixXd SlowRecord::measured(const MatrixXd& fine_columns) const {
@@ -38,13 +27,13 @@ MatrixXd SlowRecord::measured(const MatrixXd& fine_columns) const {
 
 SlowRecord slow_record(const filters::Measurements& record, double frequency_hz) {
   const Index all = record.size();
-  const double dt = (record.time[all - 1] - record.time[0]) / static_cast<double>(all - 1);
+  const double dt = record.interval();
   SlowRecord slow;
   const auto most = static_cast<int>(all / (fewest + 10));
   slow.factor = std::max(1, std::min(most, static_cast<int>(1.0 / (samples_per_period * frequency_hz * dt))));
   slow.interval = slow.factor * dt;
-  double start = 0.0;
-  slow.samples = decimated(record.outputs, dt, slow.factor, start);
+  slow.samples = decimate_channels(record.outputs, slow.factor);
+  const double start = slow.factor == 1 ? 0.0 : 5 * slow.interval;
   const Index m = slow.samples.cols();
   slow.time = record.time[0] + start +
               slow.interval * VectorXd::LinSpaced(m, 0.0, static_cast<double>(m - 1)).array();
@@ -55,7 +44,7 @@ SlowRecord slow_record(const filters::Measurements& record, double frequency_hz)
   slow.fine.outputs.setConstant(slow.samples.rows(), n, std::numeric_limits<double>::quiet_NaN());
   for (Index k = 0; k < m; ++k) slow.fine.outputs.col(k * slow.steps) = slow.samples.col(k);
   if (record.inputs.size() == 0) return slow;
-  const MatrixXd inputs = decimated(record.inputs, dt, slow.factor, start);
+  const MatrixXd inputs = decimate_channels(record.inputs, slow.factor);
   slow.fine.inputs.resize(inputs.rows(), n);
   for (Index k = 0; k < n; ++k) slow.fine.inputs.col(k) = inputs.col(k / slow.steps);
   return slow;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "experiments/one_coordinate.hpp"
+#include "experiments/positive.hpp"
 #include "experiments/random.hpp"
 #include "filters/fisher_information.hpp"
 #include "filters/random.hpp"
@@ -17,12 +18,6 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr std::uint64_t noise_stream = 0, guess_stream = 1;
-
-void require_positive(double value, const char* name) {
-  if (!(value > 0.0 && std::isfinite(value)))
-    throw std::invalid_argument(std::string(name) + ": " + std::to_string(value) +
-                                "; expected a positive number");
-}
 
 void check(const DecaySettings& settings) {
   if (!(settings.damping_ratio > 0.0 && settings.damping_ratio < 1.0))

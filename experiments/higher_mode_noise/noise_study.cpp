@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/positive.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -37,16 +39,11 @@ NoiseStatistics statistics_of(const std::vector<FirstMode>& found) {
 }
 
 void check(const NoiseSettings& s) {
-  const auto positive = [](double value, const char* name) {
-    if (!(value > 0.0 && std::isfinite(value)))
-      throw std::invalid_argument(std::string(name) + ": " + std::to_string(value) +
-                                  "; expected a positive number");
-  };
-  positive(s.noise, "noise");
-  positive(s.deflection, "deflection");
-  positive(s.blow, "blow");
-  positive(s.interval, "interval");
-  positive(s.duration, "duration");
+  require_positive(s.noise, "noise");
+  require_positive(s.deflection, "deflection");
+  require_positive(s.blow, "blow");
+  require_positive(s.interval, "interval");
+  require_positive(s.duration, "duration");
   if (s.beams.empty()) throw std::invalid_argument("beams: none; expected one at least");
   if (s.trials < 2)
     throw std::invalid_argument("trials: " + std::to_string(s.trials) + "; expected 2 or more");

@@ -2,37 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <optional>
 
-#include "experiments/sweep/plan.hpp"  // word_of
+#include "experiments/input/words.hpp"
 
 namespace beamid::experiments {
 
 using filters::OptionValue;
-
-namespace {
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = text.find(separator, begin);
-    parts.push_back(text.substr(begin, end - begin));
-    if (end == std::string::npos) return parts;
-    begin = end + 1;
-  }
-}
-
-std::optional<double> number(const std::string& text) {
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-}  // namespace
 
 ChoiceWords split_choice(const std::string& text) {
   const std::size_t colon = text.find(':');

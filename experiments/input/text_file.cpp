@@ -35,6 +35,16 @@ std::string read_bytes(const std::filesystem::path& file, const std::string& exp
   return bytes;
 }
 
+std::size_t count_bytes(const std::filesystem::path& file, const std::string& expected) {
+  std::ifstream stream = open_input(file, expected);
+  stream.seekg(0, std::ios::end);
+  const std::streamoff size = stream.tellg();
+  if (!stream || size < 0)
+    throw InputError({file.string()}, "cannot be read to its end; expected " + expected);
+  if (size == 0) throw InputError({file.string()}, "an empty file; expected " + expected);
+  return static_cast<std::size_t>(size);
+}
+
 std::string read_text(const std::filesystem::path& file, const std::string& expected) {
   const Place place{file.string(), 0, 0};
   std::string text = read_bytes(file, expected);

@@ -16,6 +16,9 @@ std::ifstream open_input(const std::filesystem::path& file, const std::string& e
 /// All its bytes. @throws InputError likewise, and when there are none.
 std::string read_bytes(const std::filesystem::path& file, const std::string& expected);
 
+/// How many bytes it has, without reading them: for libraries that read it themselves. @throws likewise.
+std::size_t count_bytes(const std::filesystem::path& file, const std::string& expected);
+
 /// The file's bytes, without the byte-order mark some editors put in front.
 ///
 /// @param expected what the file should hold, for messages: "a TOML file".

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/continuum/amplitude_spectrum.hpp"
 #include "experiments/input/record_table.hpp"
 #include "experiments/inspection/inspection.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -134,7 +134,7 @@ std::vector<std::string> warnings(const Inspection& found) {
                               located(found, s.repeats)));
   if (!s.returns.empty()) all.push_back(fmt::format("Time runs backwards at {}.", located(found, s.returns)));
   if (!s.uniform && s.gaps.empty() && s.repeats.empty() && s.returns.empty())
-    all.push_back(
+    all.emplace_back(
         "The sampling interval is not constant: --stamps as_they_are takes the stamps as they are.");
   for (const InspectedChannel& c : found.channels) {
     const auto lengths = [](const std::vector<Run>& runs) {
@@ -173,10 +173,9 @@ std::vector<std::string> warnings(const Inspection& found) {
   }
   if (std::none_of(found.channels.begin(), found.channels.end(),
                    [](const auto& c) { return c.quantity.has_value(); }))
-    all.push_back(
-        "Nothing says what the channels measure. State it for other commands: --column N --quantity "
-        "acceleration "
-        "--unit g, or [record] in an experiment file.");
+    all.emplace_back(
+        "Nothing says what the channels measure. State it for other commands: "
+        "--column N --quantity acceleration --unit g, or [record] in an experiment file.");
   return all;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/continuum/amplitude_spectrum.hpp"
 #include "experiments/modal_study/report.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {

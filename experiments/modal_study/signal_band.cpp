@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "experiments/continuum/amplitude_spectrum.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 
 namespace beamid::experiments {
 

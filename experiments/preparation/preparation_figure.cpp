@@ -3,8 +3,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/continuum/amplitude_spectrum.hpp"
 #include "experiments/preparation/preparation_step.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -21,21 +21,6 @@ constexpr Index longest = 1024;      // samples at the full rate, which filters 
 constexpr double level_ratio = 3.0;  // of the rates of successive levels
 constexpr double widening = 30.0;    // of the deviations found
 
-double interval_of(const filters::Measurements& record) {
-  const Index last = record.time.size() - 1;
-  return (record.time[last] - record.time[0]) / static_cast<double>(last);
-}
-
-MatrixXd decimated(const MatrixXd& channels, double interval, int factor) {
-  MatrixXd kept;
-  for (Index i = 0; i < channels.rows(); ++i) {
-    const VectorXd samples = decimate(channels.row(i).transpose(), interval, factor).samples;
-    if (i == 0) kept.resize(channels.rows(), samples.size());
-    kept.row(i) = samples.transpose();
-  }
-  return kept;
-}
-
 // Covariance of the unknowns alone.
 MatrixXd of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
   if (belief.covariance.size() > 0) return belief.covariance(model.unknown_places, model.unknown_places);
@@ -47,8 +32,8 @@ MatrixXd of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
 filters::Measurements decimated(const filters::Measurements& record, double interval, int factor) {
   filters::Measurements coarse;
   if (record.time.size() < (fewest + 10) * factor) return coarse;
-  coarse.outputs = decimated(record.outputs, interval, factor);
-  if (record.inputs.size() > 0) coarse.inputs = decimated(record.inputs, interval, factor);
+  coarse.outputs = decimate_channels(record.outputs, factor);
+  if (record.inputs.size() > 0) coarse.inputs = decimate_channels(record.inputs, factor);
   coarse.time =
       interval * factor *
       VectorXd::LinSpaced(coarse.outputs.cols(), 0.0, static_cast<double>(coarse.outputs.cols() - 1));
@@ -75,12 +60,13 @@ StartDirections with_guess(StartDirections directions, const JointModel& model, 
 
 std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double interval,
                                                const MatrixXd& output_noise) {
-  return filters::discretise(model.motion, interval, finest_discretisation(model, interval), {{}, output_noise});
+  return filters::discretise(model.motion, interval, finest_discretisation(model, interval),
+                             {{}, output_noise});
 }
 
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
                        const filters::Measurements& record, double frequency_hz) {
-  const double dt = interval_of(record);
+  const double dt = record.interval();
   const filters::Gaussian believed = start_belief(
       model, start_directions(model, observations, start_scale(model, observations, record.outputs, 1.0)));
   FirstGuess guess{believed.mean, of_unknowns(model, believed)};

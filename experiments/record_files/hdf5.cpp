@@ -159,7 +159,7 @@ class Hdf5Reader final : public RecordReader {
 
   RecordTable read(const std::filesystem::path& path, const RecordFormat&) const override {
     const std::string name = path.string();
-    const std::size_t size = read_bytes(path, "an HDF5 file").size();
+    const std::size_t size = count_bytes(path, "an HDF5 file");
     const Quiet quiet;
     const Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file.open()) throw InputError({name}, "cannot be opened by HDF5; expected an undamaged HDF5 file");

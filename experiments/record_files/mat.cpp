@@ -78,15 +78,15 @@ class MatReader final : public RecordReader {
   }
 
   RecordTable read(const std::filesystem::path& path, const RecordFormat&) const override {
-    const std::string bytes =
-        read_bytes(path, "a MATLAB file");  // says in the usual words when there is none
+    const std::size_t size =
+        count_bytes(path, "a MATLAB file");  // says in the usual words when there is none
     const std::string name = path.string();
     Mat_LogInitFunc("beamid", [](int, char*) {});
     H5dont_atexit();  // else HDF5, below level 7.3, complains at the end of what a damaged file left open
     const std::unique_ptr<mat_t, Closing> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
     if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
     constexpr std::size_t compression = 1100;  // more than zlib ever reaches
-    most_numbers_ = bytes.size() * compression / 8 + 64;
+    most_numbers_ = size * compression / 8 + 64;
     CollectedSignals signals(name);
     while (const std::unique_ptr<matvar_t, Closing> found{Mat_VarReadNextInfo(file.get())}) {
       const bool is_struct = found->class_type == MAT_C_STRUCT;

@@ -12,10 +12,8 @@ BatchIdentification identify_batch(const RecordIdentification& found, const filt
   Eigen::VectorXd start = settings.initial.mean;
   start[2] = modal.stiffness, start[3] = modal.damping;
   const Eigen::MatrixXd directions = settings.initial.deviations().asDiagonal();
-  const double dt =
-      (measured.time[measured.size() - 1] - measured.time[0]) / static_cast<double>(measured.size() - 1);
-  const auto model =
-      filters::discretise(found.model.motion, dt, settings.discretisation, {{}, settings.output_noise});
+  const auto model = filters::discretise(found.model.motion, measured.interval(), settings.discretisation,
+                                         {{}, settings.output_noise});
   BatchIdentification result;
   result.estimate = filters::estimate_batch(*model, start, directions, measured);
   const filters::BatchEstimate& estimate = result.estimate;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "experiments/continuum/amplitude_spectrum.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {

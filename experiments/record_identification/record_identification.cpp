@@ -98,10 +98,8 @@ ModalEstimate analyse(const Experiment& experiment, const Record& record, const 
 std::vector<filters::Gaussian> smoothed(const Experiment& experiment, const RecordIdentification& found,
                                         const filters::Measurements& measured) {
   const auto& settings = found.settings;
-  const double dt =
-      (measured.time[measured.size() - 1] - measured.time[0]) / static_cast<double>(measured.size() - 1);
-  const auto discrete =
-      filters::discretise(found.model.motion, dt, settings.discretisation, {{}, settings.output_noise});
+  const auto discrete = filters::discretise(found.model.motion, measured.interval(), settings.discretisation,
+                                            {{}, settings.output_noise});
   return filters::smooth(found.identification.run, *discrete, measured, experiment.smoother).beliefs;
 }
 

@@ -50,4 +50,14 @@ DecimatedSignal decimate(const Eigen::VectorXd& signal, double interval, int fac
   return result;
 }
 
+Eigen::MatrixXd decimate_channels(const Eigen::MatrixXd& channels, int factor) {
+  Eigen::MatrixXd kept;
+  for (Eigen::Index i = 0; i < channels.rows(); ++i) {
+    const Eigen::VectorXd samples = decimate(channels.row(i).transpose(), 1.0, factor).samples;
+    if (i == 0) kept.resize(channels.rows(), samples.size());
+    kept.row(i) = samples.transpose();
+  }
+  return kept;
+}
+
 }  // namespace beamid::experiments

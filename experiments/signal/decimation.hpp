@@ -29,4 +29,8 @@ struct DecimatedSignal {
 /// @throws std::invalid_argument when the factor is below 1 or the signal shorter than the kernel.
 DecimatedSignal decimate(const Eigen::VectorXd& signal, double interval, int factor);
 
+/// The same of every channel, a row each (p x N): what is kept of them (p x M). The first column lies
+/// 5 factor samples after the first one given, or is it for factor 1.
+Eigen::MatrixXd decimate_channels(const Eigen::MatrixXd& channels, int factor);
+
 }  // namespace beamid::experiments

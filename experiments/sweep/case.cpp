@@ -6,6 +6,7 @@
 
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/text_file.hpp"
+#include "experiments/input/words.hpp"
 #include "experiments/preparation/prepared_record.hpp"
 #include "experiments/record_comparison/comparison.hpp"
 

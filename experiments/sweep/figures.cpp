@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <charconv>
 
+#include "experiments/input/words.hpp"
 #include "experiments/sweep/report.hpp"
 
 namespace beamid::experiments {
@@ -100,9 +100,7 @@ Figure scattered(const SweepPlan& plan, const std::vector<SweepRow>& rows,
     std::vector<double> x, error;
     for (const SweepRow& row : rows) {
       if (row.parameter != parameter || row.status != "converged") continue;
-      double value = std::nan("");
-      std::from_chars(row.values[key].data(), row.values[key].data() + row.values[key].size(), value);
-      x.push_back(value);
+      x.push_back(number(row.values[key]).value_or(std::nan("")));
       error.push_back(100.0 * row.error / std::abs(row.truth));
     }
     Panel panel{

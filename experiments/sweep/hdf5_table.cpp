@@ -3,11 +3,12 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <functional>
 #include <memory>
 #include <stdexcept>
+
+#include "experiments/input/words.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -54,9 +55,7 @@ std::vector<Member> members_of(const SweepPlan& plan, const std::vector<SweepRow
                     [](const filters::OptionValue& value) { return std::holds_alternative<double>(value); });
     if (numeric)
       members.push_back(number(key.key, [j](const SweepRow& row) {
-        double value = std::nan("");
-        std::from_chars(row.values[j].data(), row.values[j].data() + row.values[j].size(), value);
-        return value;
+        return experiments::number(row.values[j]).value_or(std::nan(""));
       }));
     else
       members.push_back(text(

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
+#include "experiments/input/words.hpp"
 #include "filters/random.hpp"
 
 namespace beamid::experiments {
@@ -15,24 +15,6 @@ namespace {
 
 using filters::OptionValue;
 using Law = VariedKey::Law;
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = text.find(separator, begin);
-    parts.push_back(text.substr(begin, end - begin));
-    if (end == std::string::npos) return parts;
-    begin = end + 1;
-  }
-}
-
-std::optional<double> number(const std::string& text) {
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 [[noreturn]] void refuse(const std::string& text, const std::string& expected) {
   throw std::invalid_argument(fmt::format("'{}'; expected {}", text, expected));
@@ -156,13 +138,6 @@ std::vector<OptionValue> values_of(const SweepPlan& plan, std::size_t number) {
   for (std::size_t j = 0; j < values.size(); ++j)
     if (plan.varied[j].law != Law::grid) values[j] = drawn(plan.varied[j], stream);
   return values;
-}
-
-std::string word_of(const OptionValue& value) {
-  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-  if (const bool* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  return fmt::format("{}", fmt::join(std::get<std::vector<double>>(value), "/"));
 }
 
 void check(const SweepPlan& plan) {

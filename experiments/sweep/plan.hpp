@@ -46,9 +46,6 @@ std::vector<filters::OptionValue> values_of(const SweepPlan& plan, std::size_t n
 /// The same of a point of the grid; what is drawn stands as the text of its law.
 std::vector<filters::OptionValue> values_of_point(const SweepPlan& plan, std::size_t point);
 
-/// A value as the user would write it; a number as the shortest that reads back the same.
-std::string word_of(const filters::OptionValue& value);
-
 /// @throws std::invalid_argument when a key occurs twice, samples are asked for with nothing to draw or the
 /// other way round, or there are too many cases.
 void check(const SweepPlan& plan);

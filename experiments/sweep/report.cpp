@@ -7,6 +7,7 @@
 #include <set>
 
 #include "experiments/continuum/description.hpp"
+#include "experiments/input/words.hpp"
 #include "experiments/output/file.hpp"
 #include "experiments/sweep/hdf5_table.hpp"
 

@@ -18,15 +18,8 @@ class Decimate final : public PreparationStep {
   std::string apply(Record& record) const override {
     const double interval = even_interval(record);
     Record fewer = record;
-    for (Eigen::Index row = 0; row < record.samples.rows(); ++row) {
-      const DecimatedSignal kept = decimate(record.samples.row(row).transpose(), interval, factor_);
-      const Eigen::Index count = kept.samples.size(), half = kept.kernel.size() / 2;
-      if (row == 0) {
-        fewer.samples.resize(record.samples.rows(), count);
-        fewer.time = record.time(Eigen::seqN(half, count, factor_));
-      }
-      fewer.samples.row(row) = kept.samples.transpose();
-    }
+    fewer.samples = decimate_channels(record.samples, factor_);
+    fewer.time = record.time(Eigen::seqN(5 * factor_, fewer.samples.cols(), factor_));
     const double rate = 1 / (factor_ * interval);
     record = std::move(fewer);
     return fmt::format(

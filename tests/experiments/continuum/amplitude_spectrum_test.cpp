@@ -1,5 +1,5 @@
 // Oracle: the amplitude a sine is made with.
-#include "experiments/continuum/amplitude_spectrum.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "experiments/continuum/amplitude_spectrum.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 
 #include <bit>
 #include <cmath>
