@@ -63,19 +63,13 @@ VectorXd elastic(const fem::Modes& modes) {
   return modes.angular_frequency.tail(modes.size() - modes.rigid);
 }
 
-// The stiffness of all of it moves frequencies only.
-bool shapes_depend_on(const std::vector<Unknown>& properties) {
-  return properties.size() > 1 ||
-         (properties.size() == 1 && (properties[0].quantity != "bending_stiffness" || properties[0].region));
-}
-
 // Whether the lowest modes of the mesh tell its motion: nothing couples them, and no moving base, whose force
 // depends on the masses asked about, drives them. A force moves those above, too: the mesh's own coordinates
 // know them, but not what happens to the start when shapes change.
 bool moves_in_modes(const fem::ParametricSystem& equations, const fem::Modes& modes,
-                    const MotionDescription& description, const std::vector<Unknown>& properties) {
+                    const MotionDescription& description) {
   return description.base < 0 && modes.rigid == 0 && equations.system.damping.nonZeros() == 0 &&
-         (description.forces.empty() || shapes_depend_on(properties));
+         (description.forces.empty() || !keeps_mode_shapes(equations));
 }
 
 // Forces read as outputs, below those observed: phi^T E of a mode.
@@ -145,7 +139,7 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
     model->mode_shapes.setIdentity(modes.size(), modes.size());
     places = layout(description, modes.size());
     model->motion = std::make_shared<ReducedMotion>(std::move(small), std::move(description), rows, "mode");
-  } else if (in_modes && moves_in_modes(equations, modes, description, properties)) {
+  } else if (in_modes && moves_in_modes(equations, modes, description)) {
     describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
     model->mode_shapes.setIdentity(modes.size(), modes.size());
     places = layout(description, modes.size());

@@ -93,16 +93,20 @@ std::unique_ptr<filters::DiscreteModel> ContinuumMotion::structured(double dt, c
                               " coordinates; expected " + instead);
 }
 
-bool keeps_mode_shapes(const fem::ParametricSystem& equations, const MotionDescription& description) {
-  const auto is_zero = [](const fem::SparseMatrix& matrix) {
-    return matrix.nonZeros() == 0 || matrix.norm() == 0.0;
-  };
-  if (!description.forces.empty() || !equations.system.nonlinear_forces.empty() ||
-      !is_zero(equations.system.damping))
-    return false;
+namespace {
+
+bool is_zero(const fem::SparseMatrix& matrix) {
+  return matrix.nonZeros() == 0 || matrix.norm() == 0.0;
+}
+
+}  // namespace
+
+bool keeps_mode_shapes(const fem::ParametricSystem& equations) {
   const fem::SparseMatrix& rigidity = equations.system.stiffness.rigidity;
   for (const auto& derivative : equations.derivatives) {
     if (!is_zero(derivative.mass)) return false;
+    if (derivative.rigidity.rows() != rigidity.rows())
+      return false;  // an axial load, about none: other strains
     // s with D_j = s D, to the rounding of both
     const double share = derivative.rigidity.cwiseProduct(rigidity).sum() / rigidity.squaredNorm();
     constexpr double rounding = 1e-12;
@@ -111,6 +115,11 @@ bool keeps_mode_shapes(const fem::ParametricSystem& equations, const MotionDescr
       return false;
   }
   return true;
+}
+
+bool keeps_mode_shapes(const fem::ParametricSystem& equations, const MotionDescription& description) {
+  return description.forces.empty() && equations.system.nonlinear_forces.empty() &&
+         is_zero(equations.system.damping) && keeps_mode_shapes(equations);
 }
 
 }  // namespace beamid::experiments

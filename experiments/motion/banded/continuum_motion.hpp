@@ -54,10 +54,14 @@ class ContinuumMotion final : public filters::ContinuousModel {
   std::shared_ptr<const Parts> parts_;
 };
 
-/// Whether the mode shapes of a beam stay what they are for all values of the unknowns: then motion that
-/// starts in k modes never leaves them, and the reduction to these modes (`modal_truncation`) is no
-/// approximation. True of damping ratios, alpha and beta, and of a stiffness that scales all of K,
-/// K_j = s K(p_0) with M_j = 0, without dashpots, nonlinear forces, or inputs (which reach all modes).
+/// Whether the shapes of K - omega^2 M stay what they are for all values of its parameters: each scales all
+/// of K, K_j = s K(p_0), with M_j = 0.
+bool keeps_mode_shapes(const fem::ParametricSystem& equations);
+
+/// Whether a beam's motion keeps its mode shapes for all values of the unknowns: then motion that starts in k
+/// modes never leaves them, and the reduction to these modes (`modal_truncation`) is no approximation. True
+/// of damping ratios, alpha and beta, and of a stiffness that scales all of K, without dashpots, nonlinear
+/// forces, or inputs (which reach all modes).
 bool keeps_mode_shapes(const fem::ParametricSystem& equations, const MotionDescription& description);
 
 }  // namespace beamid::experiments
