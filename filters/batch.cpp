@@ -85,6 +85,7 @@ std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vect
                      process.data(),
                      trials[0].outputs.cols(),
                      start == Start::one_interval_before,
+                     kind.forward_euler,
                      {}};
     std::copy(kind.observed.begin(), kind.observed.end(), group.observed);
     const std::size_t used = std::min(lanes, trials.size() - first);

@@ -11,13 +11,15 @@
 namespace beamid::filters {
 
 /// The damped oscillator M x'' + C x' + K x = 0 of known mass, its state [x, v, K, C] in [m, m/s, N/m, N
-/// s/m], sampled exactly (algorithms/oscillator.hpp).
+/// s/m], sampled exactly (algorithms/oscillator.hpp) or by explicit Euler steps
+/// (algorithms/euler_oscillator.hpp).
 struct OscillatorTrials {
   double mass = 1.0;               ///< M [kg]
   double interval = 1.0;           ///< between samples [s]
   std::vector<Quantity> observed;  ///< the outputs, in their order (p = 1, 2 or 3)
   Eigen::MatrixXd output_noise;    ///< R (p x p)
   Eigen::MatrixXd process_noise;   ///< Q per step (4 x 4); empty: none
+  bool forward_euler = false;      ///< the scheme of that name instead of `exponential`
 };
 
 /// One record, and what was believed before it.

@@ -116,6 +116,10 @@ class Oscillator {
   const Matrix<Scalar, 4>& process_noise_root() const { return process_noise_root_; }
   const Matrix<Scalar, P>& output_noise_root() const { return output_noise_root_; }
 
+ protected:
+  double step() const { return step_; }
+  double per_mass() const { return per_mass_; }
+
  private:
   template <class Number>
   struct Motion {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "filters/exact_draws.hpp"
+#include "filters/normal_noise.hpp"
 
 namespace beamid::filters {
 namespace {
@@ -41,6 +42,16 @@ TEST(RandomStream, IsNormalUniformAndRepeatable) {
   EXPECT_LT(largest, 1.0);
   EXPECT_EQ(RandomStream(7).normal(3, 5), RandomStream(7).normal(3, 5));
   EXPECT_NE(RandomStream(7).normal(3, 5), RandomStream(8).normal(3, 5));
+}
+
+// Oracle: the same numbers one by one. Lengths beside those that vectors and tables have.
+TEST(NormalNoise, IsThatOfTheStreamToRounding) {
+  for (const Index count : {1, 2, 255, 256, 257, 1001}) {
+    const VectorXd found = normal_noise(count, 7, (std::uint64_t{3} << 32) + 5);
+    const VectorXd expected = RandomStream(7, (std::uint64_t{3} << 32) + 5).normal(count, 1);
+    ASSERT_EQ(found.size(), count);
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 5e-15) << count;
+  }
 }
 
 TEST(ExactDraws, HaveTheMomentsToRounding) {
