@@ -7,9 +7,9 @@
 #include "apps/deliver.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/input/read_experiment.hpp"
-#include "experiments/input/read_record.hpp"
 #include "experiments/modal_study/merged_modes.hpp"
 #include "experiments/model_check/report.hpp"
+#include "experiments/preparation/preparation_report.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -75,13 +75,22 @@ ModelCheckSettings check_settings(const options::variables_map& values) {
   return settings;
 }
 
+/// A record as it was taken: what its preparation costs is told with the results.
+struct UsedRecord {
+  std::string name;
+  const RecordFormat* format;
+  PreparedRecord prepared;
+};
+
 /// What the records of one beam show, merged.
-CheckedStructure structure_of(const Request& request, const ModalStudySettings& settings) {
+CheckedStructure structure_of(const Request& request, const ModalStudySettings& settings,
+                              std::vector<UsedRecord>& used) {
   std::vector<RecordModes> found;
   for (const fs::path& file : request.records) {
-    const Record record = read_record(file, request.experiment.format);
+    const RecordFormat& format = request.experiment.format;
+    used.push_back({file.filename().string(), &format, read_and_prepare(file, format)});
     try {
-      found.push_back(find_modes(file.filename().string(), record,
+      found.push_back(find_modes(used.back().name, used.back().prepared.record,
                                  request.experiment.format.window.has_value(), settings));
     } catch (const std::invalid_argument& error) {
       throw InputError({file.string()}, error.what());
@@ -132,9 +141,12 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   const std::vector<Request> requests = requests_of(values);
   deliver(values, [&] {
     std::vector<CheckedStructure> structures;
-    for (const Request& request : requests) structures.push_back(structure_of(request, modal));
+    std::vector<UsedRecord> used;
+    for (const Request& request : requests) structures.push_back(structure_of(request, modal, used));
     try {
-      return report(check_model(std::move(structures), settings));
+      Results results = report(check_model(std::move(structures), settings));
+      for (const UsedRecord& one : used) tell_cost(results, one.name, one.prepared, *one.format);
+      return results;
     } catch (const std::invalid_argument& error) {
       throw InputError({requests[0].config.string()}, error.what());
     }

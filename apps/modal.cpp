@@ -7,29 +7,28 @@
 #include "apps/deliver.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/input/choice_text.hpp"
-#include "experiments/input/read_record.hpp"
 #include "experiments/modal_study/amplitude_report.hpp"
 #include "experiments/modal_study/hammer_study.hpp"
 #include "experiments/modal_study/mass_report.hpp"
 #include "experiments/modal_study/report.hpp"
+#include "experiments/preparation/preparation_report.hpp"
 
 namespace beamid::apps {
 namespace {
 
 using namespace experiments;
 
-constexpr int most_records = 20;
-
 options::options_description modal_options() {
   options::options_description described("Options");
   described.add_options()  //
       ("method", options::value<std::string>()->value_name("NAME[:OPTION=VALUE,...]")->default_value("era"),
-       "era for free decays, ssi_cov for random vibration, frf_lscf for hammer hits with a measured force "
-       "(beamid list modal_methods)")  //
+       "era for free decays, ssi_cov for random vibration, frf_lscf for hammer hits with a measured force; "
+       "at the peaks of the spectrum: damped_sine, hilbert_envelope, logarithmic_decrement, half_power, "
+       "frf_half_power (beamid list modal_methods)")  //
       ("band", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
        "frequencies to look at [Hz]; else all where the spectrum shows something; after RECORD")  //
       ("order", options::value<double>()->value_name("N")->default_value(30), "largest model order, 4 to 80")(
-          "modes", options::value<double>()->value_name("N"), "the N strongest modes only")  //
+          "modes", options::value<double>()->value_name("N"), "the N strongest modes only")             //
       ("amplitude", "frequency and damping ratio of every mode against its amplitude along the decay")  //
       ("polish", "refine a free decay's modes by least squares, all together (the default for era)")(
           "no-polish", "take them as the method finds them");
@@ -62,17 +61,6 @@ ModalStudySettings settings_of(const options::variables_map& values) {
   return settings;
 }
 
-/// The records named on the command line, or the configuration's one.
-std::vector<RecordRequest> requests_of(const options::variables_map& values,
-                                       const std::vector<std::string>& places) {
-  std::vector<RecordRequest> requests{record_request(values, "modal")};
-  for (std::size_t k = 1; k < places.size() && values.count(places[k]); ++k) {
-    requests.push_back(requests.front());
-    requests.back().file = values[places[k]].as<std::string>();
-  }
-  return requests;
-}
-
 void check_same_channels(const std::vector<Record>& records, const std::vector<RecordRequest>& requests) {
   for (std::size_t r = 1; r < records.size(); ++r) {
     bool same = records[r].channels.size() == records[0].channels.size();
@@ -87,60 +75,75 @@ void check_same_channels(const std::vector<Record>& records, const std::vector<R
   }
 }
 
+/// Modes of the frequency responses of all hits together.
+Results hammer_results(const std::vector<std::string>& names, const std::vector<Record>& records,
+                       const ModalStudySettings& settings) {
+  const HammerStudy study = study_hits(names, records, settings);
+  Results results = report(settings, study);
+  std::vector<std::complex<double>> rates;
+  for (const HammerMode& mode : study.modes) rates.push_back(mode.pole.rate);
+  tell_masses(names, records, std::vector(records.size(), rates), results);
+  return results;
+}
+
+/// Modes of each record, and those of all.
+Results decay_results(const std::vector<RecordRequest>& requests, const std::vector<std::string>& names,
+                      const std::vector<Record>& records, const ModalStudySettings& settings,
+                      bool amplitude) {
+  std::vector<RecordModes> found;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    try {
+      found.push_back(find_modes(names[r], records[r], requests[r].format.window.has_value(), settings));
+    } catch (const std::invalid_argument& error) {
+      throw InputError({requests[r].file.string()}, error.what());
+    }
+  }
+  Results results = report(settings, found);
+  std::vector<std::vector<std::complex<double>>> rates;
+  for (const RecordModes& one : found) {
+    rates.emplace_back();
+    for (const ModeEstimate& mode : one.modes) rates.back().push_back(mode.pole.rate);
+  }
+  if (found[0].free_decay) tell_masses(names, records, rates, results);
+  try {
+    if (amplitude) tell_amplitude(found, merge_modes(found), results);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("modal: ") + error.what());
+  }
+  return results;
+}
+
 int run(const Command& command, const std::vector<std::string>& arguments) {
   options::options_description described = modal_options();
   described.add(record_options());
   described.add(output_options());
-  std::vector<std::string> places{"record"};
-  for (int k = 2; k <= most_records; ++k) places.push_back(fmt::format("record_{}", k));
   options::variables_map values;
-  if (!parse(command, arguments, described, places, values)) return 0;
+  if (!parse(command, arguments, described, {"record..."}, values)) return 0;
   const ModalStudySettings settings = settings_of(values);
-  const std::vector<RecordRequest> requests = requests_of(values, places);
+  const std::vector<RecordRequest> requests = record_requests(values, command.name);
+  const bool hammer =
+      modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response);
+  if (hammer && values.count("amplitude"))
+    throw UsageError("modal: --amplitude follows a free decay; take --method era for it");
   deliver(values, [&] {
+    std::vector<PreparedRecord> prepared;
     std::vector<Record> records;
-    for (const RecordRequest& request : requests)
-      records.push_back(read_record(request.file, request.format));
-    check_same_channels(records, requests);
-    if (modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response)) {
-      if (values.count("amplitude"))
-        throw UsageError("modal: --amplitude follows a free decay; take --method era for it");
-      std::vector<std::string> names;
-      for (const RecordRequest& request : requests) names.push_back(request.file.filename().string());
-      try {
-        const HammerStudy study = study_hits(names, records, settings);
-        Results results = report(settings, study);
-        std::vector<std::complex<double>> rates;
-        for (const HammerMode& mode : study.modes) rates.push_back(mode.pole.rate);
-        tell_masses(names, records, std::vector(records.size(), rates), results);
-        return results;
-      } catch (const std::invalid_argument& error) {
-        throw InputError({requests[0].file.string()}, error.what());
-      }
-    }
-    std::vector<RecordModes> found;
-    for (std::size_t r = 0; r < records.size(); ++r) {
-      try {
-        found.push_back(find_modes(requests[r].file.filename().string(), records[r],
-                                   requests[r].format.window.has_value(), settings));
-      } catch (const std::invalid_argument& error) {
-        throw InputError({requests[r].file.string()}, error.what());
-      }
-    }
-    Results results = report(settings, found);
     std::vector<std::string> names;
-    std::vector<std::vector<std::complex<double>>> rates;
-    for (const RecordModes& one : found) {
-      names.push_back(one.name);
-      rates.emplace_back();
-      for (const ModeEstimate& mode : one.modes) rates.back().push_back(mode.pole.rate);
+    for (const RecordRequest& request : requests) {
+      prepared.push_back(read_and_prepare(request.file, request.format));
+      records.push_back(prepared.back().record);
+      names.push_back(request.file.filename().string());
     }
-    if (found[0].free_decay) tell_masses(names, records, rates, results);
+    check_same_channels(records, requests);
+    Results results;
     try {
-      if (values.count("amplitude")) tell_amplitude(found, merge_modes(found), results);
+      results = hammer ? hammer_results(names, records, settings)
+                       : decay_results(requests, names, records, settings, values.count("amplitude") > 0);
     } catch (const std::invalid_argument& error) {
-      throw UsageError(std::string("modal: ") + error.what());
+      throw InputError({requests[0].file.string()}, error.what());
     }
+    for (std::size_t r = 0; r < records.size(); ++r)
+      tell_cost(results, names[r], prepared[r], requests[r].format);
     return results;
   });
   return 0;
@@ -156,6 +159,7 @@ Command modal_command() {
           "  beamid modal export.txt --column 3 --quantity acceleration --unit g --rate 1651.6129\n"
           "  beamid modal wind.csv --method ssi_cov --order 40 --out results\n"
           "  beamid modal tip_acceleration.csv --amplitude --out results\n"
+          "  beamid modal --config cantilever.toml --method half_power --out results\n"
           "  beamid modal hits.csv more_hits.csv --method frf_lscf --band 5 200 --out results\n",
           run};
 }

@@ -147,7 +147,7 @@ options::options_description record_options() {
   return described;
 }
 
-RecordRequest record_request(const options::variables_map& values, const std::string& command) {
+std::vector<RecordRequest> record_requests(const options::variables_map& values, const std::string& command) {
   RecordRequest request;
   if (values.count("config")) {
     const fs::path config = values["config"].as<std::string>();
@@ -155,12 +155,25 @@ RecordRequest record_request(const options::variables_map& values, const std::st
     request.format = section.format;
     if (section.file) request.file = config.parent_path() / *section.file;
   }
-  if (values.count("record")) request.file = values["record"].as<std::string>();
+  take_words(values, command, request.format);
+  if (values.count("record")) {
+    std::vector<RecordRequest> requests;
+    for (const std::string& word : words_of(values, "record")) requests.push_back({word, request.format});
+    return requests;
+  }
   if (request.file.empty())
     throw UsageError(command + ": which RECORD?" +
                      (values.count("config") ? " The experiment file names none under [record]" : ""));
-  take_words(values, command, request.format);
-  return request;
+  return {request};
+}
+
+RecordRequest record_request(const options::variables_map& values, const std::string& command) {
+  if (!values.count("record")) return record_requests(values, command).front();
+  options::variables_map one = values;
+  one.erase("record");
+  const Words word{values["record"].as<std::string>()};
+  one.insert({"record", options::variable_value(word, false)});
+  return record_requests(one, command).front();
 }
 
 }  // namespace beamid::apps

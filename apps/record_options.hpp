@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "apps/command.hpp"
 #include "experiments/experiment.hpp"
@@ -27,5 +28,9 @@ struct RecordRequest {
 /// @param command its name, for messages.
 /// @throws UsageError on words that make no sense; InputError on the --config file.
 RecordRequest record_request(const options::variables_map& values, const std::string& command);
+
+/// The same of a command that takes several, parsed with the positional words "record...": one request for
+/// each word, all read alike; without a word that of the configuration's `file`.
+std::vector<RecordRequest> record_requests(const options::variables_map& values, const std::string& command);
 
 }  // namespace beamid::apps

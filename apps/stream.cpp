@@ -1,4 +1,6 @@
 // beamid stream: samples on standard input, stiffness and damping after each on standard output.
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <iostream>
 
@@ -7,10 +9,11 @@
 #include "experiments/failure_response.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_experiment.hpp"
-#include "experiments/input/read_record.hpp"
+#include "experiments/input/spelling.hpp"
 #include "experiments/input/text_file.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/output/file.hpp"
+#include "experiments/preparation/prepared_record.hpp"
 #include "experiments/streaming/sample_line.hpp"
 #include "experiments/streaming/streamed_identification.hpp"
 
@@ -22,13 +25,23 @@ using namespace experiments;
 
 Record earlier_record(const options::variables_map& values, const Experiment& experiment,
                       const fs::path& config) {
-  if (values.count("like")) return read_record(values["like"].as<std::string>(), experiment.format);
+  if (values.count("like")) return prepared_record(values["like"].as<std::string>(), experiment.format);
   if (experiment.record_file)
-    return read_record(config.parent_path() / *experiment.record_file, experiment.format);
+    return prepared_record(config.parent_path() / *experiment.record_file, experiment.format);
   throw UsageError(
       "stream: an earlier record of the rig tells noise, amplitude and sampling interval: --like "
       "RECORD, or 'file' under [record] in " +
       config.string());
+}
+
+/// Steps look ahead or wait for the record's end: no sample can be taken through them as it arrives.
+void tell_preparation(const Experiment& experiment, const Record& earlier) {
+  const auto& steps = experiment.format.preparation;
+  if (steps.empty()) return;
+  std::cerr << fmt::format(
+      "The earlier record was prepared ({} step{} of [[record.prepare]]); samples are taken as they come, "
+      "and expected as it is now: {}, one each {:.6g} s.\n",
+      steps.size(), steps.size() > 1 ? "s" : "", joined(earlier.channel_names()), earlier.interval());
 }
 
 void resume(StreamedIdentification& stream, const std::string& file) {
@@ -99,6 +112,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
                      "beamid stream follows model sdof without [[parameters]] in a free decay");
   StreamedIdentification stream =
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
+  tell_preparation(experiment, earlier);
   if (values.count("resume")) resume(stream, values["resume"].as<std::string>());
   follow(stream);
   if (!values.count("save-state")) return 0;
@@ -120,7 +134,9 @@ Command stream_command() {
           "A sample is a line 'time,output[,output...]', in seconds and SI units, the outputs in the order "
           "of the\n"
           "record's channels; an output that is empty or nan was not measured. One line of estimates and\n"
-          "standard deviations follows each, from one pass of the filter.\n",
+          "standard deviations follows each, from one pass of the filter. [[record.prepare]] prepares the "
+          "earlier\n"
+          "record; samples are expected to arrive as it leaves them.\n",
           run};
 }
 

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/modal_analysis/envelope_line.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -25,35 +27,10 @@ VectorXd kaiser(Index half) {
   return kernel / kernel.sum();
 }
 
-/// Slope of a line through log z, and where it belongs.
-struct Line {
-  Complex slope;
-  double time = 0, log_amplitude = 0, deviation = 0;  ///< of either part of the slope
-};
-
-Line line_through(const VectorXd& time, const VectorXcd& logarithm, double freedom_lost_per_sample) {
-  const VectorXd weight = (2 * (logarithm.real().array() - logarithm.real().maxCoeff())).exp();
-  const double sum = weight.sum();
-  Line line;
-  line.time = weight.dot(time) / sum;
-  const Complex mean = (weight.cast<Complex>().array() * logarithm.array()).sum() / sum;
-  line.log_amplitude = mean.real();
-  const VectorXd from_mean = time.array() - line.time;
-  const double moment = (weight.array() * from_mean.array().square()).sum();
-  line.slope = ((weight.array() * from_mean.array()).cast<Complex>() * logarithm.array()).sum() / moment;
-  const VectorXcd left = logarithm.array() - mean - line.slope * from_mean.array().cast<Complex>();
-  const double count = static_cast<double>(time.size());
-  const double independent = std::max(count * freedom_lost_per_sample, 2.5);  // two go into the line
-  const double variance =
-      (weight.array() * left.array().abs2()).sum() / (2 * count) * independent / (independent - 2);
-  line.deviation = std::sqrt(variance / (freedom_lost_per_sample * moment));
-  return line;
-}
-
 }  // namespace
 
 Demodulated demodulate(const VectorXd& signal, double interval, Complex rate,
-                       const std::vector<Complex>& others) {
+                       const std::vector<Complex>& others, double fewest_kernels) {
   const double w = rate.imag();
   double apart = w;
   for (const Complex& other : others)
@@ -61,11 +38,11 @@ Demodulated demodulate(const VectorXd& signal, double interval, Complex rate,
   constexpr double first_zero = 2.06;  // of the Kaiser window's transform, times its length
   const auto half = static_cast<Index>(std::ceil(0.5 * first_zero * 2 * pi / (apart * interval)));
   const Index length = 2 * half + 1;
-  if (signal.size() < 4 * length)
+  if (static_cast<double>(signal.size()) < fewest_kernels * static_cast<double>(length))
     throw std::invalid_argument(
         fmt::format("{:.3g} s of the mode at {:.4g} Hz, {:.3g} Hz from the next; expected {:.3g} s at least",
                     static_cast<double>(signal.size()) * interval, w / (2 * pi), apart / (2 * pi),
-                    4 * static_cast<double>(length) * interval));
+                    fewest_kernels * static_cast<double>(length) * interval));
   const VectorXd kernel = kaiser(half);
   VectorXcd turning(length);
   Complex gain = 0;
@@ -90,13 +67,8 @@ std::vector<AmplitudePoint> amplitude_dependence(const VectorXd& signal, double 
   const Demodulated found = demodulate(signal, interval, rate, others);
   const Index count = found.values.size();
   VectorXd time(count);
-  VectorXcd logarithm(count);
-  double turned = 0;
-  for (Index m = 0; m < count; ++m) {
-    time[m] = found.start + static_cast<double>(m) * found.interval;
-    if (m > 0) turned += std::arg(found.values[m] * std::conj(found.values[m - 1]));
-    logarithm[m] = {std::log(std::max(std::abs(found.values[m]), 1e-300)), turned};
-  }
+  for (Index m = 0; m < count; ++m) time[m] = found.start + static_cast<double>(m) * found.interval;
+  const VectorXcd logarithm = unwrapped_logarithm(found.values);
   constexpr double fall = 0.35, fewest_kernels = 4.5;
   const double wanted =
       settings.window > 0 ? settings.window
@@ -104,8 +76,8 @@ std::vector<AmplitudePoint> amplitude_dependence(const VectorXd& signal, double 
   const Index length = std::clamp<Index>(static_cast<Index>(std::lround(wanted / found.interval)), 6, count);
   std::vector<AmplitudePoint> points;
   for (Index begin = 0; begin + length <= count; begin += std::max<Index>(1, length / 2)) {
-    const Line line = line_through(time.segment(begin, length), logarithm.segment(begin, length),
-                                   found.interval / found.correlation);
+    const EnvelopeLine line = line_through(time.segment(begin, length), logarithm.segment(begin, length),
+                                           found.interval / found.correlation);
     const double damping = -line.slope.real(), turn = rate.imag() + line.slope.imag();
     const double w = std::hypot(damping, turn);
     AmplitudePoint point{line.time,    2 * std::exp(line.log_amplitude),

@@ -32,9 +32,9 @@ struct Demodulated {
 };
 
 /// @param signal (N) @param rate of the mode [rad/s] @param others rates of the other modes
-/// @throws std::invalid_argument when the signal is shorter than four kernels.
+/// @throws std::invalid_argument when the signal is shorter than `fewest_kernels` kernels.
 Demodulated demodulate(const Eigen::VectorXd& signal, double interval, std::complex<double> rate,
-                       const std::vector<std::complex<double>>& others);
+                       const std::vector<std::complex<double>>& others, double fewest_kernels = 4);
 
 /// Lines through log z over windows, weighted by |z|^2 (the inverse variance of log z): the real part's slope
 /// is minus the damping rate, the imaginary part's the distance from w. The point belongs to the weighted

@@ -108,6 +108,8 @@ DecrementEstimate logarithmic_decrement(const Eigen::VectorXd& signal, double in
       2 * shrinking.slope_standard_deviation * turn * turn / (hypotenuse * hypotenuse * hypotenuse);
   const double damped_frequency_hz = 0.5 / (timing.slope * interval);
   estimate.frequency_hz = damped_frequency_hz * hypotenuse / turn;
+  estimate.frequency_standard_deviation_hz =
+      estimate.frequency_hz * timing.slope_standard_deviation / timing.slope;
   estimate.peaks = static_cast<int>(peaks.size());
   return estimate;
 }

@@ -11,7 +11,8 @@ struct DecrementSettings {
 };
 
 struct DecrementEstimate {
-  double frequency_hz = 0;  ///< undamped
+  double frequency_hz = 0;                     ///< undamped
+  double frequency_standard_deviation_hz = 0;  ///< from the scatter of the peaks' times about the line
   double damping_ratio = 0;
   double damping_ratio_standard_deviation = 0;  ///< from the scatter of the swings about the line
   double decrement = 0;  ///< per cycle, the natural logarithm of the ratio of successive peaks

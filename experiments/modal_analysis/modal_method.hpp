@@ -10,6 +10,12 @@
 
 namespace beamid::experiments {
 
+/// A pole that is no mode, and why.
+struct RefusedPole {
+  Pole pole;
+  std::string reason;
+};
+
 /// What a method makes of a record.
 struct PoleSearch {
   std::vector<OrderPoles> orders;   ///< by rising order
@@ -17,6 +23,8 @@ struct PoleSearch {
   /// (p x L) what the modes are to reproduce, first column at t = 0: the record itself where it is a free
   /// decay, else the autocorrelations of its channels, whose square roots are amplitudes.
   Eigen::MatrixXd decays;
+  std::vector<RefusedPole> refused = {};  ///< of the contract mode_by_mode
+  std::vector<std::string> remarks = {};  ///< sentences
 };
 
 /// One method, ready to run with its options.
@@ -39,6 +47,8 @@ class ModalMethod {
 /// Contracts of methods.
 namespace contract {
 inline constexpr const char* free_decay = "free_decay";  ///< the record is one, and may be fitted as such
+/// There are no orders to compare: the poles of the only one, 0, are the modes.
+inline constexpr const char* mode_by_mode = "mode_by_mode";
 inline constexpr const char* frequency_response = "frequency_response";  ///< a measured force is needed
 }  // namespace contract
 

@@ -140,9 +140,10 @@ Figure singular_values(const RecordModes& found, const std::string& suffix) {
 }  // namespace
 
 std::vector<Figure> figures(const RecordModes& found, const std::string& suffix) {
-  std::vector<Figure> result{diagram(found, suffix)};
+  std::vector<Figure> result;
+  if (!found.mode_by_mode) result.push_back(diagram(found, suffix));
   if (found.reproduced.size() > 0) result.push_back(reproduction(found, suffix));
-  if (!found.search.orders.empty()) result.push_back(singular_values(found, suffix));
+  if (found.search.singular_values.size() > 0) result.push_back(singular_values(found, suffix));
   return result;
 }
 

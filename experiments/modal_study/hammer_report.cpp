@@ -38,7 +38,9 @@ Table mode_table(const HammerStudy& study) {
                           mode.pole.frequency_deviation_hz,
                           100 * mode.pole.damping_ratio(),
                           100 * mode.pole.damping_ratio_deviation,
-                          fmt::format("{} of {}", mode.orders.size(), study.orders.size())};
+                          mode.orders.empty()
+                              ? std::string("its peak")
+                              : fmt::format("{} of {}", mode.orders.size(), study.orders.size())};
     for (std::size_t o = 0; o < mode.mass.size(); ++o)
       row.insert(row.end(), {mode.mass[o], mode.deviation[o], mode.phase[o] * 180 / 3.14159265358979});
     table.row(std::move(row));
@@ -56,6 +58,7 @@ Json values(const HammerStudy& study) {
             {"hits", study.responses.averages},
             {"block_s", study.responses.duration},
             {"window_rate_per_s", study.responses.window_rate},
+            {"response_error_percent", study.modes.empty() ? Json(nullptr) : Json(100 * study.misfit)},
             {"band_hz", {study.band_hz.first, study.band_hz.second}}};
   json["modes"] = Json::array();
   for (const HammerMode& mode : study.modes) {
@@ -160,11 +163,12 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   for (const std::string& name : study.names) names += (names.empty() ? "" : ", ") + name;
   results.heading(names);
   std::string text = fmt::format(
-      "Frequency responses of {} hit{} of {:.4g} s, {}. Band {:.4g} to {:.4g} Hz, {} lines. Method {}, model "
-      "orders 2 to {}",
+      "Frequency responses of {} hit{} of {:.4g} s, {}. Band {:.4g} to {:.4g} Hz, {} lines. Method {}",
       study.responses.averages, study.responses.averages > 1 ? "s" : "", study.responses.duration,
       study.estimator == "h2" ? "H2" : "H1", study.band_hz.first, study.band_hz.second, study.lines,
-      settings.method.name, study.orders.empty() ? 0 : study.orders.back().order);
+      settings.method.name);
+  if (!study.orders.empty() && study.orders.back().order > 0)
+    text += fmt::format(", model orders 2 to {}", study.orders.back().order);
   if (study.responses.window_rate > 0)
     text += fmt::format(
         ". The exponential window adds {:.4g} 1/s to every damping rate ({:.3g} % to a damping ratio at "
@@ -173,6 +177,8 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
         study.responses.window_rate,
         study.modes.empty() ? 0 : 100 * study.responses.window_rate / std::abs(study.modes[0].pole.rate),
         study.modes.empty() ? 0 : study.modes[0].pole.frequency_hz());
+  if (!study.modes.empty())
+    text += fmt::format(". The modes leave {:.2g} % of the responses", 100 * study.misfit);
   results.paragraph(text + ".");
   for (const std::string& remark : study.remarks) results.paragraph(remark);
   for (const std::string& remark : study.responses.remarks) results.paragraph(remark);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/modal_study/hammer_modes.hpp"
 #include "experiments/modal_study/signal_band.hpp"
 
 namespace beamid::experiments {
@@ -97,32 +98,15 @@ HammerStudy study_hits(const std::vector<std::string>& names, const std::vector<
     throw std::invalid_argument(fmt::format("{} lines of {:.3g} Hz in the band; expected 9 at least",
                                             study.lines, 1 / study.responses.duration));
   study.orders = method->search_responses(lines, measured, shift, order);
-  StabilisationSettings stabilisation = settings.stabilisation;
-  stabilisation.band_hz = study.band_hz;
-  stabilisation.resolution_hz = 1 / study.responses.duration;
-  study.stabilisation = stabilise(study.orders, stabilisation);
-  std::vector<std::complex<double>> rates;
-  for (const PoleCluster& cluster : study.stabilisation.modes) {
-    rates.push_back(cluster.pole.rate);
-    study.modes.push_back({cluster.pole, cluster.orders, {}, {}, {}});
+  const bool mode_by_mode = registry.find(settings.method.name).contracts.contains(contract::mode_by_mode);
+  if (mode_by_mode) {
+    for (const Pole& pole : study.orders.back().poles) study.modes.push_back({pole, {}, {}, {}, {}});
+  } else {
+    choose_modes(settings.stabilisation, lines, measured, study);
   }
-  if (rates.empty()) return study;
-  const double correlated = std::max(1.0, 0.5 * shift * study.responses.duration);
-  study.fit = fit_residues(lines, measured, shift, study.power, rates);
-  if (settings.polish.value_or(true)) {
-    try {
-      ResidueFit refined = refine_poles(lines, measured, shift, study.power, rates, correlated);
-      for (std::size_t m = 0; m < rates.size(); ++m)
-        if (!(refined.rates[m].real() < 0 && std::abs(refined.rates[m].imag() / rates[m].imag() - 1) < 0.05))
-          throw std::runtime_error(
-              fmt::format("the pole at {:.4g} Hz runs away", study.modes[m].pole.frequency_hz()));
-      study.fit = std::move(refined);
-    } catch (const std::runtime_error& error) {
-      study.warnings.push_back(std::string("Poles are as the stabilisation diagram gives them, without "
-                                           "deviations: ") +
-                               error.what() + ".");
-    }
-  }
+  if (study.modes.empty()) return study;
+  fit_modes(lines, measured, settings.polish.value_or(!mode_by_mode), study);
+  study.misfit = (measured - study.fit.reproduced).norm() / measured.norm();
   add_modes(study);
   return study;
 }

@@ -14,7 +14,7 @@ namespace beamid::experiments {
 /// A mode of frequency responses. Deviations are NaN where unknown.
 struct HammerMode {
   Pole pole;                 ///< shape: residues, scaled to 1 at the largest
-  std::vector<int> orders;   ///< at which it was stable
+  std::vector<int> orders;   ///< at which it was stable; none for one taken from its peak
   std::vector<double> mass;  ///< (p) 1 / (2 w_d |R|) [kg]: the modal mass where channel o is the hit's place
   std::vector<double> deviation;  ///< (p) [kg]
   std::vector<double> phase;  ///< (p) of 2 i w_d R: 0 or pi for a real mode, pi where the sensor is opposed
@@ -31,6 +31,7 @@ struct HammerStudy {
   std::vector<OrderPoles> orders;
   Stabilisation stabilisation;
   ResidueFit fit;
+  double misfit = 0;  ///< of the responses in the band, relative
   std::vector<HammerMode> modes;
   std::vector<std::string> remarks, warnings;  ///< sentences
 };

@@ -126,6 +126,28 @@ void leave_out_weak(const ModalStudySettings& settings, RecordModes& found) {
   std::erase_if(found.modes, [&](const ModeEstimate& mode) { return mode.strength < floor; });
 }
 
+/// Those that stay where they are over the orders.
+void choose_modes(StabilisationSettings settings, Index count, RecordModes& found) {
+  settings.band_hz = found.band_hz;
+  if (found.free_decay) settings.resolution_hz = 1 / (found.interval * static_cast<double>(count));
+  found.stabilisation = stabilise(found.search.orders, settings);
+  for (const PoleCluster& cluster : found.stabilisation.modes)
+    found.modes.push_back({cluster.pole, cluster.orders});
+}
+
+/// Those that the method gives, and what it refused, within the band.
+void take_modes(RecordModes& found) {
+  const auto inside = [&](const Pole& pole) {
+    return pole.frequency_hz() >= found.band_hz.first && pole.frequency_hz() <= found.band_hz.second;
+  };
+  for (const OrderPoles& order : found.search.orders)
+    for (const Pole& pole : order.poles)
+      if (inside(pole)) found.modes.push_back({pole, {}});
+  for (const RefusedPole& refused : found.search.refused)
+    if (inside(refused.pole)) found.stabilisation.rejected.push_back({refused.pole, {}, refused.reason});
+  found.remarks.insert(found.remarks.end(), found.search.remarks.begin(), found.search.remarks.end());
+}
+
 /// A method for decays wants one, a method for random vibration a steady record.
 void check_kind(const MatrixXd& samples, RecordModes& found) {
   const MatrixXd motion = samples.colwise() - samples.rowwise().mean();
@@ -150,6 +172,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   found.name = name;
   found.remarks = record.remarks;
   found.free_decay = registry.find(settings.method.name).contracts.contains(contract::free_decay);
+  found.mode_by_mode = registry.find(settings.method.name).contracts.contains(contract::mode_by_mode);
   found.record = motion_of(record);
   if (found.free_decay && !windowed) found.record = from_release(found.record, found.remarks);
   check_intervals(found.record);
@@ -174,18 +197,15 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   const auto method = registry.make(settings.method.name, settings.method.options);
   found.search =
       method->search(scales.cwiseInverse().asDiagonal() * samples, found.interval, settings.largest_order);
-  StabilisationSettings stabilisation = settings.stabilisation;
-  stabilisation.band_hz = found.band_hz;
-  if (found.free_decay)
-    stabilisation.resolution_hz = 1 / (found.interval * static_cast<double>(samples.cols()));
-  found.stabilisation = stabilise(found.search.orders, stabilisation);
-  for (const PoleCluster& cluster : found.stabilisation.modes)
-    found.modes.push_back({cluster.pole, cluster.orders});
+  if (found.mode_by_mode)
+    take_modes(found);
+  else
+    choose_modes(settings.stabilisation, samples.cols(), found);
 
   found.target = found.free_decay ? samples : MatrixXd(scales.cwiseAbs2().asDiagonal() * found.search.decays);
   add_shapes(scales, found);
   leave_out_weak(settings, found);
-  if (settings.polish.value_or(found.free_decay)) {
+  if (settings.polish.value_or(found.free_decay && !found.mode_by_mode)) {
     if (!found.free_decay)
       throw std::invalid_argument("--polish fits a free decay; method " + settings.method.name +
                                   " takes the record for random vibration");

@@ -19,7 +19,7 @@ struct ModalStudySettings {
       band_hz;  ///< absent: from 2 cycles in the record to the spectrum's end
   int largest_order = 30;
   int modes = 0;                      ///< the strongest ones; 0: all
-  std::optional<bool> polish;         ///< absent: where the method takes the record for a free decay
+  std::optional<bool> polish;         ///< absent: of a method for free decays that goes over orders
   double smallest_amplitude = 0.003;  ///< relative to the strongest mode; weaker ones are left out
   StabilisationSettings stabilisation;
 };
@@ -40,6 +40,7 @@ struct RecordModes {
   std::vector<std::string> remarks;   ///< sentences
   std::vector<std::string> warnings;  ///< sentences
   bool free_decay = true;             ///< as the method takes it
+  bool mode_by_mode = false;          ///< without model orders
   bool polished = false;
   std::pair<double, double> band_hz;
   double interval = 0;  ///< after decimation [s]

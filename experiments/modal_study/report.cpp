@@ -26,12 +26,16 @@ std::string introduction(const ModalStudySettings& settings, const RecordModes& 
   std::string text = fmt::format(
       "{}: {} samples of {} channel{} from {:.4f} to {:.4f} s at {:.2f} Hz, taken as {}. Band {:.4g} to "
       "{:.4g} "
-      "Hz, sampled at {:.4g} Hz for it. Method {}, model orders 2 to {}",
+      "Hz, sampled at {:.4g} Hz for it. Method {}",
       found.name, record.size(), record.channels.size(), record.channels.size() > 1 ? "s" : "",
       record.time[0], record.time[record.size() - 1], 1 / record.interval(),
       found.free_decay ? "a free decay" : "random vibration", found.band_hz.first, found.band_hz.second,
-      1 / found.interval, settings.method.name,
-      found.search.orders.empty() ? 0 : found.search.orders.back().order);
+      1 / found.interval, settings.method.name);
+  if (found.mode_by_mode)
+    text += ", at the peaks of the spectrum";
+  else
+    text += fmt::format(", model orders 2 to {}",
+                        found.search.orders.empty() ? 0 : found.search.orders.back().order);
   text += found.polished ? ", all modes polished together by least squares." : ".";
   if (found.reproduced.size() > 0)
     text += fmt::format(" The modes leave {:.2g} % of the {}.",
@@ -48,12 +52,13 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
       .column({"f [Hz]", "frequency_hz"})
       .column({"standard deviation", "frequency_standard_deviation_hz"})
       .column({"damping ratio [%]", "damping_ratio_percent"})
-      .column({"standard deviation", "damping_ratio_standard_deviation_percent"})
-      .column({"stable at orders", "stable_orders"});
+      .column({"standard deviation", "damping_ratio_standard_deviation_percent"});
+  if (!found.mode_by_mode) table.column({"stable at orders", "stable_orders"});
   for (Index i = 0; i < shown; ++i)
-    table.column({fmt::format("{} {} [{}]", found.free_decay ? "amplitude" : "rms",
-                              channels.size() > 1 ? channels[i].name : "", si_unit(channels[i].quantity)),
-                  fmt::format("amplitude_{}", i + 1), "{:.3g}"});
+    table.column(
+        {fmt::format("{}{} [{}]", found.free_decay ? "amplitude" : "rms",
+                     channels.size() > 1 ? " " + channels[i].name : "", si_unit(channels[i].quantity)),
+         fmt::format("amplitude_{}", i + 1), "{:.3g}"});
   if (channels.size() > 1) table.column({"phase collinearity", "phase_collinearity", "{:.3f}"});
   for (std::size_t m = 0; m < found.modes.size(); ++m) {
     const ModeEstimate& mode = found.modes[m];
@@ -62,8 +67,9 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
                           with_deviation(pole.frequency_hz(), pole.frequency_deviation_hz),
                           deviation_text(pole.frequency_deviation_hz),
                           with_deviation(pole.damping_ratio(), pole.damping_ratio_deviation, 100),
-                          deviation_text(pole.damping_ratio_deviation, 100),
-                          fmt::format("{} of {}", mode.orders.size(), found.search.orders.size())};
+                          deviation_text(pole.damping_ratio_deviation, 100)};
+    if (!found.mode_by_mode)
+      row.emplace_back(fmt::format("{} of {}", mode.orders.size(), found.search.orders.size()));
     for (Index i = 0; i < shown; ++i) row.emplace_back(mode.amplitude(i));
     if (channels.size() > 1) row.emplace_back(phase_collinearity(pole.shape));
     table.row(std::move(row));
@@ -84,7 +90,7 @@ Table rejected_table(const RecordModes& found, const std::string& suffix) {
       .column({"damping ratio [%]", "damping_ratio_percent", "{:.3g}"})
       .column({"why", "reason"});
   for (const PoleCluster& cluster : found.stabilisation.rejected)
-    if (cluster.orders.size() < telling)
+    if (cluster.orders.size() < telling && !found.mode_by_mode)
       ++noise;
     else
       table.row({cluster.pole.frequency_hz(), 100 * cluster.pole.damping_ratio(), cluster.objection});
@@ -153,8 +159,10 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
     for (const std::string& remark : found.remarks) results.paragraph(remark);
     if (found.modes.empty())
       results.paragraph(
-          "No mode: no cluster of poles was stable over enough model orders. Another --band, "
-          "--window or --order may show one.");
+          found.mode_by_mode
+              ? "No mode: no peak of the spectrum gave one. Another --band or --window may show one."
+              : "No mode: no cluster of poles was stable over enough model orders. Another --band, --window "
+                "or --order may show one.");
     else
       results.table(mode_table(found, suffix));
     for (const std::string& warning : found.warnings) results.paragraph(warning);

@@ -51,6 +51,17 @@ std::string first_words(const PreparedRecord& prepared, const std::string& name)
       left.time[left.size() - 1], 1 / left.interval());
 }
 
+/// "a clean decay of its dominant mode, 11.2 Hz, ..."; empty where there is no change to tell.
+std::string cost_words(const DominantCost& found) {
+  if (!found.cost || std::isnan(found.cost->together.front().whole.frequency)) return "";
+  const ModalChange& change = found.cost->together.front().whole;
+  return fmt::format(
+      "a clean decay of its dominant mode, {:.4g} Hz, all steps together change the frequency by {:+.4f} % "
+      "and the damping ratio by {:+.3f} %; `beamid prepare` tells of each.",
+      found.cost->frequency_hz, std::abs(change.frequency) < 5e-7 ? 0 : 100 * change.frequency,
+      std::abs(change.damping_ratio) < 5e-6 ? 0 : 100 * change.damping_ratio);
+}
+
 /// Evenly sampled stamps are written as such, whatever their file rounded them to.
 Record written(Record record) {
   try {
@@ -146,15 +157,20 @@ void tell_preparation(Results& results, const PreparedRecord& prepared, const Re
   if (!format.preparation.empty()) {
     const DominantCost found = dominant_cost(prepared, format);
     results.values["preparation"] = values(format, found);
-    if (found.cost && !std::isnan(found.cost->together.front().whole.frequency)) {
-      const ModalChange& change = found.cost->together.front().whole;
-      text += fmt::format(
-          " On a clean decay of this mode all steps together change the frequency by {:+.4f} % "
-          "and the damping ratio by {:+.3f} %; `beamid prepare` tells of each.",
-          100 * change.frequency, 100 * change.damping_ratio);
-    }
+    if (const std::string cost = cost_words(found); !cost.empty()) text += " On " + cost;
   }
   if (!text.empty()) results.paragraph("Record: " + text);
+}
+
+void tell_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
+               const RecordFormat& format) {
+  if (format.preparation.empty()) return;
+  const DominantCost found = dominant_cost(prepared, format);
+  Json one{{"record", record_name}};
+  one.update(values(format, found));
+  results.values["preparations"].push_back(std::move(one));
+  if (const std::string cost = cost_words(found); !cost.empty())
+    results.paragraph(fmt::format("{}, prepared: on {}", record_name, cost));
 }
 
 Results report(const PreparedRecord& prepared, const RecordFormat& format, const std::string& title,

@@ -27,6 +27,11 @@ nlohmann::ordered_json values(const RecordFormat& format, const DominantCost& co
 /// `preparation`.
 void tell_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format);
 
+/// The same of one of several records, by its name: the sentence on the cost alone, and one more entry of the
+/// array `preparations`. Nothing without steps.
+void tell_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
+               const RecordFormat& format);
+
 /// What `beamid prepare` finds: table, figure of before and after, and prepared.csv.
 Results report(const PreparedRecord& prepared, const RecordFormat& format, const std::string& title,
                const std::string& record_name);

@@ -44,6 +44,22 @@ TEST_F(Check, NamesAMissingTipMassWithItsSize) {
   EXPECT_NEAR(change["estimate"].get<double>(), 0.05, 0.001);
 }
 
+TEST_F(Check, PreparesTheRecordAsTheExperimentFileSays) {
+  std::string text = contents(place_.folder() / "cantilever.toml");
+  text.replace(text.find("[2.0, 10.0]"), 11, "[2.0, 9.9]");  // decimation shortens the record
+  place_.write("prepared.toml", text + "\n[[record.prepare]]\nstep = \"decimate\"\nfactor = 2\n");
+  const Outcome outcome = place_.run("check --config prepared.toml --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found["status"], "agrees");
+  EXPECT_EQ(found["preparations"][0]["record"], "tip_acceleration.csv");
+  EXPECT_EQ(found["preparations"][0]["steps"][0]["step"], "decimate");
+  place_.write("refused.toml", text + "\n[[record.prepare]]\nstep = \"low_pass\"\ncorner_hz = 1e5\n");
+  const Outcome refused = place_.run("check --config refused.toml");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.first_error_line(), HasSubstr("step 'low_pass'"));
+}
+
 TEST_F(Check, RefusesWhatMakesNoSense) {
   for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
            {"check", "beamid: check: --config FILE is missing"},

@@ -126,7 +126,7 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
     const Outcome outcome = Workplace().run("validate '" + entry.path().string() + "'");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
-  EXPECT_EQ(found, 21);
+  EXPECT_EQ(found, 22);
 }
 
 }  // namespace

@@ -56,6 +56,17 @@ TEST_F(Stream, GoesOnWhereItWasSaved) {
   EXPECT_EQ(nlohmann::json::parse(contents(place_.folder() / "now.json")).at("step"), 500);
 }
 
+TEST_F(Stream, PreparesTheEarlierRecordAndSaysThatSamplesAreNot) {
+  place_.write("cantilever.toml", contents(place_.folder() / "cantilever.toml") +
+                                      "\n[[record.prepare]]\nstep = \"high_pass\"\ncorner_hz = 1\n");
+  const Outcome outcome = run("", part(0, 20));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(
+      outcome.first_error_line(),
+      StartsWith("The earlier record was prepared (1 step of [[record.prepare]]); samples are taken as"));
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 21);
+}
+
 TEST_F(Stream, SaysWhichSampleIsWrong) {
   const Outcome outcome = run("", lines_[0] + "2.004;1\n");
   EXPECT_EQ(outcome.code, 2);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/modal_analysis/response_peaks.hpp"
 #include "experiments/modal_study/hammer_mass.hpp"
 #include "experiments/modal_study/hammer_study.hpp"
 #include "experiments/random.hpp"
@@ -91,6 +92,60 @@ TEST(Hammer, WeighsAModeByItsVelocityStep) {
   EXPECT_LT(found->deviation, 0.05 * truth[0].mass);
   EXPECT_NEAR(found->impulse, 100 * 0.006 * 2 / pi, 0.005);
   EXPECT_EQ(found->pulses_s.size(), 1u);
+}
+
+// Oracle: the modes that were simulated, from the lines around their peaks alone.
+TEST(Hammer, FindsModesPeakByPeakAsWell) {
+  ModalStudySettings settings;
+  settings.method = {"frf_half_power", {}};
+  settings.band_hz = {4, 150};
+  const HammerStudy study = study_hits({"one"}, {struck(1, 0.05)}, settings);
+  ASSERT_EQ(study.modes.size(), 2u);
+  for (std::size_t m = 0; m < 2; ++m) {
+    EXPECT_NEAR(study.modes[m].pole.frequency_hz(), truth[m].frequency_hz, 2e-3 * truth[m].frequency_hz);
+    EXPECT_NEAR(study.modes[m].pole.damping_ratio(), truth[m].ratio, 0.1 * truth[m].ratio);
+    EXPECT_TRUE(std::isnan(study.modes[m].pole.frequency_deviation_hz));
+  }
+  EXPECT_LT(study.misfit, 0.1);
+}
+
+/// Receptances with these poles and residues at s = i 2 pi f + shift.
+Eigen::MatrixXcd responses_of(const std::vector<std::complex<double>>& poles, const Eigen::MatrixXd& residues,
+                              const Eigen::VectorXd& f, double shift) {
+  Eigen::MatrixXcd h = Eigen::MatrixXcd::Zero(residues.rows(), f.size());
+  for (Eigen::Index k = 0; k < f.size(); ++k)
+    for (std::size_t m = 0; m < poles.size(); ++m) {
+      const std::complex<double> s(shift, 2 * pi * f[k]), r(0, -1);
+      h.col(k) += residues.col(static_cast<Eigen::Index>(m)) *
+                  (r / (s - poles[m]) + std::conj(r) / (s - std::conj(poles[m])));
+    }
+  return h;
+}
+
+// Oracle: the poles put in. One mode alone is found but for the bend of its conjugate; two that overlap, half
+// a width apart from their sum's peaks, within some per cent.
+TEST(ResponsePeaks, FindsNearModesOfResponsesWithNoise) {
+  const auto pole = [](double f, double ratio) {
+    return 2 * pi * f * std::complex<double>(-ratio, std::sqrt(1 - ratio * ratio));
+  };
+  const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(125, 10, 60);
+  const std::vector<std::complex<double>> poles{pole(22, 0.04), pole(26.5, 0.03)};
+  const Eigen::MatrixXd residues = (Eigen::MatrixXd(2, 2) << 1, 0.8, 0.7, -0.9).finished();
+  Eigen::MatrixXcd h = responses_of(poles, residues, f, 1.85);
+  const Eigen::VectorXd random = standard_normal(2 * h.size(), 5, 1);
+  for (Eigen::Index k = 0; k < h.size(); ++k)
+    h.data()[k] += 1e-3 * std::complex<double>(random[2 * k], random[2 * k + 1]);
+  const std::vector<Pole> found = poles_at_peaks(f, h, 1.85, 0, 0.3);
+  ASSERT_EQ(found.size(), 2u);
+  for (std::size_t m = 0; m < 2; ++m) {
+    EXPECT_NEAR(found[m].rate.imag() / poles[m].imag(), 1, 0.01);
+    EXPECT_NEAR(found[m].rate.real() / poles[m].real(), 1, 0.15);
+  }
+  const auto alone =
+      poles_at_peaks(f, responses_of({poles[0]}, Eigen::MatrixXd::Ones(1, 1), f, 1.85), 1.85, 0, 0.3);
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_NEAR(std::abs(alone[0].rate - poles[0]), 0, 1e-3 * std::abs(poles[0]));
+  EXPECT_TRUE(poles_at_peaks(f, Eigen::MatrixXcd::Ones(1, 125), 1.85, 0, 0.3).empty());
 }
 
 }  // namespace

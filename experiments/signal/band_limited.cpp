@@ -1,0 +1,161 @@
+#include "experiments/signal/band_limited.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "experiments/signal/cubic_spline.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+constexpr Index reach = 16;  // nodes to either side
+constexpr double pi = std::numbers::pi;
+
+double sinc(double u) {
+  return std::abs(u) < 1e-9 ? 1 : std::sin(pi * u) / (pi * u);
+}
+
+/// h(u), 100 dB down from 0.6 of the node rate on.
+double kernel(double u) {
+  constexpr double beta = 10.06;
+  const double edge = u / static_cast<double>(reach);
+  if (std::abs(edge) >= 1) return 0;
+  static const double top = std::cyl_bessel_i(0, beta);
+  return sinc(u) * std::cyl_bessel_i(0, beta * std::sqrt(1 - edge * edge)) / top;
+}
+
+/// Rows of A: the weights of 2 reach nodes in one value.
+struct Row {
+  Index first;
+  Eigen::Matrix<double, 2 * reach, 1> weight;
+};
+
+Row row_at(double place) {  // in nodes
+  Row row{static_cast<Index>(std::floor(place)) - reach + 1, {}};
+  for (Index j = 0; j < 2 * reach; ++j) row.weight[j] = kernel(place - static_cast<double>(row.first + j));
+  return row;
+}
+
+VectorXd values(const std::vector<Row>& rows, const VectorXd& nodes) {
+  VectorXd result(static_cast<Index>(rows.size()));
+  for (Index k = 0; k < result.size(); ++k)
+    result[k] = rows[k].weight.dot(nodes.segment<2 * reach>(rows[k].first));
+  return result;
+}
+
+VectorXd transposed(const std::vector<Row>& rows, const VectorXd& right, Index nodes) {
+  VectorXd result = VectorXd::Zero(nodes);
+  for (Index k = 0; k < right.size(); ++k)
+    result.segment<2 * reach>(rows[k].first) += right[k] * rows[k].weight;
+  return result;
+}
+
+/// Goes on with a signal (N), known up to `known`, as the linear prediction of order 32 that its last known
+/// values obey best: exact for up to 16 decaying or growing sines. Neither end counts as known.
+void predict(VectorXd& signal, Index known) {
+  constexpr Index most_order = 32, most_values = 1000;
+  const Index values = std::min(known - 2 * reach, most_values), order = std::min(most_order, values / 3);
+  if (order < 2) return;
+  Eigen::MatrixXd past(values - order, order);
+  for (Index k = 0; k < past.rows(); ++k) past.row(k) = signal.segment(known - values + k, order).transpose();
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-3);
+  const VectorXd weight = solver.compute(past).solve(signal.segment(known - values + order, past.rows()));
+  const double largest = signal.segment(known - values, values).cwiseAbs().maxCoeff();
+  for (Index k = known; k < signal.size(); ++k)
+    signal[k] = std::clamp(weight.dot(signal.segment(k - order, order)), -2 * largest, 2 * largest);
+}
+
+/// A (N x P) and its least squares.
+struct Interpolation {
+  std::vector<Row> rows;
+  int iterations = 0;
+
+  /// From `nodes` on; what is left of the signal.
+  VectorXd solve(const VectorXd& signal, VectorXd& nodes) {
+    VectorXd left = signal - values(rows, nodes), gradient = transposed(rows, left, nodes.size()),
+             direction = gradient;
+    double size = gradient.squaredNorm();
+    constexpr int most = 200;
+    const double enough = 1e-10 * signal.norm();
+    for (int k = 0; k < most && left.norm() > enough && std::sqrt(size) > enough; ++k, ++iterations) {
+      const VectorXd along = values(rows, direction);
+      const double step = size / std::max(along.squaredNorm(), 1e-300);
+      nodes += step * direction;
+      left -= step * along;
+      gradient = transposed(rows, left, nodes.size());
+      const double next = gradient.squaredNorm();
+      direction = gradient + next / size * direction;
+      size = next;
+    }
+    return left;
+  }
+};
+
+}  // namespace
+
+BandLimited::BandLimited(VectorXd time, const VectorXd& signal) {
+  const CubicSpline spline(time, signal);
+  const Index count = time.size();
+  const double last = time[count - 1];
+  rate_ = static_cast<double>(count - 1) / (last - time[0]);
+  first_ = time[0] - static_cast<double>(reach) / rate_;
+  nodes_.resize(count + 2 * reach);
+  for (Index j = 0; j < nodes_.size(); ++j) {
+    const double at = first_ + static_cast<double>(j) / rate_;
+    if (at < time[0])
+      nodes_[j] = 2 * signal[0] - spline(std::min(2 * time[0] - at, last));
+    else if (at > last)
+      nodes_[j] = 2 * signal[count - 1] - spline(std::max(2 * last - at, time[0]));
+    else
+      nodes_[j] = spline(at);
+  }
+  Interpolation interpolation;
+  for (const double at : time) interpolation.rows.push_back(row_at((at - first_) * rate_));
+  VectorXd left = interpolation.solve(signal, nodes_);
+  constexpr int rounds = 3;  // each leaves less of what the one before had wrong at the ends
+  for (int round = 0; round < rounds && count > 8 * reach; ++round) {
+    for (int end = 0; end < 2; ++end) {
+      nodes_.reverseInPlace();
+      predict(nodes_, nodes_.size() - 2 * reach);
+    }
+    left = interpolation.solve(signal, nodes_);
+  }
+  iterations_ = interpolation.iterations;
+  misfit_ = left.norm() / std::max((signal.array() - signal.mean()).matrix().norm(), 1e-300);
+}
+
+VectorXd BandLimited::operator()(const VectorXd& at) const {
+  VectorXd result(at.size());
+  for (Index k = 0; k < at.size(); ++k) {
+    const Row row = row_at((at[k] - first_) * rate_);
+    const Index from = std::clamp<Index>(row.first, 0, nodes_.size() - 2 * reach);
+    result[k] = row.weight.dot(nodes_.segment<2 * reach>(from));
+  }
+  return result;
+}
+
+double BandLimited::kernel_error(double frequency) {
+  double worst = 0;
+  for (int part = 0; part <= 20; ++part) {
+    const double u = reach + 0.05 * part;
+    const Row row = row_at(u);
+    std::complex<double> sum = -1;
+    for (Index j = 0; j < 2 * reach; ++j)
+      sum += row.weight[j] * std::polar(1.0, 2 * pi * frequency * (static_cast<double>(row.first + j) - u));
+    worst = std::max(worst, std::abs(sum));
+  }
+  return worst;
+}
+
+double linear_interpolation_error(double frequency) {
+  return 1 - sinc(frequency) * sinc(frequency);
+}
+
+}  // namespace beamid::experiments

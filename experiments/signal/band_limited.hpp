@@ -1,0 +1,44 @@
+// Band-limited interpolation between stamps at unequal intervals.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace beamid::experiments {
+
+/// y(t) = sum_j x_j h(t R - j), with R the mean sampling rate and h a sinc under a Kaiser window that spans
+/// 16 nodes to either side [oppenheim2010, sec. 7.5]. The x_j, on an even grid that reaches 16 nodes beyond
+/// both ends, are least squares of y(t_k) = y_k, by conjugate gradients [bjorck1996, sec. 7.4] that begin at
+/// the cubic spline through the stamps: what the stamps leave open, in gaps and beyond the ends, stays the
+/// spline's (its point reflection, beyond the ends).
+class BandLimited {
+ public:
+  /// @param time (N), strictly increasing [s], N >= 4; @param signal (N)
+  /// @throws std::invalid_argument otherwise.
+  BandLimited(Eigen::VectorXd time, const Eigen::VectorXd& signal);
+
+  /// Nodes from either end within which values rest on the linear prediction.
+  static constexpr Eigen::Index end_nodes = 32;
+
+  /// Its values at points (M) from the first stamp to the last.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& at) const;
+
+  int iterations() const { return iterations_; }
+  /// How far it misses the samples, rms over the signal's: what lies above half the mean rate.
+  double misfit() const { return misfit_; }
+
+  /// The largest |sum_j e^(i 2 pi f (j - u)) h(u - j) - 1| over u: the error relative to its amplitude of a
+  /// sine whose nodes are known. @param frequency f over R, from 0 to 0.5
+  static double kernel_error(double frequency);
+
+ private:
+  double first_ = 0, rate_ = 1;  ///< of node `reach` [s], [1/s]
+  Eigen::VectorXd nodes_;
+  int iterations_ = 0;
+  double misfit_ = 0;
+};
+
+/// The error of a straight line between even samples of a sine, mean over all points between them:
+/// 1 - sinc(f)^2 of the amplitude.
+double linear_interpolation_error(double frequency);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,63 @@
+#include "experiments/signal/band_limited.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiments/random.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+constexpr Index count = 1000;
+
+/// Stamps of mean interval 1 that are up to `jitter` early or late.
+VectorXd stamps(double jitter) {
+  return VectorXd::LinSpaced(count, 0, count - 1) +
+         jitter * standard_normal(count, 3, 1).array().tanh().matrix();
+}
+
+VectorXd sine(const VectorXd& at, double frequency) {
+  return (2 * std::numbers::pi * frequency * at.array() + 0.4).sin();
+}
+
+double worst(const VectorXd& time, double frequency) {
+  const BandLimited interpolation(time, sine(time, frequency));
+  const VectorXd at = VectorXd::LinSpaced(4 * count, time[0], time[count - 1]);
+  return (interpolation(at) - sine(at, frequency)).cwiseAbs().maxCoeff();
+}
+
+// Oracle: the sine. Ends included.
+TEST(BandLimited, ReturnsASineFromJitteredStamps) {
+  for (const double jitter : {0.0, 0.1, 0.2})
+    for (const double frequency : {0.05, 0.3, 0.38})
+      EXPECT_LT(worst(stamps(jitter), frequency), 1e-4) << jitter << ", " << frequency;
+}
+
+TEST(BandLimited, TellsItsKernelsError) {
+  for (const double frequency : {0.1, 0.2, 0.3, 0.35, 0.4}) {
+    EXPECT_LT(BandLimited::kernel_error(frequency), 1e-4);
+    const VectorXd time = VectorXd::LinSpaced(count, 0, count - 1);
+    EXPECT_LT(worst(time, frequency), 1.2 * BandLimited::kernel_error(frequency) + 1e-5);
+  }
+  EXPECT_GT(BandLimited::kernel_error(0.47), 0.1);
+}
+
+// Oracle: the projection of a piecewise linear interpolant on the sine it goes through, by quadrature.
+TEST(LinearInterpolation, LosesAsMuchAsSincSquared) {
+  const double frequency = 0.3;
+  double sum = 0;
+  for (int k = 0; k < 1000; ++k)
+    for (int part = 0; part < 50; ++part) {
+      const double u = (part + 0.5) / 50, turn = 2 * std::numbers::pi * frequency;
+      sum += 2 * ((1 - u) * std::sin(turn * k) + u * std::sin(turn * (k + 1))) * std::sin(turn * (k + u)) /
+             50000;
+    }
+  EXPECT_NEAR(linear_interpolation_error(frequency), 1 - sum, 1e-3);
+}
+
+}  // namespace
+}  // namespace beamid::experiments
