@@ -1,9 +1,10 @@
-// beamid efficiency: filters against the Cramer-Rao bound, over seeded runs.
+// beamid efficiency: filters against the Cramer-Rao bound, and intervals against the truth, over seeded runs.
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "apps/deliver.hpp"
+#include "experiments/efficiency/interval_coverage.hpp"
 #include "experiments/efficiency/report.hpp"
 #include "experiments/input/choice_text.hpp"
 
@@ -15,6 +16,9 @@ using namespace experiments;
 options::options_description efficiency_options() {
   options::options_description described("Options");
   described.add_options()  //
+      ("study", options::value<std::string>()->value_name("NAME")->default_value("filters"),
+       "filters: against the bound; coverage: how often the intervals of identify hold the truth, with "
+       "higher modes and coloured noise (uses --runs, --seed, --noise and one --damping-ratio)")  //
       ("filter",
        options::value<std::vector<std::string>>()->composing()->value_name("NAME[:OPTION=VALUE,...]"),
        "one to examine; may be given again and again [all but kf] (beamid list filters)")  //
@@ -41,6 +45,47 @@ double whole(const options::variables_map& values, const char* name, double leas
   return value;
 }
 
+std::uint64_t seed_of(const options::variables_map& values) {
+  return static_cast<std::uint64_t>(whole(values, "seed", 0, 0x1p52));
+}
+
+double noise_of(const options::variables_map& values) {
+  const double noise = values["noise"].as<double>();
+  if (!(noise > 0.0 && noise <= 1.0))
+    throw UsageError(fmt::format("efficiency: --noise is {:g}; expected a number above 0, 1 at most", noise));
+  return noise;
+}
+
+void check_ratios(const std::vector<double>& ratios, double most) {
+  for (const double ratio : ratios)
+    if (!(ratio > 0.0 && ratio < most))
+      throw UsageError(fmt::format(
+          "efficiency: --damping-ratio is {:g}; expected a number between 0 and {:g}", ratio, most));
+}
+
+CoverageSettings coverage_settings(const options::variables_map& values) {
+  constexpr double largest_ratio = 0.1, largest_noise = 0.1;  // beyond, a decay has no 30 cycles to show
+  for (const char* other : {"filter", "passes", "guess", "sampled-runs"})
+    if (values.count(other) && !values[other].defaulted())
+      throw UsageError(std::string("efficiency: --study coverage takes no --") + other);
+  CoverageSettings settings;
+  if (values.count("damping-ratio")) {
+    const auto ratios = values["damping-ratio"].as<std::vector<double>>();
+    check_ratios(ratios, largest_ratio);
+    if (ratios.size() != 1)
+      throw UsageError(
+          fmt::format("efficiency: --study coverage takes one --damping-ratio; found {}", ratios.size()));
+    settings.damping_ratio = ratios[0];
+  }
+  settings.runs = static_cast<int>(whole(values, "runs", 2, 1e6));
+  settings.seed = seed_of(values);
+  settings.noise = noise_of(values);
+  if (settings.noise > largest_noise)
+    throw UsageError(fmt::format("efficiency: --noise is {:g}; expected {:g} at most for --study coverage",
+                                 settings.noise, largest_noise));
+  return settings;
+}
+
 EfficiencySettings settings_of(const options::variables_map& values) {
   EfficiencySettings settings;
   if (values.count("filter")) {
@@ -51,10 +96,7 @@ EfficiencySettings settings_of(const options::variables_map& values) {
   }
   if (values.count("damping-ratio"))
     settings.damping_ratios = values["damping-ratio"].as<std::vector<double>>();
-  for (const double ratio : settings.damping_ratios)
-    if (!(ratio > 0.0 && ratio < 1.0))
-      throw UsageError(
-          fmt::format("efficiency: --damping-ratio is {:g}; expected a number between 0 and 1", ratio));
+  check_ratios(settings.damping_ratios, 1.0);
   const std::string passes = values["passes"].as<std::string>(), guess = values["guess"].as<std::string>();
   if (passes == "lengthening" || passes == "single")
     settings.passes = {passes == "single" ? Passes::single : Passes::lengthening};
@@ -65,11 +107,8 @@ EfficiencySettings settings_of(const options::variables_map& values) {
   settings.decay.guess = guess == "ends" ? Guess::ends : Guess::drawn;
   settings.runs = static_cast<int>(whole(values, "runs", 2, 1e6));
   settings.sampled_runs = static_cast<int>(whole(values, "sampled-runs", 2, 1e6));
-  settings.seed = static_cast<std::uint64_t>(whole(values, "seed", 0, 0x1p52));
-  settings.decay.noise = values["noise"].as<double>();
-  if (!(settings.decay.noise > 0.0 && settings.decay.noise <= 1.0))
-    throw UsageError(fmt::format("efficiency: --noise is {:g}; expected a number above 0, 1 at most",
-                                 settings.decay.noise));
+  settings.seed = seed_of(values);
+  settings.decay.noise = noise_of(values);
   return settings;
 }
 
@@ -78,6 +117,14 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   described.add(output_options());
   options::variables_map values;
   if (!parse(command, arguments, described, {}, values)) return 0;
+  const std::string study = values["study"].as<std::string>();
+  if (study == "coverage") {
+    const CoverageSettings settings = coverage_settings(values);
+    deliver(values, [&] { return report(interval_coverage(settings, show_progress())); });
+    return 0;
+  }
+  if (study != "filters")
+    throw UsageError("efficiency: --study is '" + study + "'; expected filters or coverage");
   const EfficiencySettings settings = settings_of(values);
   deliver(values, [&] { return report(find_efficiency(settings, show_progress())); });
   return 0;
@@ -86,14 +133,16 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command efficiency_command() {
-  return {"efficiency",
-          "[--filter NAME[:OPTION=VALUE,...]]... [--damping-ratio XI]... [--runs N] [--out DIR]",
-          "filters against the Cramer-Rao bound, over seeded simulated decays",
-          "  beamid efficiency --filter ekf --filter ukf\n"
-          "  beamid efficiency --filter particle:particles=500 --damping-ratio 0.1 --sampled-runs 50\n"
-          "  beamid efficiency --filter ekf --guess ends --noise 0.002 --passes single\n"
-          "  beamid efficiency --runs 4000 --out results\n",
-          run};
+  return {
+      "efficiency",
+      "[--study NAME] [--filter NAME[:OPTION=VALUE,...]]... [--damping-ratio XI]... [--runs N] [--out DIR]",
+      "filters against the Cramer-Rao bound, and intervals against the truth, over seeded runs",
+      "  beamid efficiency --filter ekf --filter ukf\n"
+      "  beamid efficiency --filter particle:particles=500 --damping-ratio 0.1 --sampled-runs 50\n"
+      "  beamid efficiency --filter ekf --guess ends --noise 0.002 --passes single\n"
+      "  beamid efficiency --runs 4000 --out results\n"
+      "  beamid efficiency --study coverage --runs 2000 --out intervals\n",
+      run};
 }
 
 }  // namespace beamid::apps

@@ -1,20 +1,18 @@
 // beamid identify: a real record in, stiffness and damping with intervals out.
-#include <algorithm>
 #include <filesystem>
 
 #include "apps/deliver.hpp"
+#include "apps/identify_request.hpp"
 #include "experiments/damping_law/damping_law.hpp"
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/failure_response.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/input/spelling.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 #include "experiments/record_comparison/comparison.hpp"
-#include "experiments/record_identification/higher_modes.hpp"
+#include "experiments/record_identification/joint_comparison.hpp"
+#include "experiments/record_identification/joint_identification.hpp"
 #include "experiments/record_identification/noise_source.hpp"
 #include "experiments/record_identification/record_identification.hpp"
-#include "filters/smoother.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -28,20 +26,21 @@ constexpr const char* higher_modes =
     "[[record.prepare]] of the experiment file takes the place of this.";
 constexpr const char* trouble = "The filter had trouble (--on-failure says what it then does). ";
 
-/// K and C of a free decay have a report of their own; any other model is a comparison of one run.
-bool is_free_oscillator(const Experiment& experiment, const Record& record) {
-  return experiment.model.name == "sdof" && experiment.parameters.empty() && force_channels(record).empty();
-}
-
-Results identify_generally(Experiment experiment, const Record& record, const fs::path& file,
-                           const fs::path& folder) {
+/// Any other model than K and C of a free decay: a comparison of one run.
+Comparison identify_by_comparison(Experiment experiment, const Record& record, const fs::path& file,
+                                  const fs::path& folder) {
   experiment.reductions = {experiment.reduction};
   experiment.filters = {experiment.filter};
   experiment.discretisations = {experiment.discretisation};
   ComparedRecord compared;
   compared.name = file.filename().string();
   compared.record = record;
-  const Comparison found = compare(experiment, std::move(compared), folder, show_progress());
+  return compare(experiment, std::move(compared), folder, show_progress());
+}
+
+Results identify_generally(const Experiment& experiment, const Record& record, const fs::path& file,
+                           const fs::path& folder) {
+  const Comparison found = identify_by_comparison(experiment, record, file, folder);
   Results results = report(experiment, found);
   results.command = "identify";
   results.configuration["on_failure"] = to_string(experiment.on_failure);
@@ -56,31 +55,6 @@ Results identify_generally(Experiment experiment, const Record& record, const fs
   return results;
 }
 
-void refuse_what_needs_an_oscillator(const Experiment& experiment) {
-  const char* there = " is there for model sdof without [[parameters]] on a free decay";
-  if (!experiment.smoother.empty()) throw UsageError(std::string("identify: a smoother") + there);
-  if (experiment.estimator != "filter")
-    throw UsageError("identify: estimator " + experiment.estimator + there);
-  if (experiment.noise_method.name != "residual")
-    throw InputError(experiment.noise_method.place, "noise.method " + experiment.noise_method.name + there);
-}
-
-/// Whether a step was added that the experiment file, silent about preparation, does not have.
-bool keep_out_higher_modes(const fs::path& config, const fs::path& file, Experiment& experiment,
-                           PreparedRecord& prepared) {
-  if (!experiment.format.preparation.empty() || !is_free_oscillator(experiment, prepared.record))
-    return false;
-  try {
-    const auto step = step_against_higher_modes(experiment, prepared.record);
-    if (!step) return false;
-    experiment.format.preparation = {*step};
-    prepared = prepare_and_cut(std::move(prepared.raw), experiment.format, file);
-    return true;
-  } catch (const std::invalid_argument& error) {
-    throw InputError({config.string()}, error.what());
-  }
-}
-
 /// Of the whole record behind its preparation, where the experiment wants it.
 Eigen::VectorXd quiet_noise(const Experiment& experiment, const PreparedRecord& prepared) {
   if (experiment.noise_method.name != "before_event") return {};
@@ -91,90 +65,83 @@ Eigen::VectorXd quiet_noise(const Experiment& experiment, const PreparedRecord& 
   }
 }
 
-/// What the command line says in place of the experiment file.
-void take_words(const options::variables_map& values, Experiment& experiment) {
-  if (values.count("window")) {
-    const auto& window = values["window"].as<std::vector<double>>();
-    if (window.size() != 2) throw UsageError("identify: --window needs two times: FROM TO");
-    experiment.format.window = {window[0], window[1]};
-    experiment.format.window_place = {"--window"};
-  }
-  if (values.count("estimator")) {
-    experiment.estimator = values["estimator"].as<std::string>();
-    if (experiment.estimator != "filter" && experiment.estimator != "both")
-      throw UsageError("identify: --estimator is '" + experiment.estimator + "'; expected filter or both");
-  }
-  try {
-    if (values.count("on-failure"))
-      experiment.on_failure = failure_response(values["on-failure"].as<std::string>());
-    if (values.count("smoother")) experiment.smoother = values["smoother"].as<std::string>();
-    if (!experiment.smoother.empty()) filters::smoother_registry().find(experiment.smoother);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(std::string("identify: ") + error.what());
-  }
+Results identify_one(const IdentifyRequest& one, const std::string& law, const fs::path& folder) {
+  const Experiment& experiment = one.experiment;
+  const Record& record = one.prepared.record;
+  const std::string name = one.file.filename().string();
+  Results results = !law.empty()
+                        ? report(experiment, record, name, study_damping_law(experiment, record, law, folder))
+                    : one.is_free_oscillator()
+                        ? report(experiment, record, name,
+                                 identify_record(experiment, record, quiet_noise(experiment, one.prepared)))
+                        : identify_generally(experiment, record, one.file, folder);
+  if (one.thinned) results.paragraph(higher_modes);
+  tell_preparation(results, one.prepared, experiment.format);
+  return results;
 }
 
-/// What --damping-law asks for; empty: nothing.
-std::string damping_law(const options::variables_map& values) {
-  if (!values.count("damping-law")) return {};
-  const std::string law = values["damping-law"].as<std::string>();
-  const auto& laws = damping_laws();
-  if (law != "auto" && std::find(laws.begin(), laws.end(), law) == laws.end())
-    throw UsageError("identify: unknown damping law '" + law + "'; known: auto, " + joined(laws));
-  for (const char* other : {"smoother", "estimator"})
-    if (values.count(other))
-      throw UsageError(std::string("identify: --damping-law fits all samples at once; expected no --") +
-                       other);
-  return law;
+void refuse_what_needs_one_record(const options::variables_map& values,
+                                  const std::vector<IdentifyRequest>& requests) {
+  const Experiment& experiment = requests[0].experiment;
+  if (!damping_law(values).empty()) throw UsageError("identify: --damping-law takes one RECORD");
+  if (!experiment.smoother.empty()) throw UsageError("identify: a smoother takes one RECORD");
+  if (experiment.estimator != "filter")
+    throw UsageError("identify: estimator " + experiment.estimator + " takes one RECORD");
+}
+
+JointIdentification oscillator_of(const std::vector<IdentifyRequest>& requests) {
+  std::vector<IdentifiedRecord> found;
+  const Progress progress = show_progress();
+  for (const IdentifyRequest& one : requests) {
+    const std::string name = one.file.filename().string();
+    progress("identifying " + name);
+    try {
+      const Record& record = one.prepared.record;
+      found.push_back(
+          {name, record, identify_record(one.experiment, record, quiet_noise(one.experiment, one.prepared))});
+    } catch (const std::invalid_argument& error) {
+      throw InputError({one.file.string()}, error.what());
+    }
+  }
+  return joint_identification(std::move(found));
+}
+
+JointComparison model_of(const std::vector<IdentifyRequest>& requests, const fs::path& folder) {
+  std::vector<Comparison> found;
+  for (const IdentifyRequest& one : requests)
+    found.push_back(identify_by_comparison(one.experiment, one.prepared.record, one.file, folder));
+  return joint_comparison(std::move(found));
+}
+
+Results identify_together(const std::vector<IdentifyRequest>& requests, const fs::path& folder) {
+  bool free = true;
+  for (const IdentifyRequest& one : requests) free = free && one.is_free_oscillator();
+  Results results = free ? report(requests[0].experiment, oscillator_of(requests))
+                         : report(requests[0].experiment, model_of(requests, folder));
+  std::string thinned;
+  for (const IdentifyRequest& one : requests)
+    if (one.thinned) thinned += (thinned.empty() ? "" : ", ") + one.file.filename().string();
+  if (!thinned.empty()) results.paragraph(thinned + ": " + higher_modes);
+  for (const IdentifyRequest& one : requests)
+    tell_cost(results, one.file.filename().string(), one.prepared, one.experiment.format);
+  return results;
 }
 
 int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described("Options");
-  described.add_options()  //
-      ("config", options::value<std::string>()->value_name("FILE"),
-       "experiment file: beam, columns, units, window, filter (docs/configuration.md)")  //
-      ("window", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
-       "part of the record to use [s], instead of the experiment file's; after RECORD")  //
-      ("on-failure", options::value<std::string>()->value_name("WHAT"),
-       "when the filter fails: stop (default), inflate its covariance and go on, report and go on")  //
-      ("smoother", options::value<std::string>()->value_name("NAME"),
-       "rts or urts: what the whole record says of every instant, in smoothed.csv and a figure")  //
-      ("estimator", options::value<std::string>()->value_name("WHICH"),
-       "filter (default), or both: beside it the batch estimate, all samples at once")  //
-      ("damping-law", options::value<std::string>()->value_name("LAW"),
-       "auto, viscous, coulomb, quadratic or both: fit these laws to a free decay, with the evidence for "
-       "each");
+  options::options_description described = identify_options();
   described.add(output_options());
   options::variables_map values;
-  if (!parse(command, arguments, described, {"record"}, values)) return 0;
+  if (!parse(command, arguments, described, {"record..."}, values)) return 0;
   if (!values.count("config")) throw UsageError("identify: --config FILE is missing");
 
   const fs::path config = values["config"].as<std::string>();
-  Experiment experiment = read_experiment(config);
-  take_words(values, experiment);
-  if (!values.count("record") && !experiment.record_file)
-    throw UsageError("identify: no RECORD on the command line, and no 'file' under [record] in " +
-                     config.string());
-  const fs::path file = values.count("record") ? fs::path(values["record"].as<std::string>())
-                                               : config.parent_path() / *experiment.record_file;
-  PreparedRecord prepared = read_and_prepare(file, experiment.format);
-  const Record& record = prepared.record;
-  const bool thinned =
-      damping_law(values).empty() && keep_out_higher_modes(config, file, experiment, prepared);
-  if (!is_free_oscillator(experiment, record)) refuse_what_needs_an_oscillator(experiment);
   const std::string law = damping_law(values);
+  const std::vector<IdentifyRequest> requests = identify_requests(values, config);
+  if (requests.size() > 1) refuse_what_needs_one_record(values, requests);
   deliver(values, [&] {
     try {
-      Results results = !law.empty()
-                            ? report(experiment, record, file.filename().string(),
-                                     study_damping_law(experiment, record, law, config.parent_path()))
-                        : is_free_oscillator(experiment, record)
-                            ? report(experiment, record, file.filename().string(),
-                                     identify_record(experiment, record, quiet_noise(experiment, prepared)))
-                            : identify_generally(experiment, record, file, config.parent_path());
-      if (thinned) results.paragraph(higher_modes);
-      tell_preparation(results, prepared, experiment.format);
-      return results;
+      return requests.size() > 1 ? identify_together(requests, config.parent_path())
+                                 : identify_one(requests[0], law, config.parent_path());
     } catch (const std::invalid_argument& error) {
       throw InputError({config.string()}, error.what());
     }
@@ -185,10 +152,12 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command identify_command() {
-  return {"identify", "[RECORD] --config FILE [--window FROM TO] [--out DIR]",
-          "stiffness, damping, frequency and damping ratio from a vibration record",
+  return {"identify", "[RECORD...] --config FILE [--window FROM TO]... [--out DIR]",
+          "stiffness, damping, frequency and damping ratio from vibration records",
           "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
           "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
+          "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"
+          "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
           "  beamid identify --config cantilever.toml --estimator both\n"
           "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
           "  beamid identify --config cantilever.toml --damping-law auto --out results\n",

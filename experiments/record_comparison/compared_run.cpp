@@ -87,6 +87,23 @@ VectorXd bounds(filters::DiscreteModel& discrete, const JointModel& model, const
   return bound;
 }
 
+// Of the unknowns alone, as the state carries them.
+filters::Gaussian of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
+  const auto q = static_cast<Index>(model.unknown_places.size());
+  filters::Gaussian part{VectorXd(q), MatrixXd(q, q)};
+  for (Index i = 0; i < q; ++i) {
+    const Index at = model.unknown_places[i];
+    part.mean[i] = belief.mean[at];
+    for (Index j = 0; j < q; ++j) {
+      const Index other = model.unknown_places[j];
+      part.covariance(i, j) = belief.covariance.size() > 0
+                                  ? belief.covariance(at, other)
+                                  : belief.factor.row(at).dot(belief.factor.row(other));
+    }
+  }
+  return part;
+}
+
 void score(ComparedRun& run, const RunContext& context, const JointModel& model, const Reproduction& motion,
            const VectorXd& bound) {
   const std::vector<Estimate> found = estimates(model, run.run.last);
@@ -192,6 +209,9 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
       result.response_seconds += seconds_since(start);
     }
     if (!result.run.failure) {
+      result.unknowns = model.unknowns;
+      result.unknown_state = of_unknowns(model, result.run.last);
+      result.unknown_start = of_unknowns(model, identification.initial);
       start = Clock::now();
       const auto discrete = finest(model, dt, identification.output_noise);
       score(result, context, model, motion, bounds(*discrete, model, motion, directions, record));

@@ -57,6 +57,9 @@ struct ComparedRun {
   double response_seconds = 0.0;       ///< the reproduction and the bound
   Eigen::MatrixXd reproduced;          ///< (p x N)
   filters::FilterRun run;
+  std::vector<Unknown> unknowns;                    ///< of the model, in the order of the parameters (q)
+  filters::Gaussian unknown_state, unknown_start;   ///< of what the filter's state carries for them: at the
+                                                    ///< end, and at the start of the last pass (q)
   std::optional<filters::Diagnostics> diagnostics;  ///< of the last pass; absent below 100 samples
   std::vector<std::string> remarks;
 };

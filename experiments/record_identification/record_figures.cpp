@@ -73,11 +73,11 @@ Figure spectrum(const Record& record, const RecordIdentification& found) {
   return {"spectrum", {panel}};
 }
 
-// Estimate and 95 % band of one quantity over time, with the axis around its final value.
+// Estimate and 95 % band of one quantity over time, in the last pass, with the axis around its final value.
 Panel history(const Record& record, const VectorXd& estimate, const VectorXd& deviation, double modal,
               const char* label, double half_range) {
   Panel panel{"", {"time [s]"}, {label}, {}};
-  panel.curves = {{"95 %, widened as in the table",
+  panel.curves = {{"95 %, as in the table",
                    record.time,
                    {},
                    CurveStyle::band,
@@ -91,8 +91,10 @@ Panel history(const Record& record, const VectorXd& estimate, const VectorXd& de
                    {},
                    {},
                    Colour::black}};
-  const double last = estimate[estimate.size() - 1];
-  panel.y_axis.range = {last - half_range, last + half_range};
+  // the last pass begins with a band of its own, which is to fill the panel
+  const double last = estimate[estimate.size() - 1],
+               half = std::min(half_range, 1.3 * 1.96 * deviation.maxCoeff());
+  panel.y_axis.range = {last - half, last + half};
   panel.x_axis.range = {record.time[0], record.time[record.size() - 1]};
   return panel;
 }
@@ -107,8 +109,8 @@ Figure convergence(const Record& record, const RecordIdentification& found) {
     frequency_deviation[k] =
         found.interval_factor * 0.5 * frequency[k] * std::sqrt(beliefs[k].covariance(2, 2)) / now.stiffness;
     ratio[k] = 100.0 * now.damping_ratio();
-    ratio_deviation[k] =
-        100.0 * std::sqrt(beliefs[k].covariance(3, 3)) / (2.0 * std::sqrt(now.stiffness * now.mass));
+    ratio_deviation[k] = found.interval_factor * 100.0 * std::sqrt(beliefs[k].covariance(3, 3)) /
+                         (2.0 * std::sqrt(now.stiffness * now.mass));
   }
   const double last_ratio = ratio[count - 1];
   Figure figure{"convergence", {}, 2, 1};

@@ -21,7 +21,8 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr int passes = 3;                     // the first guess may be 20 % off
+constexpr int passes = 2;                     // the first guess may be 20 % off; another one follows
+constexpr double last_doubt = 30;             // deviations of K and C told, with which the last pass begins
 constexpr double stiffness_doubt = 0.3;       // standard deviation of K0, relative: clamps are never ideal
 constexpr double first_damping_ratio = 0.01;  // of C0, with a standard deviation as large
 // Smallest noise taken from a record, relative to its largest reading. One simulated without noise would else
@@ -94,6 +95,20 @@ ModalEstimate analyse(const Experiment& experiment, const Record& record, const 
   }
 }
 
+// Another pass. K and C are as uncertain at its start as to weigh nothing, 1 / 30^2, but no more: with the
+// first belief's doubt a filter is linearised anew wherever the noise of the first samples takes K and C, and
+// ends up to a deviation from the maximum of the likelihood.
+void refine(RecordIdentification& found, const filters::Measurements& measured) {
+  IdentificationSettings settings = found.settings;
+  settings.initial = next_start(found.model, settings.initial, found.identification.run.last);
+  settings.passes = 1;
+  const VectorXd told = last_doubt * found.identification.run.last.deviations();
+  for (const Index i : found.model.unknown_places)
+    settings.initial.covariance(i, i) = std::min(settings.initial.covariance(i, i), told[i] * told[i]);
+  found.last_start = settings.initial;
+  found.identification = identify(found.model, measured, settings, filters::Keep::all_beliefs);
+}
+
 // What the whole record says of every sample, by the model that the last pass was made with.
 std::vector<filters::Gaussian> smoothed(const Experiment& experiment, const RecordIdentification& found,
                                         const filters::Measurements& measured) {
@@ -103,9 +118,11 @@ std::vector<filters::Gaussian> smoothed(const Experiment& experiment, const Reco
   return filters::smooth(found.identification.run, *discrete, measured, experiment.smoother).beliefs;
 }
 
-// Where the noise near the mode is denser than R, intervals are too narrow by this.
+// What intervals are to be multiplied by: the noise near the mode counts, whatever R says of all of it. A
+// stated R is a claim of the user's, which a record may weaken but not strengthen.
 double widening(const RecordIdentification& found) {
-  return std::max(1.0, found.modal.noise_standard_deviation / found.noise_deviation[0]);
+  const double factor = found.near_mode.student() * found.near_mode.deviation / found.noise_deviation[0];
+  return found.noise_from_record[0] && factor > 0.0 ? factor : std::max(1.0, factor);
 }
 
 void take_quiet_noise(const Eigen::VectorXd& quiet_noise, const Record& record, RecordIdentification& found) {
@@ -147,6 +164,7 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
       result.noise_deviation[i] = given->second;
       result.noise_from_record[i] = false;
     }
+  result.near_mode = noise_near_mode(record.samples.row(0).transpose(), dt, result.modal);
   result.interval_factor = widening(result);
 
   const double beam_stiffness =
@@ -166,17 +184,20 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
   RecordIdentification result = prepare_identification(experiment, record);
   result.noise_method = experiment.noise_method.name;
   const filters::Measurements measured = measurements(record);
-  const auto filtered = [&] {
-    return at_place(experiment.filter.place, [&] {
-      return identify(result.model, measured, result.settings, filters::Keep::all_beliefs);
+  const auto filter = [&] {
+    at_place(experiment.filter.place, [&] {
+      result.last_start = result.settings.initial;
+      result.identification = identify(result.model, measured, result.settings, filters::Keep::all_beliefs);
+      if (!result.identification.run.failure) refine(result, measured);
+      return 0;
     });
   };
   if (result.noise_method == "before_event") take_quiet_noise(quiet_noise, record, result);
-  result.identification = filtered();
+  filter();
   if (result.noise_method == "likelihood" && !result.identification.run.failure) {
     take_likeliest_noise(experiment, record, result);
     result.interval_factor = widening(result);
-    result.identification = filtered();
+    filter();
   }
   if (experiment.estimator != "filter") result.batch = identify_batch(result, measured);
   const filters::FilterRun& run = result.identification.run;

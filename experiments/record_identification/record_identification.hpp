@@ -7,6 +7,7 @@
 #include "experiments/identification.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/output/results.hpp"
+#include "experiments/record_identification/noise_near_mode.hpp"
 #include "filters/batch_estimator.hpp"
 #include "filters/diagnostics.hpp"
 
@@ -27,9 +28,13 @@ struct RecordIdentification {
   std::vector<bool> noise_from_record;    ///< whether it is what the modal analysis leaves, or configured (p)
   std::string noise_method = "residual";  ///< of those from the record
   Eigen::VectorXd noise_relative_deviation;  ///< standard errors of them (p); empty: not known
-  double interval_factor = 1;  ///< >= 1: widens the intervals where the noise near the mode is denser than R
-  IdentificationSettings settings;
+  NoiseNearMode near_mode;                   ///< of the first channel
+  double interval_factor = 1;                ///< of deviations: what counts is the noise near the mode, not R
+  IdentificationSettings settings;           ///< of all passes but the last
+  filters::Gaussian last_start;              ///< what the last pass began with
   Identification identification;
+
+  int passes() const { return settings.passes + 1; }
   std::optional<filters::InnovationConsistency> consistency;  ///< absent when the filter failed early
   std::optional<filters::Diagnostics> diagnostics;            ///< absent below 100 samples
   std::vector<filters::Gaussian> smoothed;   ///< of every sample, where a smoother was asked for

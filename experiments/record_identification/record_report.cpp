@@ -106,9 +106,20 @@ std::string noise_text(const Record& record, const RecordIdentification& found) 
         fmt::format("{} {} {:.4g} {}, {}", i ? ";" : "", to_string(record.channels[i].quantity),
                     found.noise_deviation[i], si_unit(record.channels[i].quantity), noise_source(found, i));
   text += ".";
-  if (found.interval_factor > 1.0)
-    text += fmt::format(" Near the mode it is denser than that: intervals are widened by {:.2f}.",
-                        found.interval_factor);
+  const NoiseNearMode& near = found.near_mode;
+  const double density = near.deviation / found.noise_deviation[0];
+  text += fmt::format(
+      " At the mode it is as dense as white noise of {:.2f} times that, by {} lines of the spectrum: "
+      "intervals "
+      "are the filter's times {:.2f}.",
+      density, near.lines, found.interval_factor);
+  constexpr double few = 10;
+  if (near.freedom < few)
+    text += fmt::format(
+        " That is few: the density is known to {:.0f} % only, and longer records would have shorter and "
+        "surer "
+        "intervals.",
+        100.0 * std::sqrt(2.0 / near.freedom));
   return text;
 }
 
@@ -135,7 +146,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
-      experiment.filter.name, experiment.model.name, experiment.discretisation, found.settings.passes));
+      experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes()));
   if (const auto& failure = found.identification.run.failure) {
     const double smallest = failure->smallest_eigenvalue;
     results.paragraph(

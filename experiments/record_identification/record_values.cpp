@@ -76,6 +76,10 @@ Json values(const RecordIdentification& found, const Record& record) {
   json["window_s"] = {record.time[0], record.time[record.size() - 1]};
   json["samples"] = record.size();
   json["interval_factor"] = found.interval_factor;
+  json["noise_at_mode"] = {{"standard_deviation_si", found.near_mode.deviation},
+                           {"freedom", found.near_mode.freedom},
+                           {"slope", found.near_mode.slope},
+                           {"lines", found.near_mode.lines}};
   json["noise"] = noise_values(found, record);
   if (found.batch) json["batch"] = batch_values(found);
   json["log_likelihood"] = found.identification.run.log_likelihood;
@@ -129,7 +133,7 @@ Json configuration(const Experiment& experiment, const Record& record, const Rec
   json["filter"]["discretisation"] = experiment.discretisation;
   json["filter"]["on_failure"] = to_string(experiment.on_failure);
   if (!experiment.smoother.empty()) json["filter"]["smoother"] = experiment.smoother;
-  json["passes"] = found.settings.passes;
+  json["passes"] = found.passes();
   const auto labels = found.model.motion->state_labels();
   for (std::size_t i = 0; i < labels.size(); ++i)
     json["initial"][labels[i].name] = {

@@ -132,10 +132,8 @@ INSTANTIATE_TEST_SUITE_P(
               "identify --config cantilever.toml --window 2 20"},
         Fault{"HalfAWindow", toml, "", "", "beamid: identify: --window needs two times: FROM TO",
               "identify --config cantilever.toml --window 2"},
-        Fault{"TwoRecords", toml, "", "",
-              "beamid: identify: too many words; expected: beamid identify [RECORD] --config FILE [--window "
-              "FROM TO] [--out DIR]",
-              "identify a.csv b.csv --config cantilever.toml"}),
+        Fault{"TwoRecords", toml, "", "", "b.csv: no such file; expected a record of numbers in columns",
+              "identify tip_acceleration.csv b.csv --config cantilever.toml"}),
     name_of);
 
 }  // namespace

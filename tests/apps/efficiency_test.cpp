@@ -39,10 +39,24 @@ TEST(Efficiency, GivesTheSameBytesForTheSameSeed) {
   EXPECT_NE(first.out, Workplace().run(words + " --seed 5").out);
 }
 
+// Oracle: 95 % of 30 records of each kind of noise; below 23 once in ten thousand times.
+TEST(Efficiency, TellsHowOftenIntervalsHoldTheTruth) {
+  const Outcome outcome = Workplace().run("efficiency --study coverage --runs 30 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  ASSERT_EQ(found["coverage"].size(), 3u);
+  for (const json& one : found["coverage"])
+    for (const char* parameter : {"frequency", "damping_ratio"})
+      EXPECT_GE(one[parameter]["inside"].get<int>(), 23) << one["noise"] << ' ' << parameter;
+}
+
 TEST(Efficiency, NamesWhatItRefuses) {
   const std::pair<const char*, const char*> refused[] = {
       {"--runs 1", "--runs is 1; expected a whole number from 2 to 1e+06"},
       {"--damping-ratio 1", "--damping-ratio is 1; expected a number between 0 and 1"},
+      {"--study all", "--study is 'all'; expected filters or coverage"},
+      {"--study coverage --filter ekf", "--study coverage takes no --filter"},
+      {"--study coverage --damping-ratio 0.2", "--damping-ratio is 0.2; expected a number between 0 and 0.1"},
       {"--passes twice", "--passes is 'twice'; expected lengthening, single or both"},
       {"--guess bad", "--guess is 'bad'; expected drawn or ends"},
       {"--noise 0", "--noise is 0; expected a number above 0, 1 at most"},

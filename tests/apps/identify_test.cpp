@@ -1,6 +1,7 @@
 // beamid identify on the record that ships with the project.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <complex>
 #include <numbers>
 #include <sstream>
@@ -139,6 +140,71 @@ TEST_F(Tutorial, UsesTheWindowOfTheCommandLine) {
   EXPECT_NEAR(results.at("window_s")[0].get<double>(), 4.0, 1e-9);
   EXPECT_NEAR(results.at("window_s")[1].get<double>(), 6.0, 1e-9);
   EXPECT_EQ(results.at("samples"), 501);
+}
+
+// Oracle: inverse-variance weights of the two windows, whose information adds up; what one of them says is
+// what it says alone.
+TEST_F(Tutorial, IdentifiesSeveralRecordsTogether) {
+  const std::string twice = "identify tip_acceleration.csv tip_acceleration.csv --config cantilever.toml ";
+  const json both = json::parse(place_.run(twice + "--window 2 5 5 10 --json").out),
+             alone = json::parse(place_.run("identify --config cantilever.toml --window 2 5 --json").out);
+  ASSERT_EQ(both.at("records").size(), 2u);
+  EXPECT_EQ(both.at("records")[0].at("frequency_hz"), alone.at("frequency_hz"));
+  EXPECT_TRUE(both.at("agreement").at("agree").get<bool>());
+  double weights = 0.0, sum = 0.0;
+  for (const json& one : both.at("records")) {
+    const json& found = one.at("stiffness_n_per_m");
+    const double weight = std::pow(found.at("standard_deviation").get<double>(), -2);
+    weights += weight;
+    sum += weight * found.at("estimate").get<double>();
+  }
+  const json& stiffness = both.at("stiffness_n_per_m");
+  const double deviation = stiffness.at("standard_deviation");
+  EXPECT_NEAR(deviation * std::sqrt(weights), 1.0, 0.05);  // Student's factor is smaller for both
+  EXPECT_NEAR(stiffness.at("estimate").get<double>(), sum / weights, 0.1 * deviation);
+  const Outcome shown = place_.run(twice + "--window 2 5 5 10 --out results");
+  EXPECT_THAT(shown.out, HasSubstr("The records agree within their noise"));
+  EXPECT_THAT(place_.files(),
+              IsSupersetOf(std::vector<std::string>{"results/agreement.png", "results/records.csv"}));
+}
+
+TEST_F(Tutorial, IdentifiesAnyModelFromSeveralRecords) {
+  place_.write("modal.toml",
+               contents(place_.folder() / "cantilever.toml") + "\n[model]\nname = \"modal\"\nmodes = 1\n");
+  const json both = json::parse(place_
+                                    .run("identify tip_acceleration.csv tip_acceleration.csv --config "
+                                         "modal.toml --window 2 5 5 10 --json")
+                                    .out);
+  const json& frequency = both.at("parameters").at("frequency_1");
+  EXPECT_LT(frequency.at("lower_95").get<double>(), 3.455527194845);  // as simulated
+  EXPECT_GT(frequency.at("upper_95").get<double>(), 3.455527194845);
+  double weights = 0.0;
+  for (const json& one : both.at("records"))
+    weights += std::pow(one.at("parameters").at("frequency_1").at("standard_deviation").get<double>(), -2);
+  EXPECT_NEAR(frequency.at("standard_deviation").get<double>() * std::sqrt(weights), 1.0, 0.01);
+}
+
+TEST_F(Tutorial, RefusesWhatSeveralRecordsCannotHave) {
+  const std::string twice = "identify tip_acceleration.csv tip_acceleration.csv --config cantilever.toml ";
+  EXPECT_EQ(place_.run(twice + "--window 2 5 5").first_error_line(),
+            "beamid: identify: --window has 3 times for 2 records; expected FROM TO once for all, or once "
+            "for each");
+  EXPECT_EQ(place_.run(twice + "--smoother rts").first_error_line(),
+            "beamid: identify: a smoother takes one RECORD");
+  EXPECT_EQ(place_.run(twice + "--damping-law auto").first_error_line(),
+            "beamid: identify: --damping-law takes one RECORD");
+}
+
+// Oracle: the truth. Higher modes are in the first seconds, and kept from the filter without being told.
+TEST_F(Tutorial, HasTheTruthInsideItsIntervalsOverTheWholeRecord) {
+  const Outcome outcome = place_.run("identify --config cantilever.toml --window 0 10 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json results = json::parse(outcome.out);
+  EXPECT_NEAR(results.at("frequency_hz").at("estimate").get<double>(), 3.455527194845,
+              3.3 * results.at("frequency_hz").at("standard_deviation").get<double>());
+  EXPECT_NEAR(results.at("damping_ratio").at("estimate").get<double>(), 0.0045,
+              3.3 * results.at("damping_ratio").at("standard_deviation").get<double>());
+  EXPECT_LT(results.at("samples").get<int>(), 400);
 }
 
 // Oracle: the closed form. lambda_f = (e^(lambda dt) - 1)/dt, C_f = -2 M Re lambda_f.
