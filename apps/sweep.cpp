@@ -10,6 +10,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/sweep/perform.hpp"
 #include "experiments/sweep/read_sweep.hpp"
+#include "experiments/sweep/repeats.hpp"
 #include "experiments/sweep/report.hpp"
 
 namespace beamid::apps {
@@ -32,7 +33,10 @@ options::options_description sweep_options() {
        "only. Repeat for more")                                                                          //
       ("random", options::value<double>()->value_name("N"), "samples of what is drawn, at every point")  //
       ("seeds", options::value<double>()->value_name("N"), "cases for every sample, each with its own noise")(
-          "seed", options::value<double>()->value_name("N"), "of the first case [1]")   //
+          "seed", options::value<double>()->value_name("N"), "of the first case [1]")  //
+      ("once",
+       "filter every record once from what is believed, as the 2009 study did: model sdof, many records "
+       "at a time; without it as `beamid compare` does")                                //
       ("threads", options::value<double>()->value_name("N"), "to work on [all cores]")  //
       ("resume", "go on with a sweep that was interrupted; needs its --out DIR")        //
       ("shard", options::value<std::string>()->value_name("I/N"),
@@ -66,6 +70,7 @@ SweepPlan plan_of(const options::variables_map& values, SweepPlan plan) {
   if (values.count("random")) plan.samples = whole(values, "random", 1, most_samples);
   if (values.count("seeds")) plan.seeds = whole(values, "seeds", 1, most_samples);
   if (values.count("seed")) plan.seed = static_cast<std::uint64_t>(whole(values, "seed", 0, 2e9));
+  if (values.count("once")) plan.once = true;
   at_place(Place{"sweep"}, [&] { check(plan); });
   return plan;
 }
@@ -101,7 +106,7 @@ void remove_journal(const fs::path& folder) {
 
 int merge_folders(const options::variables_map& values) {
   for (const char* other :
-       {"config", "truth", "vary", "random", "seeds", "seed", "threads", "resume", "shard"})
+       {"config", "truth", "vary", "random", "seeds", "seed", "once", "threads", "resume", "shard"})
     if (values.count(other))
       throw UsageError(
           fmt::format("sweep: --merge takes the plan from the folders; expected no --{}", other));
@@ -121,6 +126,11 @@ bool is_complete(const fs::path& out, const nlohmann::ordered_json& manifest) {
 }
 
 int run(const Command& command, const Words& arguments) {
+  Processes processes;
+  if (!processes.first()) {
+    help(processes);
+    return 0;
+  }
   options::options_description described = sweep_options();
   described.add(output_options());
   options::variables_map values;
@@ -139,7 +149,12 @@ int run(const Command& command, const Words& arguments) {
   else if (!source.truth && experiment.record_file)
     source.record = source.config.file.parent_path() / *experiment.record_file;
   const SweepPlan plan = plan_of(values, experiment.sweep);
-  SweepSettings settings{shard_of(values), 1, {}, {}, values.count("resume") > 0};
+  if (plan.once) at_place(Place{"sweep"}, [&] { require_once(source, plan); });
+  SweepSettings settings{shard_of(values), 1, {}, {}, values.count("resume") > 0, &processes};
+  if (processes.count() > 1 && values.count("threads"))
+    throw UsageError(
+        "sweep: --threads has no use under mpirun, where each process runs one case at a time; expected a "
+        "process more than there are cores");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   settings.threads = values.count("threads") ? whole(values, "threads", 1, 4096) : cores;
   const nlohmann::ordered_json manifest = manifest_of(source, plan, settings.shard);
@@ -168,7 +183,8 @@ Command sweep_command() {
       "  beamid sweep --config rig.toml --vary truth.beam.tip_mass_kg=uniform:0.3:0.4 --random 500\n"
       "  beamid sweep --config rig.toml --seeds 1000 --out swept --resume\n"
       "  beamid sweep --config rig.toml --seeds 1000 --shard 3/8 --out part3\n"
-      "  beamid sweep --merge part1 part2 part3 --out all\n",
+      "  beamid sweep --merge part1 part2 part3 --out all\n"
+      "  mpirun -n 9 beamid sweep --config rig.toml --seeds 1000 --out swept    # 8 cores\n",
       run};
 }
 

@@ -96,7 +96,7 @@ const std::vector<TableVocabulary>& vocabulary() {
       {"prior",
        {"stiffness_n_per_m", "stiffness_deviation_n_per_m", "damping_ratio", "damping_ratio_deviation"}},
       {"noise", {"method", "displacement_m", "velocity_m_per_s", "acceleration_m_per_s2", "strain_m_per_m"}},
-      {"sweep", {"vary", "random", "seeds", "seed"}},
+      {"sweep", {"vary", "random", "seeds", "seed", "identify"}},
       {"frame", {"elements_per_member", "mass_model", "joints", "members", "supports", "bodies", "springs"}},
       {"frame.joints", {"name", "x_m", "y_m"}},
       {"frame.members", member_keys()},

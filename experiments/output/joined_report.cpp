@@ -12,6 +12,7 @@
 #include "experiments/input/text_file.hpp"
 #include "experiments/output/file.hpp"
 #include "experiments/output/html.hpp"
+#include "experiments/output/report_methods.hpp"
 #include "experiments/output/report_page.hpp"
 
 namespace beamid::experiments {
@@ -57,6 +58,12 @@ NamedResults read_results(const fs::path& folder) {
   }
   if (!read.json.is_object() || read.json.value("program", "") != "beamid")
     throw InputError({file.string()}, "not written by beamid; expected the results of one of its commands");
+  const fs::path timing = folder / "timing.json";
+  const Json times = fs::exists(timing)
+                         ? Json::parse(read_text(timing, "the times of a beamid command"), nullptr, false)
+                         : Json();
+  if (times.is_object() && times.contains("made_with") && times["made_with"].is_object())
+    read.made_with = times["made_with"];
   return read;
 }
 
@@ -96,17 +103,20 @@ Table side_by_side(const std::vector<NamedResults>& results) {
 void write_joined_report(const std::vector<fs::path>& folders, const fs::path& file) {
   std::vector<NamedResults> results;
   std::vector<ReportSection> sections;
+  std::vector<std::string> commands;
   for (const fs::path& folder : folders) {
     results.push_back(read_results(folder));
     const fs::path page = folder / "report.html";
     std::vector<ReportSection> found = sections_of(read_text(page, "the page of a beamid command"));
     if (found.empty())
       throw InputError({page.string()}, "no page of beamid; expected the one that --out has written");
+    commands.push_back(command_of(found[0]));
     for (ReportSection& section : found) {
       section.title = results.back().name + ": " + section.title;
       sections.push_back(std::move(section));
     }
   }
+  sections.insert(sections.begin(), {"Methods and versions", methods_html(results, commands)});
   if (const Table table = side_by_side(results); table.rows() > 0)
     sections.insert(sections.begin(), {"Side by side", "<h1>Side by side</h1>\n" + html_table(table)});
   const fs::path partial = file.string() + ".partial-" + std::to_string(getpid());

@@ -109,4 +109,11 @@ std::vector<ReportSection> sections_of(const std::string& page) {
   return sections;
 }
 
+std::string command_of(const ReportSection& section) {
+  constexpr std::string_view before = "</h1>\n<pre>", after = "</pre>";
+  const std::size_t begin = section.html.find(before), end = section.html.find(after, begin);
+  if (begin == std::string::npos || end == std::string::npos) return "";
+  return unescaped(std::string_view(section.html).substr(begin + before.size(), end - begin - before.size()));
+}
+
 }  // namespace beamid::experiments

@@ -25,4 +25,7 @@ std::string report_page(const std::vector<ReportSection>& sections);
 /// The sections of a page that report_page() made; empty when it did not.
 std::vector<ReportSection> sections_of(const std::string& page);
 
+/// The command that repeats a section, as report_section() wrote it; empty where it did not.
+std::string command_of(const ReportSection& section);
+
 }  // namespace beamid::experiments

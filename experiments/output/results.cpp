@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "experiments/output/library_versions.hpp"
 #include "experiments/output/report_page.hpp"
 #include "experiments/output/text.hpp"
 
@@ -82,6 +83,7 @@ void write(const Results& results, ResultDirectory& directory) {
   Json timing;
   timing["schema_version"] = schema_version;
   for (const auto& [what, seconds] : results.timing) timing[what + "_s"] = seconds;
+  for (const auto& [what, version] : library_versions()) timing["made_with"][what] = version;
   directory.write("timing.json", text_of(timing));
 }
 

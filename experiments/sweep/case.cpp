@@ -8,7 +8,6 @@
 #include "experiments/input/text_file.hpp"
 #include "experiments/input/words.hpp"
 #include "experiments/preparation/prepared_record.hpp"
-#include "experiments/record_comparison/comparison.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -111,29 +110,37 @@ Experiment experiment_of(const SweepSource& source, const SweepPlan& plan, std::
   return experiment;
 }
 
-std::vector<SweepRow> run_case(const SweepSource& source, const SweepPlan& plan, std::size_t number) {
+std::vector<SweepRow> rows_of(const SweepPlan& plan, std::size_t number, const std::vector<ComparedRun>& runs,
+                              const std::string& trouble) {
   SweepRow common;
   common.number = number;
   common.seed = plan.seed_of(number);
   for (const filters::OptionValue& value : values_of(plan, number)) common.values.push_back(word_of(value));
   std::vector<SweepRow> rows;
-  try {
-    const Experiment experiment = experiment_of(source, plan, number);
-    const Comparison found = compare(experiment, compared_record(source, plan, number, experiment),
-                                     source.config.file.parent_path(), [](const std::string&) {});
-    for (const ComparedRun& run : found.runs) add_rows(run, common, rows);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
+  for (const ComparedRun& run : runs) add_rows(run, common, rows);
+  if (runs.empty()) {
     rows = {common};
     rows[0].status = "failed";
-    rows[0].reason = error.what();
+    rows[0].reason = trouble;
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i].row = i + 1;
     rows[i].rows = rows.size();
   }
   return rows;
+}
+
+std::vector<SweepRow> run_case(const SweepSource& source, const SweepPlan& plan, std::size_t number) {
+  try {
+    const Experiment experiment = experiment_of(source, plan, number);
+    const Comparison found = compare(experiment, compared_record(source, plan, number, experiment),
+                                     source.config.file.parent_path(), [](const std::string&) {});
+    return rows_of(plan, number, found.runs);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return rows_of(plan, number, {}, error.what());
+  }
 }
 
 }  // namespace beamid::experiments

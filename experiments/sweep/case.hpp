@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/experiment.hpp"
+#include "experiments/record_comparison/comparison.hpp"
 #include "experiments/sweep/rows.hpp"
 
 namespace beamid::experiments {
@@ -32,5 +33,9 @@ Experiment experiment_of(const SweepSource& source, const SweepPlan& plan, std::
 
 /// The case's rows, `row` and `rows` set. Throws nothing but std::bad_alloc: trouble is a row.
 std::vector<SweepRow> run_case(const SweepSource& source, const SweepPlan& plan, std::size_t number);
+
+/// The same of runs that have been made. @param trouble where none could be made
+std::vector<SweepRow> rows_of(const SweepPlan& plan, std::size_t number, const std::vector<ComparedRun>& runs,
+                              const std::string& trouble = "");
 
 }  // namespace beamid::experiments

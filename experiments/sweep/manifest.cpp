@@ -2,12 +2,50 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "experiments/input/input_error.hpp"
+#include "experiments/input/read_experiment.hpp"
 #include "experiments/input/text_file.hpp"
+#include "experiments/input/words.hpp"
+#include "filters/batch.hpp"
 
 namespace beamid::experiments {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// Of a file that is not there too: cases that need it say so.
+std::string hash_of_file(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return "not there";
+  return hash_of(std::string(std::istreambuf_iterator<char>(stream), {}));
+}
+
+/// Files that an experiment file names, in its own words, with their hashes. One that cannot be read names
+/// none, and no case of it can be run.
+void add_files(const ExperimentText& text, const SweepPlan& plan, Json& files) {
+  Experiment experiment;
+  try {
+    experiment = read_experiment(TomlTable::parse(text.text, text.file.string()));
+  } catch (const InputError&) {
+    return;
+  }
+  const auto add = [&](const std::string& name) {
+    if (!name.empty()) files[name] = hash_of_file(text.file.parent_path() / name);
+  };
+  add(experiment.excitation.file.value_or(""));
+  add(experiment.reduction.shape_file);
+  for (const Choice& reduction : experiment.reductions) add(reduction.shape_file);
+  for (const VariedKey& one : plan.varied)
+    if (one.key.ends_with(".file") || one.key.ends_with(".shape_file"))
+      for (const filters::OptionValue& value : one.values) add(word_of(value));
+}
+
+}  // namespace
 
 std::string hash_of(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
@@ -23,10 +61,17 @@ Json manifest_of(const SweepSource& source, const SweepPlan& plan, const Shard& 
   told["random"] = plan.samples;
   told["seeds"] = plan.seeds;
   told["seed"] = plan.seed;
+  if (plan.once) told["identify"] = "once";
   told["cases"] = plan.cases();
   json["experiment"] = source.config.text;
   if (source.truth) json["truth"] = source.truth->text;
   if (source.record) json["record"] = source.record->filename().string();
+  Json files = Json::object();
+  if (source.record) files[source.record->filename().string()] = hash_of_file(*source.record);
+  add_files(source.config, plan, files);
+  if (source.truth) add_files(*source.truth, plan, files);
+  if (!files.empty()) json["files"] = files;
+  if (plan.once) json["instructions"] = filters::batch_instructions();
   json["hash"] = hash_of(json.dump(-1, ' ', false, Json::error_handler_t::replace));
   json["shard"] = {{"index", shard.index + 1}, {"count", shard.count}};
   return json;
@@ -49,6 +94,7 @@ SweepPlan plan_of(const Json& manifest, const std::filesystem::path& file) {
     plan.samples = told.at("random").get<int>();
     plan.seeds = told.at("seeds").get<int>();
     plan.seed = told.at("seed").get<std::uint64_t>();
+    plan.once = told.value("identify", "") == "once";
     check(plan);
   } catch (const std::exception& error) {
     throw InputError({file.string()}, fmt::format("no plan of a sweep: {}", error.what()));

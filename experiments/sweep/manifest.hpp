@@ -14,7 +14,9 @@ struct Shard {
   bool holds(std::size_t number) const { return number % count == index; }
 };
 
-/// Program, version, plan, the experiment files word by word, "hash" of all that, and which shard it is.
+/// Program, version, plan, the experiment files word by word, hashes of the files that these name (records,
+/// forces, shapes), "hash" of all that, and which shard it is.
+/// A sweep that identifies once names the processor's instructions too: its last digits depend on them.
 nlohmann::ordered_json manifest_of(const SweepSource& source, const SweepPlan& plan, const Shard& shard);
 
 /// @throws InputError when the file is no manifest of a sweep.

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <set>
 #include <stdexcept>
 
 #include "experiments/input/read_experiment.hpp"
+#include "experiments/sweep/job.hpp"
 #include "experiments/sweep/journal.hpp"
+#include "experiments/sweep/repeats.hpp"
 #include "experiments/sweep/report.hpp"
 #include "experiments/sweep/sweep.hpp"
 
@@ -31,6 +34,18 @@ std::vector<std::size_t> left(const SweepPlan& plan, const Shard& shard, const s
   return numbers;
 }
 
+CaseRunner runner(const SweepSource& source, const SweepPlan& plan) {
+  if (!plan.once)
+    return [&](const CaseBlock& block) {
+      std::vector<SweepRow> rows;
+      for (const std::size_t number : block)
+        for (SweepRow& row : run_case(source, plan, number)) rows.push_back(std::move(row));
+      return rows;
+    };
+  const auto repeats = std::make_shared<Repeats>(source, plan);
+  return [repeats](const CaseBlock& block) { return repeats->run(block); };
+}
+
 /// Their number, not that of their rows.
 std::size_t cases_in(const std::vector<SweepRow>& rows) {
   return static_cast<std::size_t>(
@@ -49,22 +64,31 @@ std::vector<SweepRow> perform(const SweepSource& source, const SweepPlan& plan, 
     journal.emplace(*settings.journal, manifest_of(source, plan, settings.shard), plan, settings.resume);
     rows = journal->kept();
   }
-  CaseQueue queue(left(plan, settings.shard, rows));
+  CaseQueue queue(blocks_of(plan, left(plan, settings.shard, rows)));
   const std::size_t before = cases_in(rows);
-  CaseProgress shown(before, before + queue.size(), progress);
-  run_cases(
-      queue, settings.threads, [&](std::size_t number) { return run_case(source, plan, number); },
-      [&](std::vector<SweepRow> found) {
-        if (journal) journal->append(found);
-        rows.insert(rows.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
-        shown.count();
-      });
+  CaseProgress shown(before, before + queue.cases(), progress);
+  const CaseSink keep = [&](std::vector<SweepRow> found) {
+    if (journal) journal->append(found);
+    shown.count(cases_in(found));
+    rows.insert(rows.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
+  };
+  if (settings.processes && settings.processes->count() > 1)
+    settings.processes->run(queue, plan, job_text(source, manifest_of(source, plan, {})), keep);
+  else
+    run_cases(queue, settings.threads, runner(source, plan), keep);
   sort_rows(rows);
   const bool none = !rows.empty() && std::all_of(rows.begin(), rows.end(),
                                                  [](const SweepRow& row) { return row.status == "failed"; });
   if (none && settings.shard.count == 1)
     throw std::runtime_error(fmt::format("no case could be run; the first: {}", rows[0].reason));
   return rows;
+}
+
+void help(Processes& processes) {
+  processes.work([](const std::string& text) -> CaseRunner {
+    const auto job = std::make_shared<const SweepJob>(read_job(text));
+    return [job, run = runner(job->source, job->plan)](const CaseBlock& block) { return run(block); };
+  });
 }
 
 Results merge(const std::vector<fs::path>& folders) {

@@ -25,10 +25,12 @@ struct SweepPlan {
   int samples = 1;         ///< drawn for every point of the grid
   int seeds = 1;           ///< for every sample
   std::uint64_t seed = 1;  ///< of case 0's noise; case i has seed + i. Also of what is drawn
+  bool once = false;       ///< filter once from what is believed (repeats.hpp), not as `beamid compare` does
 
   std::size_t points() const;  ///< of the grid; 1 without one
   std::size_t cases() const;
   std::size_t point_of(std::size_t number) const;
+  std::size_t sample_of(std::size_t number) const { return number / static_cast<std::size_t>(seeds); }
   std::uint64_t seed_of(std::size_t number) const { return seed + number; }
 };
 

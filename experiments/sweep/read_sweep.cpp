@@ -24,6 +24,7 @@ SweepPlan read_sweep(const TomlTable& table) {
   plan.seeds = table.find_whole_number("seeds", 1, most_samples).value_or(plan.seeds);
   constexpr int largest_seed = 2000000000;
   plan.seed = static_cast<std::uint64_t>(table.find_whole_number("seed", 0, largest_seed).value_or(1));
+  plan.once = table.find_text("identify", {"compare", "once"}).value_or("compare") == "once";
   at_place(table.place(), [&] { check(plan); });
   return plan;
 }

@@ -18,16 +18,34 @@ double now() {
 
 }  // namespace
 
-bool CaseQueue::next(std::size_t& number) {
+std::vector<CaseBlock> blocks_of(const SweepPlan& plan, const std::vector<std::size_t>& numbers) {
+  const std::size_t most = plan.once ? 16 : 1;
+  std::vector<CaseBlock> blocks;
+  for (const std::size_t number : numbers) {
+    const bool joins = !blocks.empty() && blocks.back().size() < most &&
+                       plan.sample_of(blocks.back().front()) == plan.sample_of(number);
+    if (!joins) blocks.emplace_back();
+    blocks.back().push_back(number);
+  }
+  return blocks;
+}
+
+bool CaseQueue::next(CaseBlock& block) {
   const std::lock_guard lock(mutex_);
-  if (given_ >= numbers_.size()) return false;
-  number = numbers_[given_++];
+  if (given_ >= blocks_.size()) return false;
+  block = blocks_[given_++];
   return true;
 }
 
 void CaseQueue::stop() {
   const std::lock_guard lock(mutex_);
-  given_ = numbers_.size();
+  given_ = blocks_.size();
+}
+
+std::size_t CaseQueue::cases() const {
+  std::size_t count = 0;
+  for (const CaseBlock& block : blocks_) count += block.size();
+  return count;
 }
 
 std::string duration_text(double seconds) {
@@ -40,8 +58,8 @@ std::string duration_text(double seconds) {
 CaseProgress::CaseProgress(std::size_t before, std::size_t all, const Progress& progress)
     : before_(before), all_(all), progress_(progress), started_(now()) {}
 
-void CaseProgress::count() {
-  ++done_;
+void CaseProgress::count(std::size_t cases) {
+  done_ += cases;
   const double time = now();
   if (time - shown_ < 0.2) return;
   shown_ = time;
@@ -56,8 +74,8 @@ void run_cases(CaseQueue& queue, int threads, const CaseRunner& run, const CaseS
   std::exception_ptr trouble;
   const auto work = [&] {
     try {
-      for (std::size_t number; queue.next(number);) {
-        std::vector<SweepRow> rows = run(number);
+      for (CaseBlock block; queue.next(block);) {
+        std::vector<SweepRow> rows = run(block);
         const std::lock_guard lock(one_at_a_time);
         if (trouble) return;
         sink(std::move(rows));

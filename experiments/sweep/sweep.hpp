@@ -12,18 +12,25 @@
 
 namespace beamid::experiments {
 
-/// Hands out the cases that are left, one by one, to any thread.
+/// Cases that are run together, usually one.
+using CaseBlock = std::vector<std::size_t>;
+
+/// The blocks of the cases that are left: one by one, or, where the plan identifies once, up to 16 neighbours
+/// that differ in their seeds alone. No result depends on it.
+std::vector<CaseBlock> blocks_of(const SweepPlan& plan, const std::vector<std::size_t>& numbers);
+
+/// Hands out the blocks that are left, one by one, to any thread.
 class CaseQueue {
  public:
-  explicit CaseQueue(std::vector<std::size_t> numbers) : numbers_(std::move(numbers)) {}
-  /// False when there is none any more. @param number of the next case
-  bool next(std::size_t& number);
-  void stop();  ///< hands out no more
-  std::size_t size() const { return numbers_.size(); }
+  explicit CaseQueue(std::vector<CaseBlock> blocks) : blocks_(std::move(blocks)) {}
+  /// False when there is none any more. @param block the next one
+  bool next(CaseBlock& block);
+  void stop();                ///< hands out no more
+  std::size_t cases() const;  ///< of all blocks
 
  private:
   std::mutex mutex_;
-  std::vector<std::size_t> numbers_;
+  std::vector<CaseBlock> blocks_;
   std::size_t given_ = 0;
 };
 
@@ -31,7 +38,7 @@ class CaseQueue {
 class CaseProgress {
  public:
   CaseProgress(std::size_t before, std::size_t all, const Progress& progress);
-  void count();  ///< one more is finished
+  void count(std::size_t cases);  ///< so many more are finished
 
  private:
   std::size_t before_, all_, done_ = 0;
@@ -39,10 +46,10 @@ class CaseProgress {
   double started_, shown_ = 0.0;
 };
 
-using CaseRunner = std::function<std::vector<SweepRow>(std::size_t number)>;
+using CaseRunner = std::function<std::vector<SweepRow>(const CaseBlock& block)>;
 using CaseSink = std::function<void(std::vector<SweepRow> rows)>;
 
-/// Runs what the queue hands out on so many threads. The sink gets every case when it is finished, in
+/// Runs what the queue hands out on so many threads. The sink gets every block when it is finished, in
 /// whatever order, from one thread at a time. The first exception of runner or sink stops the rest and is
 /// thrown when all threads have ended.
 void run_cases(CaseQueue& queue, int threads, const CaseRunner& run, const CaseSink& sink);

@@ -65,6 +65,49 @@ TEST_F(Report, JoinsResultsAndComparesThem) {
   EXPECT_EQ(place_.run("report early --out both.html").code, 2);  // it exists
 }
 
+TEST_F(Report, SaysHowTheRunsWereMadeAndWhatDiffers) {
+  std::string other = contents(place_.folder() / "cantilever.toml");
+  const std::size_t at = other.find("\"ekf\"");
+  ASSERT_NE(at, std::string::npos);
+  place_.write("other.toml", other.replace(at, 5, "\"ukf\""));
+  place_.run("identify --config cantilever.toml --out first");
+  place_.run("identify --config other.toml --out second");
+  ASSERT_EQ(place_.run("report first second --out both.html").code, 0);
+  const std::string page = contents(place_.folder() / "both.html");
+  const std::size_t begin = page.find("<h1>Methods and versions</h1>"), end = page.find("</section>", begin);
+  ASSERT_NE(begin, std::string::npos);
+  const std::string part = page.substr(begin, end - begin);
+  for (const char* text : {"<pre>beamid identify --config cantilever.toml</pre>",
+                           "<pre>beamid identify --config other.toml</pre>", "<th>first</th><th>second</th>",
+                           "<td>ekf</td><td>ukf</td>", "<td>beamid identify</td><td>beamid identify</td>",
+                           "<td>Eigen</td>", "<td>compiler</td>"})
+    EXPECT_THAT(part, HasSubstr(text));
+  EXPECT_EQ(part.find("length_m"), std::string::npos);  // the same in both
+}
+
+// Oracle: chromium's own PDF, whose text it compresses; sizes and the first bytes tell that pages are there.
+TEST_F(Report, IsPrintedToPdf) {
+  if (std::system("command -v chromium > /dev/null || command -v google-chrome > /dev/null") != 0)
+    GTEST_SKIP() << "neither chromium nor google-chrome is installed";
+  place_.run("identify --config cantilever.toml --out one");
+  const Outcome outcome = place_.run("report one --pdf one.pdf");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "Printed to one.pdf\n");
+  const std::string pdf = contents(place_.folder() / "one.pdf");
+  EXPECT_TRUE(pdf.starts_with("%PDF"));
+  EXPECT_GT(pdf.size(), 30000u);  // the figures are in it
+  for (const std::string& file : place_.files()) EXPECT_EQ(file.find("partial"), std::string::npos) << file;
+  EXPECT_EQ(place_.run("report one --pdf one.pdf").code, 2);  // it exists
+}
+
+TEST_F(Report, SaysWhereNothingPrints) {
+  place_.run("identify --config cantilever.toml --out one");
+  const Outcome outcome = place_.run("report one --pdf one.pdf", "PATH=/nowhere");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("neither chromium nor google-chrome is installed"));
+  EXPECT_FALSE(fs::exists(place_.folder() / "one.pdf"));
+}
+
 TEST_F(Report, RefusesWhatBeamidDidNotWrite) {
   place_.write("results.json", "{\"program\": \"other\"}");
   EXPECT_EQ(place_.run("report . --out page.html").first_error_line(),

@@ -113,6 +113,87 @@ TEST_F(Sweep, IsTheSumOfItsShards) {
   EXPECT_THAT(place_.run("sweep --merge part1 part1").err, HasSubstr("case 0 is in another folder too"));
 }
 
+class SweepByMpi : public Sweep {
+ protected:
+  /// On so many processes, of which the first computes nothing.
+  Outcome sweep_on(int processes, const std::string& words) const {
+    return place_.run("sweep --config rig.toml " + words, start + std::to_string(processes));
+  }
+  void SetUp() override {
+    if (std::system("command -v mpirun >/dev/null") != 0) GTEST_SKIP() << "mpirun is not installed";
+    static const Outcome outcome = sweep_on(2, "--seeds 1");  // once for all of them
+    if (outcome.err.find("was built without MPI") != std::string::npos) GTEST_SKIP() << outcome.err;
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+
+  // Open MPI's libraries leak a little, which builds with sanitizers would count as failures.
+  const std::string start =
+      "ASAN_OPTIONS=detect_leaks=0 mpirun --allow-run-as-root --oversubscribe --bind-to none -n ";
+};
+
+TEST_F(SweepByMpi, IsTheSameOnAnyNumberOfProcesses) {
+  expect_success(sweep("--seeds 10 --out one"));
+  for (const int processes : {2, 3}) {
+    const std::string folder = std::to_string(processes);
+    const Outcome outcome = sweep_on(processes, "--seeds 10 --out " + folder);
+    expect_success(outcome);
+    EXPECT_THAT(outcome.out, HasSubstr("Written to " + folder));
+    EXPECT_EQ(outcome.out.find("Written to"), outcome.out.rfind("Written to"));  // by one process
+    expect_same(place_, "one", folder);
+  }
+}
+
+TEST_F(SweepByMpi, SaysOnceWhatIsWrong) {
+  const Outcome outcome = sweep_on(3, "--seeds 0");
+  EXPECT_EQ(outcome.code, 2);
+  const std::string message = "--seeds is 0; expected a whole number";
+  EXPECT_THAT(outcome.err, HasSubstr(message));
+  EXPECT_EQ(outcome.err.find(message), outcome.err.rfind(message));
+  EXPECT_THAT(sweep_on(2, "--threads 2").err, HasSubstr("--threads has no use under mpirun"));
+}
+
+// kill -9 of one that computes: mpirun ends the others, finished cases are kept.
+TEST_F(SweepByMpi, GoesOnWhereAProcessWasKilled) {
+  expect_success(sweep("--seeds 100 --out whole"));
+  place_.write("kill.sh", start + "3 \"$1\" sweep --config rig.toml --seeds 100 --out broken & started=$!\n" +
+                              "until [ \"$(wc -l 2>/dev/null <broken.partial/cases.csv || echo 0)\" -gt 8 ]; "
+                              "do :; done\n"
+                              "kill -9 $(pgrep -P $started -n)\n"
+                              "wait $started\n");
+  place_.run("--version >version; sh kill.sh '" BEAMID_COMMAND "'");
+  ASSERT_FALSE(fs::exists(place_.folder() / "broken"));
+  expect_success(sweep_on(2, "--seeds 100 --out broken --resume"));
+  expect_same(place_, "whole", "broken");
+}
+
+// Oracle: the same files with another content.
+TEST_F(Sweep, GoesOnOnlyWithTheFilesItBeganWith) {
+  place_.write("force.csv", "time_s,force_n\n0,0\n1,2\n2,0\n3,0\n4,0\n");
+  place_.write("rig.toml", std::string(rig) + "[excitation]\nkind = \"table\"\nfile = \"force.csv\"\n");
+  expect_success(sweep("--seeds 2 --out swept"));
+  EXPECT_THAT(contents(place_.folder() / "swept/manifest.json"), HasSubstr("\"force.csv\": \""));
+  expect_success(sweep("--seeds 2 --out swept --resume"));
+  expect_success(sweep("--seeds 2 --shard 1/2 --out part1"));
+  place_.write("force.csv", "time_s,force_n\n0,0\n1,3\n2,0\n3,0\n4,0\n");
+  const Outcome other = sweep("--seeds 2 --out swept --resume");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("'swept' holds the results of another sweep"));
+  expect_success(sweep("--seeds 2 --shard 2/2 --out part2"));
+  EXPECT_EQ(place_.run("sweep --merge part1 part2").code, 2);
+}
+
+// Oracle: the same on one thread and in one piece. Shards and an interruption tear blocks apart.
+TEST_F(Sweep, IdentifiesOnceTheSameHoweverItIsDivided) {
+  expect_success(sweep("--once --seeds 30 --threads 1 --out one"));
+  expect_success(sweep("--once --seeds 30 --threads 3 --out three"));
+  expect_same(place_, "one", "three");
+  for (const std::string part : {"1", "2"})
+    expect_success(sweep("--once --seeds 30 --shard " + part + "/2 --out part" + part));
+  expect_success(place_.run("sweep --merge part1 part2 --out joined"));
+  expect_same(place_, "one", "joined");
+  EXPECT_THAT(contents(place_.folder() / "one/manifest.json"), HasSubstr("\"identify\": \"once\""));
+}
+
 TEST_F(Sweep, CountsACaseThatFailsAsARow) {
   expect_success(sweep("--vary beam.tip_mass_kg=0.3,-1 --seeds 3 --out results"));
   const std::string cases = contents(place_.folder() / "results/cases.csv");
@@ -136,6 +217,7 @@ TEST_F(Sweep, SaysWhatIsWrongWithThePlan) {
   EXPECT_THAT(line("--vary beam.length_m=1:2:1"), HasSubstr("expected a whole number of steps from 2"));
   EXPECT_THAT(line("--random 5"), HasSubstr("5 random samples and no key to draw"));
   EXPECT_THAT(line("--shard 5/4"), HasSubstr("--shard is '5/4'; expected I/N"));
+  EXPECT_THAT(line("--once --vary model.name=modal"), HasSubstr("takes model sdof and one reduction; found"));
   EXPECT_THAT(line("--resume"), HasSubstr("--resume needs the --out DIR"));
   place_.write("rig.toml", std::string(rig) + "seeds = 0\n");
   EXPECT_THAT(line(""), HasSubstr("rig.toml:23:9: sweep.seeds is 0; expected a whole number from 1"));

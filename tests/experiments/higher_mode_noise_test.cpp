@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "experiments/higher_mode_noise/oscillator_bank.hpp"
@@ -128,6 +132,55 @@ TEST(HigherModes, OfTheDocumentedBeamCostAsDocumented) {
   EXPECT_NEAR(error(felt, Treatment::modelled), 0.0298, 5e-4);
   EXPECT_FALSE(harmless(felt.by(Treatment::white)));
 }
+
+/// The cells of the row of docs/theory/higher_modes.md that begins so.
+std::vector<std::string> documented_row(const std::string& begin) {
+  std::ifstream document(BEAMID_SOURCE_DIR "/docs/theory/higher_modes.md");
+  std::vector<std::string> cells;
+  for (std::string line; std::getline(document, line);) {
+    if (!line.starts_with(begin)) continue;
+    std::istringstream rest(line.substr(begin.size()));
+    for (std::string cell; std::getline(rest, cell, '|');)
+      if (cell.size() > 2) cells.push_back(cell.substr(1, cell.size() - 2));
+    break;
+  }
+  return cells;
+}
+
+std::string three_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+class DocumentedRow : public testing::TestWithParam<std::pair<Blow, Quantity>> {};
+
+// Oracle: the study itself, digit by digit. "lost" stands for an error above all of C.
+TEST_P(DocumentedRow, IsWhatTheStudyFinds) {
+  const auto [blow, observed] = GetParam();
+  NoiseSettings settings;
+  settings.beams = {{"S(0.65)", paper::steel_beam(paper::test_beams[0]), 0.65,
+                     Eigen::Vector3d(paper::test_beams[0].first_damping_ratio, 0.005, 0.005)}};
+  settings.factors = {};
+  const NoiseCase found = examine(settings, 0, blow, observed, 3);
+  const auto cells = documented_row(std::string(blow == Blow::release ? "| release | " : "| hammer | ") +
+                                    to_string(observed) + " |");
+  ASSERT_EQ(cells.size(), 6u);
+  EXPECT_EQ(three_digits(found.share), cells[0]);
+  constexpr std::array order{Treatment::sensor, Treatment::white, Treatment::coloured, Treatment::filtered,
+                             Treatment::modelled};
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const NoiseStatistics& s = found.by(order[i]);
+    const bool lost = s.failed > 0 || s.damping_rms_percent > 100.0;
+    EXPECT_EQ(lost ? "lost" : three_digits(s.damping_rms_percent), cells[i + 1]) << "treatment " << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(HigherModes, DocumentedRow,
+                         testing::Values(std::pair{Blow::release, Quantity::velocity},
+                                         std::pair{Blow::hammer, Quantity::displacement},
+                                         std::pair{Blow::hammer, Quantity::velocity},
+                                         std::pair{Blow::hammer, Quantity::acceleration}));
 
 TEST(HigherModes, RefuseMoreModesThanTheBeamHasRatios) {
   NoiseSettings settings = small_study();
