@@ -1,6 +1,8 @@
 // Every registered study as a command: its options are the command's.
 #include "experiments/study.hpp"
 
+#include <fmt/format.h>
+
 #include "apps/deliver.hpp"
 
 namespace beamid::apps {
@@ -20,9 +22,10 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   for (const auto& option : study.options) {
     const std::string help = option.description + (option.unit.empty() ? "" : " [" + option.unit + "]");
     if (const double* number = std::get_if<double>(&option.fallback))
-      described.add_options()(flag(option.name).c_str(),
-                              options::value<double>()->default_value(*number)->value_name("N"),
-                              help.c_str());
+      described.add_options()(
+          flag(option.name).c_str(),
+          options::value<double>()->default_value(*number, fmt::format("{}", *number))->value_name("N"),
+          help.c_str());
     else
       described.add_options()(flag(option.name).c_str(),
                               options::value<std::string>()

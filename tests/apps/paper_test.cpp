@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 #include "tests/apps/run_command.hpp"
@@ -77,35 +76,6 @@ TEST(PaperJson, HoldsFiveBeamsWithEveryKey) {
               << filter << ' ' << scheme << ' ' << key;
   }
   EXPECT_THAT(names, ElementsAre("S(0.65)", "S(11.8)", "S(43.8)", "S(76.3)", "S(119.3)"));
-}
-
-/// "+6.41411": as the document writes it.
-std::string written(const json& value, const char* format) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value.get<double>());
-  return text;
-}
-
-// Oracle: the command itself. What does not depend on the number of trials, digit by digit.
-TEST(StudyDocument, QuotesWhatTheCommandFinds) {
-  const std::string document = contents(source("docs/study.md"));
-  const json results = json::parse(printed_json().out);
-  const json& table = results.at("table2");
-  for (const char* scheme : {"forward_euler", "backward_euler"})
-    for (const char* error : {"stiffness_error_percent", "damping_error_percent"})
-      EXPECT_THAT(document, HasSubstr("| " + written(table.at(scheme).at(error), "%+.5f") + " |")) << scheme;
-  const json& euler = results.at("discretisation_bias").at("forward_euler");
-  for (const char* error : {"stiffness_error_percent", "damping_error_percent"})
-    EXPECT_THAT(document, HasSubstr(written(euler.at(error), "%+.7f") + " %"));
-  for (const json& beam : results.at("beams")) {
-    const json& ekf = beam.at("ekf");
-    EXPECT_THAT(
-        document,
-        HasSubstr("| " + beam.at("name").get<std::string>() + " | " +
-                  written(ekf.at("forward_euler").at("predicted_damping_error_percent"), "%+.3f") + " | " +
-                  written(ekf.at("forward_euler").at("damping_error_percent"), "%+.3f") + " | " +
-                  written(ekf.at("exponential").at("damping_error_percent"), "%+.3f") + " |"));
-  }
 }
 
 TEST(PaperText, TellsTheFindingFirstAndFitsATerminal) {
