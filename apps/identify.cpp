@@ -75,6 +75,7 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
                         ? report(experiment, record, name,
                                  identify_record(experiment, record, quiet_noise(experiment, one.prepared)))
                         : identify_generally(experiment, record, one.file, folder);
+  if (!one.window.empty()) results.paragraph(one.window);
   if (one.thinned) results.paragraph(higher_modes);
   tell_preparation(results, one.prepared, experiment.format);
   return results;
@@ -119,6 +120,8 @@ Results identify_together(const std::vector<IdentifyRequest>& requests, const fs
   Results results = free ? report(requests[0].experiment, oscillator_of(requests))
                          : report(requests[0].experiment, model_of(requests, folder));
   std::string thinned;
+  for (const IdentifyRequest& one : requests)
+    if (!one.window.empty()) results.paragraph(one.file.filename().string() + ": " + one.window);
   for (const IdentifyRequest& one : requests)
     if (one.thinned) thinned += (thinned.empty() ? "" : ", ") + one.file.filename().string();
   if (!thinned.empty()) results.paragraph(thinned + ": " + higher_modes);

@@ -8,6 +8,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/spelling.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/record_identification/decay_window.hpp"
 #include "experiments/record_identification/higher_modes.hpp"
 #include "filters/smoother.hpp"
 
@@ -29,6 +30,21 @@ void refuse_what_needs_an_oscillator(const Experiment& experiment) {
   if (experiment.noise_method.name != "residual")
     throw InputError(experiment.noise_method.place,
                      "noise.method " + experiment.noise_method.name + only_for_free_oscillators);
+}
+
+/// Cuts a free decay out of a record that neither the experiment file nor the command line cuts or prepares.
+void cut_decay(const fs::path& config, IdentifyRequest& one) {
+  RecordFormat& format = one.experiment.format;
+  if (format.window || !format.preparation.empty() || !one.is_free_oscillator()) return;
+  try {
+    const auto window = decay_window(one.experiment, one.prepared.raw);
+    if (!window) return;
+    format.window = {window->from, window->to};
+    one.window = window->words();
+    one.prepared = prepare_and_cut(std::move(one.prepared.raw), format, one.file);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({config.string()}, error.what());
+  }
 }
 
 /// Whether a step was added that the experiment file, silent about preparation, does not have.
@@ -95,8 +111,7 @@ options::options_description identify_options() {
        "experiment file: beam, columns, units, window, filter (docs/configuration.md)")  //
       ("window", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
        "part of the record to use [s], instead of the experiment file's; after RECORD; of several records, "
-       "once "
-       "for all or once for each")  //
+       "once for all or once for each; without any, the decay behind the last hit or release")  //
       ("on-failure", options::value<std::string>()->value_name("WHAT"),
        "when the filter fails: stop (default), inflate its covariance and go on, report and go on")  //
       ("smoother", options::value<std::string>()->value_name("NAME"),
@@ -136,9 +151,10 @@ std::vector<IdentifyRequest> identify_requests(const options::variables_map& val
                      config.string());
   std::vector<IdentifyRequest> requests;
   for (std::size_t r = 0; r < files.size(); ++r) {
-    IdentifyRequest one{files[r], experiment, {}};
+    IdentifyRequest one{files[r], experiment, {}, {}};
     take_window(values, r, files.size(), one.experiment);
     one.prepared = read_and_prepare(one.file, one.experiment.format);
+    cut_decay(config, one);
     if (damping_law(values).empty())
       one.thinned = keep_out_higher_modes(config, one.file, one.experiment, one.prepared);
     if (!one.is_free_oscillator()) refuse_what_needs_an_oscillator(one.experiment);

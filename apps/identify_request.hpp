@@ -20,7 +20,8 @@ struct IdentifyRequest {
   std::filesystem::path file;
   experiments::Experiment experiment;  ///< command line and preparation included
   experiments::PreparedRecord prepared;
-  bool thinned = false;  ///< by a step against higher modes, which the experiment file does not have
+  std::string window = {};  ///< what was chosen, in words, where neither file nor command line says
+  bool thinned = false;     ///< by a step against higher modes, which the experiment file does not have
 
   /// K and C of a free decay have a report of their own.
   bool is_free_oscillator() const;

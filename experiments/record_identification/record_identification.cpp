@@ -74,13 +74,15 @@ filters::Gaussian initial_belief(const Experiment& experiment, const Record& rec
   return belief;
 }
 
+double expected_frequency_hz(const Experiment& experiment, const RecordIdentification& known) {
+  if (!experiment.prior.stiffness) return known.beam_frequency_hz;
+  return Oscillator{known.model.equivalent_mass, *experiment.prior.stiffness}.frequency_hz();
+}
+
 // The mode near the frequency that the beam, or the stiffness believed beforehand, leads to expect.
 ModalEstimate analyse(const Experiment& experiment, const Record& record, const RecordIdentification& known) {
   ModalAnalysisSettings settings;
-  settings.expected_frequency_hz = known.beam_frequency_hz;
-  if (experiment.prior.stiffness)
-    settings.expected_frequency_hz =
-        Oscillator{known.model.equivalent_mass, *experiment.prior.stiffness}.frequency_hz();
+  settings.expected_frequency_hz = expected_frequency_hz(experiment, known);
   try {
     return dominant_mode(record.samples.row(0).transpose(), record.interval(), settings);
   } catch (const std::invalid_argument& error) {
@@ -136,19 +138,32 @@ void take_quiet_noise(const Eigen::VectorXd& quiet_noise, const Record& record, 
   found.interval_factor = widening(found);
 }
 
-}  // namespace
-
-RecordIdentification prepare_identification(const Experiment& experiment, const Record& record) {
-  RecordIdentification result;
+// The model, the beam's frequency, and what the model is made of.
+reduction::ReducedModel take_model(const Experiment& experiment, const Record& record,
+                                   RecordIdentification& result) {
   const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
   result.beam_frequency_hz = fem::modes(system, 1).frequency_hz()[0];
   const auto method =
       reduction::reduction_registry().make(experiment.reduction.name, experiment.reduction.options);
-  const reduction::ReducedModel reduced = reduce(system, *method);
+  reduction::ReducedModel reduced = reduce(system, *method);
   result.model = at_place(experiment.model.place, [&] {
     return *model_registry().make(experiment.model.name, experiment.model.options,
                                   at_one_point(reduced.system, observed(record)));
   });
+  return reduced;
+}
+
+}  // namespace
+
+double expected_frequency_hz(const Experiment& experiment, const Record& record) {
+  RecordIdentification known;
+  take_model(experiment, record, known);
+  return expected_frequency_hz(experiment, known);
+}
+
+RecordIdentification prepare_identification(const Experiment& experiment, const Record& record) {
+  RecordIdentification result;
+  const reduction::ReducedModel reduced = take_model(experiment, record, result);
 
   const double dt = record.interval();
   result.modal = analyse(experiment, record, result);

@@ -42,6 +42,10 @@ struct RecordIdentification {
   std::optional<BatchIdentification> batch;  ///< where it was asked for
 };
 
+/// Of the mode that is looked for: as prior.stiffness, else the beam as described, leads to expect [Hz].
+/// @throws std::invalid_argument when the beam cannot be assembled or reduced to one coordinate
+double expected_frequency_hz(const Experiment& experiment, const Record& record);
+
 /// All but the filtering: model, modal analysis, noise, initial belief and settings. @throws as
 /// identify_record()
 RecordIdentification prepare_identification(const Experiment& experiment, const Record& record);

@@ -57,6 +57,41 @@ INSTANTIATE_TEST_SUITE_P(UnbTipMass, OneMode,
                                          Measured{"massa3", "massa3_test2-3", 19.86, 0.0176}),
                          [](const auto& tested) { return std::string(tested.param.experiment); });
 
+/// The same files without the line that says which window: identify looks for the decay itself.
+class NoWindow : public MeasuredRecord {};
+
+// Damping and frequency depend on amplitude, the windows are others: 1 % and 20 %, and no divergence.
+TEST_P(NoWindow, IsAskedForByTheDefaults) {
+  const fs::path record = source("../shared/data/unb-tip-mass") / (std::string(GetParam().record) + ".txt");
+  if (!fs::exists(record)) GTEST_SKIP() << "the measured records are not here";
+  std::string experiment =
+      contents(source("docs/tutorials/03_your_own_file") / (std::string(GetParam().experiment) + ".toml"));
+  const std::size_t line = experiment.find("window_s");
+  experiment.erase(line, experiment.find('\n', line) - line);
+  const Workplace place;
+  place.write("whole.toml", experiment);
+  const Outcome outcome = place.run("identify '" + record.string() + "' --config whole.toml --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found.at("status"), "converged");
+  EXPECT_NEAR(found.at("frequency_hz").at("estimate").get<double>(), GetParam().frequency_hz,
+              0.01 * GetParam().frequency_hz);
+  EXPECT_NEAR(found.at("damping_ratio").at("estimate").get<double>(), GetParam().damping_ratio,
+              0.20 * GetParam().damping_ratio);
+}
+
+INSTANTIATE_TEST_SUITE_P(UnbTipMass, NoWindow,
+                         testing::Values(Measured{"massa1", "massa1_test1-1", 11.223, 0.0128},
+                                         Measured{"massa2", "massa2_test1-2", 14.40, 0.0139},
+                                         Measured{"massa3", "massa3_test2-3", 19.86, 0.0176},
+                                         Measured{"massa4_test1-4", "massa4_test1-4", 22.77, 0.0295},
+                                         Measured{"massa4_test2-4", "massa4_test2-4", 22.66, 0.027}),
+                         [](const auto& tested) {
+                           std::string name = tested.param.experiment;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
 // Two windows of massa1, whose frequency and damping depend on amplitude (11.166 Hz and 1.45 %, 11.223 Hz and
 // 1.28 % by the independent fit): the command says that they disagree, and its intervals hold both.
 TEST(TwoWindows, OfARecordWhoseDampingDependsOnAmplitudeDisagree) {
