@@ -30,6 +30,7 @@ MatrixXd weigh(Correction& correction, const MatrixXd& cross, Eigen::LLT<MatrixX
   const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
   correction.log_likelihood =
       -0.5 * (correction.normalised_square + log_determinant + p * std::log(2.0 * std::numbers::pi));
+  if (cross.rows() == 0) return cross;  // Eigen's solver would bind a reference to the first of no numbers
   return factor.solve(cross.transpose()).transpose();
 }
 
