@@ -18,10 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace experiments;
 
-bool is_free(const Experiment& experiment, const Record& record) {
-  return experiment.model.name == "sdof" && experiment.parameters.empty() && force_channels(record).empty();
-}
-
 void refuse_what_needs_an_oscillator(const Experiment& experiment) {
   if (!experiment.smoother.empty())
     throw UsageError(std::string("identify: a smoother") + only_for_free_oscillators);
@@ -33,37 +29,28 @@ void refuse_what_needs_an_oscillator(const Experiment& experiment) {
 }
 
 /// Cuts a free decay out of a record that neither the experiment file nor the command line cuts or prepares.
-void cut_decay(const fs::path& config, IdentifyRequest& one) {
+void cut_decay(IdentifyRequest& one) {
   RecordFormat& format = one.experiment.format;
   if (format.window || !format.preparation.empty() || !one.is_free_oscillator()) return;
-  try {
-    const auto window = decay_window(one.experiment, one.prepared.raw);
-    if (!window) return;
-    format.window = {window->from, window->to};
-    one.window = window->words();
-    one.prepared = prepare_and_cut(std::move(one.prepared.raw), format, one.file);
-  } catch (const std::invalid_argument& error) {
-    throw InputError({config.string()}, error.what());
-  }
+  const auto window = decay_window(one.experiment, one.prepared.raw);
+  if (!window) return;
+  format.window = {window->from, window->to};
+  one.window = window->words();
+  one.prepared.record = cut(one.prepared.raw, format, one.file);
 }
 
-/// Whether a step was added that the experiment file, silent about preparation, does not have.
-bool keep_out_higher_modes(const fs::path& config, const fs::path& file, Experiment& experiment,
-                           PreparedRecord& prepared) {
-  if (!experiment.format.preparation.empty() || !is_free(experiment, prepared.record)) return false;
-  try {
-    const auto step = step_against_higher_modes(experiment, prepared.record);
-    if (!step) return false;
-    if (auto& window = experiment.format.window) {  // the low-pass takes a little of both ends
-      const Record left = prepare(prepared.raw, {*step});
-      window = {std::max(window->first, left.time[0]), std::min(window->second, left.time[left.size() - 1])};
-    }
-    experiment.format.preparation = {*step};
-    prepared = prepare_and_cut(std::move(prepared.raw), experiment.format, file);
-    return true;
-  } catch (const std::invalid_argument& error) {
-    throw InputError({config.string()}, error.what());
-  }
+/// Adds the step that an experiment file, silent about preparation, does not have.
+void keep_out_higher_modes(IdentifyRequest& one) {
+  RecordFormat& format = one.experiment.format;
+  if (!format.preparation.empty() || !one.is_free_oscillator()) return;
+  const auto step = step_against_higher_modes(one.experiment, one.prepared.record);
+  if (!step) return;
+  format.preparation = {*step};
+  Record left = prepare(one.prepared.raw, format.preparation);
+  if (auto& window = format.window)  // the low-pass takes a little of both ends
+    window = {std::max(window->first, left.time[0]), std::min(window->second, left.time[left.size() - 1])};
+  one.prepared.record = cut(std::move(left), format, one.file);
+  one.thinned = true;
 }
 
 /// What the command line says in place of the experiment file.
@@ -101,7 +88,8 @@ void take_window(const options::variables_map& values, std::size_t which, std::s
 }  // namespace
 
 bool IdentifyRequest::is_free_oscillator() const {
-  return is_free(experiment, prepared.record);
+  return experiment.model.name == "sdof" && experiment.parameters.empty() &&
+         force_channels(prepared.record).empty();
 }
 
 options::options_description identify_options() {
@@ -154,9 +142,12 @@ std::vector<IdentifyRequest> identify_requests(const options::variables_map& val
     IdentifyRequest one{files[r], experiment, {}, {}};
     take_window(values, r, files.size(), one.experiment);
     one.prepared = read_and_prepare(one.file, one.experiment.format);
-    cut_decay(config, one);
-    if (damping_law(values).empty())
-      one.thinned = keep_out_higher_modes(config, one.file, one.experiment, one.prepared);
+    try {
+      cut_decay(one);
+      if (damping_law(values).empty()) keep_out_higher_modes(one);
+    } catch (const std::invalid_argument& error) {
+      throw InputError({config.string()}, error.what());
+    }
     if (!one.is_free_oscillator()) refuse_what_needs_an_oscillator(one.experiment);
     requests.push_back(std::move(one));
   }

@@ -50,7 +50,8 @@ struct RecordFormat {
   bool irregular = false;       ///< take stamps as they are, at unequal intervals
   std::optional<ColumnDescription> time;  ///< factor to seconds
   std::optional<double> sampling_rate;  ///< [Hz]; replaces the printed times, counted from the first of them
-  std::vector<ColumnDescription> channels;          ///< empty: the header's names tell quantities and units
+  std::vector<ColumnDescription> channels;  ///< empty: the header's names tell quantities and units
+  std::optional<InputPath> input;  ///< of force channels between samples; absent: as Record::input_path
   std::optional<std::pair<double, double>> window;  ///< [s]
   Place window_place;                               ///< where the window is set, for messages
   std::vector<Choice> preparation;                  ///< registered steps, in their order

@@ -10,6 +10,10 @@ namespace beamid::experiments {
 
 enum class Quantity { displacement, velocity, acceleration, force, strain };
 
+/// How a measured input runs between its samples: as an anti-aliased converter recorded it, straight from
+/// sample to sample, or constant until the next one (which is late by half an interval).
+enum class InputPath { band_limited, linear, held };
+
 /// SI unit of a quantity: m, m/s, m/s2, N, m/m.
 const char* si_unit(Quantity quantity);
 const char* to_string(Quantity quantity);
@@ -23,11 +27,13 @@ struct Channel {
 
 /// N samples of p measured channels, in SI units.
 struct Record {
-  Eigen::VectorXd time;                   ///< (N) [s], strictly increasing
-  Eigen::MatrixXd samples;                ///< (p x N), one column per instant
-  std::vector<Channel> channels;          ///< p
-  double time_resolution = 0.0;           ///< stamps are as exact as they were printed, within this [s]
-  std::vector<std::string> remarks = {};  ///< for reports: lines left out, what was done to the samples
+  Eigen::VectorXd time;                    ///< (N) [s], strictly increasing
+  Eigen::MatrixXd samples;                 ///< (p x N), one column per instant
+  std::vector<Channel> channels;           ///< p
+  double time_resolution = 0.0;            ///< stamps are as exact as they were printed, within this [s]
+  std::vector<std::string> remarks = {};   ///< for reports: lines left out, what was done to the samples
+  std::vector<std::string> warnings = {};  ///< what may make any result wrong, for the first lines of reports
+  std::optional<InputPath> input_path = {};  ///< absent: band-limited where stamps are even, else linear
 
   Eigen::Index size() const { return time.size(); }
 

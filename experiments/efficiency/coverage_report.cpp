@@ -53,8 +53,7 @@ Table table_of(const Coverage& coverage) {
     }
   table.note =
       "From, to: where the probability lies with 95 %, after so many runs. A run that failed counts as "
-      "outside. "
-      "Deviations are those that the intervals are made of, not knowing the noise exactly included.";
+      "outside. Deviations are those that the intervals are made of, not knowing the noise exactly included.";
   return table;
 }
 
@@ -72,10 +71,8 @@ Results report(const Coverage& coverage) {
   results.paragraph(fmt::format(
       "{} simulated records of each kind of noise: acceleration at the tip of a cantilever over {:g} cycles, "
       "damping ratio {:g} %; second and third mode with {:g} and {:g} % of the first one's amplitude; noise "
-      "of "
-      "{:g} % of it: white, behind a low-pass with its corner at 1.5 times the first frequency, or half "
-      "white "
-      "and half 1/f. Each identified as `beamid identify` does without being told anything.",
+      "of {:g} % of it: white, behind a low-pass with its corner at 1.5 times the first frequency, or half "
+      "white and half 1/f. Each identified as `beamid identify` does without being told anything.",
       settings.runs, settings.cycles, 100 * settings.damping_ratio, 100 * settings.higher[0],
       100 * settings.higher[1], 100 * settings.noise));
   results.table(table_of(coverage));

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "experiments/estimates.hpp"
 #include "experiments/preparation/prepared_record.hpp"
 #include "experiments/random.hpp"
 #include "experiments/record_identification/higher_modes.hpp"
@@ -35,8 +36,13 @@ Experiment covered_experiment() {
   return experiment;
 }
 
-double first_frequency(const Experiment& experiment) {
-  return fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+/// Of its first mode [Hz].
+double covered_frequency() {
+  static const double frequency = [] {
+    const Experiment experiment = covered_experiment();
+    return fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+  }();
+  return frequency;
 }
 
 /// Gaussian noise (N) of deviation one. A density of 1/f from first-order low-passes two octaves apart.
@@ -70,12 +76,11 @@ std::optional<Errors> errors_of(const RecordIdentification& found, double freque
 }
 
 CoverageCase summary(NoiseColour colour, const std::vector<std::optional<Errors>>& errors) {
-  constexpr double normal_95 = 1.959963984540054;
   CoverageCase one{colour, static_cast<int>(errors.size()), 0, {}, {}, {}};
   for (const auto& error : errors) {
     one.failed += !error;
     for (std::size_t q = 0; error && q < error->size(); ++q) {
-      one.inside[q] += std::abs((*error)[q]) < normal_95;
+      one.inside[q] += std::abs((*error)[q]) < quantile_95;
       one.mean[q] += (*error)[q] / one.runs;
       one.mean_square[q] += (*error)[q] * (*error)[q] / one.runs;
     }
@@ -97,7 +102,7 @@ const char* to_string(NoiseColour colour) {
 }
 
 Record covered_record(const CoverageSettings& settings, NoiseColour colour, std::uint64_t seed) {
-  const double frequency = first_frequency(covered_experiment()), dt = 1 / (samples_per_cycle * frequency);
+  const double frequency = covered_frequency(), dt = 1 / (samples_per_cycle * frequency);
   const auto count = static_cast<Index>(std::lround(settings.cycles * samples_per_cycle));
   Record record;
   record.channels = {{Quantity::acceleration, "tip"}};
@@ -119,7 +124,7 @@ Coverage interval_coverage(const CoverageSettings& settings, const Progress& pro
   if (settings.runs < 2)
     throw std::invalid_argument("coverage: " + std::to_string(settings.runs) + " runs; expected at least 2");
   const Experiment experiment = covered_experiment();
-  const double frequency = first_frequency(experiment);
+  const double frequency = covered_frequency();
   Coverage result{settings, {}};
   for (const NoiseColour colour : settings.colours) {
     progress(std::string("intervals in noise that is ") + to_string(colour));

@@ -27,8 +27,7 @@ Table channel_table(const Inspection& found) {
   }
   table.note =
       "Offset: the median. Drift: change of a fitted line over the record. Noise: standard deviation of what "
-      "is "
-      "as broad as white noise in the quietest quarter. f: the strongest frequency.";
+      "is as broad as white noise in the quietest quarter. f: the strongest frequency.";
   return table;
 }
 

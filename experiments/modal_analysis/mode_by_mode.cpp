@@ -28,10 +28,7 @@ IsolatedMode isolated(const MatrixXd& outputs, double interval, double frequency
 Pole pole_of(const ModeAnswer& answer, Index outputs) {
   Pole pole{answer.rate, Eigen::VectorXcd::Ones(outputs)};
   const double df = answer.frequency_deviation, dd = answer.damping_rate_deviation;
-  const ModalDeviations deviations =
-      modal_deviations(answer.rate, Eigen::Vector2d(df * df, dd * dd).asDiagonal());
-  pole.frequency_deviation_hz = deviations.frequency_hz;
-  pole.damping_ratio_deviation = deviations.damping_ratio;
+  pole.take_deviations(Eigen::Vector2d(df * df, dd * dd).asDiagonal());
   return pole;
 }
 

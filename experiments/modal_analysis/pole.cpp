@@ -13,12 +13,12 @@ double Pole::damping_ratio() const {
   return std::abs(rate) > 0 ? -rate.real() / std::abs(rate) : 0;
 }
 
-ModalDeviations modal_deviations(std::complex<double> rate, const Eigen::Matrix2d& covariance) {
+void Pole::take_deviations(const Eigen::Matrix2d& covariance) {
   const double w_d = rate.imag(), d = -rate.real(), w = std::abs(rate);
   const Eigen::Vector2d frequency_slope = Eigen::Vector2d(w_d, d) / (2 * std::numbers::pi * w);
   const Eigen::Vector2d damping_slope = Eigen::Vector2d(-d * w_d, w_d * w_d) / (w * w * w);
-  return {std::sqrt(frequency_slope.dot(covariance * frequency_slope)),
-          std::sqrt(damping_slope.dot(covariance * damping_slope))};
+  frequency_deviation_hz = std::sqrt(frequency_slope.dot(covariance * frequency_slope));
+  damping_ratio_deviation = std::sqrt(damping_slope.dot(covariance * damping_slope));
 }
 
 double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {

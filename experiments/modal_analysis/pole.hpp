@@ -20,6 +20,9 @@ struct Pole {
 
   double frequency_hz() const;   ///< undamped, |s| / (2 pi)
   double damping_ratio() const;  ///< -Re s / |s|
+
+  /// Standard deviations of both, from the covariance (2 x 2) of Im s and -Re s [rad^2/s^2].
+  void take_deviations(const Eigen::Matrix2d& covariance);
 };
 
 /// The oscillating poles of one model order, by rising frequency.
@@ -27,12 +30,6 @@ struct OrderPoles {
   int order = 0;
   std::vector<Pole> poles;
 };
-
-/// Standard deviations of frequency [Hz] and damping ratio from the covariance (2 x 2) of Im s and -Re s.
-struct ModalDeviations {
-  double frequency_hz, damping_ratio;
-};
-ModalDeviations modal_deviations(std::complex<double> rate, const Eigen::Matrix2d& covariance);
 
 /// Modal assurance criterion |a^H b|^2 / (|a|^2 |b|^2) of two shapes (p) [allemang2003]; 1 for p = 1.
 double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b);

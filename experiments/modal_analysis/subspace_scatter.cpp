@@ -103,9 +103,7 @@ std::vector<Pole> scattered_poles(const ScatteredHankel& hankel, int order, doub
     }
     pole.shape /= scale;
     if (!turns.empty()) {
-      const ModalDeviations deviations = modal_deviations(pole.rate, covariance);
-      pole.frequency_deviation_hz = deviations.frequency_hz;
-      pole.damping_ratio_deviation = deviations.damping_ratio;
+      pole.take_deviations(covariance);
       pole.shape_deviation = shape_variance.cwiseSqrt();
     }
     found.push_back(std::move(pole));

@@ -14,9 +14,7 @@ namespace {
 Pole fitted(const JointDecayFit& fit, std::size_t m) {
   Pole pole{fit.rates[m], fit.shapes.col(static_cast<Eigen::Index>(m))};
   const auto at = static_cast<Eigen::Index>(2 * m);
-  const ModalDeviations deviations = modal_deviations(pole.rate, fit.covariance.block<2, 2>(at, at));
-  pole.frequency_deviation_hz = deviations.frequency_hz;
-  pole.damping_ratio_deviation = deviations.damping_ratio;
+  pole.take_deviations(fit.covariance.block<2, 2>(at, at));
   return pole;
 }
 

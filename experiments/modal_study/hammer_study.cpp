@@ -42,12 +42,7 @@ void add_modes(HammerStudy& study) {
     HammerMode& mode = study.modes[m];
     mode.pole.rate = study.fit.rates[m];
     mode.pole.shape = study.fit.residues.col(m) / study.fit.residues.col(m).cwiseAbs().maxCoeff();
-    if (known) {
-      const ModalDeviations deviations =
-          modal_deviations(mode.pole.rate, study.fit.covariance.block<2, 2>(2 * m, 2 * m));
-      mode.pole.frequency_deviation_hz = deviations.frequency_hz;
-      mode.pole.damping_ratio_deviation = deviations.damping_ratio;
-    }
+    if (known) mode.pole.take_deviations(study.fit.covariance.block<2, 2>(2 * m, 2 * m));
     const double turn = mode.pole.rate.imag();
     for (Index o = 0; o < outputs; ++o) {
       const std::complex<double> residue = study.fit.residues(o, m);

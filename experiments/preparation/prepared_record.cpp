@@ -1,7 +1,5 @@
 #include "experiments/preparation/prepared_record.hpp"
 
-#include <utility>
-
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_record.hpp"
 #include "experiments/preparation/preparation_step.hpp"
@@ -21,20 +19,18 @@ Record prepare(Record record, const std::vector<Choice>& steps) {
   return record;
 }
 
-PreparedRecord prepare_and_cut(Record raw, const RecordFormat& format, const std::filesystem::path& file) {
-  PreparedRecord prepared{std::move(raw), {}};
-  prepared.record = prepare(prepared.raw, format.preparation);
-  if (format.window)
-    prepared.record =
-        at_place(format.window_place.file.empty() ? Place{file.string()} : format.window_place,
-                 [&] { return prepared.record.window(format.window->first, format.window->second); });
-  return prepared;
+Record cut(Record record, const RecordFormat& format, const std::filesystem::path& file) {
+  if (!format.window) return record;
+  return at_place(format.window_place.file.empty() ? Place{file.string()} : format.window_place,
+                  [&] { return record.window(format.window->first, format.window->second); });
 }
 
 PreparedRecord read_and_prepare(const std::filesystem::path& file, const RecordFormat& format) {
   RecordFormat whole = format;
   whole.window.reset();
-  return prepare_and_cut(read_record(file, whole), format, file);
+  PreparedRecord prepared{read_record(file, whole), {}};
+  prepared.record = cut(prepare(prepared.raw, format.preparation), format, file);
+  return prepared;
 }
 
 Record prepared_record(const std::filesystem::path& file, const RecordFormat& format) {

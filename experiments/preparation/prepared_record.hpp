@@ -21,9 +21,10 @@ struct PreparedRecord {
 /// @throws InputError as read_record(), at the step, or at the window.
 PreparedRecord read_and_prepare(const std::filesystem::path& file, const RecordFormat& format);
 
-/// The steps and the window of `format` on a record already read, whole.
-/// @param file it came from, for messages about the window
-PreparedRecord prepare_and_cut(Record raw, const RecordFormat& format, const std::filesystem::path& file);
+/// The window of `format`, where it has one, of a record already prepared.
+/// @param file it came from, for messages
+/// @throws InputError at the window.
+Record cut(Record record, const RecordFormat& format, const std::filesystem::path& file);
 
 /// The same, where only the prepared record is of use.
 Record prepared_record(const std::filesystem::path& file, const RecordFormat& format = {});

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "experiments/estimates.hpp"
 #include "experiments/record_identification/joint_identification.hpp"
 #include "experiments/record_identification/joint_words.hpp"
 #include "experiments/record_identification/record_values.hpp"
@@ -9,8 +10,6 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
-
-constexpr double normal_95 = 1.959963984540054;
 
 // Of the joint estimate; there is no modal analysis of all records.
 std::vector<Parameter> joint_parameters(const JointIdentification& joint) {
@@ -36,7 +35,7 @@ Table table_of(const JointIdentification& joint, const char* name, const char* t
                        const std::vector<Parameter>& found) {
     std::vector<Cell> cells{record, window};
     for (std::size_t i = first; i < first + two; ++i) {
-      const double half = found[i].shown * normal_95 * found[i].deviation;
+      const double half = found[i].shown * quantile_95 * found[i].deviation;
       const int digits = shown_decimals(half);
       cells.emplace_back(fmt::format("{:.{}f}", found[i].shown * found[i].estimate, digits));
       cells.emplace_back(fmt::format("{:.{}f}", half, digits));
@@ -73,7 +72,7 @@ Panel panel_of(const JointIdentification& joint, std::size_t which, const char* 
     const Parameter p = parameters(joint.records[r].found)[which];
     number.push_back(static_cast<double>(r) + 1);
     value.push_back(p.shown * p.estimate);
-    half.push_back(p.shown * normal_95 * p.deviation);
+    half.push_back(p.shown * quantile_95 * p.deviation);
   }
   const auto vector = [](const std::vector<double>& values) {
     return VectorXd(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "experiments/estimates.hpp"
 #include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {
@@ -69,8 +70,8 @@ Lines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal) {
 }  // namespace
 
 double student_factor(double freedom) {
-  constexpr double normal = 1.959963984540054, point = 0.975;
-  return boost::math::quantile(boost::math::students_t(freedom), point) / normal;
+  constexpr double point = 0.975;
+  return boost::math::quantile(boost::math::students_t(freedom), point) / quantile_95;
 }
 
 NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const ModalEstimate& modal) {

@@ -110,15 +110,13 @@ std::string noise_text(const Record& record, const RecordIdentification& found) 
   const double density = near.deviation / found.noise_deviation[0];
   text += fmt::format(
       " At the mode it is as dense as white noise of {:.2f} times that, by {} lines of the spectrum: "
-      "intervals "
-      "are the filter's times {:.2f}.",
+      "intervals are the filter's times {:.2f}.",
       density, near.lines, found.interval_factor);
   constexpr double few = 10;
   if (near.freedom < few)
     text += fmt::format(
         " That is few: the density is known to {:.0f} % only, and longer records would have shorter and "
-        "surer "
-        "intervals.",
+        "surer intervals.",
         100.0 * std::sqrt(2.0 / near.freedom));
   return text;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/estimates.hpp"
 #include "experiments/record_identification/record_identification.hpp"
 
 namespace beamid::experiments {
@@ -16,8 +17,8 @@ struct Parameter {
   double shown;      ///< factor to the unit of the name
   double estimate, deviation, modal;
 
-  double lower_95() const { return estimate - 1.959963984540054 * deviation; }  ///< normal quantile of 2.5 %
-  double upper_95() const { return estimate + 1.959963984540054 * deviation; }
+  double lower_95() const { return estimate - quantile_95 * deviation; }
+  double upper_95() const { return estimate + quantile_95 * deviation; }
 };
 
 /// Frequency, damping ratio, stiffness and damping; deviations widened by the interval factor.

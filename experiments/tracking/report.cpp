@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/estimates.hpp"
 #include "experiments/output/csv.hpp"
 #include "experiments/output/file.hpp"
 #include "experiments/tracking/figure.hpp"
@@ -14,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Eigen::Index;
-
-constexpr double normal_95 = 1.959963984540054;
 
 // Decimals that show two digits of a deviation.
 std::string shown(double value, double deviation) {
@@ -40,7 +39,8 @@ Table plateau_table(const Tracking& found) {
   for (std::size_t i = 0; i < found.plateaus.size(); ++i) {
     const Plateau& p = found.plateaus[i];
     const double ratio = p.frequency_hz / found.plateaus.front().frequency_hz;
-    const double f = normal_95 * p.frequency_deviation_hz, d = 100 * normal_95 * p.damping_ratio_deviation;
+    const double f = quantile_95 * p.frequency_deviation_hz,
+                 d = 100 * quantile_95 * p.damping_ratio_deviation;
     table.row({static_cast<double>(i + 1), p.from, p.to, shown(p.frequency_hz, f), shown(f, f),
                shown(100 * p.damping_ratio, d), shown(d, d), ratio * ratio, p.modal_frequency_hz,
                100 * p.modal_damping_ratio, p.walk});
@@ -62,7 +62,7 @@ Table change_table(const std::vector<PlateauChange>& between) {
       .column({"95 % +- [%]", "stiffness_half_interval_percent"})
       .column({"of", "of"});
   for (const PlateauChange& change : between) {
-    const double half = 100 * normal_95 * change.stiffness_deviation;
+    const double half = 100 * quantile_95 * change.stiffness_deviation;
     table.row({change.from, change.to, shown(100 * change.stiffness, half), shown(half, half),
                std::string(change.of_stiffness() ? "stiffness" : "motion only")});
   }
@@ -78,7 +78,7 @@ Attachment history(const Tracking& found) {
       "time_s,signal,frequency_hz,frequency_lower_95_hz,frequency_upper_95_hz,damping_ratio,"
       "damping_ratio_deviation,plateau\n";
   for (Index k = 0; k < found.time.size(); ++k) {
-    const double f = found.frequency_hz[k], wide = std::exp(normal_95 * found.frequency_deviation[k]);
+    const double f = found.frequency_hz[k], wide = std::exp(quantile_95 * found.frequency_deviation[k]);
     for (const double value : {found.time[k], found.signal[k], f, f / wide, f * wide, found.damping_ratio[k],
                                found.damping_ratio_deviation[k]})
       text += csv_field(value) + ",";
@@ -107,8 +107,8 @@ std::string companions(const Tracking& found) {
 Json interval(double estimate, double deviation) {
   return {{"estimate", estimate},
           {"standard_deviation", deviation},
-          {"lower_95", estimate - normal_95 * deviation},
-          {"upper_95", estimate + normal_95 * deviation}};
+          {"lower_95", estimate - quantile_95 * deviation},
+          {"upper_95", estimate + quantile_95 * deviation}};
 }
 
 Json values(const Tracking& found, const std::vector<PlateauChange>& between) {

@@ -70,11 +70,8 @@ class DampedSines final : public ModalMethod {
     for (std::size_t m = 0; m < fit.rates.size(); ++m) {
       const auto at = static_cast<Index>(m);
       Pole pole{fit.rates[m], fit.shapes.col(at)};
-      const ModalDeviations deviations =
-          modal_deviations(pole.rate, fit.covariance.block<2, 2>(2 * at, 2 * at));
-      pole.frequency_deviation_hz = deviations.frequency_hz;
-      pole.damping_ratio_deviation = deviations.damping_ratio;
-      if (pole.damping_ratio() > deviations.damping_ratio)
+      pole.take_deviations(fit.covariance.block<2, 2>(2 * at, 2 * at));
+      if (pole.damping_ratio() > pole.damping_ratio_deviation)
         found.orders.back().poles.push_back(std::move(pole));
       else
         found.refused.push_back({pole, "damping ratio smaller than its standard deviation"});

@@ -24,8 +24,7 @@ class Decimate final : public PreparationStep {
     record = std::move(fewer);
     return fmt::format(
         "Decimated by {} to {:.6g} Hz: nothing changes up to {:.4g} Hz, what lies above {:.4g} Hz is gone, "
-        "and "
-        "{:.3g} s at each end.",
+        "and {:.3g} s at each end.",
         factor_, rate, 0.3 * rate, 0.7 * rate, 5 * factor_ * interval);
   }
 

@@ -152,12 +152,12 @@ TEST(JointDecayFit, KnowsItsOwnScatter) {
   for (int run = 0; run < runs; ++run) {
     const JointDecayFit fit =
         fit_decays_jointly(noisy_decay(0.05, 100 + run), 0.01, {rate_of(5, 0.01), rate_of(8, 0.02)});
-    const Pole pole{fit.rates[1], fit.shapes.col(1)};
-    const ModalDeviations deviations = modal_deviations(pole.rate, fit.covariance.block<2, 2>(2, 2));
+    Pole pole{fit.rates[1], fit.shapes.col(1)};
+    pole.take_deviations(fit.covariance.block<2, 2>(2, 2));
     frequency[run] = pole.frequency_hz();
     damping[run] = pole.damping_ratio();
-    frequency_variance += std::pow(deviations.frequency_hz, 2) / runs;
-    damping_variance += std::pow(deviations.damping_ratio, 2) / runs;
+    frequency_variance += std::pow(pole.frequency_deviation_hz, 2) / runs;
+    damping_variance += std::pow(pole.damping_ratio_deviation, 2) / runs;
   }
   const auto scatter = [](const VectorXd& values) {
     return std::sqrt((values.array() - values.mean()).square().sum() / (runs - 1));
