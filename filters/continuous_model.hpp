@@ -13,7 +13,7 @@ namespace beamid::filters {
 class DiscreteModel;
 struct Noise;
 
-/// z' = f(z, u),  y = h(z, u): state z (n), input u (m) held over a step, output y (p).
+/// z' = f(z, u),  y = h(z, u): state z (n), input u (m), output y (p), all at one instant.
 ///
 /// Jacobians are central differences unless a model gives its own.
 class ContinuousModel {

@@ -70,10 +70,10 @@ class Discretised final : public DiscreteModel {
     directions.swap(moved_);
   }
   void output(const VectorXd& state, const VectorXd& input, VectorXd& output) override {
-    model_->output(state, input, output);
+    model_->output(state, now(input), output);
   }
   void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) override {
-    model_->output_jacobian(state, input, jacobian);
+    model_->output_jacobian(state, now(input), jacobian);
   }
 
  private:
@@ -82,6 +82,15 @@ class Discretised final : public DiscreteModel {
   std::unique_ptr<Scheme> scheme_;
   Noise noise_;
   MatrixXd tangent_, moved_;
+  VectorXd now_;
+
+  // The inputs at the sample itself, of a path.
+  const VectorXd& now(const VectorXd& path) {
+    const Index inputs = model_->input_size();
+    if (inputs == 0 || path.size() <= inputs) return path;
+    now_ = path.head(inputs);
+    return now_;
+  }
 };
 
 void require_square(const MatrixXd& matrix, Index size, const char* name) {

@@ -12,6 +12,9 @@ namespace beamid::filters {
 
 /// z_k+1 = F(z_k, u_k) + w,  y_k = h(z_k, u_k) + v,  w ~ N(0, Q), v ~ N(0, R).
 ///
+/// u_k tells how the m inputs run from sample k to the next: [p_0; ...; p_d] of StepInput (m (d + 1)), the
+/// inputs at the sample first. With m entries they are held.
+///
 /// Models may keep work space: each filter owns one.
 class DiscreteModel {
  public:

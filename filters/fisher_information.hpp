@@ -18,7 +18,7 @@ Eigen::MatrixXd fisher_information(DiscreteModel& model, const Eigen::VectorXd& 
 ///
 ///     I = sum_k (H_k S_k)^T R^-1 (H_k S_k),   S_k+1 = J_k S_k by DiscreteModel::move()
 ///
-/// @param inputs u_k in its columns (m x samples); empty: none.
+/// @param inputs u_k in its columns, as DiscreteModel takes them (m (d + 1) x samples); empty: none.
 /// @throws std::invalid_argument when shapes disagree or R is not positive definite; std::runtime_error when
 /// the motion or its sensitivities do not remain finite.
 InformationFactor information_factor(DiscreteModel& model, const Eigen::VectorXd& initial_state,

@@ -33,7 +33,7 @@ enum class Start { at_first_sample, one_interval_before };
 struct Sample {
   double time = 0.0;                ///< [s]
   Eigen::VectorXd output;           ///< y (p); NaN: not measured
-  Eigen::VectorXd input = {};       ///< u (m), held until the next sample; empty: none
+  Eigen::VectorXd input = {};       ///< how the inputs run to the next sample, as of a step; empty: none
   Eigen::VectorXd deviations = {};  ///< R = diag(squares) at this sample (p); empty: the model's own
 };
 
@@ -41,7 +41,7 @@ struct Sample {
 struct SavedRun {
   Gaussian belief;        ///< about the last sample, which has been taken in
   double time = 0.0;      ///< of that sample [s]
-  Eigen::VectorXd input;  ///< held since then
+  Eigen::VectorXd input;  ///< since then
   Eigen::Index step = 0;  ///< of the sample that comes next
   DivergenceAlarm alarm;
 };

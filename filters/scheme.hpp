@@ -13,8 +13,9 @@ class Scheme {
  public:
   virtual ~Scheme() = default;
 
-  /// z(t + dt) from z(t), the input held; `tangent` (n x n), when asked for, is d next / d state.
-  /// `next` must be another vector than `state`.
+  /// z(t + dt) from z(t); `tangent` (n x n), when asked for, is d next / d state.
+  /// @param input how the inputs run over the step, [p_0; ...; p_d] of StepInput: at d = 0 they are held
+  /// @param next another vector than `state`
   virtual void step(const ContinuousModel& model, const Eigen::VectorXd& state, const Eigen::VectorXd& input,
                     double dt, Eigen::VectorXd& next, Eigen::MatrixXd* tangent) = 0;
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "filters/scheme.hpp"
+#include "filters/step_input.hpp"
 
 namespace beamid::filters {
 namespace {
@@ -29,22 +30,28 @@ Eigen::Map<VectorXd> view(N_Vector vector) {
 // What the right-hand sides need to know.
 struct Motion {
   const ContinuousModel* model = nullptr;
-  VectorXd input, state, rate;
+  VectorXd path, input, state, rate;
+  double dt = 1.0;
+
+  void take(double t, N_Vector z) {
+    state = view(z);
+    input = StepInput(path, model->input_size()).at(t / dt);
+  }
   MatrixXd jacobian;
 };
 
-int right_hand_side(realtype, N_Vector z, N_Vector z_rate, void* data) {
+int right_hand_side(realtype t, N_Vector z, N_Vector z_rate, void* data) {
   auto& motion = *static_cast<Motion*>(data);
-  motion.state = view(z);
+  motion.take(t, z);
   motion.model->rate(motion.state, motion.input, motion.rate);
   view(z_rate) = motion.rate;
   return 0;
 }
 
-int sensitivities(int count, realtype, N_Vector z, N_Vector, N_Vector* s, N_Vector* s_rate, void* data,
+int sensitivities(int count, realtype t, N_Vector z, N_Vector, N_Vector* s, N_Vector* s_rate, void* data,
                   N_Vector, N_Vector) {
   auto& motion = *static_cast<Motion*>(data);
-  motion.state = view(z);
+  motion.take(t, z);
   motion.model->rate_jacobian(motion.state, motion.input, motion.jacobian);
   for (int i = 0; i < count; ++i) view(s_rate[i]) = motion.jacobian * view(s[i]);
   return 0;
@@ -120,7 +127,8 @@ class Cvode final : public Scheme {
             VectorXd& next, MatrixXd* tangent) override {
     if (!integrator_) integrator_ = std::make_unique<Integrator>(state.size(), tolerance_, motion_);
     motion_.model = &model;
-    motion_.input = input;
+    motion_.path = input;
+    motion_.dt = dt;
     integrator_->advance(state, dt, next, tangent);
   }
 

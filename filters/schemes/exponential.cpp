@@ -1,19 +1,26 @@
-// Exact motion of a linear model with constant parameters and held input:
+// Exact motion of a linear model with constant parameters and inputs that are polynomials of the step
+// (StepInput):
 //
-//     x+ = e^(A dt) x + (integral_0^dt e^(A s) ds) B u,    theta+ = theta
+//     x+ = e^Z x + dt integral_0^1 e^(Z (1 - s)) B u(s) ds,   Z = A dt,    theta+ = theta
 //
 // with the exact tangent: d x+/d theta_j is the directional derivative of the exponential along dA/dtheta_j.
-// The input enters by augmenting A to [A B; 0 0] [vanloan1978].
+// The powers s^j / j! are a chain of integrators, so that the inputs enter by augmenting A [vanloan1978].
+// Two coordinates take the exponential in closed form and the integral as the series
+//
+//     sum_k Z^k B h_k,   h_k = sum_j j! / (k + j + 1)! p_j.
 #include "filters/scheme.hpp"
 #include "filters/schemes/matrix_exponential.hpp"
+#include "filters/step_input.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 
 namespace beamid::filters {
 namespace {
 
-using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using Eigen::Index, Eigen::Matrix2d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
 
 class Exponential final : public Scheme {
  public:
@@ -22,10 +29,14 @@ class Exponential final : public Scheme {
     if (&model != model_) bind(model);
     linear_->motion_matrix(state, a_);
     next = state;
-    if (linear_->motion_size() == 2 && linear_->input_size() == 0)
+    const bool forced = linear_->input_size() > 0;
+    constexpr double farthest = 3.0;  // rounding grows with e^|Z|
+    if (linear_->motion_size() == 2 && (!forced || size_of(a_ * dt) <= farthest)) {
       step_oscillator(state, dt, next, tangent);
-    else
+      if (forced) push_oscillator(state, input, dt, next, tangent);
+    } else {
       step_general(state, input, dt, next, tangent);
+    }
   }
 
   Amplification amplification(std::complex<double> z) const override { return {std::exp(z), std::exp(z)}; }
@@ -39,6 +50,11 @@ class Exponential final : public Scheme {
     model_ = &model;
   }
 
+  // |Z| in coordinates that are scaled to make it small.
+  static double size_of(const Matrix2d& z) {
+    return std::max(std::abs(z(0, 0)), std::abs(z(1, 1))) + std::sqrt(std::abs(z(0, 1) * z(1, 0)));
+  }
+
   void step_oscillator(const VectorXd& state, double dt, VectorXd& next, MatrixXd* tangent) {
     const Exponential2x2 exponential(a_.topLeftCorner<2, 2>() * dt);
     next.head<2>() = exponential.value() * state.head<2>();
@@ -46,40 +62,105 @@ class Exponential final : public Scheme {
     tangent->setZero(state.size(), state.size());
     tangent->diagonal().setOnes();
     tangent->topLeftCorner<2, 2>() = exponential.value();
-    const Eigen::Vector2d motion = state.head<2>();
+    const Vector2d motion = state.head<2>();
     for (Index j = 0; j < linear_->parameter_size(); ++j) {
       linear_->motion_matrix_derivative(state, j, derivative_);
-      const Eigen::Matrix2d slope = exponential.derivative(derivative_.topLeftCorner<2, 2>() * dt);
+      const Matrix2d slope = exponential.derivative(derivative_.topLeftCorner<2, 2>() * dt);
       tangent->block<2, 1>(0, 2 + j).noalias() = slope * motion;
+    }
+  }
+
+  // h_k in columns, as many as matter (m x K)
+  void find_moments(const StepInput& path, double size) {
+    constexpr double rounding = 1e-18;
+    Index terms = 1;
+    for (double term = 1.0; term > rounding; ++terms) term *= size / static_cast<double>(terms + 1);
+    moments_.setZero(path.size(), terms);
+    for (Index j = 0; j <= path.degree(); ++j) {
+      double weight = 1.0 / static_cast<double>(j + 1);
+      for (Index k = 0; k < terms; ++k) {
+        moments_.col(k) += weight * path.coefficient(j);
+        weight /= static_cast<double>(k + j + 2);
+      }
+    }
+  }
+
+  void push_oscillator(const VectorXd& state, const VectorXd& input, double dt, VectorXd& next,
+                       MatrixXd* tangent) {
+    const Matrix2d z = a_ * dt;
+    const StepInput path(input, linear_->input_size());
+    if (path.size() == 0) return;
+    find_moments(path, size_of(z));
+    linear_->input_matrix(state, b_);
+    pushes_.noalias() = dt * (b_ * moments_);
+    const Index last = moments_.cols() - 1;
+    Vector2d sum = Vector2d::Zero();
+    for (Index k = last; k >= 0; --k) sum = z * sum + pushes_.col(k);
+    next.head<2>() += sum;
+    if (!tangent) return;
+    for (Index j = 0; j < linear_->parameter_size(); ++j) {
+      linear_->motion_matrix_derivative(state, j, derivative_);
+      linear_->input_matrix_derivative(state, j, b_);
+      const Matrix2d turn = derivative_ * dt;
+      slopes_.noalias() = dt * (b_ * moments_);
+      Vector2d slope = Vector2d::Zero();
+      sum.setZero();
+      for (Index k = last; k >= 0; --k) {
+        slope = z * slope + turn * sum + slopes_.col(k);
+        sum = z * sum + pushes_.col(k);
+      }
+      tangent->block<2, 1>(0, 2 + j) += slope;
     }
   }
 
   void step_general(const VectorXd& state, const VectorXd& input, double dt, VectorXd& next,
                     MatrixXd* tangent) {
-    const Index l = linear_->motion_size(), m = linear_->input_size();
-    VectorXd moved(l + m);
-    moved << state.head(l), input.head(m);
-    MatrixXd held = MatrixXd::Zero(l + m, l + m), value, slope;
+    const Index l = linear_->motion_size();
+    const StepInput path(input, linear_->input_size());
+    const Index chain = path.size() > 0 ? path.degree() + 1 : 0;
+    MatrixXd augmented = MatrixXd::Zero(l + chain, l + chain), value, slope;
+    augmented.topLeftCorner(l, l) = a_ * dt;
     linear_->input_matrix(state, b_);
-    held.topRows(l) << a_, b_;
-    value = (held * dt).exp();
+    double scale = 1.0;  // of the chain: the inputs are then no larger than the chain itself
+    if (chain > 0) {
+      augmented.topRightCorner(l, chain) = pushes(path, dt);
+      scale = std::max(augmented.topRightCorner(l, chain).cwiseAbs().colwise().sum().maxCoeff(), 1e-300);
+      augmented.topRightCorner(l, chain) /= scale;
+      augmented.bottomRightCorner(chain, chain).diagonal(-1).setOnes();
+    }
+    VectorXd moved = VectorXd::Zero(l + chain);
+    moved.head(l) = state.head(l);
+    if (chain > 0) moved[l] = scale;
+    value = augmented.exp();
     next.head(l) = value.topRows(l) * moved;
     if (!tangent) return;
     tangent->setIdentity(state.size(), state.size());
     tangent->topLeftCorner(l, l) = value.topLeftCorner(l, l);
-    MatrixXd direction = MatrixXd::Zero(l + m, l + m);
+    MatrixXd direction = MatrixXd::Zero(l + chain, l + chain);
     for (Index j = 0; j < linear_->parameter_size(); ++j) {
       linear_->motion_matrix_derivative(state, j, derivative_);
       linear_->input_matrix_derivative(state, j, b_);
-      direction.topRows(l) << derivative_, b_;
-      exponential_with_derivative(held * dt, direction * dt, value, slope);
+      direction.topLeftCorner(l, l) = derivative_ * dt;
+      if (chain > 0) direction.topRightCorner(l, chain) = pushes(path, dt) / scale;
+      exponential_with_derivative(augmented, direction, value, slope);
       tangent->col(l + j).head(l) = slope.topRows(l) * moved;
     }
   }
 
+  // dt j! B p_j in columns (l x (d + 1)), of the matrix in b_
+  MatrixXd pushes(const StepInput& path, double dt) const {
+    MatrixXd columns(b_.rows(), path.degree() + 1);
+    double factorial = dt;
+    for (Index j = 0; j <= path.degree(); ++j) {
+      if (j > 1) factorial *= static_cast<double>(j);
+      columns.col(j) = factorial * (b_ * path.coefficient(j));
+    }
+    return columns;
+  }
+
   const ContinuousModel* model_ = nullptr;
   const LinearMotion* linear_ = nullptr;
-  MatrixXd a_, b_, derivative_;
+  MatrixXd a_, b_, derivative_, moments_, pushes_, slopes_;
 };
 
 const bool registered =

@@ -1,5 +1,7 @@
 #include "filters/schemes/gauss_step.hpp"
 
+#include "filters/step_input.hpp"
+
 #include <cmath>
 #include <stdexcept>
 
@@ -12,7 +14,10 @@ void GaussStep::operator()(const ContinuousModel& model, const Eigen::VectorXd& 
   const double offset = std::sqrt(3.0) / 6.0;
   const double a[2][2] = {{0.25, 0.25 - offset}, {0.25 + offset, 0.25}};
   const Eigen::Index n = state.size();
-  model.rate(state, input, rate_);
+  const StepInput path(input, model.input_size());
+  const Eigen::VectorXd mean = path.mean(), turn = offset * path.slope();
+  const Eigen::VectorXd inputs[2] = {mean - turn, mean + turn};
+  model.rate(state, mean, rate_);
   slopes_.resize(2 * n);
   slopes_ << rate_, rate_;
   residual_.resize(2 * n);
@@ -22,8 +27,8 @@ void GaussStep::operator()(const ContinuousModel& model, const Eigen::VectorXd& 
     matrix_.setIdentity(2 * n, 2 * n);
     for (int i = 0; i < 2; ++i) {
       point_ = state + dt * (a[i][0] * slopes_.head(n) + a[i][1] * slopes_.tail(n));
-      model.rate(point_, input, rate_);
-      model.rate_jacobian(point_, input, jacobian_);
+      model.rate(point_, inputs[i], rate_);
+      model.rate_jacobian(point_, inputs[i], jacobian_);
       residual_.segment(i * n, n) = rate_ - slopes_.segment(i * n, n);
       jacobians_.middleRows(i * n, n) = jacobian_;
       for (int j = 0; j < 2; ++j) matrix_.block(i * n, j * n, n, n) -= dt * a[i][j] * jacobian_;

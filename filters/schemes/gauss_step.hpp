@@ -12,8 +12,9 @@ namespace beamid::filters {
 ///     a = [ 1/4            1/4 - sqrt3/6 ]
 ///         [ 1/4 + sqrt3/6  1/4           ]
 ///
-/// and its tangent I + dt (k_1' + k_2')/2, from (I - dt [a_ij J_i]) k' = [J_1; J_2] [hairer1996, ch. IV.5].
-/// Fourth order. One object per thread: it keeps work space.
+/// with the line of the input's mean and slope (StepInput) at the stages, and its tangent I + dt (k_1' +
+/// k_2')/2, from (I - dt [a_ij J_i]) k' = [J_1; J_2] [hairer1996, ch. IV.5]. Fourth order. One object per
+/// thread: it keeps work space.
 class GaussStep {
  public:
   /// @throws std::runtime_error when Newton's method does not converge.

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <stdexcept>
 
+#include "filters/step_input.hpp"
+
 namespace beamid::filters {
 
 void ImplicitStep::operator()(const ContinuousModel& model, const Eigen::VectorXd& state,
@@ -10,11 +12,12 @@ void ImplicitStep::operator()(const ContinuousModel& model, const Eigen::VectorX
                               Eigen::MatrixXd* tangent) {
   constexpr int most_iterations = 50;
   const Eigen::Index n = state.size();
+  const Eigen::VectorXd there = StepInput(input, model.input_size()).at(theta_);
   next = state;
   for (int iteration = 0;; ++iteration) {
     point_ = (1.0 - theta_) * state + theta_ * next;
-    model.rate(point_, input, rate_);
-    model.rate_jacobian(point_, input, jacobian_);
+    model.rate(point_, there, rate_);
+    model.rate_jacobian(point_, there, jacobian_);
     matrix_ = Eigen::MatrixXd::Identity(n, n) - theta_ * dt * jacobian_;
     change_ = matrix_.partialPivLu().solve(state + dt * rate_ - next);
     next += change_;

@@ -7,7 +7,7 @@
 
 namespace beamid::filters {
 
-/// Newton solution of  z+ = z + dt f((1 - theta) z + theta z+)  and its tangent
+/// Newton solution of  z+ = z + dt f((1 - theta) z + theta z+, u(theta))  and its tangent
 /// (I - theta dt J)^-1 (I + (1 - theta) dt J), J = df/dz at the point where f is taken.
 ///
 /// theta = 1 is backward Euler, 1/2 the implicit midpoint rule. One object per thread: it keeps work space.

@@ -2,18 +2,21 @@
 //
 //     R(z) = (12 + 6z + z^2) / (12 - 6z + z^2)          e^z - R(z) = z^5/720 + ...
 //
-// For linear motion x' = A x + B u with held u, Z = A dt, it is taken as the increment d of
+// For linear motion x' = A x + B u, Z = A dt, it is taken as the increment d of
 //
-//     (12 - 6Z + Z^2) d = 12 dt (A x + B u),   x+ = x + d
+//     (12 - 6Z + Z^2) d = 12 dt (A x + B mean) - Z dt B slope,   x+ = x + d
 //
-// which is what R does to [A B; 0 0], the augmented matrix. Its tangent is that of this equation: along
-// Z' = dt dA/dtheta_j
+// with mean and slope of the input over the step (StepInput), which is what R does to the matrix augmented by
+// the chain of integrators that makes the input. Its tangent is that of this equation: along Z' = dt
+// dA/dtheta_j
 //
-//     (12 - 6Z + Z^2) d' = 12 dt (A' x + B' u) + 6 Z' d - Z' (Z d) - Z (Z' d).
+//     (12 - 6Z + Z^2) d' = 12 dt (A' x + B' mean) - Z' dt B slope - Z dt B' slope
+//                          + 6 Z' d - Z' (Z d) - Z (Z' d).
 //
 // Any other motion takes the Gauss method of two stages, whose stability function is the same R.
 #include "filters/scheme.hpp"
 #include "filters/schemes/gauss_step.hpp"
+#include "filters/step_input.hpp"
 
 #include <Eigen/LU>
 
@@ -51,15 +54,22 @@ class Pade final : public Scheme {
 
     rate_.noalias() = z_ * x;
     if (m > 0) {
+      const StepInput path(input, m);
+      mean_ = path.mean();
+      slope_of_input_ = path.slope();
       model.input_matrix(state, b_);
-      rate_.noalias() += dt * (b_ * input);
+      rate_.noalias() += dt * (b_ * mean_);
+      pushed_.noalias() = dt * (b_ * slope_of_input_);
     }
-    change_ = factor_.solve(12.0 * rate_);
+    change_ = 12.0 * rate_;
+    if (m > 0) change_.noalias() -= z_ * pushed_;
+    change_ = factor_.solve(change_).eval();
     next = state;
     next.head(l) += change_;
     if (!tangent) return;
 
     moved_.noalias() = z_ * change_;
+    if (m > 0) moved_ += pushed_;
     right_.resize(l, l + q);
     right_.leftCols(l) = 12.0 * z_;
     for (Index j = 0; j < q; ++j) {
@@ -71,7 +81,8 @@ class Pade final : public Scheme {
       column.noalias() -= z_ * turned_;
       if (m == 0) continue;
       model.input_matrix_derivative(state, j, b_);
-      column.noalias() += (12.0 * dt) * (b_ * input);
+      column.noalias() += (12.0 * dt) * (b_ * mean_);
+      column.noalias() -= z_ * (dt * (b_ * slope_of_input_));
     }
     tangent->setIdentity(state.size(), state.size());
     tangent->topRows(l).leftCols(l + q) += factor_.solve(right_);
@@ -79,7 +90,7 @@ class Pade final : public Scheme {
 
   GaussStep gauss_;
   Eigen::PartialPivLU<MatrixXd> factor_;
-  VectorXd rate_, change_, moved_, turned_;
+  VectorXd rate_, change_, moved_, turned_, mean_, slope_of_input_, pushed_;
   MatrixXd z_, below_, right_, slope_, b_;
 };
 

@@ -1,5 +1,6 @@
 // Explicit midpoint rule: z+ = z + dt f(z + dt/2 f(z)), g(z) = 1 + z + z^2/2.
 #include "filters/scheme.hpp"
+#include "filters/step_input.hpp"
 
 namespace beamid::filters {
 namespace {
@@ -8,13 +9,15 @@ class RungeKutta2 final : public Scheme {
  public:
   void step(const ContinuousModel& model, const Eigen::VectorXd& state, const Eigen::VectorXd& input,
             double dt, Eigen::VectorXd& next, Eigen::MatrixXd* tangent) override {
-    model.rate(state, input, rate_);
+    const StepInput path(input, model.input_size());
+    const Eigen::VectorXd first = path.at(0.0), second = path.at(0.5);
+    model.rate(state, first, rate_);
     midpoint_ = state + 0.5 * dt * rate_;
-    model.rate(midpoint_, input, rate_);
+    model.rate(midpoint_, second, rate_);
     next = state + dt * rate_;
     if (!tangent) return;
-    model.rate_jacobian(state, input, start_);
-    model.rate_jacobian(midpoint_, input, middle_);
+    model.rate_jacobian(state, first, start_);
+    model.rate_jacobian(midpoint_, second, middle_);
     *tangent = dt * middle_ + 0.5 * dt * dt * middle_ * start_;
     tangent->diagonal().array() += 1.0;
   }

@@ -1,5 +1,6 @@
 // The classical Runge-Kutta method, g(z) = 1 + z + z^2/2 + z^3/6 + z^4/24.
 #include "filters/scheme.hpp"
+#include "filters/step_input.hpp"
 
 namespace beamid::filters {
 namespace {
@@ -12,6 +13,7 @@ class RungeKutta4 final : public Scheme {
     constexpr double node[4] = {0.0, 0.5, 0.5, 1.0};
     constexpr double weight[4] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
     const Eigen::Index n = state.size();
+    const StepInput path(input, model.input_size());
     rate_.setZero(n);
     next = state;
     if (tangent) {
@@ -20,10 +22,11 @@ class RungeKutta4 final : public Scheme {
     }
     for (int i = 0; i < 4; ++i) {
       point_ = state + node[i] * dt * rate_;
-      model.rate(point_, input, rate_);
+      input_ = path.at(node[i]);
+      model.rate(point_, input_, rate_);
       next += weight[i] * dt * rate_;
       if (!tangent) continue;
-      model.rate_jacobian(point_, input, jacobian_);  // dk_i/dz = J (I + a_i dt dk_i-1/dz)
+      model.rate_jacobian(point_, input_, jacobian_);  // dk_i/dz = J (I + a_i dt dk_i-1/dz)
       slope_ = jacobian_ + node[i] * dt * (jacobian_ * slope_).eval();
       *tangent += weight[i] * dt * slope_;
     }
@@ -35,7 +38,7 @@ class RungeKutta4 final : public Scheme {
   }
 
  private:
-  Eigen::VectorXd rate_, point_;
+  Eigen::VectorXd rate_, point_, input_;
   Eigen::MatrixXd jacobian_, slope_;
 };
 
