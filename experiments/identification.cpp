@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/divergence.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -79,10 +81,7 @@ Identification identify(const JointModel& model, const filters::Measurements& re
 }
 
 bool lost(const Identification& result, double modal_frequency_hz) {
-  const Oscillator& found = result.found;
-  const double omega = 2.0 * std::numbers::pi * modal_frequency_hz;
-  const bool near = std::abs(found.stiffness / found.mass / (omega * omega) - 1.0) < 0.05;
-  return result.run.failure || !near || !(found.stiffness > 0.0) || !(found.damping > 0.0);
+  return !divergence(result, modal_frequency_hz).empty();
 }
 
 }  // namespace beamid::experiments

@@ -53,8 +53,8 @@ Identification identify(const JointModel& model, const filters::Measurements& re
                         const IdentificationSettings& settings,
                         filters::Keep keep = filters::Keep::last_belief);
 
-/// Whether the filter lost the motion, told without knowing the truth: it failed, found no positive K and C,
-/// or its K/M is more than 5 % from the squared frequency of a modal analysis [Hz].
+/// Whether the filter lost the motion, without knowledge of the truth: whether divergence() has a reason.
+/// @param modal_frequency_hz of a modal analysis [Hz]
 bool lost(const Identification& result, double modal_frequency_hz);
 
 }  // namespace beamid::experiments
