@@ -2,6 +2,7 @@
 #include "apps/beam_options.hpp"
 #include "apps/deliver.hpp"
 #include "experiments/continuum/simulation_report.hpp"
+#include "experiments/input/read_acquisition.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -22,11 +23,14 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   options::variables_map values;
   if (!parse(command, arguments, described, {}, values)) return 0;
   const BeamSource source = read_beam(command, values, simulation_keys());
+  experiments::Acquisition acquisition;
+  if (!source.config.empty())
+    acquisition = experiments::read_acquisition(experiments::TomlTable::read(source.config));
   const int frames = values.count("out") ? source.experiment.simulation.frames : 0;  // nobody would see them
   deliver(values, [&] {
     return blame_config(source, [&] {
-      const auto test = std::make_shared<const experiments::SimulatedTest>(
-          experiments::simulate(source.experiment, source.config.parent_path(), frames, show_progress()));
+      const auto test = std::make_shared<const experiments::SimulatedTest>(experiments::simulate(
+          source.experiment, source.config.parent_path(), frames, show_progress(), acquisition));
       return experiments::report(source.experiment, test, values.count("surface") > 0);
     });
   });

@@ -63,8 +63,7 @@ VectorXd sine(const Case& c, std::vector<std::string>& notes) {
                                [&](Index k) { return c.excitation.amplitude * std::sin(turn * c.time(k)); });
 }
 
-// A half sine whose samples, joined by straight lines, carry the momentum exactly.
-VectorXd half_sine(const Case& c) {
+void check_duration(const Case& c) {
   const double steps = c.excitation.duration / c.grid.interval;
   if (steps < 4.0)
     throw InputError(
@@ -72,10 +71,25 @@ VectorXd half_sine(const Case& c) {
         fmt::format("excitation.duration_s is {:g}, {:.3g} steps of {:g} s; expected at least 4 (raise "
                     "simulation.steps_per_sample or sampling_rate_hz), or 0 for an instant",
                     c.excitation.duration, steps, c.grid.interval));
+}
+
+// A half sine whose samples, joined by straight lines, carry the momentum exactly.
+VectorXd half_sine(const Case& c) {
+  check_duration(c);
   VectorXd force = VectorXd::NullaryExpr(c.grid.samples, [&](Index k) {
     return c.time(k) < c.excitation.duration ? std::sin(pi * c.time(k) / c.excitation.duration) : 0.0;
   });
   return c.excitation.momentum / (force.sum() * c.grid.interval) * force;
+}
+
+// A hand that lets go: from the force that holds the deflection down to nothing, along half a cosine.
+VectorXd let_go(const Case& c, double deflection) {
+  check_duration(c);
+  const double duration = c.excitation.duration,
+               force = deflection * fem::static_stiffness(c.system, c.input, c.input);
+  return VectorXd::NullaryExpr(c.grid.samples, [&](Index k) {
+    return c.time(k) < duration ? 0.5 * force * (1.0 + std::cos(pi * c.time(k) / duration)) : 0.0;
+  });
 }
 
 // Linear between the file's rows, nothing before and after them.
@@ -118,9 +132,12 @@ ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSyst
   const Case c{excitation, system, input, grid, folder};
   ExcitationHistory result;
   switch (excitation.kind) {
-    case Kind::release:
-      result.loading.initial_displacement = excitation.deflection.value_or(study_deflection) * shape(c);
+    case Kind::release: {
+      const double deflection = excitation.deflection.value_or(study_deflection);
+      result.loading.initial_displacement = deflection * shape(c);
+      if (excitation.duration > 0.0) set_input(c, input, let_go(c, deflection), result);
       break;
+    }
     case Kind::free: {
       if (excitation.deflection.value_or(0.0) == 0.0 && excitation.velocity == 0.0)
         throw InputError(

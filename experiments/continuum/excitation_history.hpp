@@ -18,8 +18,9 @@ struct ExcitationHistory {
 
 /// @param input number of the input (and output) that the excitation acts on.
 /// @param folder in which the excitation's file is looked for.
-/// @throws InputError at the excitation's place when it cannot be followed: a pulse shorter than four steps,
-/// a static shape of a beam that moves without strain, a file without force, nothing that moves.
+/// @throws InputError at the excitation's place when it cannot be followed: a pulse or a letting go shorter
+/// than four steps, a static shape of a beam that moves without strain, a file without force, nothing that
+/// moves.
 ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSystem& system,
                          Eigen::Index input, const fem::TimeGrid& grid, const std::filesystem::path& folder);
 

@@ -7,6 +7,7 @@
 
 #include "experiments/continuum/excitation_history.hpp"
 #include "experiments/random.hpp"
+#include "experiments/signal/cubic_spline.hpp"
 #include "fem/modes.hpp"
 #include "fem/parametric_system.hpp"
 
@@ -103,14 +104,50 @@ int affordable_frames(int frames, Index coordinates, std::vector<std::string>& n
   return affordable;
 }
 
+/// When the logger samples: `count` samples during the motion, and those before it.
+struct Clock {
+  VectorXd time;       ///< (N) [s], from 0
+  double event = 0.0;  ///< the motion's t = 0 on this clock [s]
+  Index before = 0;    ///< samples before it
+  bool even = true;
+};
+
+Clock clock_of(const Acquisition& acquisition, const Simulation& settings, Index count) {
+  Clock clock;
+  clock.before = static_cast<Index>(std::llround(acquisition.pretrigger * settings.sampling_rate));
+  clock.event = static_cast<double>(clock.before) / settings.sampling_rate;
+  clock.time = sample_instants(acquisition, clock.before + count, settings.sampling_rate, settings.seed);
+  clock.even = !(acquisition.jitter > 0);
+  return clock;
+}
+
+/// True readings (N) at the clock's instants from those at the steps of the integration. Before the motion
+/// the beam is held where it starts: only displacements and strains show that.
+VectorXd readings_at(const Clock& clock, const VectorXd& step_time, const VectorXd& values, Index steps,
+                     Quantity quantity) {
+  const bool held = quantity == Quantity::displacement || quantity == Quantity::strain;
+  VectorXd readings = VectorXd::Constant(clock.time.size(), held ? values[0] : 0.0);
+  if (clock.even) {
+    const Index count = clock.time.size() - clock.before;
+    readings.tail(count) = values(Eigen::seqN(Index{0}, count, steps));
+    return readings;
+  }
+  const CubicSpline spline(step_time, values);
+  const double last = step_time[step_time.size() - 1];
+  for (Index k = 0; k < readings.size(); ++k)
+    if (const double t = clock.time[k] - clock.event; t >= 0) readings[k] = spline(std::min(t, last));
+  return readings;
+}
+
 }  // namespace
 
 SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path& folder, int frames,
-                       const Progress& progress) {
+                       const Progress& progress, const Acquisition& acquisition) {
   const Simulation& settings = experiment.simulation;
   SimulatedTest test;
   test.sensors = experiment.sensors.empty() ? default_sensors() : experiment.sensors;
   test.excitation = experiment.excitation;
+  test.acquisition = acquisition;
   BeamPoints points(experiment.beam);
   std::vector<Index> outputs;
   std::vector<double> gauges;
@@ -131,7 +168,9 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   test.system = fem::assemble(fem::with_nodes(experiment.beam, gauges), experiment.elements, points.all());
   add_gauges(test, outputs);
 
-  const int steps = settings.steps_per_sample;
+  constexpr int fewest_between_stamps = 8;
+  const int steps = acquisition.jitter > 0 ? std::max(settings.steps_per_sample, fewest_between_stamps)
+                                           : settings.steps_per_sample;
   const auto samples = static_cast<Index>(std::llround(settings.duration * settings.sampling_rate)) + 1;
   fem::TimeGrid grid{1.0 / (settings.sampling_rate * steps), (samples - 1) * steps + 1, {}};
   ExcitationHistory history = excite(test.excitation, test.system, input, grid, folder);
@@ -145,17 +184,22 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   test.response = fem::respond(test.system, experiment.damping, history.loading, grid, test.method);
   for (const std::string& remark : test.response.remarks) test.notes.push_back(remark);
 
-  const auto at_samples = Eigen::seqN(Index{0}, samples, Index{steps});
-  test.record.time =
-      VectorXd::LinSpaced(samples, 0, static_cast<double>(samples - 1)) / settings.sampling_rate;
-  test.record.samples.resize(static_cast<Index>(test.sensors.size()), samples);
+  const Clock clock = clock_of(acquisition, settings, samples);
+  test.record.time = clock.time;
+  test.record.samples.resize(static_cast<Index>(test.sensors.size()), clock.time.size());
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
     const Sensor& sensor = test.sensors[i];
-    VectorXd values = clean_history(test, sensor.quantity, outputs[i], history.base_acceleration)(at_samples);
-    if (sensor.noise > 0.0) values += sensor.noise * standard_normal(samples, settings.seed, i);
-    test.record.samples.row(static_cast<Index>(i)) = values.transpose();
+    const VectorXd values = clean_history(test, sensor.quantity, outputs[i], history.base_acceleration),
+                   readings = readings_at(clock, test.response.time, values, steps, sensor.quantity);
+    VectorXd noise = VectorXd::Zero(readings.size());
+    if (sensor.noise > 0.0) noise = sensor.noise * standard_normal(readings.size(), settings.seed, i);
+    constexpr std::size_t rattle_stream = 1000;
+    test.record.samples.row(static_cast<Index>(i)) =
+        shown_readings(acquisition.of(i), clock.time, readings, noise, settings.seed, rattle_stream + i)
+            .transpose();
     test.record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance});
   }
+  lose_samples(acquisition, test.record, settings.seed);
   return test;
 }
 

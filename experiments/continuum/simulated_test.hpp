@@ -8,6 +8,7 @@
 #include "experiments/continuum/beam_points.hpp"
 #include "experiments/experiment.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/rig/acquisition.hpp"
 #include "fem/response/response.hpp"
 
 namespace beamid::experiments {
@@ -16,7 +17,8 @@ struct SimulatedTest {
   fem::StructuralSystem system;
   fem::Response response;          ///< at every step; fields at the frames
   std::vector<Sensor> sensors;     ///< names and positions filled in
-  Record record;                   ///< what the sensors show, noise included
+  Record record;                   ///< what the sensors show, noise and defects included
+  Acquisition acquisition;         ///< what was done to them
   Excitation excitation;           ///< position and deflection filled in
   fem::ResponseMethod method;      ///< its number of modes filled in
   double step = 0.0;               ///< of the integration [s]
@@ -25,9 +27,11 @@ struct SimulatedTest {
 
 /// @param folder in which the excitation's file is looked for.
 /// @param frames pictures of the whole beam to keep.
+/// @param acquisition what sensors and logger do to the readings; nothing unless given. Between the steps of
+/// the integration readings run along a cubic spline: with a jitter it takes at least eight steps per sample.
 /// @throws InputError as excite(); std::invalid_argument when the method cannot treat the beam or its
 /// damping.
 SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path& folder, int frames,
-                       const Progress& progress);
+                       const Progress& progress, const Acquisition& acquisition = {});
 
 }  // namespace beamid::experiments

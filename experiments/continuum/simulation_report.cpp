@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/continuum/acquisition_text.hpp"
 #include "experiments/continuum/description.hpp"
 #include "experiments/input/column_name.hpp"
 #include "experiments/input/units.hpp"
@@ -24,14 +25,15 @@ struct Peak {
   double value = 0.0, time = 0.0, root_mean_square = 0.0, frequency_hz = std::nan("");
 };
 
-Peak peak_of(const Record& record, Index channel) {
+Peak peak_of(const SimulatedTest& test, Index channel) {
+  const Record& record = test.record;
   const VectorXd signal = record.samples.row(channel);
   Index at = 0;
   Peak peak;
   peak.value = signal.cwiseAbs().maxCoeff(&at);
   peak.time = record.time[at];
   peak.root_mean_square = std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
-  if (signal.size() >= 16 && signal.maxCoeff() > signal.minCoeff())
+  if (test.acquisition.even() && signal.size() >= 16 && signal.maxCoeff() > signal.minCoeff())
     peak.frequency_hz = strongest_frequency(signal, record.interval());
   return peak;
 }
@@ -49,7 +51,7 @@ Table sensor_table(const SimulatedTest& test) {
       .column({"noise", "noise", "{:g}"});
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
     const Sensor& sensor = test.sensors[i];
-    const Peak peak = peak_of(test.record, static_cast<Index>(i));
+    const Peak peak = peak_of(test, static_cast<Index>(i));
     table.row({sensor.name, to_string(sensor.quantity), *sensor.position, si_unit(sensor.quantity),
                peak.value, peak.time, peak.root_mean_square, peak.frequency_hz, sensor.noise});
   }
@@ -62,8 +64,10 @@ std::string excitation_text(const SimulatedTest& test) {
   const std::string where = fmt::format("at {:g} m", *e.position);
   switch (e.kind) {
     case Kind::release:
-      return fmt::format("Released from a static deflection of {:g} m {}.", e.deflection.value_or(0.012),
-                         where);
+      return fmt::format(
+          "{} a static deflection of {:g} m {}.",
+          e.duration > 0.0 ? fmt::format("Let go within {:g} s from", e.duration) : "Released from",
+          e.deflection.value_or(0.012), where);
     case Kind::free:
       return fmt::format("Set free with {:g} m and {:g} m/s {}, in {}.", e.deflection.value_or(0.0),
                          e.velocity, where, e.mode ? fmt::format("mode {}", *e.mode) : "the static shape");
@@ -89,6 +93,7 @@ Json describe(const Excitation& e) {
   Json json{{"kind", to_string(e.kind)}};
   if (e.kind != Kind::base) json["position_m"] = *e.position;
   if (e.kind == Kind::release) json["deflection_m"] = e.deflection.value_or(0.012);
+  if (e.kind == Kind::release && e.duration > 0.0) json["duration_s"] = e.duration;
   if (e.kind == Kind::free) {
     json["deflection_m"] = e.deflection.value_or(0.0);
     json["velocity_m_per_s"] = e.velocity;
@@ -120,7 +125,7 @@ Json values(const Experiment& experiment, const SimulatedTest& test) {
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
     const Sensor& sensor = test.sensors[i];
     const std::string unit = "_" + units(sensor.quantity).front().suffix;
-    const Peak peak = peak_of(test.record, static_cast<Index>(i));
+    const Peak peak = peak_of(test, static_cast<Index>(i));
     json["sensors"].push_back({{"name", sensor.name},
                                {"column", columns[i + 1]},
                                {"quantity", to_string(sensor.quantity)},
@@ -152,7 +157,7 @@ Figure sensor_figure(const SimulatedTest& test, std::size_t i, const std::string
   const VectorXd shown = (found.amplitude.array() > 1e-8 * highest).select(found.amplitude, std::nan(""));
   spectrum.curves = {{"", found.frequency_hz, shown}};
   figure.panels = {history};
-  if (highest > 0.0)
+  if (highest > 0.0 && test.acquisition.even())
     figure.panels.push_back(spectrum);
   else
     figure.rows = 1;
@@ -174,6 +179,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
                                          {"steps_per_sample", settings.steps_per_sample}};
   for (const auto& [option, value] : test->method.options)
     results.configuration["simulation"][option] = value;
+  describe(test->acquisition, results.configuration);
   results.values = values(experiment, *test);
   results.heading(experiment.title.empty() ? "Simulated response" : experiment.title);
   results.paragraph(
@@ -183,6 +189,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
                                 test->response.time.size() - 1, test->step, test->record.size(),
                                 settings.sampling_rate));
   results.table(sensor_table(*test));
+  if (const std::string text = acquisition_text(*test); !text.empty()) results.paragraph(text);
   add_notes(results, test->notes);
 
   results.attachments.push_back({{"record.csv"}, [test](const std::filesystem::path& folder) {

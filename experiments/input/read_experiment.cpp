@@ -2,6 +2,7 @@
 
 #include "experiments/failure_response.hpp"
 #include "experiments/input/method_choice.hpp"
+#include "experiments/input/read_acquisition.hpp"
 #include "experiments/input/read_beam.hpp"
 #include "experiments/input/read_comparison.hpp"
 #include "experiments/input/read_damping.hpp"
@@ -89,6 +90,7 @@ void read_continuum(const TomlTable& root, Experiment& experiment) {
   if (const auto excitation = root.find_table("excitation"))
     experiment.excitation = read_excitation(*excitation, length);
   experiment.sensors = read_sensors(root, experiment.beam);
+  read_acquisition(root);  // checked with the rest; `simulate` alone has a use for it
   experiment.parameters = read_parameters(root, length);
   if (const auto simulation = root.find_table("simulation"))
     experiment.simulation = read_simulation(*simulation);

@@ -24,7 +24,7 @@ struct KindKeys {
 
 const std::vector<KindKeys>& kinds() {
   static const std::vector<KindKeys> all{
-      {Kind::release, {"position_m", "deflection_m"}, {}},
+      {Kind::release, {"position_m", "deflection_m", "duration_s"}, {}},
       {Kind::step, {"position_m", "force_n"}, {"force_n"}},
       {Kind::impulse, {"position_m", "momentum_n_s", "duration_s"}, {"momentum_n_s"}},
       {Kind::harmonic, {"position_m", "amplitude_n", "frequency_hz"}, {"amplitude_n", "frequency_hz"}},

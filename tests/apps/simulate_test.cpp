@@ -137,6 +137,36 @@ TEST(Simulate, MakesRecordsThatAreIdentified) {
   EXPECT_NEAR(found["damping_ratio"]["estimate"].get<double>(), 0.0045, 2e-4);
 }
 
+// Oracle: what the file asks for, counted in the record.
+TEST(Simulate, WritesWhatCheapSensorsShow) {
+  Workplace place;
+  place.write("rig.toml",
+              study +
+                  "[[sensors]]\nname = \"tip\"\nclipping = 0.5\n[[sensors]]\nname = \"cable\"\noffset = "
+                  "1\ndead = true\n[acquisition]\npretrigger_s = 0.5\njitter = 0.3\nmedian_shortfall = "
+                  "0.09\n[simulation]\nduration_s = 2\nsampling_rate_hz = 500\n");
+  const Outcome outcome = place.run("simulate --config rig.toml --out results");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Logger: 0.5 s before the excitation, intervals with a jitter of 30 %"));
+  EXPECT_THAT(outcome.out, HasSubstr("Sensor cable"));
+  const json found = json::parse(contents(place.folder() / "results" / "results.json"));
+  EXPECT_EQ(found["configuration"]["acquisition"]["sensors"]["1"]["clipping"], 0.5);
+  EXPECT_EQ(found["configuration"]["acquisition"]["sensors"]["2"]["dead"], true);
+  const auto record = rows(place.folder() / "results" / "record.csv");
+  ASSERT_EQ(record.size(), 1251u);
+  double largest = 0;
+  std::size_t at_limit = 0;
+  for (const auto& row : record) largest = std::max(largest, std::abs(row[1]));
+  for (const auto& row : record) {
+    at_limit += std::abs(row[1]) == largest;
+    EXPECT_EQ(row[2], record[0][2]);
+  }
+  EXPECT_GT(at_limit, 3u);
+  EXPECT_NEAR(record[0][2], 2 * largest, 1e-9);
+  EXPECT_EQ(record[100][1], 0.0);  // at rest, held
+  EXPECT_NE(record[300][1], 0.0);
+}
+
 struct Refused {
   const char* text;
   const char* message;
@@ -153,6 +183,10 @@ TEST(Simulate, RefusesWhatItCannotFollow) {
        "simulation.steps_per_sample or sampling_rate_hz), or 0 for an instant"},
       {"[excitation]\nkind = \"table\"\nfile = \"no.csv\"\n",
        "no.csv: no such file; expected a record of numbers in columns"},
+      {"[acquisition]\njitter = 0.1\nmedian_shortfall = 0.05\n",
+       "bad.toml:9:20: acquisition.median_shortfall is 0.05; expected a number from 0 to 0.041"},
+      {"[[sensors]]\nrattle_above = 2\n",
+       "bad.toml:8:16: sensors[1].rattle_above is 2; expected a number from 0 to 1"},
       {"[[sensors]]\nposition_m = 0\n",
        "bad.toml: point 'root' is held by a support; expected one that can move"}};
   for (const Refused& refused : cases) {

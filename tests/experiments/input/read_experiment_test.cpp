@@ -167,7 +167,8 @@ TEST(ReadExperiment, RefusesUnknownKeysAndOffersTheNearest) {
        {"beam = 3\n", "bad.toml:1:8: beam is 3; expected a table"},
        {BEAM "[fliter]\n",
         "bad.toml:5:2: unknown key 'fliter'; did you mean 'filter'? known: title, beam, damping, "
-        "excitation, sensors, simulation, frequency_response, record, reduction, reductions, model, "
+        "excitation, sensors, acquisition, simulation, frequency_response, record, reduction, reductions, "
+        "model, "
         "parameters, filter, filters, compare, identifiability, prior, noise, frame, sweep"},
        {BEAM "  colour = 1\n", "bad.toml:5:3: unknown key 'colour' in beam; known: " BEAM_KEYS},
        {"[prior]\ndamping_ration = 1\nstiffness = 2\n[beam]\n",

@@ -1,0 +1,12 @@
+// The table [acquisition] of an experiment file, and the defects in [[sensors]].
+#pragma once
+
+#include "experiments/input/toml_table.hpp"
+#include "experiments/rig/acquisition.hpp"
+
+namespace beamid::experiments {
+
+/// @param root the file's root. @throws InputError for an impossible value.
+Acquisition read_acquisition(const TomlTable& root);
+
+}  // namespace beamid::experiments
