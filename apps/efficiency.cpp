@@ -5,6 +5,7 @@
 
 #include "apps/deliver.hpp"
 #include "experiments/efficiency/interval_coverage.hpp"
+#include "experiments/efficiency/laboratory_records.hpp"
 #include "experiments/efficiency/report.hpp"
 #include "experiments/input/choice_text.hpp"
 
@@ -18,7 +19,12 @@ options::options_description efficiency_options() {
   described.add_options()  //
       ("study", options::value<std::string>()->value_name("NAME")->default_value("filters"),
        "filters: against the bound; coverage: how often the intervals of identify hold the truth, with "
-       "higher modes and coloured noise (uses --runs, --seed, --noise and one --damping-ratio)")  //
+       "higher modes and coloured noise (uses --runs, --seed, --noise and one --damping-ratio); records: "
+       "what "
+       "identify makes of laboratory records when given nothing but the beam (uses --runs [100], --seed and "
+       "--only)")  //
+      ("only", options::value<double>()->value_name("N"),
+       "--study records: this record alone, from 0, with its files")  //
       ("filter",
        options::value<std::vector<std::string>>()->composing()->value_name("NAME[:OPTION=VALUE,...]"),
        "one to examine; may be given again and again [all but kf] (beamid list filters)")  //
@@ -86,6 +92,17 @@ CoverageSettings coverage_settings(const options::variables_map& values) {
   return settings;
 }
 
+/// --study records: a hundred of them unless --runs says another number.
+LaboratorySettings laboratory_settings(const options::variables_map& values) {
+  for (const char* other : {"filter", "passes", "guess", "sampled-runs", "damping-ratio", "noise"})
+    if (values.count(other) && !values[other].defaulted())
+      throw UsageError(std::string("efficiency: --study records takes no --") + other);
+  LaboratorySettings settings;
+  if (!values["runs"].defaulted()) settings.records = static_cast<int>(whole(values, "runs", 1, 1e5));
+  settings.seed = seed_of(values);
+  return settings;
+}
+
 EfficiencySettings settings_of(const options::variables_map& values) {
   EfficiencySettings settings;
   if (values.count("filter")) {
@@ -123,8 +140,18 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     deliver(values, [&] { return report(interval_coverage(settings, show_progress())); });
     return 0;
   }
+  if (study == "records") {
+    const LaboratorySettings settings = laboratory_settings(values);
+    const bool one = values.count("only") > 0;
+    const int number = one ? static_cast<int>(whole(values, "only", 0, settings.records - 1)) : 0;
+    deliver(values, [&] {
+      return one ? examine(settings, number) : report(laboratory_records(settings, show_progress()));
+    });
+    return 0;
+  }
   if (study != "filters")
-    throw UsageError("efficiency: --study is '" + study + "'; expected filters or coverage");
+    throw UsageError("efficiency: --study is '" + study + "'; expected filters, coverage or records");
+  if (values.count("only")) throw UsageError("efficiency: --only goes with --study records");
   const EfficiencySettings settings = settings_of(values);
   deliver(values, [&] { return report(find_efficiency(settings, show_progress())); });
   return 0;
@@ -141,7 +168,9 @@ Command efficiency_command() {
       "  beamid efficiency --filter particle:particles=500 --damping-ratio 0.1 --sampled-runs 50\n"
       "  beamid efficiency --filter ekf --guess ends --noise 0.002 --passes single\n"
       "  beamid efficiency --runs 4000 --out results\n"
-      "  beamid efficiency --study coverage --runs 2000 --out intervals\n",
+      "  beamid efficiency --study coverage --runs 2000 --out intervals\n"
+      "  beamid efficiency --study records --out records\n"
+      "  beamid efficiency --study records --only 7 --out record_7\n",
       run};
 }
 

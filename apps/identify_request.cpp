@@ -7,9 +7,6 @@
 #include "experiments/failure_response.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/spelling.hpp"
-#include "experiments/model_setting.hpp"
-#include "experiments/record_identification/decay_window.hpp"
-#include "experiments/record_identification/higher_modes.hpp"
 #include "filters/smoother.hpp"
 
 namespace beamid::apps {
@@ -26,31 +23,6 @@ void refuse_what_needs_an_oscillator(const Experiment& experiment) {
   if (experiment.noise_method.name != "residual")
     throw InputError(experiment.noise_method.place,
                      "noise.method " + experiment.noise_method.name + only_for_free_oscillators);
-}
-
-/// Cuts a free decay out of a record that neither the experiment file nor the command line cuts or prepares.
-void cut_decay(IdentifyRequest& one) {
-  RecordFormat& format = one.experiment.format;
-  if (format.window || !format.preparation.empty() || !one.is_free_oscillator()) return;
-  const auto window = decay_window(one.experiment, one.prepared.raw);
-  if (!window) return;
-  format.window = {window->from, window->to};
-  one.window = window->words();
-  one.prepared.record = cut(one.prepared.raw, format, one.file);
-}
-
-/// Adds the step that an experiment file, silent about preparation, does not have.
-void keep_out_higher_modes(IdentifyRequest& one) {
-  RecordFormat& format = one.experiment.format;
-  if (!format.preparation.empty() || !one.is_free_oscillator()) return;
-  const auto step = step_against_higher_modes(one.experiment, one.prepared.record);
-  if (!step) return;
-  format.preparation = {*step};
-  Record left = prepare(one.prepared.raw, format.preparation);
-  if (auto& window = format.window)  // the low-pass takes a little of both ends
-    window = {std::max(window->first, left.time[0]), std::min(window->second, left.time[left.size() - 1])};
-  one.prepared.record = cut(std::move(left), format, one.file);
-  one.thinned = true;
 }
 
 /// What the command line says in place of the experiment file.
@@ -86,11 +58,6 @@ void take_window(const options::variables_map& values, std::size_t which, std::s
 }
 
 }  // namespace
-
-bool IdentifyRequest::is_free_oscillator() const {
-  return experiment.model.name == "sdof" && experiment.parameters.empty() &&
-         force_channels(prepared.record).empty();
-}
 
 options::options_description identify_options() {
   options::options_description described("Options");

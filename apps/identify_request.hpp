@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "apps/command.hpp"
-#include "experiments/experiment.hpp"
-#include "experiments/preparation/prepared_record.hpp"
+#include "experiments/record_identification/identification_request.hpp"
 
 namespace beamid::apps {
 
@@ -15,17 +14,8 @@ namespace beamid::apps {
 inline constexpr const char* only_for_free_oscillators =
     " is there for model sdof without [[parameters]] on a free decay";
 
-/// One record of the command.
-struct IdentifyRequest {
-  std::filesystem::path file;
-  experiments::Experiment experiment;  ///< command line and preparation included
-  experiments::PreparedRecord prepared;
-  std::string window = {};  ///< what was chosen, in words, where neither file nor command line says
-  bool thinned = false;     ///< by a step against higher modes, which the experiment file does not have
-
-  /// K and C of a free decay have a report of their own.
-  bool is_free_oscillator() const;
-};
+/// One record of the command; its experiment includes what the command line says.
+using IdentifyRequest = experiments::IdentificationRequest;
 
 /// The options that say what to identify, beside --config and RECORD.
 options::options_description identify_options();

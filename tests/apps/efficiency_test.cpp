@@ -50,11 +50,31 @@ TEST(Efficiency, TellsHowOftenIntervalsHoldTheTruth) {
       EXPECT_GE(one[parameter]["inside"].get<int>(), 23) << one["noise"] << ' ' << parameter;
 }
 
+// The files of one record are enough to repeat it: simulated again and identified with the beam alone.
+TEST(Efficiency, HandsOverALaboratoryRecordToRepeat) {
+  Workplace place;
+  const Outcome outcome = place.run("efficiency --study records --only 0 --out record");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Record 0 of seed 1: right"));
+  ASSERT_EQ(place.run("simulate --config record/rig.toml --out again").code, 0);
+  EXPECT_TRUE(contents(place.folder() / "again" / "record.csv") ==
+              contents(place.folder() / "record" / "record.csv"));
+  const Outcome identified = place.run("identify record/record.csv --config record/beam.toml --json");
+  ASSERT_EQ(identified.code, 0) << identified.err;
+  const json study = json::parse(contents(place.folder() / "record" / "results.json")),
+             alone = json::parse(identified.out);
+  EXPECT_EQ(study["frequency_hz"]["estimate"], alone["frequency_hz"]["estimate"]);
+  EXPECT_EQ(study["damping_ratio"]["estimate"], alone["damping_ratio"]["estimate"]);
+}
+
 TEST(Efficiency, NamesWhatItRefuses) {
   const std::pair<const char*, const char*> refused[] = {
       {"--runs 1", "--runs is 1; expected a whole number from 2 to 1e+06"},
       {"--damping-ratio 1", "--damping-ratio is 1; expected a number between 0 and 1"},
-      {"--study all", "--study is 'all'; expected filters or coverage"},
+      {"--study all", "--study is 'all'; expected filters, coverage or records"},
+      {"--study records --noise 0.1", "--study records takes no --noise"},
+      {"--study records --runs 5 --only 5", "--only is 5; expected a whole number from 0 to 4"},
+      {"--only 3", "--only goes with --study records"},
       {"--study coverage --filter ekf", "--study coverage takes no --filter"},
       {"--study coverage --damping-ratio 0.2", "--damping-ratio is 0.2; expected a number between 0 and 0.1"},
       {"--passes twice", "--passes is 'twice'; expected lengthening, single or both"},
