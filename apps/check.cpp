@@ -9,6 +9,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/modal_study/merged_modes.hpp"
 #include "experiments/model_check/report.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 
 namespace beamid::apps {
@@ -90,8 +91,10 @@ CheckedStructure structure_of(const Request& request, const ModalStudySettings& 
     const RecordFormat& format = request.experiment.format;
     used.push_back({file.filename().string(), &format, read_and_prepare(file, format)});
     try {
-      found.push_back(find_modes(used.back().name, used.back().prepared.record,
-                                 request.experiment.format.window.has_value(), settings));
+      Record& record = used.back().prepared.record;
+      record = made_analysable(record);
+      found.push_back(
+          find_modes(used.back().name, record, request.experiment.format.window.has_value(), settings));
     } catch (const std::invalid_argument& error) {
       throw InputError({file.string()}, error.what());
     }

@@ -6,8 +6,9 @@
 #include "apps/model_option.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/input/read_experiment.hpp"
-#include "experiments/preparation/prepared_record.hpp"
 #include "experiments/input/read_reduction.hpp"
+#include "experiments/preparation/analysable_record.hpp"
+#include "experiments/preparation/preparation_report.hpp"
 #include "experiments/record_comparison/chosen_channels.hpp"
 #include "experiments/record_comparison/comparison.hpp"
 #include "filters/filter.hpp"
@@ -73,9 +74,11 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     return blame_config(source, [&] {
       const Progress progress = show_progress();
       ComparedRecord compared;
+      PreparedRecord prepared;
       if (file) {
         compared.name = file->filename().string();
-        compared.record = prepared_record(*file, source.experiment.format);
+        prepared = read_and_prepare(*file, source.experiment.format);
+        compared.record = prepared.record = made_analysable(prepared.record);
       } else if (values.count("truth")) {
         const fs::path truth = values["truth"].as<std::string>();
         compared = simulated_record(read_experiment(truth), truth.parent_path(), progress);
@@ -85,7 +88,10 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       }
       if (values.count("channel"))
         compared = chosen_channels(std::move(compared), words_of(values, "channel"));
-      return report(source.experiment, compare(source.experiment, std::move(compared), folder, progress));
+      Results results =
+          report(source.experiment, compare(source.experiment, std::move(compared), folder, progress));
+      if (file) tell_preparation(results, prepared, source.experiment.format);
+      return results;
     });
   });
   return 0;

@@ -7,6 +7,7 @@
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/failure_response.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 #include "experiments/record_comparison/comparison.hpp"
 #include "experiments/record_identification/joint_comparison.hpp"
@@ -34,7 +35,7 @@ Comparison identify_by_comparison(Experiment experiment, const Record& record, c
   experiment.discretisations = {experiment.discretisation};
   ComparedRecord compared;
   compared.name = file.filename().string();
-  compared.record = record;
+  compared.record = made_analysable(record);
   return compare(experiment, std::move(compared), folder, show_progress());
 }
 
@@ -53,6 +54,17 @@ Results identify_generally(const Experiment& experiment, const Record& record, c
     for (Figure& figure : figures(*one.diagnostics, outputs)) results.figures.push_back(std::move(figure));
   }
   return results;
+}
+
+/// With what the modal analysis beside the filter needed of the record: the filter takes it as it is.
+PreparedRecord told_of(const IdentifyRequest& one) {
+  PreparedRecord prepared = one.prepared;
+  if (!one.is_free_oscillator()) {
+    prepared.record = made_analysable(prepared.record);
+  } else if (const std::string remark = analysable(prepared.record).remark; !remark.empty()) {
+    prepared.record.remarks.push_back("For the modal analysis: " + remark);
+  }
+  return prepared;
 }
 
 /// Of the whole record behind its preparation, where the experiment wants it.
@@ -77,7 +89,7 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
                         : identify_generally(experiment, record, one.file, folder);
   if (!one.window.empty()) results.paragraph(one.window);
   if (one.thinned) results.paragraph(higher_modes);
-  tell_preparation(results, one.prepared, experiment.format);
+  tell_preparation(results, told_of(one), experiment.format);
   return results;
 }
 

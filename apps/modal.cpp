@@ -11,6 +11,7 @@
 #include "experiments/modal_study/hammer_study.hpp"
 #include "experiments/modal_study/mass_report.hpp"
 #include "experiments/modal_study/report.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 
 namespace beamid::apps {
@@ -131,7 +132,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     std::vector<std::string> names;
     for (const RecordRequest& request : requests) {
       prepared.push_back(read_and_prepare(request.file, request.format));
-      records.push_back(prepared.back().record);
+      records.push_back(made_analysable(prepared.back().record));
       names.push_back(request.file.filename().string());
     }
     check_same_channels(records, requests);

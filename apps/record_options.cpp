@@ -138,8 +138,8 @@ options::options_description record_options() {
       ("window", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
        "part of the record to use [s]; after RECORD")  //
       ("stamps", options::value<std::string>()->value_name("HOW"),
-       "even (default), or as_they_are: times at unequal intervals")        //
-      ("skip-malformed", "leave malformed lines out, counted and located")  //
+       "as_they_are (default): times may be at unequal intervals; even: they must not")  //
+      ("skip-malformed", "leave malformed lines out, counted and located")               //
       ("reader", options::value<std::string>()->value_name("NAME"),
        "kind of file, where its beginning does not show it (beamid list readers)")  //
       ("config", options::value<std::string>()->value_name("FILE"),
@@ -149,6 +149,7 @@ options::options_description record_options() {
 
 std::vector<RecordRequest> record_requests(const options::variables_map& values, const std::string& command) {
   RecordRequest request;
+  request.format.irregular = true;
   if (values.count("config")) {
     const fs::path config = values["config"].as<std::string>();
     const RecordSection section = read_record_section(config);

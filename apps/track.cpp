@@ -7,6 +7,7 @@
 #include "apps/record_options.hpp"
 #include "experiments/input/input_error.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 #include "experiments/tracking/report.hpp"
 
@@ -62,10 +63,9 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   if (!parse(command, arguments, described, {"record"}, values)) return 0;
   const TrackSettings settings = settings_of(values);
   const RecordRequest request = record_request(values, command.name);
-  if (request.format.irregular)
-    throw UsageError("track: stamps as_they_are; expected even ones (prepare the record by step resample)");
   deliver(values, [&] {
-    const PreparedRecord prepared = read_and_prepare(request.file, request.format);
+    PreparedRecord prepared = read_and_prepare(request.file, request.format);
+    prepared.record = made_analysable(prepared.record);
     const Record& record = prepared.record;
     const std::string file = request.file.string();
     const std::vector<Eigen::Index> outputs = output_channels(record);

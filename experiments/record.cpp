@@ -63,7 +63,10 @@ Record Record::window(double from, double to) const {
             << " s";
     throw std::invalid_argument(message.str());
   }
-  return {time.segment(begin, count), samples.middleCols(begin, count), channels, time_resolution, remarks};
+  Record part = *this;
+  part.time = time.segment(begin, count);
+  part.samples = samples.middleCols(begin, count);
+  return part;
 }
 
 }  // namespace beamid::experiments

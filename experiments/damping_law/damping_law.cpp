@@ -10,6 +10,7 @@
 #include "experiments/input/spelling.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/nonlinear_reproduction.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "fem/modes.hpp"
 #include "filters/batch_estimator.hpp"
 #include "filters/discrete_model.hpp"
@@ -162,8 +163,9 @@ double FittedLaw::damping_ratio(double a) const {
   return equivalent / (2.0 * value("mass") * omega);
 }
 
-DampingLawStudy study_damping_law(const Experiment& experiment, const Record& record, const std::string& law,
+DampingLawStudy study_damping_law(const Experiment& experiment, const Record& read, const std::string& law,
                                   const std::filesystem::path& folder) {
+  const Record record = analysable(read).record;
   constexpr double smoothing = 0.05;  // of the last velocity: 0.2 % of what friction dissipates there
   constexpr double least = 0.002;     // of the first velocity, which steps of a 48th of a period still follow
   const auto& all = damping_laws();

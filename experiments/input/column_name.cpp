@@ -47,7 +47,8 @@ std::string label(const Channel& channel) {
 }  // namespace
 
 std::optional<ColumnMeaning> parse_column_name(std::string_view name) {
-  if (auto time = parse_as(name, "time", time_units()); time && time->label.empty()) return time;
+  for (const char* start : {"time", "t"})
+    if (auto time = parse_as(name, start, time_units()); time && time->label.empty()) return time;
   for (const Quantity quantity : all_quantities)
     if (auto meaning = parse_as(name, to_string(quantity), units(quantity))) {
       meaning->quantity = quantity;

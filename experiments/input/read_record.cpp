@@ -21,16 +21,43 @@ struct Stamps {
   const std::vector<double>& values() const { return table->columns[column->index]; }
   const PrintedPrecision& precision() const { return table->precision[column->index]; }
   double factor() const { return column->factor; }
+  /// Whether their rounding leaves an interval to be seen.
+  bool show_intervals() const {
+    const double mean = (values().back() - values().front()) / static_cast<double>(values().size() - 1);
+    return std::max(precision().resolution(values().front()), precision().resolution(values().back())) <
+           0.5 * mean;
+  }
   double rounding(std::size_t sample) const { return precision().resolution(values()[sample]) * factor(); }
 };
 
-void check_rate(double mean, double rounding, double rate, std::size_t intervals, const Place& place) {
+/// A file's header rounds its interval.
+void check_interval(double interval, double rate, const std::string& file) {
   constexpr double tolerated = 0.02;
-  if (!(std::abs(mean * rate - 1) <= tolerated + rounding * rate / static_cast<double>(intervals)))
-    throw InputError(place,
-                     fmt::format("times at a mean interval of {:.6g} s; expected {:.6g} s within 2 %, by "
+  if (!(std::abs(interval * rate - 1) <= tolerated))
+    throw InputError({file},
+                     fmt::format("samples at an interval of {:.6g} s; expected {:.6g} s within 2 %, by "
                                  "the sampling rate of {:.6g} Hz",
-                                 mean, 1 / rate, rate));
+                                 interval, 1 / rate, rate));
+}
+
+/// Counted at the stated rate from the first stamp, no sample may be half an interval away from its own.
+void check_stamps(const Stamps& stamps, double rate) {
+  const std::vector<double>& times = stamps.values();
+  const std::size_t last = times.size() - 1;
+  for (std::size_t k = 1; k <= last; ++k) {
+    const double stamp = times[k] * stamps.factor(),
+                 counted = times[0] * stamps.factor() + static_cast<double>(k) / rate;
+    if (std::abs(stamp - counted) <= (0.5 / rate + stamps.rounding(k) + stamps.rounding(0)) * (1 + 1e-9))
+      continue;
+    throw InputError(
+        stamps.table->place(k, stamps.column->index),
+        fmt::format(
+            "time {:.9g} s of sample {}, which {:.9g} Hz, as stated, puts at {:.9g} s: the stamps run at "
+            "{:.9g} Hz in the mean; expected them within half an interval. Without a stated rate the stamps "
+            "are taken as they are",
+            stamp, k + 1, rate, counted,
+            static_cast<double>(last) / ((times[last] - times[0]) * stamps.factor())));
+  }
 }
 
 Eigen::VectorXd counted(double start, double interval, std::size_t size) {
@@ -45,19 +72,17 @@ Eigen::VectorXd instants(const Stamps& stamps) {
   const std::optional<double>& rate = stamps.format->sampling_rate;
   if (!stamps.column) {
     if (!table.clock) return counted(0, 1 / *rate, size);
-    if (rate) check_rate(table.clock->interval, 0, *rate, 1, {table.file});
+    if (rate) check_interval(table.clock->interval, *rate, table.file);
     return counted(table.clock->start, rate ? 1 / *rate : table.clock->interval, size);
   }
   const std::vector<double>& times = stamps.values();
   if (rate) {
-    const std::size_t last = size - 1;
-    check_rate((times[last] - times[0]) * stamps.factor() / static_cast<double>(last),
-               std::max(stamps.rounding(0), stamps.rounding(last)), *rate, last,
-               table.place(last, stamps.column->index));
+    check_stamps(stamps, *rate);
     return counted(times[0] * stamps.factor(), 1 / *rate, size);
   }
-  const auto fault =
-      stamps.format->irregular ? find_order_fault(times) : find_sampling_fault(times, stamps.precision());
+  auto fault = find_order_fault(times);
+  if (!fault && !(stamps.format->irregular && stamps.show_intervals()))
+    fault = find_sampling_fault(times, stamps.precision());
   if (fault) throw InputError(table.place(fault->sample, stamps.column->index), fault->message);
   return Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(size)) * stamps.factor();
 }

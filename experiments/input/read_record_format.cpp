@@ -73,7 +73,8 @@ RecordFormat read_format(const TomlTable& table, const fem::Beam* beam) {
   const std::string decimal = table.find_text("decimal", {"auto", "point", "comma"}).value_or("auto");
   format.decimal = decimal == "auto" ? '\0' : decimal == "comma" ? ',' : '.';
   format.skip_malformed = table.find_text("malformed", {"refuse", "skip"}).value_or("refuse") == "skip";
-  format.irregular = table.find_text("stamps", {"even", "as_they_are"}).value_or("even") == "as_they_are";
+  format.irregular =
+      table.find_text("stamps", {"even", "as_they_are"}).value_or("as_they_are") == "as_they_are";
   format.sampling_rate = table.find_number("sampling_rate_hz", Sign::positive);
   format.window = table.find_interval("window_s");
   if (format.window) format.window_place = table.value_place("window_s");

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "experiments/experiment.hpp"
-#include "experiments/inspection/runs.hpp"
+#include "experiments/inspection/defects.hpp"
+#include "experiments/inspection/offset_drift.hpp"
 #include "experiments/inspection/sampling_check.hpp"
 #include "experiments/inspection/signal_events.hpp"
 #include "experiments/output/results.hpp"
@@ -17,6 +18,7 @@ namespace beamid::experiments {
 struct InspectedChannel {
   int column = 0;                              ///< from 1
   std::string name, unit;                      ///< as the file has them; "" where it does not say
+  std::string file_unit;                       ///< of its numbers, where the quantity is stated
   std::optional<Quantity> quantity;            ///< stated by file or format; samples are then in SI units
   std::vector<double> samples;                 ///< NaN where there is no number
   std::size_t missing = 0;                     ///< of these
@@ -25,15 +27,16 @@ struct InspectedChannel {
   double noise = 0;                            ///< standard deviation
   double signal_to_noise_db = 0;               ///< of mean squares, without offset
   double frequency_hz = 0;                     ///< dominant; 0: none
-  bool dead = false;                           ///< constant, or nothing but noise on an offset far larger
-  std::vector<Run> clipped, dropped;
+  Defects defects;
   std::vector<SignalEvent> events;
+  std::optional<OffsetDrift> wandering;  ///< of the offset
 };
 
 struct Inspection {
   std::string file, reader;
   std::vector<double> time;  ///< [s], or sample numbers where nothing tells the time
   std::string time_text;     ///< where the times come from
+  std::string time_key;      ///< what says so in the table [record]; empty: the file does
   bool has_time = true;
   double resolution = 0.0;  ///< of printed stamps [s]
   SamplingCheck sampling;
@@ -43,9 +46,13 @@ struct Inspection {
 };
 
 /// Reads a file, malformed lines counted, and looks at every column of numbers but time, or at those that the
-/// format names. Where nothing tells which column is time, one that increases at even steps is taken for it.
+/// format names. Where nothing tells which column is time, one that rises is taken for it: of those named
+/// like time, else the first.
 /// @throws InputError.
 Inspection inspect(const std::filesystem::path& file, const RecordFormat& format);
+
+/// What to write into an experiment file so that every command reads the record like this.
+std::string record_table_text(const Inspection& found);
 
 /// Tables, warnings in words, and a figure of every channel's history and spectrum.
 Results report(const Inspection& found);

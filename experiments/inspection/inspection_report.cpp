@@ -21,7 +21,7 @@ Json to_json(const Inspection& found, const InspectedChannel& c) {
             {"noise", c.noise},
             {"signal_to_noise_db", c.signal_to_noise_db},
             {"frequency_hz", c.frequency_hz},
-            {"dead", c.dead},
+            {"dead", c.defects.dead},
             {"missing", c.missing}};
   const auto runs = [&](const std::vector<Run>& all) {
     Json list = Json::array();
@@ -31,8 +31,16 @@ Json to_json(const Inspection& found, const InspectedChannel& c) {
                       {"value", std::isfinite(run.value) ? Json(run.value) : Json(nullptr)}});
     return list;
   };
-  json["clipped"] = runs(c.clipped);
-  json["dropped"] = runs(c.dropped);
+  json["clipped"] = runs(c.defects.clipped);
+  json["dropped"] = runs(c.defects.dropped);
+  json["spikes"] = runs(c.defects.spikes);
+  json["repeated_samples"] = samples_in(c.defects.repeated);
+  if (const auto& rattle = c.defects.rattle)
+    json["rattle"] = {
+        {"from_s", found.time[rattle->first]}, {"to_s", found.time[rattle->last]}, {"ratio", rattle->ratio}};
+  if (c.wandering)
+    json["offset_drift"] = {
+        {"from", c.wandering->from}, {"to", c.wandering->to}, {"start_up", c.wandering->start_up}};
   json["events"] = Json::array();
   for (const SignalEvent& event : c.events)
     json["events"].push_back({{"time_s", found.time[static_cast<std::size_t>(event.sample)]},
@@ -80,7 +88,11 @@ Results report(const Inspection& found) {
   if (events.rows() > 0) results.table(std::move(events));
   std::string list;
   for (const std::string& doubt : doubts) list += (list.empty() ? "- " : "\n- ") + doubt;
-  results.paragraph(list.empty() ? "Nothing is wrong with it that could be seen." : list);
+  results.paragraph(list.empty() ? "No problems found." : list);
+  const std::string lines = record_table_text(found);
+  results.values["record_table"] = lines;
+  results.paragraph("What to write into an experiment file, with what is known put for each \"...\":\n\n" +
+                    lines);
   results.figures = inspection_figures(found);
   return results;
 }

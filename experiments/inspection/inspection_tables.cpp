@@ -22,8 +22,8 @@ Table channel_table(const Inspection& found) {
   for (const InspectedChannel& c : found.channels) {
     const double none = std::nan("");
     table.row({static_cast<double>(c.column), title(c), unit_text(c), c.least, c.greatest, c.offset, c.drift,
-               c.noise, c.dead ? none : c.signal_to_noise_db, c.frequency_hz > 0 ? c.frequency_hz : none,
-               static_cast<double>(c.events.size())});
+               c.noise, c.defects.dead ? none : c.signal_to_noise_db,
+               c.frequency_hz > 0 ? c.frequency_hz : none, static_cast<double>(c.events.size())});
   }
   table.note =
       "Offset: the median. Drift: change of a fitted line over the record. Noise: standard deviation of what "

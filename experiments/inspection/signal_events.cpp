@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/inspection/noise_floor.hpp"
 #include "experiments/signal/median.hpp"
 
 namespace beamid::experiments {
@@ -44,6 +45,19 @@ std::vector<SignalEvent> find_events(const VectorXd& signal, double interval, do
     free_from = k + std::max<Index>(peak, 1) + window;
   }
   return events;
+}
+
+std::vector<SignalEvent> find_slow_release(const VectorXd& signal, double interval, double frequency_hz) {
+  constexpr double deflected = 1.0 / 3;
+  constexpr Index fewest = 64;
+  const VectorXd differences = signal.tail(signal.size() - 1) - signal.head(signal.size() - 1);
+  if (differences.size() < fewest) return {};
+  const VectorXd deviation = signal.array() - median(signal);
+  const double largest = deviation.cwiseAbs().maxCoeff();
+  for (const SignalEvent& event : find_events(differences, interval, noise_floor(differences), frequency_hz))
+    if (!event.pulse && std::abs(deviation[event.sample]) > deflected * largest)
+      return {{event.sample, deviation[event.sample], false}};
+  return {};
 }
 
 }  // namespace beamid::experiments

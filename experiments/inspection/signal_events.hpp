@@ -23,4 +23,9 @@ struct SignalEvent {
 std::vector<SignalEvent> find_events(const Eigen::VectorXd& signal, double interval, double noise,
                                      double frequency_hz);
 
+/// The release of a hand that pulled slowly: the signal's differences rise as an event does, from a
+/// deflection of a third of the largest deviation or more; its size is that deflection. At most one.
+std::vector<SignalEvent> find_slow_release(const Eigen::VectorXd& signal, double interval,
+                                           double frequency_hz);
+
 }  // namespace beamid::experiments

@@ -8,6 +8,7 @@
 
 #include "experiments/modal_analysis/damped_sine_fit.hpp"
 #include "experiments/modal_analysis/logarithmic_decrement.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_step.hpp"
 
 namespace beamid::experiments {
@@ -86,7 +87,7 @@ Course run(const Steps& steps, const Record& record) {
     const std::optional<double> onset = step->onset(now);
     if (onset && !course.onset) course.onset = onset;
     course.cuts.push_back(onset.has_value());
-    step->apply(now);
+    apply(*step, now);
     course.stages.push_back(std::move(now));
   }
   return course;
@@ -97,7 +98,7 @@ void apply(const PreparationStep& step, bool cuts, const Record& after, Record& 
   if (cuts)
     clean = clean.window(after.time[0], after.time[after.size() - 1]);
   else
-    step.apply(clean);
+    apply(step, clean);
 }
 
 std::string name_of(const Channel& channel) {
@@ -115,7 +116,7 @@ PreparationCost preparation_cost(const std::vector<Choice>& choices, const Recor
                                 "; expected a positive frequency and a ratio between 0 and 1");
   Steps steps;
   for (const Choice& choice : choices) steps.push_back(step_registry().make(choice.name, choice.options));
-  const Course course = run(steps, record);
+  const Course course = run(steps, analysable(record, window).record);
   const Decay decay{2 * std::numbers::pi * frequency_hz *
                         Complex(-damping_ratio, std::sqrt(1 - damping_ratio * damping_ratio)),
                     course.onset.value_or(record.time[0])};

@@ -5,6 +5,7 @@
 
 #include "experiments/preparation/preparation_step.hpp"
 #include "experiments/signal/amplitude_spectrum.hpp"
+#include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -28,7 +29,8 @@ std::optional<Panel> spectrum_panel(const Record& record, const std::string& tit
     return std::nullopt;
   }
   const Eigen::Index row = motion_row(record);
-  const AmplitudeSpectrum spectrum = amplitude_spectrum(record.samples.row(row).transpose(), interval);
+  const AmplitudeSpectrum spectrum =
+      amplitude_spectrum(bridged_straight(record.samples.row(row).transpose()), interval);
   const Eigen::Index bins = spectrum.frequency_hz.size() - 1;
   const double highest = spectrum.amplitude.tail(bins).maxCoeff();
   if (!(highest > 0)) return std::nullopt;

@@ -8,6 +8,7 @@
 
 #include "experiments/input/write_record.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_figure.hpp"
 #include "experiments/preparation/preparation_step.hpp"
 
@@ -62,14 +63,16 @@ std::string cost_words(const DominantCost& found) {
       std::abs(change.damping_ratio) < 5e-6 ? 0 : 100 * change.damping_ratio);
 }
 
-/// Evenly sampled stamps are written as such, whatever their file rounded them to.
+/// Evenly sampled stamps are written as such, whatever their file rounded them to; instants at which a sample
+/// is missing are left out.
 Record written(Record record) {
-  try {
-    even_interval(record);
-  } catch (const std::invalid_argument&) {
-    return record;
-  }
-  record.time = Eigen::VectorXd::LinSpaced(record.size(), record.time[0], record.time[record.size() - 1]);
+  if (evenly_sampled(record))
+    record.time = Eigen::VectorXd::LinSpaced(record.size(), record.time[0], record.time[record.size() - 1]);
+  std::vector<Eigen::Index> whole;
+  for (Eigen::Index k = 0; k < record.size(); ++k)
+    if (record.samples.col(k).allFinite()) whole.push_back(k);
+  record.time = record.time(whole).eval();
+  record.samples = record.samples(Eigen::all, whole).eval();
   return record;
 }
 
@@ -77,7 +80,7 @@ Record written(Record record) {
 
 DominantCost dominant_cost(const PreparedRecord& prepared, const RecordFormat& format) {
   try {
-    const Record& record = prepared.record;
+    const Record record = analysable(prepared.record).record;
     const ModalEstimate mode =
         dominant_mode(record.samples.row(motion_row(record)).transpose(), even_interval(record));
     if (!(mode.damping_ratio > 0 && mode.damping_ratio < 1))
@@ -151,7 +154,21 @@ Json values(const RecordFormat& format, const DominantCost& found) {
   return json;
 }
 
+void lead_with(Results& results, const std::string& record_name, const Record& record) {
+  if (record.warnings.empty()) return;
+  Json& told = results.values["record_warnings"];
+  const auto after = [](const auto& part) { return std::holds_alternative<Heading>(part); };
+  const bool titled = !results.report.empty() && after(results.report.front());
+  auto place = results.report.begin() + (titled ? 1 : 0) + static_cast<std::ptrdiff_t>(told.size());
+  for (const std::string& warning : record.warnings) {
+    const std::string text = record_name.empty() ? warning : record_name + ": " + warning;
+    place = results.report.insert(place, Paragraph{"WARNING. " + text}) + 1;
+    told.push_back(text);
+  }
+}
+
 void tell_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format) {
+  lead_with(results, "", prepared.record);
   std::string text;
   for (const std::string& remark : prepared.record.remarks) text += (text.empty() ? "" : " ") + remark;
   if (!format.preparation.empty()) {
@@ -164,6 +181,7 @@ void tell_preparation(Results& results, const PreparedRecord& prepared, const Re
 
 void tell_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
                const RecordFormat& format) {
+  lead_with(results, record_name, prepared.record);
   if (format.preparation.empty()) return;
   const DominantCost found = dominant_cost(prepared, format);
   Json one{{"record", record_name}};
@@ -183,6 +201,7 @@ Results report(const PreparedRecord& prepared, const RecordFormat& format, const
   results.paragraph(first_words(prepared, record_name));
   for (std::size_t i = 0; i < prepared.record.remarks.size(); ++i)
     results.paragraph(fmt::format("{}. {}", i + 1, prepared.record.remarks[i]));
+  lead_with(results, "", prepared.record);
   const DominantCost found = dominant_cost(prepared, format);
   results.values["preparation"] = values(format, found);
   results.values["samples"] = prepared.record.size();

@@ -23,12 +23,17 @@ Table cost_table(const PreparationCost& cost);
 /// One key per step with its options, and the cost; null where there is none.
 nlohmann::ordered_json values(const RecordFormat& format, const DominantCost& cost);
 
-/// Adds the remarks on the record as a paragraph; with steps, what they change together, and the values under
-/// `preparation`.
+/// Puts the record's warnings before everything but the report's title, each a paragraph, and into
+/// `record_warnings`: every report that is made from a record begins with them.
+/// @param record_name before each, where there are several records; may be empty
+void lead_with(Results& results, const std::string& record_name, const Record& record);
+
+/// Leads with the record's warnings, and adds the remarks on it as a paragraph; with steps, what they change
+/// together, and the values under `preparation`.
 void tell_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format);
 
-/// The same of one of several records, by its name: the sentence on the cost alone, and one more entry of the
-/// array `preparations`. Nothing without steps.
+/// The same of one of several records, by its name: the sentence on the cost alone, and, with steps, one more
+/// entry of the array `preparations`.
 void tell_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
                const RecordFormat& format);
 

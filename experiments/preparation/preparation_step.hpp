@@ -4,6 +4,7 @@
 #include <complex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/record.hpp"
@@ -45,12 +46,25 @@ class PreparationStep {
 
   virtual Transient transient(double /*interval*/) const { return {}; }
 
+  /// Whether apply() takes stamps at unequal intervals and missing samples (NaN) as they are.
+  virtual bool takes_any_record() const { return false; }
+
   /// The instant [s] of the event at which it cuts the record; nothing for a step that seeks none.
   virtual std::optional<double> onset(const Record& /*record*/) const { return std::nullopt; }
 };
 
+/// PreparationStep::apply(); where the step needs even stamps and finite samples, on what analysable() makes
+/// of the record, told first, and with those samples missing again that were.
+/// @param within what is wanted of the record [s]
+/// @throws std::invalid_argument as the step, or analysable().
+std::string apply(const PreparationStep& step, Record& record,
+                  const std::optional<std::pair<double, double>>& within = {});
+
 using StepRegistry = filters::Registry<PreparationStep>;
 StepRegistry& step_registry();
+
+/// Whether no two stamps are further from one mean interval apart than 5 % and their rounding.
+bool evenly_sampled(const Record& record);
 
 /// The sampling interval of a record that a step needs evenly sampled [s].
 /// @throws std::invalid_argument where two stamps are not one interval apart, within 5 % and their rounding.

@@ -6,11 +6,13 @@
 
 namespace beamid::experiments {
 
-Record prepare(Record record, const std::vector<Choice>& steps) {
+Record prepare(Record record, const std::vector<Choice>& steps,
+               const std::optional<std::pair<double, double>>& within) {
   for (const Choice& choice : steps)
     at_place(choice.place, [&] {
       try {
-        const std::string remark = step_registry().make(choice.name, choice.options)->apply(record);
+        const auto step = step_registry().make(choice.name, choice.options);
+        const std::string remark = apply(*step, record, within);
         record.remarks.push_back(remark);
       } catch (const std::invalid_argument& error) {
         throw std::invalid_argument("step '" + choice.name + "': " + error.what());
@@ -19,22 +21,25 @@ Record prepare(Record record, const std::vector<Choice>& steps) {
   return record;
 }
 
-Record cut(Record record, const RecordFormat& format, const std::filesystem::path& file) {
-  if (!format.window) return record;
-  return at_place(format.window_place.file.empty() ? Place{file.string()} : format.window_place,
-                  [&] { return record.window(format.window->first, format.window->second); });
+void PreparedRecord::take(Record prepared, const RecordFormat& format, const std::filesystem::path& file) {
+  record = std::move(prepared);
+  if (format.window)
+    record = at_place(format.window_place.file.empty() ? Place{file.string()} : format.window_place,
+                      [&] { return record.window(format.window->first, format.window->second); });
+  record.warnings = warnings_of(defects, record);
+  refuse_mostly_missing(record, defects, file);
 }
 
 PreparedRecord read_and_prepare(const std::filesystem::path& file, const RecordFormat& format) {
   RecordFormat whole = format;
   whole.window.reset();
   PreparedRecord prepared{read_record(file, whole), {}};
-  prepared.record = cut(prepare(prepared.raw, format.preparation), format, file);
+  prepared.defects = mark_defects(prepared.raw, file);
+  prepared.take(prepare(prepared.raw, format.preparation, format.window), format, file);
   return prepared;
 }
 
 Record prepared_record(const std::filesystem::path& file, const RecordFormat& format) {
-  if (format.preparation.empty()) return read_record(file, format);
   return read_and_prepare(file, format).record;
 }
 

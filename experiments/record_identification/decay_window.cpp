@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "experiments/modal_analysis/dominant_mode.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/record_identification/record_identification.hpp"
 #include "experiments/signal/onsets.hpp"
 
@@ -39,7 +40,8 @@ std::string DecayWindow::words() const {
       from, to, settling, event, time_constant);
 }
 
-std::optional<DecayWindow> decay_window(const Experiment& experiment, const Record& record) {
+std::optional<DecayWindow> decay_window(const Experiment& experiment, const Record& whole) {
+  const Record record = analysable(whole).record;
   const double last = record.time[record.size() - 1];
   const double period = 1 / expected_frequency_hz(experiment, record);
   OnsetSettings settings;

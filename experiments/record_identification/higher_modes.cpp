@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/modal_analysis/shape_fit.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_step.hpp"
 #include "experiments/record_identification/record_identification.hpp"
 
@@ -39,7 +40,8 @@ std::optional<Choice> step_against_higher_modes(const Experiment& experiment, co
   constexpr double too_large = 6, samples_per_cycle = 8;
   constexpr Eigen::Index enough = 50;  // samples to be left, as the modal analysis wants them
   const RecordIdentification found = prepare_identification(experiment, record);
-  if (!(largest_line(record, found.modal) > too_large * found.near_mode.deviation)) return {};
+  if (!(largest_line(analysable(record).record, found.modal) > too_large * found.near_mode.deviation))
+    return {};
   const auto factor =
       static_cast<int>(std::min(1 / (samples_per_cycle * found.modal.frequency_hz * record.interval()),
                                 static_cast<double>(record.size() / enough)));

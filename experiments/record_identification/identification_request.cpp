@@ -15,12 +15,12 @@ bool IdentificationRequest::is_free_oscillator() const {
 
 void cut_decay(IdentificationRequest& one) {
   RecordFormat& format = one.experiment.format;
-  if (format.window || !format.preparation.empty() || !one.is_free_oscillator()) return;
-  const auto window = decay_window(one.experiment, one.prepared.raw);
+  if (format.window || !one.is_free_oscillator()) return;
+  const auto window = decay_window(one.experiment, one.prepared.record);
   if (!window) return;
   format.window = {window->from, window->to};
   one.window = window->words();
-  one.prepared.record = cut(one.prepared.raw, format, one.file);
+  one.prepared.take(one.prepared.record, format, one.file);
 }
 
 void keep_out_higher_modes(IdentificationRequest& one) {
@@ -29,10 +29,10 @@ void keep_out_higher_modes(IdentificationRequest& one) {
   const auto step = step_against_higher_modes(one.experiment, one.prepared.record);
   if (!step) return;
   format.preparation = {*step};
-  Record left = prepare(one.prepared.raw, format.preparation);
+  Record left = prepare(one.prepared.raw, format.preparation, format.window);
   if (auto& window = format.window)  // the low-pass takes a little of both ends
     window = {std::max(window->first, left.time[0]), std::min(window->second, left.time[left.size() - 1])};
-  one.prepared.record = cut(std::move(left), format, one.file);
+  one.prepared.take(std::move(left), format, one.file);
   one.thinned = true;
 }
 

@@ -21,7 +21,7 @@ struct IdentificationRequest {
   bool is_free_oscillator() const;
 };
 
-/// Cuts a free decay out of a record that the experiment neither cuts nor prepares.
+/// Cuts a free decay out of a record that the experiment does not cut.
 /// @throws as decay_window(); InputError at the window
 void cut_decay(IdentificationRequest& one);
 

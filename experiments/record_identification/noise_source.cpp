@@ -7,6 +7,7 @@
 #include <string>
 
 #include "experiments/model_setting.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 #include "experiments/signal/median.hpp"
 #include "experiments/signal/onsets.hpp"
 #include "filters/noise_estimation.hpp"
@@ -15,7 +16,8 @@ namespace beamid::experiments {
 
 using Eigen::Index, Eigen::VectorXd;
 
-VectorXd noise_before_event(const Record& whole) {
+VectorXd noise_before_event(const Record& record) {
+  const Record whole = analysable(record).record;
   constexpr Index fewest = 32;
   constexpr double normal_consistency = 1.4826;  // of the median absolute deviation
   Index quiet = whole.size();

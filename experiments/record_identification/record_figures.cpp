@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiments/signal/amplitude_spectrum.hpp"
+#include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -43,7 +44,8 @@ Figure reproduction(const Record& record, const RecordIdentification& found) {
 Figure spectrum(const Record& record, const RecordIdentification& found) {
   constexpr double multiples = 8;  // of the mode's frequency: a cantilever's second mode is at 6.3
   constexpr double decades = 6;    // below the peak
-  const AmplitudeSpectrum measured = amplitude_spectrum(record.samples.row(0).transpose(), record.interval()),
+  const Eigen::VectorXd readings = bridged_straight(record.samples.row(0).transpose());
+  const AmplitudeSpectrum measured = amplitude_spectrum(readings, record.interval()),
                           model = amplitude_spectrum(found.reproduced.row(0).transpose(), record.interval());
   const double peak = measured.amplitude.maxCoeff(), floor = std::pow(10.0, -decades) * peak;
   const Channel& channel = record.channels[0];

@@ -1,4 +1,5 @@
 #include "experiments/record_identification/record_identification.hpp"
+#include "experiments/preparation/analysable_record.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -111,6 +112,17 @@ void refine(RecordIdentification& found, const filters::Measurements& measured) 
   found.identification = identify(found.model, measured, settings, filters::Keep::all_beliefs);
 }
 
+// The free decay e^(s t) that fits best, at the record's own stamps.
+Eigen::MatrixXd reproduced(const Record& record, std::complex<double> rate) {
+  const Record even = analysable(record).record;
+  const ShapeFit fit = fit_shapes(even.samples, even.interval(), {rate, 0.0}, {true, false});
+  Eigen::MatrixXd decay(record.samples.rows(), record.size());
+  for (Index k = 0; k < record.size(); ++k)
+    decay.col(k) =
+        (fit.shapes.col(0) * std::exp(rate * (record.time[k] - even.time[0])) + fit.shapes.col(1)).real();
+  return decay;
+}
+
 // What the whole record says of every sample, by the model that the last pass was made with.
 std::vector<filters::Gaussian> smoothed(const Experiment& experiment, const RecordIdentification& found,
                                         const filters::Measurements& measured) {
@@ -131,7 +143,7 @@ void take_quiet_noise(const Eigen::VectorXd& quiet_noise, const Record& record, 
   if (quiet_noise.size() != found.noise_deviation.size())
     throw std::invalid_argument("noise.method is before_event; expected the noise of " +
                                 std::to_string(found.noise_deviation.size()) + " channels before the event");
-  const VectorXd least = smallest_noise * record.samples.cwiseAbs().rowwise().maxCoeff();
+  const VectorXd least = smallest_noise * analysable(record).record.samples.cwiseAbs().rowwise().maxCoeff();
   for (Index i = 0; i < quiet_noise.size(); ++i)
     if (found.noise_from_record[i]) found.noise_deviation[i] = std::max(quiet_noise[i], least[i]);
   found.settings.output_noise = found.noise_deviation.cwiseAbs2().asDiagonal();
@@ -165,13 +177,16 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
   RecordIdentification result;
   const reduction::ReducedModel reduced = take_model(experiment, record, result);
 
-  const double dt = record.interval();
-  result.modal = analyse(experiment, record, result);
+  const AnalysableRecord even = analysable(record);
+  const double dt = even.record.interval();
+  result.modal = analyse(experiment, even.record, result);
 
   const std::complex<double> rate = result.modal.rate();
-  const ShapeFit left = fit_shapes(record.samples, dt, {rate, 0.0}, {true, false});
-  result.noise_deviation = left.residual_standard_deviation.cwiseMax(
-      smallest_noise * record.samples.cwiseAbs().rowwise().maxCoeff());
+  const ShapeFit left = fit_shapes(even.record.samples, dt, {rate, 0.0}, {true, false});
+  const double of_readings = 1 / std::sqrt(even.share);  // what is filled in has no noise of its own
+  result.noise_deviation =
+      (of_readings * left.residual_standard_deviation)
+          .cwiseMax(smallest_noise * even.record.samples.cwiseAbs().rowwise().maxCoeff());
   result.noise_from_record.assign(record.channels.size(), true);
   for (Index i = 0; i < record.samples.rows(); ++i)
     if (const auto given = experiment.noise.find(record.channels[i].quantity);
@@ -179,7 +194,8 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
       result.noise_deviation[i] = given->second;
       result.noise_from_record[i] = false;
     }
-  result.near_mode = noise_near_mode(record.samples.row(0).transpose(), dt, result.modal);
+  result.near_mode = noise_near_mode(even.record.samples.row(0).transpose(), dt, result.modal);
+  result.near_mode.deviation *= of_readings / std::sqrt(even.density);
   result.interval_factor = widening(result);
 
   const double beam_stiffness =
@@ -187,7 +203,7 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
   result.settings.filter = experiment.filter.name;
   result.settings.filter_options = experiment.filter.options;
   result.settings.discretisation = experiment.discretisation;
-  result.settings.initial = initial_belief(experiment, record, result.model, beam_stiffness);
+  result.settings.initial = initial_belief(experiment, even.record, result.model, beam_stiffness);
   result.settings.output_noise = result.noise_deviation.cwiseAbs2().asDiagonal();
   result.settings.passes = passes;
   result.settings.on_failure = experiment.on_failure;
@@ -222,9 +238,7 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
   if (result.diagnostics) result.consistency = result.diagnostics->consistency;
   if (!experiment.smoother.empty()) result.smoothed = smoothed(experiment, result, measured);
   if (result.identification.found.damping_ratio() < 1.0)
-    result.reproduced = fit_shapes(record.samples, record.interval(),
-                                   {result.identification.found.eigenvalue(), 0.0}, {true, false})
-                            .reconstruction;
+    result.reproduced = reproduced(record, result.identification.found.eigenvalue());
   return result;
 }
 

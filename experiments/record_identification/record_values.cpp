@@ -102,9 +102,12 @@ Json values(const RecordIdentification& found, const Record& record) {
         {{"frequency_hz", mode.frequency_hz},
          {"damping_ratio", mode.damping_ratio},
          {"relative_amplitude", mode.amplitude / found.modal.amplitude}});
-  if (found.reproduced.size() > 0)
-    json["response_error_percent"] =
-        100.0 * (record.samples - found.reproduced).norm() / record.samples.norm();
+  if (found.reproduced.size() > 0) {
+    const auto there = record.samples.array().isFinite();
+    const Eigen::ArrayXXd left = record.samples - found.reproduced;
+    json["response_error_percent"] = 100.0 * std::sqrt(there.select(left, 0).square().sum() /
+                                                       there.select(record.samples, 0).squaredNorm());
+  }
   if (found.diagnostics) json["diagnostics"] = values(*found.diagnostics, record.channel_names());
   json["events"] = values(found.identification.run.events);
   if (const auto& failure = found.identification.run.failure)

@@ -22,12 +22,28 @@ double sinc(double u) {
 }
 
 /// h(u), 100 dB down from 0.6 of the node rate on.
-double kernel(double u) {
+double exact_kernel(double u) {
   constexpr double beta = 10.06;
   const double edge = u / static_cast<double>(reach);
   if (std::abs(edge) >= 1) return 0;
   static const double top = std::cyl_bessel_i(0, beta);
   return sinc(u) * std::cyl_bessel_i(0, beta * std::sqrt(1 - edge * edge)) / top;
+}
+
+/// h(u) from a table, to 2e-8.
+double kernel(double u) {
+  constexpr double per_node = 8192;
+  static const std::vector<double> table = [] {
+    std::vector<double> values;
+    for (double k = 0; k <= per_node * static_cast<double>(reach) + 1; ++k)
+      values.push_back(exact_kernel(k / per_node));
+    return values;
+  }();
+  const double place = std::abs(u) * per_node;
+  if (place >= per_node * static_cast<double>(reach)) return 0;
+  const auto left = static_cast<std::size_t>(place);
+  const double share = place - static_cast<double>(left);
+  return (1 - share) * table[left] + share * table[left + 1];
 }
 
 /// Rows of A: the weights of 2 reach nodes in one value.

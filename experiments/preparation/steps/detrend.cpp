@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <Eigen/QR>
 
+#include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "experiments/preparation/channel_step.hpp"
 
@@ -35,12 +37,15 @@ class Detrend final : public ChannelStep {
       throw std::invalid_argument(
           fmt::format("{} samples; expected more than {} for a polynomial of order {}", record.size(),
                       2 * degree_, degree_));
-    const Eigen::HouseholderQR<Eigen::MatrixXd> fit(polynomials(record.time, degree_));
     const Eigen::MatrixXd columns = polynomials(record.time, degree_);
     std::string text;
     for (const Eigen::Index row : rows(record)) {
       const Eigen::VectorXd signal = record.samples.row(row).transpose();
-      const Eigen::VectorXd trend = columns * fit.solve(signal);
+      std::vector<Eigen::Index> there;
+      for (Eigen::Index k = 0; k < signal.size(); ++k)
+        if (std::isfinite(signal[k])) there.push_back(k);
+      const Eigen::HouseholderQR<Eigen::MatrixXd> fit(columns(there, Eigen::all));
+      const Eigen::VectorXd trend = columns * fit.solve(signal(there));
       record.samples.row(row) = (signal - trend).transpose();
       text += fmt::format("{}up to {:.4g} {} from {}", text.empty() ? "" : ", ", trend.cwiseAbs().maxCoeff(),
                           si_unit(record.channels[row].quantity), words(record, {row}));
@@ -49,6 +54,7 @@ class Detrend final : public ChannelStep {
   }
 
   bool exact() const override { return false; }
+  bool takes_any_record() const override { return true; }
 
  private:
   int degree_;

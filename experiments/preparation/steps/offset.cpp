@@ -10,6 +10,12 @@
 namespace beamid::experiments {
 namespace {
 
+/// Of the samples that are not missing.
+double mean_of(const Eigen::ArrayXd& samples) {
+  const auto there = samples.isFinite();
+  return there.select(samples, 0).sum() / static_cast<double>(there.count());
+}
+
 class Offset final : public ChannelStep {
  public:
   explicit Offset(const filters::Options& options)
@@ -50,11 +56,12 @@ class Offset final : public ChannelStep {
   }
 
   bool exact() const override { return false; }
+  bool takes_any_record() const override { return of_ != "quiet"; }
 
  private:
   double offset(const Record& record, Eigen::Index row) const {
-    if (of_ == "all") return record.samples.row(row).mean();
-    if (of_ == "interval") return record.window(from_, to_).samples.row(row).mean();
+    if (of_ == "all") return mean_of(record.samples.row(row));
+    if (of_ == "interval") return mean_of(record.window(from_, to_).samples.row(row));
     const Onsets found = find_onsets(record.samples.row(row).transpose(), even_interval(record));
     if (found.samples.empty())
       throw std::invalid_argument("no event in " + words(record, {row}) +

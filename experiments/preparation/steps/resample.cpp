@@ -4,19 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include "experiments/preparation/preparation_step.hpp"
 #include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/band_limited.hpp"
 #include "experiments/signal/cubic_spline.hpp"
+#include "experiments/signal/median.hpp"
+#include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {
 
+using Eigen::Index, Eigen::VectorXd;
+
 /// How far every second sample is from the spline through the others, rms relative to the signal's own.
 double left_out_error(const Eigen::VectorXd& time, const Eigen::VectorXd& signal) {
-  const Eigen::Index half = signal.size() / 2;
+  const Index half = signal.size() / 2;
   const auto even = Eigen::seqN(0, half, 2), odd = Eigen::seqN(1, half - 1, 2);
   const CubicSpline spline(time(even), signal(even));
   const double size = std::sqrt((signal.array() - signal.mean()).square().mean());
@@ -24,17 +30,40 @@ double left_out_error(const Eigen::VectorXd& time, const Eigen::VectorXd& signal
   return size > 0 ? std::sqrt(misses.array().square().mean()) / size : 0;
 }
 
-/// Of the strongest motion, by the spectrum of the samples as if they were even [Hz].
+/// Of the strongest motion, by the spectrum of an even record [Hz].
 double strongest(const Record& record) {
   double frequency = 0, largest = 0;
-  for (Eigen::Index row = 0; row < record.samples.rows(); ++row) {
-    const AmplitudeSpectrum one = amplitude_spectrum(record.samples.row(row).transpose(), record.interval());
-    Eigen::Index at = 0;
+  for (Index row = 0; row < record.samples.rows(); ++row) {
+    const VectorXd signal = record.samples.row(row).transpose();
+    if (!signal.array().isFinite().any()) continue;
+    const AmplitudeSpectrum one = amplitude_spectrum(bridged_straight(signal), record.interval());
+    Index at = 0;
     const double peak = one.amplitude.tail(one.amplitude.size() - 1).maxCoeff(&at);
     const double relative = peak / std::max(one.amplitude.norm(), 1e-300);
     if (relative > largest) largest = relative, frequency = one.frequency_hz[at + 1];
   }
   return frequency;
+}
+
+/// The readings of one channel that are there, parted where two are further apart than `gap`.
+struct Part {
+  VectorXd time, signal;
+};
+
+std::vector<Part> parts_of(const VectorXd& time, const VectorXd& signal, double gap) {
+  std::vector<Part> parts;
+  std::vector<Index> members;
+  const auto end = [&] {
+    if (!members.empty()) parts.push_back({time(members), signal(members)});
+    members.clear();
+  };
+  for (Index k = 0; k < time.size(); ++k) {
+    if (!std::isfinite(signal[k])) continue;
+    if (!members.empty() && time[k] - time[members.back()] > gap) end();
+    members.push_back(k);
+  }
+  end();
+  return parts;
 }
 
 class Resample final : public PreparationStep {
@@ -52,52 +81,47 @@ class Resample final : public PreparationStep {
     return {{"rate_hz", 0.0, "Hz", "of the even grid; 0: one sample per median interval"},
             {"method", std::string("band_limited"), "",
              "band_limited: exact below 0.4 of the rate; spline: cubic"},
-            {"largest_gap", 0.0, "", "times the median interval; 0: 2.5, or 4 for the spline"}};
+            {"largest_gap", 0.0, "",
+             "times the median interval, wider ones stay missing; 0: 2.5, or 4 for the spline"}};
   }
 
   std::string apply(Record& record) const override {
-    constexpr Eigen::Index fewest = 16;
-    const Eigen::Index count = record.size();
+    constexpr Index fewest = 16;
+    const Index count = record.size();
     if (count < fewest)
       throw std::invalid_argument(fmt::format("{} samples; expected {} or more", count, fewest));
-    const Eigen::VectorXd steps = record.time.tail(count - 1) - record.time.head(count - 1);
-    Eigen::VectorXd sorted = steps;
-    std::sort(sorted.begin(), sorted.end());
-    const double median = sorted[sorted.size() / 2], rate = rate_ > 0 ? rate_ : 1 / median;
-    Eigen::Index widest = 0;
-    const double gap = steps.maxCoeff(&widest);
-    if (gap > largest_gap_ * median)
-      throw std::invalid_argument(fmt::format(
-          "a gap of {:.4g} s at {:.6g} s, {:.3g} times the median interval; expected at most {:g} times", gap,
-          record.time[widest], gap / median, largest_gap_));
-    if (rate * record.interval() < 0.9)
+    const VectorXd steps = record.time.tail(count - 1) - record.time.head(count - 1);
+    const double usual = median(steps), rate = rate_ > 0 ? rate_ : 1 / usual, gap = largest_gap_ * usual;
+    const Eigen::Array<bool, Eigen::Dynamic, 1> within = steps.array() <= gap;
+    const double mean = within.select(steps.array(), 0).sum() / static_cast<double>(within.count());
+    if (rate * mean < 0.9)
       throw std::invalid_argument(
           fmt::format("rate_hz is {:g} where samples come at {:g} Hz; expected no less: "
                       "a step = \"decimate\" behind this one keeps aliases out",
-                      rate, 1 / record.interval()));
+                      rate, 1 / mean));
     const double first = record.time[0], length = record.time[count - 1] - first;
-    const auto points = static_cast<Eigen::Index>(std::floor(length * rate * (1 + 1e-12))) + 1;
+    const double points = std::floor(length * rate * (1 + 1e-12)) + 1;
+    if (points > most_points)
+      throw std::invalid_argument(
+          fmt::format("{:.3g} samples from {:.6g} s at {:g} Hz; expected at most {:g}: "
+                      "a lower rate_hz, or a window without the gap",
+                      points, length, rate, most_points));
     Record even = record;
-    even.time = first + Eigen::ArrayXd::LinSpaced(points, 0, static_cast<double>(points - 1)) / rate;
-    even.samples.resize(record.samples.rows(), points);
+    even.time = first + Eigen::ArrayXd::LinSpaced(static_cast<Index>(points), 0, points - 1) / rate;
+    even.samples.setConstant(record.samples.rows(), even.size(), std::numeric_limits<double>::quiet_NaN());
     even.time_resolution = 0;
     double error = 0;
-    for (Eigen::Index row = 0; row < record.samples.rows(); ++row) {
-      const Eigen::VectorXd signal = record.samples.row(row).transpose();
-      if (spline_) {
-        even.samples.row(row) = CubicSpline(record.time, signal)(even.time).transpose();
-        error = std::max(error, left_out_error(record.time, signal));
-      } else {
-        const BandLimited band(record.time, signal);
-        even.samples.row(row) = band(even.time).transpose();
-        error = std::max(error, band.misfit());
-      }
-    }
-    const double frequency = strongest(record), relative = frequency * record.interval();
+    for (Index row = 0; row < record.samples.rows(); ++row)
+      for (const Part& part : parts_of(record.time, record.samples.row(row).transpose(), gap))
+        error = std::max(error, put(part, row, even));
+    const Index gaps = within.size() - within.count();
+    const double frequency = strongest(even), relative = frequency * mean;
     record = std::move(even);
-    const std::string how =
-        fmt::format("Resampled at {:.6g} Hz {} through intervals of {:.4g} to {:.4g} s; ", rate,
-                    spline_ ? "by a cubic spline" : "band-limited", steps.minCoeff(), gap);
+    const std::string how = fmt::format(
+        "Resampled at {:.6g} Hz {} through intervals of {:.4g} to {:.4g} s{}; ", rate,
+        spline_ ? "by a cubic spline" : "band-limited", steps.minCoeff(),
+        within.select(steps.array(), 0).maxCoeff(),
+        gaps > 0 ? fmt::format(", what lies in {} longer one{} missing", gaps, gaps == 1 ? "" : "s") : "");
     if (spline_)
       return how + fmt::format(
                        "through every second sample alone it misses the others by up to {:.2g} % of the "
@@ -116,8 +140,30 @@ class Resample final : public PreparationStep {
 
   void follow(std::vector<FollowedChannel>&, std::complex<double>, double) const override {}
   bool exact() const override { return false; }
+  bool takes_any_record() const override { return true; }
 
  private:
+  /// The even samples within the part's time; how far the interpolation is off, relative to the signal.
+  double put(const Part& part, Index row, Record& even) const {
+    constexpr Index fewest = 4, fewest_for_sinc = 64;
+    const Index count = part.time.size();
+    if (count < fewest) return 0;
+    const double* const times = even.time.data();
+    const double slack = 1e-9 * even.interval();
+    const Index from = std::lower_bound(times, times + even.size(), part.time[0] - slack) - times,
+                points =
+                    std::upper_bound(times, times + even.size(), part.time[count - 1] + slack) - times - from;
+    const VectorXd at = even.time.segment(from, points);
+    if (spline_ || count < fewest_for_sinc) {
+      even.samples.row(row).segment(from, points) = CubicSpline(part.time, part.signal)(at).transpose();
+      return count > 2 * fewest ? left_out_error(part.time, part.signal) : 0;
+    }
+    const BandLimited band(part.time, part.signal);
+    even.samples.row(row).segment(from, points) = band(at).transpose();
+    return band.misfit();
+  }
+
+  static constexpr double most_points = 1e8;
   double rate_, largest_gap_;
   bool spline_;
 };

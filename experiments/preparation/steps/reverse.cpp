@@ -17,6 +17,7 @@ class Reverse final : public ChannelStep {
   }
 
   bool exact() const override { return true; }
+  bool takes_any_record() const override { return true; }
 
  private:
   std::complex<double> factor(std::complex<double>, double) const override { return -1; }

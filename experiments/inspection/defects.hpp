@@ -1,0 +1,28 @@
+// What is wrong with a channel's samples, found once for all who read them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "experiments/inspection/rattle.hpp"
+#include "experiments/inspection/runs.hpp"
+
+namespace beamid::experiments {
+
+/// What a signal is taken for.
+enum class SignalKind {
+  motion,  ///< moves most of the time
+  force,   ///< may rest at zero between pulses as short as one sample
+};
+
+struct Defects {
+  bool dead = false;  ///< constant but for spikes, or nothing but noise on an offset a thousand times larger
+  std::vector<Run> spikes, clipped, dropped, repeated;
+  std::optional<Rattle> rattle;
+};
+
+/// Each in a signal without those before it: spikes, clipping, drop-outs, repeated samples. Of a force only
+/// clipping and samples that are not numbers.
+Defects find_defects(const std::vector<double>& samples, SignalKind kind);
+
+}  // namespace beamid::experiments
