@@ -4,13 +4,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "experiments/modal_analysis/residue_fit.hpp"
+#include "experiments/signal/least_squares.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -64,12 +64,12 @@ std::vector<OrderPoles> common_denominator_poles(const VectorXd& frequency_hz, c
   for (Index n = 2; n <= largest_order; n += 2) {
     const Index size = n + 1;
     MatrixXd reduced = normal.t.topLeftCorner(size, size);
-    const auto factor = normal.r.topLeftCorner(size, size).eval().colPivHouseholderQr();
+    const MatrixXd common = normal.r.topLeftCorner(size, size);
     for (const MatrixXd& s : normal.s) {
       const MatrixXd part = s.topLeftCorner(size, size);
-      reduced -= part.transpose() * factor.solve(part);
+      reduced -= part.transpose() * least_squares(common, part);
     }
-    const VectorXd a = -reduced.topLeftCorner(n, n).colPivHouseholderQr().solve(reduced.col(n).head(n));
+    const VectorXd a = -least_squares(reduced.topLeftCorner(n, n), reduced.col(n).head(n));
     OrderPoles at{static_cast<int>(n), {}};
     for (const Complex& x : roots(a)) {
       const Complex rate = -std::log(x) * per_radian + shift;

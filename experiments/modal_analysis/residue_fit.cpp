@@ -1,10 +1,11 @@
 #include "experiments/modal_analysis/residue_fit.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "experiments/signal/least_squares.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -43,12 +44,8 @@ MatrixXd stacked(const MatrixXcd& columns) {
 
 ResidueFit fit(const VectorXcd& s, const MatrixXcd& responses, int power, const std::vector<Complex>& rates) {
   const MatrixXcd columns = basis(s, power, rates);
-  const MatrixXd matrix = stacked(columns);
-  const VectorXd scale = matrix.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const auto count = static_cast<Index>(rates.size());
-  const MatrixXd solved =
-      scale.asDiagonal() *
-      (matrix * scale.asDiagonal()).colPivHouseholderQr().solve(stacked(responses.transpose()));
+  const MatrixXd solved = least_squares(stacked(columns), stacked(responses.transpose()));
   ResidueFit found{rates,
                    MatrixXcd(responses.rows(), count),
                    solved.row(2 * count),

@@ -1,9 +1,10 @@
 #include "experiments/modal_analysis/response_peaks.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "experiments/signal/least_squares.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -54,9 +55,7 @@ LocalFit local_fit(const VectorXcd& s, const MatrixXcd& receptance, Index first,
       right[o * count + k] = from * h;
     }
   }
-  const VectorXd columns = matrix.colwise().norm().cwiseMax(1e-300);
-  const VectorXcd solved = (matrix * columns.cwiseInverse().asDiagonal()).colPivHouseholderQr().solve(right);
-  const VectorXcd parts = solved.cwiseQuotient(columns.cast<Complex>());
+  const VectorXcd parts = complex_least_squares(matrix, right);
   const VectorXcd left = matrix * parts - right;
   double squares = 0, own = 0;
   for (Index o = 0; o < outputs; ++o)

@@ -1,7 +1,8 @@
 #include "experiments/modal_analysis/shape_fit.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
+
+#include "experiments/signal/least_squares.hpp"
 
 namespace beamid::experiments {
 
@@ -23,7 +24,7 @@ ShapeFit fit_shapes(const Eigen::MatrixXd& outputs, double interval, const std::
     columns += oscillating[m] ? 2 : 1;
   }
   basis.conservativeResize(Eigen::NoChange, columns);
-  const Eigen::MatrixXd parts = basis.colPivHouseholderQr().solve(outputs.transpose());  // (columns x p)
+  const Eigen::MatrixXd parts = least_squares(basis, outputs.transpose());  // (columns x p)
 
   ShapeFit fit;
   fit.shapes.resize(outputs.rows(), modes);

@@ -19,6 +19,7 @@ struct ShapeFit {
 /// record's end, so that none overflows.
 /// @param outputs (p x N), one column per instant
 /// @param oscillating (n) whether the rate has an imaginary part that matters: others have real shapes
+/// @throws std::invalid_argument when a rate or an output is not a finite number.
 ShapeFit fit_shapes(const Eigen::MatrixXd& outputs, double interval,
                     const std::vector<std::complex<double>>& rates, const std::vector<bool>& oscillating);
 
