@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -45,6 +46,54 @@ TEST(DecayWindow, BeginsThreePeriodsBehindTheLastEventAndSpansTwoTimeConstants) 
     EXPECT_NEAR(window->time_constant, time_constant, 0.01 * time_constant);
     EXPECT_NEAR(window->to - window->from, 2.0 * window->time_constant, 1e-9);
   }
+}
+
+/// What a sensor adds that starts up: three times the motion, fading in 0.2 s.
+void start_up(Record& record) {
+  const double largest = record.samples.row(0).cwiseAbs().maxCoeff();
+  record.samples.row(0).array() += 3 * largest * (-record.time.transpose().array() / 0.2).exp();
+}
+
+TEST(DecayWindow, TakesNoStartUpForAnEvent) {
+  const test::SimulatedBeam simulated;
+  const double period = 2 * std::numbers::pi / simulated.mode.angular_frequency();
+  Record released = released_at({2.0}, 14);
+  start_up(released);
+  const auto window = decay_window(simulated.experiment(), released);
+  ASSERT_TRUE(window);
+  EXPECT_FALSE(window->start_up);
+  EXPECT_NEAR(window->event, 2.0, 1.5 * period);
+}
+
+// In motion from the first sample: behind the start-up, which is below 3 % from ln(3 / 0.03) 0.2 s on at
+// most.
+TEST(DecayWindow, WaitsForASensorToSettle) {
+  const test::SimulatedBeam simulated;
+  Record moving = simulated.record({Quantity::acceleration}, 0.01, 15);
+  start_up(moving);
+  const auto window = decay_window(simulated.experiment(), moving);
+  ASSERT_TRUE(window);
+  EXPECT_TRUE(window->start_up);
+  EXPECT_GT(window->from, 0.2 * std::log(3 / 0.03));
+  EXPECT_LT(window->event, 0.92 + 2 * 2 * std::numbers::pi / simulated.mode.angular_frequency());
+}
+
+// The motion comes up over three periods, as no sample of a hit or of a sudden release does.
+TEST(DecayWindow, BeginsBehindASlowRelease) {
+  const test::SimulatedBeam simulated;
+  const double period = 2 * std::numbers::pi / simulated.mode.angular_frequency(), released = 2.0;
+  Record record = released_at({0.0}, 16);
+  for (Index k = 0; k < record.size(); ++k) {
+    const double passed = std::clamp((record.time[k] - released) / (3 * period), 0.0, 1.0);
+    record.samples(0, k) *= 0.5 * (1 - std::cos(std::numbers::pi * passed));
+  }
+  const auto window = decay_window(simulated.experiment(), record);
+  ASSERT_TRUE(window);
+  EXPECT_GT(window->event, released);
+  EXPECT_LT(window->event, released + 5 * period);
+  EXPECT_GT(window->from, released + 3 * period);
+  EXPECT_NEAR(window->time_constant, period / (2 * std::numbers::pi * damping_ratio),
+              0.02 * window->time_constant);
 }
 
 TEST(DecayWindow, LeavesARecordAloneThatBeginsInMotion) {
