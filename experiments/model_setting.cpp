@@ -3,6 +3,7 @@
 #include "experiments/continuum/beam_points.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_reduction.hpp"
+#include "experiments/record_inputs.hpp"
 #include "fem/parametric_system.hpp"
 
 namespace beamid::experiments {
@@ -56,8 +57,8 @@ std::vector<Index> force_channels(const Record& record) {
 filters::Measurements measurements(const Record& record) {
   const std::vector<Index> outputs = output_channels(record), forces = force_channels(record);
   filters::Measurements result{record.time, record.samples(outputs, Eigen::all), {}};
-  if (!forces.empty()) result.inputs = record.samples(forces, Eigen::all);
   if (record.time_resolution < 0.5 * record.interval()) result.time_resolution = record.time_resolution;
+  if (!forces.empty()) take_inputs(record.samples(forces, Eigen::all), record.input_path, result);
   return result;
 }
 

@@ -20,7 +20,8 @@ namespace beamid::experiments {
 ModelSetting model_setting(const Experiment& experiment, const Record& record, const Choice& reduction,
                            const std::filesystem::path& folder = {});
 
-/// The record as a filter takes it: forces are inputs, the rest outputs, in the record's order; stamps
+/// The record as a filter takes it: forces are inputs, which run between their samples as the record says
+/// (record_inputs.hpp), the rest outputs, in the record's order; stamps
 /// that lie on a regular grid to within their printed precision count as regular.
 filters::Measurements measurements(const Record& record);
 

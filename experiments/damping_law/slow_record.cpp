@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "experiments/record_inputs.hpp"
 #include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {
@@ -25,7 +26,7 @@ MatrixXd SlowRecord::measured(const MatrixXd& fine_columns) const {
   return kept;
 }
 
-SlowRecord slow_record(const filters::Measurements& record, double frequency_hz) {
+SlowRecord slow_record(const filters::Measurements& record, Index inputs, double frequency_hz) {
   const Index all = record.size();
   const double dt = record.interval();
   SlowRecord slow;
@@ -44,9 +45,8 @@ SlowRecord slow_record(const filters::Measurements& record, double frequency_hz)
   slow.fine.outputs.setConstant(slow.samples.rows(), n, std::numeric_limits<double>::quiet_NaN());
   for (Index k = 0; k < m; ++k) slow.fine.outputs.col(k * slow.steps) = slow.samples.col(k);
   if (record.inputs.size() == 0) return slow;
-  const MatrixXd inputs = decimate_channels(record.inputs, slow.factor);
-  slow.fine.inputs.resize(inputs.rows(), n);
-  for (Index k = 0; k < n; ++k) slow.fine.inputs.col(k) = inputs.col(k / slow.steps);
+  slow.fine.inputs =
+      filters::in_parts(decimated_inputs(record, inputs, slow.factor, slow.time), slow.steps).columns;
   return slow;
 }
 

@@ -20,8 +20,8 @@ struct SlowRecord {
   Eigen::MatrixXd measured(const Eigen::MatrixXd& fine_columns) const;
 };
 
-/// @param frequency_hz of the mode
-SlowRecord slow_record(const filters::Measurements& record, double frequency_hz);
+/// @param inputs of the record, m; @param frequency_hz of the mode
+SlowRecord slow_record(const filters::Measurements& record, Eigen::Index inputs, double frequency_hz);
 
 /// Deviation of white noise as dense as what is left of a record near a frequency, between half and one and a
 /// half times it, or as all of it where that is more (p).

@@ -15,8 +15,9 @@ struct ObservedMotion {
   JointModel model;
   Eigen::VectorXd initial_state;  ///< (n), the unknowns in their places
   StartDirections directions;
-  Eigen::MatrixXd inputs = {};  ///< u_k in its columns, held over a step (m x N); empty: none
-  double interval = 0.0;        ///< between samples [s]
+  Eigen::MatrixXd inputs =
+      {};                 ///< u_k in its columns, as a discrete model takes them (m (d + 1) x N); empty: none
+  double interval = 0.0;  ///< between samples [s]
   std::string discretisation = "exponential";
 };
 

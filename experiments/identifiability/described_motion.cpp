@@ -11,6 +11,7 @@
 #include "experiments/input/method_choice.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/record_comparison/true_value.hpp"
+#include "experiments/record_inputs.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -120,7 +121,13 @@ DescribedMotion described_motion(const Experiment& experiment, const std::filesy
   if (forced) {
     if (!known) setting = setting_of(experiment, view.sensors, true);
     const ForceHistory force = force_history(experiment, folder, setting, view.samples);
-    if (known) motion.inputs = force.values.transpose();
+    if (known) {
+      filters::Measurements history;
+      history.time =
+          motion.interval * VectorXd::LinSpaced(view.samples, 0.0, static_cast<double>(view.samples - 1));
+      result.inputs = take_inputs(force.values.transpose(), experiment.format.input, history);
+      motion.inputs = history.inputs;
+    }
     if (!known) begin = force.begin;
     if (begin >= view.samples)
       throw InputError(experiment.excitation.place,

@@ -8,6 +8,7 @@
 #include "experiments/experiment.hpp"
 #include "experiments/identifiability/channel_information.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/record_inputs.hpp"
 
 namespace beamid::experiments {
 
@@ -21,9 +22,10 @@ struct TestView {
 
 struct DescribedMotion {
   ObservedMotion motion;
-  std::vector<Sensor> sensors;        ///< names and positions filled in
-  Eigen::VectorXd root_mean_squares;  ///< of what the sensors of the continuum show (p) [their units]
-  double begin = 0.0;                 ///< of the record, after the excitation's start [s]
+  std::vector<Sensor> sensors;              ///< names and positions filled in
+  Eigen::VectorXd root_mean_squares;        ///< of what the sensors of the continuum show (p) [their units]
+  std::optional<RecordInputs> inputs = {};  ///< of a measured force, between its samples
+  double begin = 0.0;                       ///< of the record, after the excitation's start [s]
 };
 
 /// The unknowns are what the beam described has of them, or their guesses where it has no such thing. The

@@ -81,6 +81,7 @@ void describe_test(const Experiment& complete, const DescribedMotion& test, Inde
   const double ratio = fem::damping_ratios(complete.damping, VectorXd::Constant(1, first))[0];
   result.slowest_decay = ratio > 0.0 ? 1.0 / (ratio * first) : 0.0;
   result.force_measured = test.motion.inputs.size() > 0;
+  result.inputs = test.inputs;
   result.begin = test.begin;
   result.sampling_rate = rate;
   const Index left = samples - static_cast<Index>(std::llround(test.begin * rate));

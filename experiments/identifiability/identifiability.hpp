@@ -9,6 +9,7 @@
 #include "experiments/experiment.hpp"
 #include "experiments/identifiability/parameter_bounds.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/record_inputs.hpp"
 
 namespace beamid::experiments {
 
@@ -34,6 +35,7 @@ struct Identifiability {
   std::vector<double> frequencies_hz;  ///< of the model's modes
   std::vector<UsedSensor> sensors;
   bool force_measured = false;
+  std::optional<RecordInputs> inputs = {};     ///< how a measured force was taken to run
   double begin = 0.0;                          ///< of the record, after the excitation's start [s]
   double duration = 0.0, sampling_rate = 0.0;  ///< [s], [Hz]
   double slowest_decay = 0.0;                  ///< 1 / (xi omega) of mode 1 [s]; 0: it does not decay

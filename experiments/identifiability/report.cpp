@@ -46,8 +46,9 @@ std::string test_text(const Experiment& experiment, const Identifiability& found
                         to_string(sensor.quantity), sensor.position.value_or(0.0), sensor.noise,
                         si_unit(sensor.quantity), found.sensors[i].assumed ? ", assumed" : "");
   }
-  return text +
-         ". The start is unknown, nothing is known beforehand of the parameters asked about, the noise is "
+  if (found.inputs) text += ". " + words(*found.inputs);
+  return text + (found.inputs ? "" : ".") +
+         " The start is unknown, nothing is known beforehand of the parameters asked about, the noise is "
          "white.";
 }
 

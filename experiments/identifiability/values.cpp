@@ -68,6 +68,7 @@ Json values(const Identifiability& found) {
             {"sampling_rate_hz", found.sampling_rate},
             {"sensors", Json::array()},
             {"parameters", Json::object()}};
+  if (found.inputs) json["inputs_between_samples"] = to_string(found.inputs->path);
   for (const Identifiability::UsedSensor& used : found.sensors)
     json["sensors"].push_back({{"name", used.sensor.name},
                                {"quantity", to_string(used.sensor.quantity)},

@@ -147,6 +147,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
           values[row] * column.factor;
     record.channels.push_back(column.channel);
   }
+  record.input_path = format.input;
   if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
   record.remarks = table.remarks;
   return format.window ? cut(record, format, table.file) : record;

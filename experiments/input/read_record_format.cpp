@@ -75,6 +75,10 @@ RecordFormat read_format(const TomlTable& table, const fem::Beam* beam) {
   format.skip_malformed = table.find_text("malformed", {"refuse", "skip"}).value_or("refuse") == "skip";
   format.irregular =
       table.find_text("stamps", {"even", "as_they_are"}).value_or("as_they_are") == "as_they_are";
+  if (const auto input = table.find_text("input", {"band_limited", "linear", "held"}))
+    format.input = *input == "held"     ? InputPath::held
+                   : *input == "linear" ? InputPath::linear
+                                        : InputPath::band_limited;
   format.sampling_rate = table.find_number("sampling_rate_hz", Sign::positive);
   format.window = table.find_interval("window_s");
   if (format.window) format.window_place = table.value_place("window_s");

@@ -100,7 +100,7 @@ const std::vector<TableVocabulary>& vocabulary() {
        {"from_hz", "to_hz", "points", "spacing", "kind", "method", "modes", "residual_modes", "pairs"}},
       {"frequency_response.pairs", {"input_m", "output_m"}},
       {"record",
-       {"file", "reader", "separator", "decimal", "header_lines", "malformed", "stamps", "sampling_rate_hz",
+       {"file", "reader", "separator", "decimal", "header_lines", "malformed", "stamps", "input", "sampling_rate_hz",
         "window_s", "time", "channels", "prepare"}},
       {"record.time", {"column", "unit"}},
       {"record.prepare", {"step"}, true},

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "filters/step_input.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -31,8 +33,30 @@ const std::vector<Degree>& degrees() {
 
 RationalStep::RationalStep(Scheme scheme, double dt, const VectorXd& frequencies)
     : scheme_(scheme), dt_(dt), r_(frequencies.size()), size_(2 * r_) {
-  scale_.setOnes(2 * r_ + 1);
+  scale_.setOnes(2 * r_ + filters::StepInput::highest_degree + 1);
   scale_.head(r_) = frequencies;
+}
+
+void RationalStep::take(const VectorXd& input, Index inputs) {
+  const filters::StepInput path(input, inputs);
+  if (path.size() == 0) {
+    chain_.resize(0, 0);
+  } else if (path.degree() == 0) {
+    chain_ = path.coefficient(0);
+  } else if (scheme_ == Scheme::pade) {
+    chain_.resize(path.size(), 2);
+    chain_.col(1) = path.slope();
+    chain_.col(0) = path.mean() - 0.5 * chain_.col(1);
+  } else {
+    chain_.resize(path.size(), path.degree() + 1);
+    double factorial = 1.0;
+    for (Index j = 0; j < chain_.cols(); ++j) {
+      if (j > 1) factorial *= static_cast<double>(j);
+      chain_.col(j) = factorial * path.coefficient(j);
+    }
+  }
+  size_ = 2 * r_ + chain_.cols();
+  if (scale_.size() < size_) scale_.conservativeResize(size_);
 }
 
 void RationalStep::choose_degree(double norm) {
@@ -56,17 +80,26 @@ void RationalStep::choose_degree(double norm) {
 }
 
 void RationalStep::set(const SecondOrderForm& form, const VectorXd& input) {
-  size_ = 2 * r_ + (input.size() > 0 ? 1 : 0);
+  take(input, form.inputs.cols());
   const auto scale = scale_.head(r_);
   x_.setZero(size_, size_);
   x_.block(0, r_, r_, r_).diagonal() = dt_ * scale;
   x_.block(r_, 0, r_, r_).noalias() = -dt_ * form.stiffness * scale.cwiseInverse().asDiagonal();
   x_.block(r_, r_, r_, r_) = -dt_ * form.damping;
-  if (input.size() > 0) {
-    x_.col(2 * r_).segment(r_, r_).noalias() = dt_ * (form.inputs * input);
-    const double force = x_.col(2 * r_).cwiseAbs().maxCoeff();
-    scale_[2 * r_] = force > 0.0 ? force / (dt_ * scale.maxCoeff()) : 1.0;
-    x_.col(2 * r_) /= scale_[2 * r_];
+  if (const Index chain = chain_.cols(); chain > 0) {
+    // Each power of the step is smaller than the one before, as those of smooth inputs are.
+    constexpr double pace = 0.2;
+    auto pushes = x_.block(r_, 2 * r_, r_, chain);
+    pushes.noalias() = dt_ * (form.inputs * chain_);
+    double first = 0.0;
+    for (Index j = chain - 1; j >= 0; --j)
+      first = std::max(pushes.col(j).cwiseAbs().maxCoeff(), first / pace);
+    first = first > 0.0 ? first / (dt_ * scale.maxCoeff()) : 1.0;
+    for (Index j = 0; j < chain; ++j) {
+      scale_[2 * r_ + j] = first * std::pow(pace, j);
+      pushes.col(j) /= scale_[2 * r_ + j];
+      if (j > 0) x_(2 * r_ + j, 2 * r_ + j - 1) = pace;
+    }
   }
   choose_degree(x_.cwiseAbs().colwise().sum().maxCoeff());
   x_ *= std::ldexp(1.0, -squarings_);
@@ -112,7 +145,7 @@ void RationalStep::set(const SecondOrderForm& form, const VectorXd& input) {
 }
 
 void RationalStep::apply(const VectorXd& state, VectorXd& next) const {
-  VectorXd scaled(size_);
+  VectorXd scaled = VectorXd::Zero(size_);
   scaled.head(2 * r_) = scale_.head(2 * r_).cwiseProduct(state.head(2 * r_));
   if (size_ > 2 * r_) scaled[2 * r_] = scale_[2 * r_];
   next.head(2 * r_).noalias() = whole_.topRows(2 * r_) * scaled;
@@ -125,12 +158,13 @@ void RationalStep::tangent(Eigen::Ref<MatrixXd> matrix) const {
 }
 
 void RationalStep::tangent_by_unknowns(const VectorXd& state, const std::vector<SecondOrderForm>& slopes,
-                                       const VectorXd& input, Eigen::Ref<MatrixXd> matrix) {
+                                       Eigen::Ref<MatrixXd> matrix) {
   const auto q = static_cast<Index>(slopes.size());
   if (q == 0) return;
   const Index substeps = Index{1} << squarings_;
   const auto degree = static_cast<Index>(coefficients_.size()) - 1;
   states_.resize(size_, substeps + 1);
+  states_.col(0).setZero();
   states_.col(0).head(2 * r_) = scale_.head(2 * r_).cwiseProduct(state.head(2 * r_));
   if (size_ > 2 * r_) states_(2 * r_, 0) = scale_[2 * r_];
   for (Index k = 0; k < substeps; ++k) states_.col(k + 1).noalias() = step_ * states_.col(k);
@@ -156,7 +190,9 @@ void RationalStep::tangent_by_unknowns(const VectorXd& state, const std::vector<
     const SecondOrderForm& form = slopes[static_cast<std::size_t>(j)];
     slope_.leftCols(r_).noalias() = -h * form.stiffness * scale_.head(r_).cwiseInverse().asDiagonal();
     slope_.middleCols(r_, r_) = -h * form.damping;
-    if (size_ > 2 * r_) slope_.col(2 * r_).noalias() = (h / scale_[2 * r_]) * (form.inputs * input);
+    if (size_ > 2 * r_)
+      slope_.rightCols(chain_.cols()).noalias() =
+          h * (form.inputs * chain_) * scale_.segment(2 * r_, chain_.cols()).cwiseInverse().asDiagonal();
     forced_.middleCols(j * degree * substeps, degree * substeps).noalias() = slope_ * terms_;
   }
   moved_.setZero(size_, q * substeps);

@@ -10,8 +10,9 @@
 
 namespace beamid::experiments {
 
-/// x+ = R(A h)^(2^s) x, h = dt / 2^s, for the motion [z, z'] and an input held over the step, which enters as
-/// a further, constant coordinate:
+/// x+ = R(A h)^(2^s) x, h = dt / 2^s, for the motion [z, z'] and inputs that are polynomials of the step
+/// (StepInput), which enter as further coordinates: a chain of integrators, for the (2,2) Pade step that of
+/// the line it takes of them.
 ///
 ///     R = Q^-1 P,   P(X) = sum_k b_k X^k,   Q(X) = P(-X)
 ///
@@ -29,7 +30,8 @@ class RationalStep {
   /// @param frequencies that bring coordinates and rates to one size (r) [rad/s]
   RationalStep(Scheme scheme, double dt, const Eigen::VectorXd& frequencies);
 
-  /// Makes R for these equations. @throws std::runtime_error when they are not finite.
+  /// Makes R for these equations. @param input how the inputs run over the step
+  /// @throws std::runtime_error when they are not finite.
   void set(const SecondOrderForm& form, const Eigen::VectorXd& input);
 
   /// [z, z'] one step later (2r).
@@ -38,13 +40,14 @@ class RationalStep {
   void tangent(Eigen::Ref<Eigen::MatrixXd> matrix) const;
   /// d next / d eta (2r x q) at the state.
   void tangent_by_unknowns(const Eigen::VectorXd& state, const std::vector<SecondOrderForm>& slopes,
-                           const Eigen::VectorXd& input, Eigen::Ref<Eigen::MatrixXd> matrix);
+                           Eigen::Ref<Eigen::MatrixXd> matrix);
 
  private:
   Scheme scheme_;
   double dt_;
-  Eigen::VectorXd scale_;  // of [z, z', 1]: what stands in the scaled vector is state times this
-  Eigen::Index r_, size_;  // size_: 2r, and 1 with inputs
+  Eigen::VectorXd scale_;  // of [z, z', chain]: what stands in the scaled vector is state times this
+  Eigen::Index r_, size_;  // size_: 2r and the chain's coordinates
+  Eigen::MatrixXd chain_;  // j! p_j of the inputs (m x (d + 1))
   int squarings_ = 0;
   std::vector<double> coefficients_;  // b_0 .. b_m
   Eigen::MatrixXd x_, square_, power_, even_, odd_, below_, step_, whole_, spare_;
@@ -52,6 +55,7 @@ class RationalStep {
   Eigen::MatrixXd states_, terms_, forced_, moved_, slope_;
 
   void choose_degree(double norm);
+  void take(const Eigen::VectorXd& input, Eigen::Index inputs);
 };
 
 }  // namespace beamid::experiments

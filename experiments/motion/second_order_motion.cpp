@@ -86,7 +86,7 @@ void SecondOrderMotion::read(const VectorXd& state, const VectorXd& input, const
       case Reads::accelerations:
         if (accelerations.size() == 0) {
           accelerations = -(form.stiffness * z + form.damping * rates);
-          if (input.size() > 0) accelerations += form.inputs * input;
+          if (input.size() > 0) accelerations += form.inputs * input.head(form.inputs.cols());
         }
         output[i] = rows.row(i).dot(accelerations);
         if (description_.base >= 0 && input.size() > 0) output[i] += input[description_.base];
@@ -120,7 +120,7 @@ void SecondOrderMotion::read_jacobian(const VectorXd& state, const VectorXd& inp
             auto column = by_unknowns.col(static_cast<Index>(j));
             column.noalias() = -(slopes[j].stiffness * z);
             column.noalias() -= slopes[j].damping * rates;
-            if (input.size() > 0) column.noalias() += slopes[j].inputs * input;
+            if (input.size() > 0) column.noalias() += slopes[j].inputs * input.head(input_size());
           }
         }
         jacobian.row(i).head(r).noalias() = -(rows.row(i) * form.stiffness);
@@ -134,7 +134,7 @@ void SecondOrderMotion::read_jacobian(const VectorXd& state, const VectorXd& inp
   }
   if (form.rows.size() == 0 || slopes.empty()) return;
   VectorXd accelerations = -(form.stiffness * z + form.damping * rates);
-  if (input.size() > 0) accelerations += form.inputs * input;
+  if (input.size() > 0) accelerations += form.inputs * input.head(form.inputs.cols());
   for (Index i = 0; i < rows.rows(); ++i)
     for (std::size_t j = 0; j < slopes.size(); ++j) {
       const auto turned = slopes[j].rows.row(i);

@@ -44,6 +44,7 @@ class SecondOrderMotion : public filters::LinearMotion {
   const StateLayout& layout() const { return layout_; }
   const Eigen::MatrixXd& rows() const { return rows_; }
 
+  /// @param input which begins with the inputs at this instant
   void read(const Eigen::VectorXd& state, const Eigen::VectorXd& input, const SecondOrderForm& form,
             Eigen::VectorXd& output) const;
   void read_jacobian(const Eigen::VectorXd& state, const Eigen::VectorXd& input, const SecondOrderForm& form,

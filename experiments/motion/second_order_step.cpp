@@ -117,7 +117,7 @@ class SecondOrderStep final : public filters::DiscreteModel {
     const Index moving = 2 * at.coordinates;
     rational_->tangent(tangent->topLeftCorner(moving, moving));
     rational_->tangent_by_unknowns(
-        state, slopes_, input, tangent->block(0, at.unknowns, moving, static_cast<Index>(slopes_.size())));
+        state, slopes_, tangent->block(0, at.unknowns, moving, static_cast<Index>(slopes_.size())));
   }
 
   void step_apart(const VectorXd& state, VectorXd& next, MatrixXd* tangent) {

@@ -15,6 +15,7 @@
 #include "experiments/model_setting.hpp"
 #include "experiments/nonlinear_reproduction.hpp"
 #include "experiments/record_comparison/true_value.hpp"
+#include "experiments/record_inputs.hpp"
 #include "experiments/reproduction.hpp"
 #include "experiments/start_belief.hpp"
 #include "filters/fisher_information.hpp"
@@ -172,6 +173,14 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
   result.coordinates = model.motion_size();
   result.observed_per_freedom = static_cast<double>(p) / static_cast<double>(result.coordinates);
 
+  if (const auto inputs = record_inputs(context.compared.record);
+      inputs && inputs->path == InputPath::held && is_whole_mesh(model)) {
+    result.status = ComparedRun::Status::refused;
+    result.reason =
+        "the modes of a mesh far above the sampling rate do not follow forces that are held, and its "
+        "accelerations come out wrong; expected input = \"band_limited\" or \"linear\", or a reduction";
+    return result;
+  }
   const StartScale scale =
       start_scale(model, setting.observations, record.outputs, dt * static_cast<double>(record.time.size()));
   const StartDirections directions = start_directions(model, setting.observations, scale);

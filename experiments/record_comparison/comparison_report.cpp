@@ -9,6 +9,7 @@
 #include "experiments/record_comparison/comparison.hpp"
 #include "experiments/record_comparison/comparison_figures.hpp"
 #include "experiments/record_comparison/comparison_words.hpp"
+#include "experiments/record_inputs.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -129,6 +130,8 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
                     {"samples", record.size()},
                     {"sampling_rate_hz", 1.0 / record.interval()},
                     {"runs", Json::array()}};
+  const std::optional<RecordInputs> inputs = record_inputs(record);
+  if (inputs) results.values["inputs_between_samples"] = to_string(inputs->path);
   std::vector<std::string> outputs;
   for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
   for (const ComparedRun& run : comparison.runs) results.values["runs"].push_back(values(run, outputs));
@@ -138,9 +141,10 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   for (const std::string& column : column_names(record))
     if (column != "time_s") channels += (channels.empty() ? "" : ", ") + column;
   results.paragraph(
-      fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} passes.",
+      fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} passes.{}",
                   comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],
-                  1.0 / record.interval(), channels, experiment.model.name, experiment.passes));
+                  1.0 / record.interval(), channels, experiment.model.name, experiment.passes,
+                  inputs ? " " + words(*inputs) : ""));
   results.table(run_table(comparison));
   for (const std::string& name : parameter_names(comparison))
     results.table(parameter_table(comparison, name));

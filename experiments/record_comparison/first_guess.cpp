@@ -7,6 +7,7 @@
 
 #include "experiments/finest_discretisation.hpp"
 #include "experiments/identification.hpp"
+#include "experiments/record_inputs.hpp"
 #include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {
@@ -29,14 +30,15 @@ MatrixXd of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
 }
 
 // Every `factor`-th sample, low-passed; empty when too few remain.
-filters::Measurements decimated(const filters::Measurements& record, double interval, int factor) {
+filters::Measurements decimated(const filters::Measurements& record, Index inputs, double interval,
+                                int factor) {
   filters::Measurements coarse;
   if (record.time.size() < (fewest + 10) * factor) return coarse;
   coarse.outputs = decimate_channels(record.outputs, factor);
-  if (record.inputs.size() > 0) coarse.inputs = decimate_channels(record.inputs, factor);
   coarse.time =
       interval * factor *
       VectorXd::LinSpaced(coarse.outputs.cols(), 0.0, static_cast<double>(coarse.outputs.cols() - 1));
+  coarse.inputs = decimated_inputs(record, inputs, factor, coarse.time).columns;
   return coarse;
 }
 
@@ -72,7 +74,7 @@ FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& 
   FirstGuess guess{believed.mean, of_unknowns(model, believed)};
   for (double factor = 1.0 / (samples_per_period * frequency_hz * dt); factor >= 2.0; factor /= level_ratio) {
     const int whole = static_cast<int>(factor);
-    const filters::Measurements coarse = decimated(record, dt, whole);
+    const filters::Measurements coarse = decimated(record, model.motion->input_size(), dt, whole);
     if (coarse.size() > 0) guess = hear(model, observations, {coarse, 0.5 / (whole * dt)}, guess);
   }
   if (record.size() >= fewest)

@@ -20,6 +20,18 @@ bool carries_its_belief_alone(const std::string& filter) {
          !contracts.contains(filters::contract::sampled_on_linear_gaussian);
 }
 
+// The path of a force from sample to sample is known when the next one has come: not before, if it is
+// band-limited.
+std::vector<std::string> names_of_free_motion(const Record& earlier) {
+  const std::vector<Index> forces = force_channels(earlier);
+  if (!forces.empty())
+    throw std::invalid_argument(
+        fmt::format("a stream takes free motion; found the measured force '{}', of which a band-limited path "
+                    "needs the samples to come. Leave its channel out, or identify a record",
+                    earlier.channels[static_cast<std::size_t>(forces.front())].name));
+  return earlier.channel_names();
+}
+
 std::vector<std::string> state_names(const JointModel& model) {
   std::vector<std::string> names;
   for (const filters::Label& label : model.motion->state_labels()) names.push_back(label.name);
@@ -41,7 +53,7 @@ MatrixXd matrix(const nlohmann::json& saved, const char* key, Index rows) {
 }  // namespace
 
 StreamedIdentification::StreamedIdentification(const Experiment& experiment, const Record& earlier)
-    : names_(earlier.channel_names()),
+    : names_(names_of_free_motion(earlier)),
       prepared_(prepare_identification(experiment, earlier)),
       choice_(experiment.filter),
       interval_(earlier.interval()) {

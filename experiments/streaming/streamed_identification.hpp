@@ -16,7 +16,7 @@ namespace beamid::experiments {
 /// them, with the sampling interval: what prepare_identification() makes of it.
 class StreamedIdentification {
  public:
-  /// @throws InputError, std::invalid_argument as prepare_identification()
+  /// @throws InputError, std::invalid_argument as prepare_identification(), and where a force was measured
   StreamedIdentification(const Experiment& experiment, const Record& earlier);
 
   /// Outputs of a sample (p).

@@ -44,6 +44,19 @@ TEST_P(EveryFilter, HasTheNumbersOfTheBatch) {
   EXPECT_EQ(stream.running().belief().covariance, whole.last.covariance);
 }
 
+TEST_P(EveryFilter, RefusesAMeasuredForce) {
+  Record forced = record_;
+  forced.channels[1] = {Quantity::force, "hammer"};
+  try {
+    StreamedIdentification(experiment_, forced);
+    ADD_FAILURE() << "no error";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("a stream takes free motion; found the measured force 'hammer'"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 // Oracle: the batch run. The text of the state is what a file would hold. A filter that carries a factor of
 // the covariance forms it anew: rounding, not more.
 TEST_P(EveryFilter, GoesOnFromASavedState) {

@@ -6,11 +6,11 @@
 
 namespace beamid::experiments::banded {
 
-using Eigen::Index, Eigen::VectorXd;
+using Eigen::Index;
 
 // K_j (q - (1 + lambda beta) d) - lambda M_j (q' + (lambda + alpha) d) - E_j f - lambda C_j d
 void BandedStep::by_property(const BandedEquations& equations, Index j, const double* q, const double* rate,
-                             const VectorXd& force_slope, Forcing& forcing) const {
+                             const StepForce& force_slope, Forcing& forcing) const {
   forcing.rows.assign(size_, {});
   std::tie(forcing.first, forcing.last) = equations.stiffness().reach(j);
   const auto include = [&](Index i) {
@@ -33,7 +33,8 @@ void BandedStep::by_property(const BandedEquations& equations, Index j, const do
   }
   if (equations.force_depends_on(j))
     for (Index i = 0; i < size_; ++i)
-      if (force_slope[i] != 0.0) forcing.rows[i].re -= force_slope[i], include(i);
+      if (force_slope.re[i] != 0.0 || force_slope.im[i] != 0.0)
+        forcing.rows[i] -= Complex{force_slope.re[i], force_slope.im[i]}, include(i);
   for (std::size_t k = 0; k < equations.mode_dampings().size(); ++k) {
     const ModeDamping& mode = equations.mode_dampings()[k];
     const double* const slope = equations.damped_modes()[k].momentum_slopes.col(j).data();

@@ -47,12 +47,12 @@ void BandedStep::solve(const BandedEquations& equations, ComplexOf<Real>* b) con
 }
 
 void BandedStep::advance(const BandedEquations& equations, const double* q, const double* rate,
-                         const VectorXd& force, double* next, double* next_rate) {
-  for (Index i = 0; i < size_; ++i) work_[i] = -force[i];
+                         const StepForce& force, double* next, double* next_rate) {
+  for (Index i = 0; i < size_; ++i) work_[i] = -force.re[i];
   equations.stiffness().add_product(q, work_.data());
   equations.mass().multiply(rate, work_rate_.data());
   for (Index i = 0; i < size_; ++i)
-    solution_[i] = {work_[i] - lambda_.re * work_rate_[i], -lambda_.im * work_rate_[i]};
+    solution_[i] = {work_[i] - lambda_.re * work_rate_[i], -force.im[i] - lambda_.im * work_rate_[i]};
   std::copy(solution_.begin(), solution_.end(), right_.begin());
   if (is_new_ && !equations.mode_dampings().empty())
     correction_.factor(factor_, equations.mode_dampings(), lambda_, solution_.data());

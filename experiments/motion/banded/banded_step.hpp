@@ -9,10 +9,16 @@
 
 namespace beamid::experiments::banded {
 
+/// E f of a step, as BandedStep takes it.
+struct StepForce {
+  Eigen::VectorXd re, im;  ///< (n)
+};
+
 /// R(z) = (12 + 6z + z^2) / (12 - 6z + z^2) has the poles c = 3 + i sqrt 3 and its conjugate, and partial
-/// fractions turn x+ = R(A dt) x + (what held forces add) into one complex system: with lambda = c / dt,
+/// fractions turn x+ = R(A dt) x + (what forces add) into one complex system: with lambda = c / dt and the
+/// forces' mean and slope over the step (StepInput),
 ///
-///     (K + lambda C + lambda^2 M) d = K q - E f - lambda M q'
+///     (K + lambda C + lambda^2 M) d = K q - E f - lambda M q',    f = mean - (c / 12) slope
 ///
 ///     q+ = q + 4 sqrt3 Im d,    q'+ = q' + (12 / dt) (Re d + sqrt3 Im d).
 ///
@@ -34,17 +40,17 @@ class BandedStep {
 
   /// The motion q, q' (n each) one step on, into other places than it is. The rest of this class then speaks
   /// of this step.
-  /// @param force E f (n)
-  void advance(const BandedEquations& equations, const double* q, const double* rate,
-               const Eigen::VectorXd& force, double* next, double* next_rate);
+  void advance(const BandedEquations& equations, const double* q, const double* rate, const StepForce& force,
+               double* next, double* next_rate);
 
   /// dF/du - dS/du d (n) for one unknown, over the rows it reaches.
   struct Forcing {
     std::vector<Complex> rows;  ///< n, zero outside [first, last)
     Eigen::Index first = 0, last = 0;
   };
+  /// @param force_slope E_j f
   void by_property(const BandedEquations& equations, Eigen::Index j, const double* q, const double* rate,
-                   const Eigen::VectorXd& force_slope, Forcing& forcing) const;
+                   const StepForce& force_slope, Forcing& forcing) const;
   void by_mass_damping(const BandedEquations& equations, Forcing& forcing) const;
   void by_stiffness_damping(const BandedEquations& equations, Forcing& forcing) const;
   /// xi of the damped modes named. May be added to.

@@ -1,6 +1,9 @@
 #include "experiments/motion/banded/continuum_step.hpp"
 
+#include <numbers>
+
 #include "experiments/motion/banded/banded_step.hpp"
+#include "filters/step_input.hpp"
 
 namespace beamid::experiments {
 
@@ -43,8 +46,9 @@ class ContinuumStep final : public filters::DiscreteModel {
     factored_ = true;
     const Index n = parts_->layout.coordinates;
     next = state;
-    step_.advance(equations_, state.data(), state.data() + n, equations_.force(input), next.data(),
-                  next.data() + n);
+    take(input);
+    step_.advance(equations_, state.data(), state.data() + n,
+                  {equations_.force(real_), equations_.force(imaginary_)}, next.data(), next.data() + n);
     const StateLayout& places = parts_->layout;
     for (std::size_t i = 0; i < places.drifts.size(); ++i)
       if (places.drifts[i] >= 0) next[places.biases[i]] += dt_ * state[places.drifts[i]];
@@ -56,7 +60,7 @@ class ContinuumStep final : public filters::DiscreteModel {
     parts_of_unknowns_ = directions.middleRows(places.unknowns, values_.slopes.size());
     for (Index u = 0; u < values_.slopes.size(); ++u) {
       parts_of_unknowns_.row(u) *= values_.slopes[u];
-      if (!parts_of_unknowns_.row(u).isZero(0.0)) force_by(u, state, input);
+      if (!parts_of_unknowns_.row(u).isZero(0.0)) force_by(u, state);
     }
     step_.move(equations_, forcings_, parts_of_unknowns_, directions);
     for (std::size_t i = 0; i < places.drifts.size(); ++i)
@@ -86,14 +90,24 @@ class ContinuumStep final : public filters::DiscreteModel {
     factored_ = false;
   }
 
-  void force_by(Index unknown, const VectorXd& state, const VectorXd& input) {
+  // mean - (3 + i sqrt 3) / 12 slope of the inputs
+  void take(const VectorXd& input) {
+    const filters::StepInput path(input, static_cast<Index>(parts_->description.forces.size()));
+    imaginary_ = path.slope();
+    real_ = path.mean() - 0.25 * imaginary_;
+    imaginary_ *= -std::numbers::sqrt3 / 12.0;
+  }
+
+  void force_by(Index unknown, const VectorXd& state) {
     const Drive& drive = parts_->description.drives[unknown];
     BandedStep::Forcing& forcing = forcings_[unknown];
     const double *const q = state.data(), *const rate = q + parts_->layout.coordinates;
     switch (drive.kind) {
       case Drive::Kind::property:
-        step_.by_property(equations_, drive.index, q, rate, equations_.force_slope(drive.index, input),
-                          forcing);
+        step_.by_property(
+            equations_, drive.index, q, rate,
+            {equations_.force_slope(drive.index, real_), equations_.force_slope(drive.index, imaginary_)},
+            forcing);
         break;
       case Drive::Kind::mass_damping:
         step_.by_mass_damping(equations_, forcing);
@@ -120,6 +134,7 @@ class ContinuumStep final : public filters::DiscreteModel {
   bool factored_ = false;
   PhysicalValues values_;
   MatrixXd parts_of_unknowns_;
+  VectorXd real_, imaginary_;
   std::vector<BandedStep::Forcing> forcings_;
 };
 

@@ -104,6 +104,28 @@ TEST_P(OwnStep, IsTheSchemes) {
   EXPECT_EQ(again, next);
 }
 
+TEST_P(OwnStep, IsTheSchemesUnderAForceThatIsAPolynomialOfTheStep) {
+  // Oracle: likewise.
+  const Index m = input_.size();
+  if (m == 0) GTEST_SKIP();
+  for (const Index degree : {1, 4}) {
+    const VectorXd path = VectorXd::LinSpaced(m * (degree + 1), 1.5, -2.5);
+    VectorXd next, expected;
+    MatrixXd tangent, expected_tangent;
+    scheme_->step(*model_->motion, state_, path, dt, expected, &expected_tangent);
+    step_->linearised_transition(state_, path, next, tangent);
+    const double digits = std::get<0>(GetParam()).modes > 4 ? 1e-6 : 1e-11;
+    expect_near(next, expected, digits);
+    expect_near(tangent, expected_tangent, digits);
+    step_->output(state_, path, next);
+    step_->output(state_, path.head(m), expected);
+    EXPECT_EQ(next, expected);
+    step_->output_jacobian(state_, path, tangent);
+    step_->output_jacobian(state_, path.head(m), expected_tangent);
+    EXPECT_EQ(tangent, expected_tangent);
+  }
+}
+
 TEST_P(OwnStep, IsTheExponentialToTwelveDigitsOrAllThatItsSizeLeaves) {
   // Oracle: the exponential of the motion augmented by input and derivative, in 64-bit significands.
   if (std::get<1>(GetParam()) != "exponential") GTEST_SKIP();

@@ -161,16 +161,19 @@ TEST(ContinuumMotion, StepsAndTangentsAreThoseOfTheDenseMatrices) {
   for (const Case& given : cases()) {
     SCOPED_TRACE(given.name);
     const auto [banded, dense] = both(given);
-    const VectorXd state = state_of(given, 4), input = VectorXd::LinSpaced(2, -3.0, 5.0);
-    VectorXd next, expected;
-    MatrixXd tangent, expected_tangent;
-    dense->linearised_transition(state, input, expected, expected_tangent);
-    banded->linearised_transition(state, input, next, tangent);
-    const Index n = given.equations.system.size();
-    EXPECT_LT(difference(next.head(n), expected.head(n)), 1e-11);
-    EXPECT_LT(difference(next.segment(n, n), expected.segment(n, n)), 1e-11);
-    EXPECT_LT((next - expected).tail(next.size() - 2 * n).norm(), 1e-14 * expected.norm());
-    EXPECT_LT(difference(tangent, expected_tangent), 1e-10);
+    const VectorXd state = state_of(given, 4);
+    for (const Index degree : {0, 1, 4}) {
+      const VectorXd input = VectorXd::LinSpaced(2 * (degree + 1), -3.0, 5.0);
+      VectorXd next, expected;
+      MatrixXd tangent, expected_tangent;
+      dense->linearised_transition(state, input, expected, expected_tangent);
+      banded->linearised_transition(state, input, next, tangent);
+      const Index n = given.equations.system.size();
+      EXPECT_LT(difference(next.head(n), expected.head(n)), 1e-11);
+      EXPECT_LT(difference(next.segment(n, n), expected.segment(n, n)), 1e-11);
+      EXPECT_LT((next - expected).tail(next.size() - 2 * n).norm(), 1e-14 * expected.norm());
+      EXPECT_LT(difference(tangent, expected_tangent), 1e-10);
+    }
   }
 }
 
