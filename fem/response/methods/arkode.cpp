@@ -44,6 +44,8 @@ Response arkode(const ResponseProblem& problem, const ResponseOptions& options) 
 
   return motion.follow(problem, [&](double time) {
     realtype reached = 0.0;
+    if (problem.has_inputs())  // they have a kink there, which no step may cross
+      require(ARKStepSetStopTime(memory.get(), time), "ARKStepSetStopTime", time);
     require(ARKStepEvolve(memory.get(), time, motion.state.get(), &reached, ARK_NORMAL), "ARKStepEvolve",
             time);
     require(ARKStepGetDky(memory.get(), time, 1, motion.work.get()), "ARKStepGetDky", time);
