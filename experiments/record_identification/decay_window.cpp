@@ -11,6 +11,7 @@
 #include "experiments/preparation/analysable_record.hpp"
 #include "experiments/record_identification/record_identification.hpp"
 #include "experiments/signal/local_motion.hpp"
+#include "experiments/signal/median.hpp"
 #include "experiments/signal/onsets.hpp"
 
 namespace beamid::experiments {
@@ -19,13 +20,41 @@ namespace {
 constexpr double trial = 16, least = 8;  // periods of the expected mode
 constexpr double time_constants = 2;
 
+enum class Beginning { at_rest, moving, starting_up };
+
+/// Deviations from the straight line through a signal.
+Eigen::ArrayXd without_line(const Eigen::VectorXd& signal) {
+  const Eigen::ArrayXd at = Eigen::ArrayXd::LinSpaced(signal.size(), -1, 1),
+                       deviation = signal.array() - signal.mean();
+  return deviation - at * ((at * deviation).sum() / at.square().sum());
+}
+
+/// By the first sixteenth of a period: near the middle of the signal it is at rest; what is far from it and
+/// does not swing to the other side within a period and a quarter is a sensor that starts, or a deflection
+/// that is held.
+Beginning beginning_of(const Eigen::VectorXd& signal, double samples_per_period) {
+  constexpr double far = 0.25, swing = 0.3, periods = 1.25, few = 1.0 / 16;
+  const Eigen::ArrayXd drifting = without_line(signal),
+                       deviation = drifting - median(Eigen::VectorXd(drifting));
+  const auto samples = [&](double count) {
+    return std::clamp(static_cast<Eigen::Index>(std::ceil(count * samples_per_period)), Eigen::Index{3},
+                      deviation.size());
+  };
+  const double first = deviation.head(3).mean();
+  if (deviation.head(samples(few)).abs().maxCoeff() <= far * deviation.abs().maxCoeff())
+    return Beginning::at_rest;
+  const double opposite =
+      -(first > 0 ? deviation : Eigen::ArrayXd(-deviation)).head(samples(periods)).minCoeff();
+  return opposite > swing * std::abs(first) ? Beginning::moving : Beginning::starting_up;
+}
+
 /// Where the motion grows: from its least amplitude since the last rise to its greatest.
 struct Rise {
   double low = 0, peak = 0;  ///< instants [s], from the first sample
 };
 
 /// A rise is to four times the least amplitude before it and to a tenth of the largest of all. A decay has
-/// none, nor has a start-up, which begins large.
+/// none; two modes that beat may have one.
 std::vector<Rise> rises_of(const LocalMotion& motion) {
   constexpr double growth = 4, smallest = 0.1;
   constexpr Eigen::Index ahead = 8;  // two periods
@@ -34,51 +63,54 @@ std::vector<Rise> rises_of(const LocalMotion& motion) {
   for (Eigen::Index k = 0, low = 0; k < size.size(); ++k) {
     if (size[k] < size[low]) low = k;
     if (!(size[k] > growth * size[low] && size[k] > smallest * size.maxCoeff())) continue;
-    for (Eigen::Index better = k; better >= 0;) {
-      Eigen::Index at = 0;
-      const Eigen::Index count = std::min(ahead, size.size() - k);
-      size.segment(k, count).maxCoeff(&at);
-      better = at > 0 ? k + at : -1;
-      k += at;
-    }
+    for (Eigen::Index step = 1; step > 0; k += step)
+      size.segment(k, std::min(ahead, size.size() - k)).maxCoeff(&step);
     rises.push_back({motion.time[low], motion.time[k]});
     low = k;
   }
   return rises;
 }
 
-/// When the offset has settled that a sensor begins with [s], from the first sample; 0 where it does not
-/// move: from there on it changes by less than 3 % of the amplitude in a period.
+/// When the offset has settled that a sensor begins with [s], from the first sample: from there on it changes
+/// by less than 3 % of the amplitude in a period.
 double settled_from(const LocalMotion& motion) {
   constexpr double still = 0.03;
   constexpr auto period = static_cast<Eigen::Index>(LocalMotion::windows_per_period);
-  const Eigen::Index count = motion.time.size(), latest = count / 2;
+  const Eigen::Index count = motion.time.size();
   const double amplitude = motion.amplitude.tail(count - count / 10).maxCoeff();
-  double settled = 0;
-  for (Eigen::Index k = 0; k < latest && k + period < count; ++k) {
-    if (std::abs(motion.offset[k + period] - motion.offset[k]) <= still * amplitude) break;
-    settled = motion.time[k + period];
-  }
-  return settled;
+  Eigen::Index k = 0;
+  while (k < count / 2 && k + period < count &&
+         std::abs(motion.offset[k + period] - motion.offset[k]) > still * amplitude)
+    ++k;
+  return motion.time[k];
 }
 
-/// The last hit or release [s], from the first sample: that of the onsets, where the motion at the mode's
-/// frequency grows too or behind it, else the end of that growth: a hand that lets go slowly has no onset,
-/// and what an instrument does while it starts moves nothing.
-std::optional<double> last_event(const Eigen::VectorXd& signal, double interval, double period,
-                                 const LocalMotion& motion) {
+struct Event {
+  double time = 0;        ///< [s], from the first sample
+  bool start_up = false;  ///< none but the end of a start-up
+};
+
+/// The last hit or release: the last onset, but behind a start-up only where the motion at the mode's
+/// frequency grows too. A hand that lets go slowly has no onset: the motion is then largest behind it.
+std::optional<Event> last_event(const Eigen::VectorXd& signal, double interval, double period) {
   OnsetSettings settings;
   settings.apart = std::max(settings.apart, 2 * period);
   const Onsets onsets = find_onsets(signal, interval, settings);
-  const std::vector<Rise> rises = rises_of(motion);
-  for (auto onset = onsets.samples.rbegin(); onset != onsets.samples.rend(); ++onset) {
-    const double at = interval * static_cast<double>(*onset);
-    for (const Rise& rise : rises)
-      if (at >= rise.low - 2 * period) return at;
+  const Beginning beginning = beginning_of(signal, period / interval);
+  const LocalMotion motion = local_motion(signal, interval, 1 / period);
+  const bool sudden = !onsets.samples.empty();
+  const double onset = sudden ? interval * static_cast<double>(onsets.samples.back()) : 0.0;
+  if (motion.time.size() == 0 || (sudden && beginning != Beginning::starting_up))
+    return sudden ? std::optional(Event{onset}) : std::nullopt;
+  if (beginning == Beginning::moving) return {};
+  if (beginning == Beginning::at_rest) {
+    Eigen::Index largest = 0;
+    motion.amplitude.maxCoeff(&largest);
+    return Event{motion.time[largest]};
   }
-  if (!rises.empty()) return rises.back().peak;
-  if (onsets.samples.empty()) return {};
-  return interval * static_cast<double>(onsets.samples.back());  // too early for a rise to be seen
+  const std::vector<Rise> rises = rises_of(motion);
+  if (rises.empty()) return Event{settled_from(motion), true};
+  return Event{sudden && onset >= rises.back().low - 2 * period ? onset : rises.back().peak};
 }
 
 /// The mode in the beginning of the record behind an instant; nothing where none is near the expected one:
@@ -109,14 +141,9 @@ std::optional<DecayWindow> decay_window(const Experiment& experiment, const Reco
   const Record record = analysable(whole).record;
   const double last = record.time[record.size() - 1];
   const double period = 1 / expected_frequency_hz(experiment, record);
-  const Eigen::VectorXd signal = record.samples.row(0).transpose();
-  const LocalMotion motion = local_motion(signal, record.interval(), 1 / period);
-  if (motion.time.size() == 0) return {};
-  const double settled = settled_from(motion);
-  const double happened = last_event(signal, record.interval(), period, motion).value_or(0.0);
-  if (!(std::max(settled, happened) > 0)) return {};
-  const bool start_up = settled > happened;
-  const double event = record.time[0] + std::max(settled, happened);
+  const auto happened = last_event(record.samples.row(0).transpose(), record.interval(), period);
+  if (!happened) return {};
+  const double event = record.time[0] + happened->time;
   std::optional<DecayWindow> window;
   for (const double settling : {3.0, 6.0, 12.0}) {
     const double from = event + settling * period;
@@ -125,7 +152,7 @@ std::optional<DecayWindow> decay_window(const Experiment& experiment, const Reco
     if (!mode || !(mode->rate().real() < 0)) continue;
     const double time_constant = -1 / mode->rate().real();
     const double to = from + std::max(time_constants * time_constant, least * period);
-    window = {event, settling, from, std::min(last, to), time_constant, start_up};
+    window = {event, settling, from, std::min(last, to), time_constant, happened->start_up};
     if (mode->companions.empty()) break;
   }
   return window;

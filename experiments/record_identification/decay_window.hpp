@@ -25,8 +25,8 @@ struct DecayWindow {
 ///
 /// More would add little to what is known, 1 - e^-4 of the decay's energy being inside, and in real beams
 /// takes in damping at amplitudes e^2 times smaller: then no one damping ratio fits.
-/// A slow letting go ends where the motion at the mode's frequency is largest. Where a sensor's offset still
-/// settles behind all that, the window counts from there.
+/// A slow letting go ends where the motion at the mode's frequency is largest. In a record that begins with a
+/// sensor's start-up and shows no other event the window counts from where its offset has settled.
 /// Nothing for a record that begins in motion with a settled offset, or whose decay cannot be made out.
 /// @throws std::invalid_argument when the beam cannot be assembled
 std::optional<DecayWindow> decay_window(const Experiment& experiment, const Record& record);
