@@ -96,16 +96,23 @@ double local_variance(const VectorXd& residual, double interval, double w) {
   return power / weight;
 }
 
-MatrixXd covariance_of(const Linearisation& at, const MatrixXd& normal, double interval,
-                       const VectorXd& rates) {
+/// (p x K)
+MatrixXd noise_near_modes(const Linearisation& at, double interval, const VectorXd& rates) {
   const Index modes = rates.size() / 2, count = at.residuals.rows();
   const double freedom = static_cast<double>(count) / static_cast<double>(count - 4 * modes - 1);
+  MatrixXd variance(at.residuals.cols(), modes);
+  for (Index c = 0; c < at.residuals.cols(); ++c)
+    for (Index m = 0; m < modes; ++m)
+      variance(c, m) = freedom * local_variance(at.residuals.col(c), interval, rates[2 * m]);
+  return variance;
+}
+
+MatrixXd covariance_of(const Linearisation& at, const MatrixXd& normal, const MatrixXd& noise_variance) {
+  const Index modes = noise_variance.cols();
   MatrixXd middle = MatrixXd::Zero(2 * modes, 2 * modes);
   for (Index c = 0; c < at.residuals.cols(); ++c) {
     VectorXd density(2 * modes);
-    for (Index m = 0; m < modes; ++m)
-      density.segment<2>(2 * m).setConstant(
-          std::sqrt(freedom * local_variance(at.residuals.col(c), interval, rates[2 * m])));
+    for (Index m = 0; m < modes; ++m) density.segment<2>(2 * m).setConstant(std::sqrt(noise_variance(c, m)));
     const MatrixXd scaled = at.slopes[c] * (density / at.variances[c]).asDiagonal();
     middle += scaled.transpose() * scaled;
   }
@@ -159,7 +166,8 @@ JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
     fit.reconstruction = (y - at.residuals).transpose();
     fit.residual_standard_deviation =
         at.residuals.colwise().norm().transpose() / std::sqrt(static_cast<double>(y.rows() - 4 * modes - 1));
-    fit.covariance = covariance_of(at, normal, interval, rates);
+    fit.noise_variance = noise_near_modes(at, interval, rates);
+    fit.covariance = covariance_of(at, normal, fit.noise_variance);
     return fit;
   }
   throw std::runtime_error("least squares of " + std::to_string(modes) +

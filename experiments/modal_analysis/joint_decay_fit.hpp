@@ -14,6 +14,7 @@ struct JointDecayFit {
   Eigen::VectorXd offsets;                      ///< (p)
   Eigen::MatrixXd reconstruction;               ///< (p x N)
   Eigen::VectorXd residual_standard_deviation;  ///< (p)
+  Eigen::MatrixXd noise_variance;  ///< (p x K) of white noise as dense as the residual near each mode
   /// (2K x 2K) of damped angular frequency and damping rate of each mode [rad/s], for noise as dense as the
   /// residual is near each mode's frequency.
   Eigen::MatrixXd covariance;

@@ -34,8 +34,9 @@ Pole pole_of(const ModeAnswer& answer, Index outputs) {
 
 std::string objection_to(const Pole& pole) {
   const double ratio = pole.damping_ratio(), deviation = pole.damping_ratio_deviation;
-  if (!(ratio > 0)) return fmt::format("does not decay, damping ratio {:.3g} %", 100 * ratio);
-  if (deviation > ratio)
+  const double room = deviation > 0 ? 2 * deviation : 0;
+  if (!(ratio + room > 0)) return fmt::format("does not decay, damping ratio {:.3g} %", 100 * ratio);
+  if (!(ratio > 0) || deviation > ratio)
     return fmt::format("too uncertain, damping ratio {:.2g} % with standard deviation {:.2g} %", 100 * ratio,
                        100 * deviation);
   return "";

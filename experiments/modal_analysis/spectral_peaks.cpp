@@ -28,7 +28,8 @@ double valley_beside(const VectorXd& spectrum, Index k) {
 
 }  // namespace
 
-std::vector<double> spectral_peaks(const Eigen::MatrixXd& outputs, double interval) {
+std::vector<SpectralLine> spectral_lines(const Eigen::MatrixXd& outputs, double interval,
+                                         const LineSettings& settings) {
   AmplitudeSpectrum first = amplitude_spectrum(outputs.row(0).transpose(), interval);
   VectorXd spectrum = first.amplitude.cwiseAbs2();
   for (Index i = 1; i < outputs.rows(); ++i)
@@ -38,16 +39,23 @@ std::vector<double> spectral_peaks(const Eigen::MatrixXd& outputs, double interv
   const double step = first.frequency_hz[1];
   const auto lobe = static_cast<Index>(2 * line / step);
   const Index around = std::max<Index>(16 * lobe, spectrum.size() / 8);
-  constexpr double above_noise = 4, above_valley = 2;
-  std::vector<double> peaks;
+  const double least = settings.least * spectrum.maxCoeff();
+  std::vector<SpectralLine> lines;
   for (Index k = lobe; k + 1 < spectrum.size(); ++k) {
     const Index from = std::max<Index>(0, k - lobe), to = std::min(spectrum.size() - 1, k + lobe);
-    if (spectrum[k] < spectrum.segment(from, to - from + 1).maxCoeff()) continue;
+    if (spectrum[k] < least || spectrum[k] < spectrum.segment(from, to - from + 1).maxCoeff()) continue;
     const Index left = std::max<Index>(0, k - around), right = std::min(spectrum.size() - 1, k + around);
-    if (spectrum[k] < above_noise * median(VectorXd(spectrum.segment(left, right - left + 1)))) continue;
-    if (spectrum[k] < above_valley * valley_beside(spectrum, k)) continue;
-    peaks.push_back(first.frequency_hz[k]);
+    if (spectrum[k] < settings.above_noise * median(VectorXd(spectrum.segment(left, right - left + 1))))
+      continue;
+    if (spectrum[k] < settings.above_valley * valley_beside(spectrum, k)) continue;
+    lines.push_back({first.frequency_hz[k], spectrum[k]});
   }
+  return lines;
+}
+
+std::vector<double> spectral_peaks(const Eigen::MatrixXd& outputs, double interval) {
+  std::vector<double> peaks;
+  for (const SpectralLine& line : spectral_lines(outputs, interval)) peaks.push_back(line.frequency_hz);
   return peaks;
 }
 

@@ -3,70 +3,108 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <stdexcept>
 
-#include "experiments/modal_analysis/joint_decay_fit.hpp"
+#include "experiments/modal_study/mode_objections.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-Pole fitted(const JointDecayFit& fit, std::size_t m) {
-  Pole pole{fit.rates[m], fit.shapes.col(static_cast<Eigen::Index>(m))};
-  const auto at = static_cast<Eigen::Index>(2 * m);
-  pole.take_deviations(fit.covariance.block<2, 2>(at, at));
-  return pole;
+using Modes = std::vector<ModeEstimate>;
+
+void reject(std::size_t m, const std::string& why, RecordModes& found) {
+  found.stabilisation.rejected.push_back({found.modes[m].pole, found.modes[m].orders, why});
+  found.modes.erase(found.modes.begin() + static_cast<std::ptrdiff_t>(m));
 }
 
-/// Why a fitted mode is none; empty: it is one.
-std::string objection_to(const Pole& from, const Pole& to, const RecordModes& found,
-                         const StabilisationSettings& settings) {
-  const double resolution = 1 / (found.interval * static_cast<double>(found.target.cols()));
-  const double moved = std::abs(to.frequency_hz() - from.frequency_hz());
-  if (!(to.damping_ratio() > 0 && moved < std::max(0.05 * from.frequency_hz(), resolution)))
-    return "least squares do not keep it";
-  if (to.frequency_deviation_hz > settings.largest_frequency_deviation * to.frequency_hz())
-    return fmt::format("too uncertain, standard deviation {:.2g} Hz", to.frequency_deviation_hz);
-  if (to.damping_ratio_deviation > to.damping_ratio())
-    return fmt::format("too uncertain, damping ratio {:.2g} % with standard deviation {:.2g} %",
-                       100 * to.damping_ratio(), 100 * to.damping_ratio_deviation);
-  return "";
+/// Of two poles that are one mode, the one that is stable at fewer orders.
+bool reject_twin(const std::vector<Pole>& poles, RecordModes& found) {
+  const double duration = found.interval * static_cast<double>(found.target.cols());
+  for (std::size_t a = 0; a < poles.size(); ++a)
+    for (std::size_t b = a + 1; b < poles.size(); ++b) {
+      if (!cannot_be_told_apart(poles[a], poles[b], duration)) continue;
+      const auto weight = [&](std::size_t m) {
+        return std::pair(found.modes[m].orders.size(), found.modes[m].strength);
+      };
+      const std::size_t kept = weight(a) < weight(b) ? b : a, lost = kept == a ? b : a;
+      reject(lost,
+             fmt::format("one mode with {:.4g} Hz: they cannot be told apart in this record",
+                         poles[kept].frequency_hz()),
+             found);
+      return true;
+    }
+  return false;
+}
+
+/// Nothing where it does not converge: then the weakest mode is rejected.
+std::optional<JointDecayFit> fit_or_reject(RecordModes& found) {
+  std::vector<std::complex<double>> start;
+  for (const ModeEstimate& mode : found.modes) start.push_back(mode.pole.rate);
+  std::string why;
+  try {
+    return fit_decays_jointly(found.target, found.interval, start);
+  } catch (const std::runtime_error&) {
+    why = "least squares of all modes do not converge with it";
+  } catch (const std::invalid_argument&) {
+    why = "too few samples to fit it";
+  }
+  const auto weakest =
+      std::min_element(found.modes.begin(), found.modes.end(),
+                       [](const ModeEstimate& a, const ModeEstimate& b) { return a.strength < b.strength; });
+  reject(static_cast<std::size_t>(weakest - found.modes.begin()), why, found);
+  return std::nullopt;
+}
+
+/// Only the least certain goes: without it, others may stay.
+bool reject_least_certain(const JointDecayFit& fit, const StabilisationSettings& settings,
+                          RecordModes& found) {
+  std::optional<std::size_t> worst;
+  double largest = -1;
+  std::string why;
+  for (std::size_t m = 0; m < found.modes.size(); ++m) {
+    const Pole pole = fitted_pole(fit, m);
+    std::string objection = objection_to(found.modes[m].pole, fit, m, found, settings);
+    const double doubt = pole.frequency_deviation_hz / pole.frequency_hz();
+    if (objection.empty() || doubt <= largest) continue;
+    worst = m, largest = doubt, why = std::move(objection);
+  }
+  if (worst) reject(*worst, why, found);
+  return worst.has_value();
+}
+
+std::vector<Pole> poles_of(const Modes& modes) {
+  std::vector<Pole> poles;
+  for (const ModeEstimate& mode : modes) poles.push_back(mode.pole);
+  return poles;
+}
+
+std::vector<Pole> poles_of(const JointDecayFit& fit) {
+  std::vector<Pole> poles;
+  for (std::size_t m = 0; m < fit.rates.size(); ++m) poles.push_back(fitted_pole(fit, m));
+  return poles;
 }
 
 }  // namespace
 
 void polish(RecordModes& found, const StabilisationSettings& settings) {
-  try {
-    while (!found.modes.empty()) {
-      std::vector<std::complex<double>> start;
-      for (const ModeEstimate& mode : found.modes) start.push_back(mode.pole.rate);
-      const JointDecayFit fit = fit_decays_jointly(found.target, found.interval, start);
-      std::size_t worst = start.size();  // only the least certain goes: without it, others may stay
-      double largest = -1;
-      std::string why;
-      for (std::size_t m = 0; m < start.size(); ++m) {
-        const Pole pole = fitted(fit, m);
-        const std::string objection = objection_to(found.modes[m].pole, pole, found, settings);
-        const double doubt = pole.frequency_deviation_hz / pole.frequency_hz();
-        if (objection.empty() || doubt <= largest) continue;
-        worst = m;
-        largest = doubt;
-        why = objection;
-      }
-      if (worst == start.size()) {
-        for (std::size_t m = 0; m < start.size(); ++m) found.modes[m].pole = fitted(fit, m);
-        std::sort(found.modes.begin(), found.modes.end(),
-                  [](const auto& a, const auto& b) { return a.pole.frequency_hz() < b.pole.frequency_hz(); });
-        found.polished = true;
-        return;
-      }
-      const ModeEstimate& lost = found.modes[worst];
-      found.stabilisation.rejected.push_back({lost.pole, lost.orders, why});
-      found.modes.erase(found.modes.begin() + static_cast<std::ptrdiff_t>(worst));
-    }
-  } catch (const std::exception& error) {
-    found.warnings.push_back(std::string("Not polished: ") + error.what() + ".");
+  const bool any = !found.modes.empty();
+  while (reject_twin(poles_of(found.modes), found)) {
   }
+  while (!found.modes.empty()) {
+    const auto fit = fit_or_reject(found);
+    if (!fit || reject_least_certain(*fit, settings, found)) continue;
+    const std::vector<Pole> poles = poles_of(*fit);
+    if (reject_twin(poles, found)) continue;
+    for (std::size_t m = 0; m < poles.size(); ++m) found.modes[m].pole = poles[m];
+    std::sort(found.modes.begin(), found.modes.end(),
+              [](const auto& a, const auto& b) { return a.pole.frequency_hz() < b.pole.frequency_hz(); });
+    found.polished = true;
+    return;
+  }
+  if (any)
+    found.warnings.emplace_back(
+        "No pole was confirmed by least squares; --no-polish lists them as the method finds them.");
 }
 
 }  // namespace beamid::experiments

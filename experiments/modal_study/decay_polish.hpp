@@ -5,10 +5,10 @@
 
 namespace beamid::experiments {
 
-/// All modes together, in all channels (fit_decays_jointly); those that run away, by more than a resolution
-/// and 5 % in frequency or to a negative damping ratio, or stay too uncertain, go to the rejected ones and
-/// the rest is fitted anew. Where the fit does not converge the modes stay as they are, and a warning says
-/// so.
+/// All modes together, in all channels (fit_decays_jointly). Of two poles that cannot be told apart the one
+/// of fewer orders goes to the rejected ones before the fit; where the fit does not converge, the weakest
+/// goes; then, one at a time, the least certain of those with an objection (mode_objections.hpp), and the
+/// rest is fitted anew. Poles that no fit has confirmed are no modes: where none is left, none is listed.
 void polish(RecordModes& found, const StabilisationSettings& settings);
 
 }  // namespace beamid::experiments

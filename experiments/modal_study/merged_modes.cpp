@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/signal/chi_square_limit.hpp"
+
 namespace beamid::experiments {
 namespace {
-
-/// 95 % point of chi^2 by Wilson and Hilferty, within 1 %.
-double chi_square_95(double freedom) {
-  const double part = 2 / (9 * freedom);
-  return freedom * std::pow(1 - part + 1.6448536 * std::sqrt(part), 3);
-}
 
 MergedValue merged(const std::vector<double>& values, const std::vector<double>& deviations) {
   const auto count = static_cast<double>(values.size());
@@ -29,7 +25,7 @@ MergedValue merged(const std::vector<double>& values, const std::vector<double>&
   if (known && count > 1) {
     for (std::size_t i = 0; i < values.size(); ++i)
       chi_square += std::pow((values[i] - result.mean) / deviations[i], 2);
-    result.scattered = chi_square > chi_square_95(count - 1);
+    result.scattered = chi_square > chi_square_limit(count - 1);
   }
   return result;
 }

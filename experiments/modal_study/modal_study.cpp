@@ -8,58 +8,16 @@
 #include <stdexcept>
 
 #include "experiments/modal_analysis/shape_fit.hpp"
+#include "experiments/modal_study/decay_part.hpp"
 #include "experiments/modal_study/decay_polish.hpp"
+#include "experiments/modal_study/mode_objections.hpp"
+#include "experiments/modal_study/pole_levels.hpp"
 #include "experiments/modal_study/signal_band.hpp"
-#include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-
-/// Channels that move: forces are no response.
-Record motion_of(const Record& record) {
-  Record motion = record;
-  motion.channels.clear();
-  Index rows = 0;
-  for (Index i = 0; i < record.samples.rows(); ++i) {
-    if (record.channels[i].quantity == Quantity::force) continue;
-    motion.samples.row(rows++) = record.samples.row(i);
-    motion.channels.push_back(record.channels[i]);
-  }
-  motion.samples.conservativeResize(rows, Eigen::NoChange);
-  if (rows == 0)
-    throw std::invalid_argument(
-        "modal analysis needs a channel of motion or strain; the record has forces only");
-  return motion;
-}
-
-void check_intervals(const Record& record) {
-  const Index steps = record.size() - 1;
-  const VectorXd step = record.time.tail(steps) - record.time.head(steps);
-  const double interval = record.interval();
-  Index at = 0;
-  const double worst = (step.array() - interval).abs().maxCoeff(&at);
-  if (worst <= 0.2 * interval + 2 * record.time_resolution) return;
-  throw std::invalid_argument(
-      fmt::format("an interval of {:.6g} s after {:.6g} s; modal analysis expects equal intervals, {:.6g} s "
-                  "within 20 % (a --window without the gap, or the record resampled)",
-                  step[at], record.time[at], interval));
-}
-
-/// From the largest reading on, relative to each channel's own size.
-Record from_release(const Record& record, std::vector<std::string>& remarks) {
-  const VectorXd size = record.samples.rowwise().norm().cwiseMax(1e-300);
-  Index channel = 0, begin = 0;
-  (size.cwiseInverse().asDiagonal() * record.samples).cwiseAbs().maxCoeff(&channel, &begin);
-  if (begin == 0 || record.size() - begin < 64) return record;
-  Record decay = record;
-  decay.time = record.time.tail(record.size() - begin).eval();
-  decay.samples = record.samples.rightCols(record.size() - begin).eval();
-  remarks.push_back(fmt::format(
-      "No window was given: the decay is taken from the largest reading on, {:.4g} s.", decay.time[0]));
-  return decay;
-}
 
 /// Rows over the root mean square of all channels of their quantity.
 VectorXd scales_of(const Record& record) {
@@ -79,6 +37,7 @@ VectorXd scales_of(const Record& record) {
 
 /// Shapes in the channels' units: least squares of all modes to what they are to reproduce.
 void add_shapes(const VectorXd& scales, RecordModes& found) {
+  found.reproduced.resize(0, 0);
   if (found.modes.empty()) return;
   std::vector<std::complex<double>> rates;
   for (const ModeEstimate& mode : found.modes) rates.push_back(mode.pole.rate);
@@ -126,15 +85,6 @@ void leave_out_weak(const ModalStudySettings& settings, RecordModes& found) {
   std::erase_if(found.modes, [&](const ModeEstimate& mode) { return mode.strength < floor; });
 }
 
-/// Those that stay where they are over the orders.
-void choose_modes(StabilisationSettings settings, Index count, RecordModes& found) {
-  settings.band_hz = found.band_hz;
-  if (found.free_decay) settings.resolution_hz = 1 / (found.interval * static_cast<double>(count));
-  found.stabilisation = stabilise(found.search.orders, settings);
-  for (const PoleCluster& cluster : found.stabilisation.modes)
-    found.modes.push_back({cluster.pole, cluster.orders});
-}
-
 /// Those that the method gives, and what it refused, within the band.
 void take_modes(RecordModes& found) {
   const auto inside = [&](const Pole& pole) {
@@ -148,19 +98,53 @@ void take_modes(RecordModes& found) {
   found.remarks.insert(found.remarks.end(), found.search.remarks.begin(), found.search.remarks.end());
 }
 
-/// A method for decays wants one, a method for random vibration a steady record.
+/// A method for decays wants one, a method for random vibration a steady record. A slow decay loses little
+/// over a record, and two near modes can be stronger late: what decaying modes reproduce is a decay.
 void check_kind(const MatrixXd& samples, RecordModes& found) {
+  constexpr double reproduced = 0.5;  // of the motion's size
   const MatrixXd motion = samples.colwise() - samples.rowwise().mean();
   const Index half = motion.cols() / 2;
   const double early = motion.leftCols(half).squaredNorm(), late = motion.rightCols(half).squaredNorm();
-  if (found.free_decay && late > 0.7 * early)
+  const bool decays =
+      found.reproduced.size() > 0 && (found.target - found.reproduced).norm() < reproduced * motion.norm();
+  if (found.free_decay && !decays && late > 0.7 * early)
     found.warnings.push_back(
-        "The record does not decay: its second half is nearly as strong as its first. For random vibration "
-        "take --method ssi_cov; for a decay that comes later in the record, --window.");
+        "The record does not decay: its second half is nearly as strong as its first, and no decaying modes "
+        "reproduce it. For random vibration take --method ssi_cov; for a decay that comes later in the "
+        "record, --window.");
   if (!found.free_decay && std::max(early, late) > 10 * std::min(early, late))
     found.warnings.push_back(
         "The record is not steady: one half is much stronger than the other. For a free decay take --method "
         "era; for random vibration, a --window without the strong part.");
+}
+
+/// What the record shows and no mode stands for: lines outside the band, and lines inside it.
+void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found) {
+  std::vector<double> outside, missed;
+  const auto near = [](const RecordLine& line, const Pole& pole) {
+    return std::abs(pole.frequency_hz() - line.frequency_hz) <
+           std::max(line.resolution_hz, 0.03 * line.frequency_hz);
+  };
+  for (const RecordLine& line : lines) {
+    const bool inside = line.frequency_hz >= found.band_hz.first && line.frequency_hz <= found.band_hz.second;
+    const auto& rejected = found.stabilisation.rejected;
+    if (!inside)
+      outside.push_back(line.frequency_hz);
+    else if (std::none_of(found.modes.begin(), found.modes.end(),
+                          [&](const ModeEstimate& mode) { return near(line, mode.pole); }) &&
+             std::none_of(rejected.begin(), rejected.end(), [&](const PoleCluster& cluster) {
+               return cluster.orders.size() > 1 && near(line, cluster.pole);
+             }))
+      missed.push_back(line.frequency_hz);
+  }
+  if (!outside.empty())
+    found.warnings.push_back(fmt::format(
+        "{} at {} {} outside this band; --band takes {} in.", outside.size() > 1 ? "Lines" : "A line",
+        frequencies_text(outside), outside.size() > 1 ? "lie" : "lies", outside.size() > 1 ? "them" : "it"));
+  if (!missed.empty())
+    found.warnings.push_back(
+        fmt::format("No mode stands for the {} at {}; another --band, --window or --order may show one.",
+                    missed.size() > 1 ? "lines" : "line", frequencies_text(missed)));
 }
 
 }  // namespace
@@ -173,36 +157,31 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   found.remarks = record.remarks;
   found.free_decay = registry.find(settings.method.name).contracts.contains(contract::free_decay);
   found.mode_by_mode = registry.find(settings.method.name).contracts.contains(contract::mode_by_mode);
-  found.record = motion_of(record);
+  found.record = complete_part(motion_of(record), found.remarks);
   if (found.free_decay && !windowed) found.record = from_release(found.record, found.remarks);
   check_intervals(found.record);
   const double interval = found.record.interval();
-  found.band_hz = settings.band_hz ? *settings.band_hz : signal_band(found.record.samples, interval);
+  const VectorXd scales = scales_of(found.record);
+  std::vector<RecordLine> lines;
+  if (found.free_decay)
+    lines = record_lines(scales.cwiseInverse().asDiagonal() * found.record.samples, interval);
+  found.band_hz = settings.band_hz ? *settings.band_hz : decay_band(found.record.samples, interval, lines);
   check_band(found.band_hz, interval, found.record.size());
 
-  constexpr double passed = 0.3;  // of the new sampling rate, untouched by the decimation
-  const int factor = std::max(1, static_cast<int>(std::min(passed / (interval * found.band_hz.second),
-                                                           static_cast<double>(found.record.size()) / 100)));
-  MatrixXd samples;
-  std::optional<DecimatedSignal> coarse;
-  for (Index i = 0; i < found.record.samples.rows(); ++i) {
-    coarse = decimate(found.record.samples.row(i).transpose(), interval, factor);
-    if (i == 0) samples.resize(found.record.samples.rows(), coarse->samples.size());
-    samples.row(i) = coarse->samples.transpose();
-  }
-  found.interval = coarse->interval;
-  found.start = found.record.time[0] + coarse->start;
-  const VectorXd scales = scales_of(found.record);
-
+  const CoarseRecord coarse = coarse_record(found.record, found.band_hz.second);
+  found.interval = coarse.last.interval;
+  found.start = found.record.time[0] + coarse.last.start;
   const auto method = registry.make(settings.method.name, settings.method.options);
-  found.search =
-      method->search(scales.cwiseInverse().asDiagonal() * samples, found.interval, settings.largest_order);
-  if (found.mode_by_mode)
+  if (found.mode_by_mode) {
+    found.search = method->search(scales.cwiseInverse().asDiagonal() * coarse.samples, found.interval,
+                                  settings.largest_order);
     take_modes(found);
-  else
-    choose_modes(settings.stabilisation, samples.cols(), found);
+  } else {
+    search_levels(*method, settings, scales, lines, coarse, found);
+  }
 
-  found.target = found.free_decay ? samples : MatrixXd(scales.cwiseAbs2().asDiagonal() * found.search.decays);
+  found.target =
+      found.free_decay ? coarse.samples : MatrixXd(scales.cwiseAbs2().asDiagonal() * found.search.decays);
   add_shapes(scales, found);
   leave_out_weak(settings, found);
   if (settings.polish.value_or(found.free_decay && !found.mode_by_mode)) {
@@ -212,10 +191,15 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
     polish(found, settings.stabilisation);
   }
   add_shapes(scales, found);
-  check_kind(samples, found);
+  if (found.free_decay) {
+    set_overtones_aside(found);
+    add_shapes(scales, found);
+  }
+  check_kind(coarse.samples, found);
+  name_missed_lines(lines, found);
   if (found.free_decay) {
     for (ModeEstimate& mode : found.modes)  // back to the undecimated record and its beginning
-      mode.pole.shape *= std::exp(-mode.pole.rate * coarse->start) / coarse->response(mode.pole.rate);
+      mode.pole.shape *= std::exp(-mode.pole.rate * coarse.last.start) / coarse.last.response(mode.pole.rate);
   }
   return found;
 }

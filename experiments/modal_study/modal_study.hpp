@@ -16,7 +16,7 @@ namespace beamid::experiments {
 struct ModalStudySettings {
   Choice method{"era", {}};
   std::optional<std::pair<double, double>>
-      band_hz;  ///< absent: from 2 cycles in the record to the spectrum's end
+      band_hz;  ///< absent: from 2 cycles in the record to beyond its highest line
   int largest_order = 30;
   int modes = 0;                      ///< the strongest ones; 0: all
   std::optional<bool> polish;         ///< absent: of a method for free decays that goes over orders
@@ -52,8 +52,9 @@ struct RecordModes {
   Eigen::MatrixXd reproduced;       ///< (p x L)
 };
 
-/// Analyses one record. Without a window on a free decay, what precedes the largest reading is left out.
-/// Channels are scaled by quantity for the search, and decimated as far as the band allows.
+/// Analyses one record. Readings that are missing (NaN) end the part that is taken; without a window on a
+/// free decay, what precedes the largest reading is left out. Channels are scaled by quantity for the search,
+/// and decimated as far as the band allows. Lines that no mode stands for are named in the warnings.
 /// @throws std::invalid_argument when record, band and orders do not fit.
 RecordModes find_modes(const std::string& name, const Record& record, bool windowed,
                        const ModalStudySettings& settings);

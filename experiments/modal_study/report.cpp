@@ -155,6 +155,7 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
     const RecordModes& found = records[r];
     const std::string suffix = records.size() > 1 ? fmt::format("_{}", r + 1) : "";
     results.heading(found.name);
+    for (const std::string& warning : found.record.warnings) results.paragraph(warning);
     results.paragraph(introduction(settings, found));
     for (const std::string& remark : found.remarks) results.paragraph(remark);
     if (found.modes.empty())

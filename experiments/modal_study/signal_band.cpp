@@ -9,8 +9,14 @@
 
 namespace beamid::experiments {
 
+namespace {
+
+constexpr double margin = 1.3, highest = 0.45;
+
+}  // namespace
+
 std::pair<double, double> signal_band(const Eigen::MatrixXd& samples, double interval) {
-  constexpr double least = 0.05, margin = 1.3, highest = 0.45;
+  constexpr double least = 0.05;
   const double lowest = 2 / (interval * static_cast<double>(samples.cols()));
   double top = 2 * lowest;
   for (Eigen::Index i = 0; i < samples.rows(); ++i) {
@@ -25,6 +31,14 @@ std::pair<double, double> signal_band(const Eigen::MatrixXd& samples, double int
       }
   }
   return {lowest, std::min(top, highest / interval)};
+}
+
+std::pair<double, double> decay_band(const Eigen::MatrixXd& samples, double interval,
+                                     const std::vector<RecordLine>& lines) {
+  std::pair<double, double> band = signal_band(samples, interval);
+  for (const RecordLine& line : lines) band.second = std::max(band.second, margin * line.frequency_hz);
+  band.second = std::min(band.second, highest / interval);
+  return band;
 }
 
 void check_band(std::pair<double, double> band_hz, double interval, Eigen::Index count) {
