@@ -30,6 +30,15 @@ Index force_row(const Record& record) {
   return row;
 }
 
+void require_all_readings(const Record& record) {
+  for (Index k = 0; k < record.size(); ++k)
+    if (!record.samples.col(k).allFinite())
+      throw std::invalid_argument(
+          fmt::format("a reading is missing or clipped at {:.6g} s; frequency responses expect every one "
+                      "(a --window without them, or hits that the sensors can follow)",
+                      record.time[k]));
+}
+
 /// What precedes a hit belongs to its block: a sampled pulse rings ahead of itself.
 constexpr Index lead = 8;
 
@@ -94,6 +103,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
   std::vector<Block> blocks;
   const double interval = records.front().interval();
   for (const Record& record : records) {
+    require_all_readings(record);
     if (std::abs(record.interval() / interval - 1) > 1e-5)
       throw std::invalid_argument(fmt::format("sampling intervals of {:.6g} and {:.6g} s; expected the same",
                                               interval, record.interval()));
@@ -112,9 +122,9 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
   for (const std::vector<Hit>& of_record : hits)
     for (const Hit& hit : of_record)
       if (hit.pulses_s.size() > 1)
-        found.remarks.push_back(fmt::format(
+        found.warnings.push_back(fmt::format(
             "The hit of {:.3g} N rebounded, {} pulses within {:.3g} ms: all are in its force, but what the "
-            "hammer touches in between is no free structure.",
+            "hammer touches in between is no free structure. No mass from this hit is to be trusted.",
             hit.largest, hit.pulses_s.size(), 1000 * (hit.pulses_s.back() - hit.pulses_s.front())));
   int moving = 0;
   for (const Block& block : blocks) {
@@ -128,7 +138,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
       }
   }
   if (moving > 0)
-    found.remarks.push_back(fmt::format(
+    found.warnings.push_back(fmt::format(
         "{} of {} hits met a structure that still moved, by more than 5 % of what followed: the modal masses "
         "are off by as much.",
         moving, blocks.size()));

@@ -27,14 +27,15 @@ std::vector<Hit> find_hits(const Eigen::VectorXd& force, double interval);
 
 /// Responses of p channels to the force, averaged over hits.
 struct HammerResponses {
-  Eigen::VectorXd frequency_hz;      ///< (F)
-  Eigen::MatrixXcd h1, h2;           ///< (p x F) [unit of the channel / N], at s = i 2 pi f + window_rate
-  Eigen::MatrixXd coherence;         ///< (p x F); 1 where there is one average only
-  Eigen::VectorXd force_spectrum;    ///< (F), root mean square of |F(f)| over the hits [N s]
-  int averages = 0;                  ///< hits
-  double duration = 0;               ///< of a block [s]
-  double window_rate = 0;            ///< of the exponential window [1/s]
-  std::vector<std::string> remarks;  ///< sentences
+  Eigen::VectorXd frequency_hz;       ///< (F)
+  Eigen::MatrixXcd h1, h2;            ///< (p x F) [unit of the channel / N], at s = i 2 pi f + window_rate
+  Eigen::MatrixXd coherence;          ///< (p x F); 1 where there is one average only
+  Eigen::VectorXd force_spectrum;     ///< (F), root mean square of |F(f)| over the hits [N s]
+  int averages = 0;                   ///< hits
+  double duration = 0;                ///< of a block [s]
+  double window_rate = 0;             ///< of the exponential window [1/s]
+  std::vector<std::string> remarks;   ///< sentences
+  std::vector<std::string> warnings;  ///< what makes the masses wrong, a sentence each
 };
 
 /// H1 = S_yf / S_ff, H2 = S_yy / S_fy, coherence = |S_yf|^2 / (S_ff S_yy) over the hits of all records

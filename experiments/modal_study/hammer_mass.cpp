@@ -39,6 +39,8 @@ std::optional<HammerMass> hammer_mass(const Record& record, const Pole& pole,
   }
   reason = "the record holds no force beside a motion";
   if (force < 0 || motion < 0) return std::nullopt;
+  reason = "a reading is missing or clipped";
+  if (!record.samples.allFinite()) return std::nullopt;
   try {
     const double interval = record.interval();
     const std::vector<Hit> hits = find_hits(record.samples.row(force).transpose(), interval);

@@ -31,6 +31,10 @@ Table mode_table(const HammerStudy& study) {
                  fmt::format("modal_mass_{}_kg", o + 1), "{:.4g}"})
         .column({"standard deviation", fmt::format("modal_mass_{}_standard_deviation_kg", o + 1), "{:.2g}"})
         .column({"phase [deg]", fmt::format("residue_phase_{}_deg", o + 1), "{:.1f}"});
+  const bool rebounded = !study.responses.warnings.empty();
+  const bool remarks = rebounded || std::any_of(study.modes.begin(), study.modes.end(),
+                                                [](const HammerMode& mode) { return mode.complex; });
+  if (remarks) table.column({"remark", "remark"});
   for (std::size_t m = 0; m < study.modes.size(); ++m) {
     const HammerMode& mode = study.modes[m];
     std::vector<Cell> row{static_cast<double>(m + 1),
@@ -43,6 +47,7 @@ Table mode_table(const HammerStudy& study) {
                               : fmt::format("{} of {}", mode.orders.size(), study.orders.size())};
     for (std::size_t o = 0; o < mode.mass.size(); ++o)
       row.insert(row.end(), {mode.mass[o], mode.deviation[o], mode.phase[o] * 180 / 3.14159265358979});
+    if (remarks) row.emplace_back(std::string(mode.complex ? "phase" : rebounded ? "hits disturbed" : ""));
     table.row(std::move(row));
   }
   table.note =
@@ -79,6 +84,9 @@ Json values(const HammerStudy& study) {
     json["residual_terms"].push_back({{"channel", study.channels[o].name},
                                       {"upper_m_per_n", study.fit.upper[static_cast<Index>(o)]},
                                       {"lower_per_kg", study.fit.lower[static_cast<Index>(o)]}});
+  std::vector<std::string> warnings = study.record_warnings;
+  warnings.insert(warnings.end(), study.responses.warnings.begin(), study.responses.warnings.end());
+  json["record_warnings"] = warnings;
   json["notes"] = study.warnings;
   return json;
 }
@@ -162,6 +170,8 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   std::string names;
   for (const std::string& name : study.names) names += (names.empty() ? "" : ", ") + name;
   results.heading(names);
+  for (const auto* warnings : {&study.record_warnings, &study.responses.warnings})
+    for (const std::string& warning : *warnings) results.paragraph(warning);
   std::string text = fmt::format(
       "Frequency responses of {} hit{} of {:.4g} s, {}. Band {:.4g} to {:.4g} Hz, {} lines. Method {}",
       study.responses.averages, study.responses.averages > 1 ? "s" : "", study.responses.duration,

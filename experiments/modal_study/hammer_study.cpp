@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "experiments/modal_study/hammer_modes.hpp"
@@ -58,6 +59,27 @@ void add_modes(HammerStudy& study) {
   }
 }
 
+/// A real mode's residue is in phase with the force or opposed to it.
+void judge_phases(HammerStudy& study) {
+  constexpr double most = std::numbers::pi / 6;
+  for (std::size_t m = 0; m < study.modes.size(); ++m) {
+    HammerMode& mode = study.modes[m];
+    for (std::size_t o = 0; o < mode.phase.size(); ++o) {
+      const double size = std::abs(mode.phase[o]), off = std::min(size, std::numbers::pi - size);
+      if (off <= most) continue;
+      mode.complex = true;
+      study.warnings.push_back(fmt::format(
+          "The residue of mode {} at {:.4g} Hz{} has a phase of {:.0f} degrees, where a real mode has 0 or "
+          "180: "
+          "its modal mass of {:.3g} kg is not to be trusted. A near mode that was missed, a rebound or a "
+          "frequency that follows the amplitude does that.",
+          m + 1, mode.pole.frequency_hz(),
+          study.channels.size() > 1 ? " in " + study.channels[o].name : std::string(),
+          mode.phase[o] * 180 / std::numbers::pi, mode.mass[o]));
+    }
+  }
+}
+
 }  // namespace
 
 HammerStudy study_hits(const std::vector<std::string>& names, const std::vector<Record>& records,
@@ -68,6 +90,9 @@ HammerStudy study_hits(const std::vector<std::string>& names, const std::vector<
   HammerStudy study;
   study.names = names;
   study.remarks = records.front().remarks;
+  for (std::size_t r = 0; r < records.size(); ++r)
+    for (const std::string& warning : records[r].warnings)
+      study.record_warnings.push_back(names[r] + ": " + warning);
   study.estimator = options.text("estimator");
   study.responses = hammer_responses(records, options.number("window_end"));
   Record motion = records.front();
@@ -103,6 +128,7 @@ HammerStudy study_hits(const std::vector<std::string>& names, const std::vector<
   fit_modes(lines, measured, settings.polish.value_or(!mode_by_mode), study);
   study.misfit = (measured - study.fit.reproduced).norm() / measured.norm();
   add_modes(study);
+  judge_phases(study);
   return study;
 }
 

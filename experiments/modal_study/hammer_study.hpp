@@ -18,6 +18,7 @@ struct HammerMode {
   std::vector<double> mass;  ///< (p) 1 / (2 w_d |R|) [kg]: the modal mass where channel o is the hit's place
   std::vector<double> deviation;  ///< (p) [kg]
   std::vector<double> phase;  ///< (p) of 2 i w_d R: 0 or pi for a real mode, pi where the sensor is opposed
+  bool complex = false;       ///< a phase more than 30 degrees from both: the masses say nothing
 };
 
 struct HammerStudy {
@@ -34,6 +35,7 @@ struct HammerStudy {
   double misfit = 0;  ///< of the responses in the band, relative
   std::vector<HammerMode> modes;
   std::vector<std::string> remarks, warnings;  ///< sentences
+  std::vector<std::string> record_warnings;    ///< of the records, with their names
 };
 
 /// Without a band: up to where the force's spectrum has fallen to a tenth, or the response's to a twentieth.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "experiments/modal_study/hammer_mass.hpp"
 
 namespace beamid::experiments {
@@ -15,9 +17,11 @@ void tell_masses(const std::vector<std::string>& names, const std::vector<Record
       .column({"impulse [N s]", "impulse_n_s", "{:.4g}"})
       .column({"velocity step [m/s]", "velocity_step_m_per_s", "{:.4g}"})
       .column({"mass [kg]", "mass_kg", "{:.4g}"})
-      .column({"standard deviation", "mass_standard_deviation_kg", "{:.2g}"});
+      .column({"standard deviation", "mass_standard_deviation_kg", "{:.2g}"})
+      .column({"remark", "remark"});
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::string rebounds, missing;
+  std::size_t told = 0;  // record whose rebound is
   for (std::size_t r = 0; r < records.size(); ++r)
     for (std::size_t m = 0; m < rates[r].size(); ++m) {
       std::string reason;
@@ -27,8 +31,10 @@ void tell_masses(const std::vector<std::string>& names, const std::vector<Record
         missing += fmt::format(" Mode {} of {}: {}.", m + 1, names[r], reason);
         continue;
       }
+      const bool rebounded = found->pulses_s.size() > 1;
       table.row({names[r], static_cast<double>(m + 1), pole.frequency_hz(), found->impulse,
-                 found->velocity_step, found->mass, found->deviation});
+                 found->velocity_step, found->mass, found->deviation,
+                 std::string(rebounded ? "hammer rebounded" : "")});
       json.push_back({{"record", names[r]},
                       {"mode", m + 1},
                       {"impulse_n_s", found->impulse},
@@ -36,10 +42,10 @@ void tell_masses(const std::vector<std::string>& names, const std::vector<Record
                       {"mass_kg", found->mass},
                       {"mass_standard_deviation_kg", found->deviation},
                       {"pulses_s", found->pulses_s}});
-      if (found->pulses_s.size() > 1 && m == 0)
+      if (rebounded && std::exchange(told, r + 1) != r + 1)
         rebounds += fmt::format(
             "{}: the hammer rebounded, {} pulses within {:.3g} ms. All of them are in the impulse, but what "
-            "it touches in between is no free beam. ",
+            "it touches in between is no free beam: its masses are not to be trusted. ",
             names[r], found->pulses_s.size(), 1000 * (found->pulses_s.back() - found->pulses_s.front()));
     }
   if (table.rows() == 0) return;

@@ -77,7 +77,7 @@ TEST(Hammer, FindsModesAndModalMasses) {
     EXPECT_NEAR(mode.phase[0], 0, 0.03);
     EXPECT_LT(mode.deviation[0], 0.01 * mode.mass[0]);
   }
-  EXPECT_TRUE(study.responses.remarks.empty());  // both hits meet a structure at rest
+  EXPECT_TRUE(study.responses.warnings.empty());  // both hits meet a structure at rest
   EXPECT_GT(study.responses.coherence(0, static_cast<Eigen::Index>(12 * study.responses.duration)), 0.99);
 }
 
@@ -92,6 +92,31 @@ TEST(Hammer, WeighsAModeByItsVelocityStep) {
   EXPECT_LT(found->deviation, 0.05 * truth[0].mass);
   EXPECT_NEAR(found->impulse, 100 * 0.006 * 2 / pi, 0.005);
   EXPECT_EQ(found->pulses_s.size(), 1u);
+}
+
+// Oracle: a response that is late by t turns a residue by 360 f t degrees: at 2.5 ms 11 and 68 degrees.
+TEST(Hammer, WarnsOfAMassWhoseResidueIsOutOfPhase) {
+  ModalStudySettings settings;
+  settings.method = {"frf_lscf", {}};
+  settings.band_hz = {4, 150};
+  settings.largest_order = 16;
+  Record record = struck(1, 0.05);
+  const Eigen::Index count = record.size() - 5;
+  record.samples.row(0).tail(count) = record.samples.row(0).head(count).eval();
+  const HammerStudy study = study_hits({"one"}, {record}, settings);
+  ASSERT_EQ(study.modes.size(), 2u);
+  EXPECT_NEAR(std::abs(study.modes[1].phase[0]), 2 * pi * truth[1].frequency_hz * 2.5e-3, 0.1);
+  EXPECT_FALSE(study.modes[0].complex);
+  EXPECT_TRUE(study.modes[1].complex);
+  EXPECT_NE(study.warnings.back().find("is not to be trusted"), std::string::npos);
+}
+
+TEST(Hammer, WarnsOfASecondPulseAndRefusesMissingReadings) {
+  Record record = struck(1, 0.05);
+  for (int k = 0; k < 12; ++k) record.samples(1, 80 + k) += 30 * std::sin(pi * k / 12);
+  EXPECT_EQ(hammer_responses({record}, 0.01).warnings.size(), 1u);
+  record.samples(0, 100) = std::nan("");
+  EXPECT_THROW(hammer_responses({record}, 0.01), std::invalid_argument);
 }
 
 // Oracle: the modes that were simulated, from the lines around their peaks alone.
