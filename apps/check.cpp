@@ -1,13 +1,12 @@
 // beamid check: the finite-element prediction against what records show.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 
 #include "apps/deliver.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/input/read_experiment.hpp"
-#include "experiments/modal_study/merged_modes.hpp"
+#include "experiments/model_check/observed_modes.hpp"
 #include "experiments/model_check/report.hpp"
 #include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
@@ -103,20 +102,12 @@ CheckedStructure structure_of(const Request& request, const ModalStudySettings& 
                        fmt::format("{} channels; expected {} as in {}", found.back().record.channels.size(),
                                    found[0].record.channels.size(), found[0].name));
   }
-  CheckedStructure structure{request.config.stem().string(),
-                             request.experiment.beam,
-                             request.experiment.elements,
-                             request.experiment.damping,
-                             {},
-                             found[0].record.channels};
-  for (const MergedMode& mode : merge_modes(found)) {
-    std::size_t r = 0;
-    while (mode.places[r] < 0) ++r;
-    structure.modes.push_back(
-        {mode.frequency_hz.mean, std::fmax(mode.frequency_hz.deviation, mode.frequency_hz.scatter),
-         mode.damping_ratio.mean, std::fmax(mode.damping_ratio.deviation, mode.damping_ratio.scatter),
-         found[r].modes[mode.places[r]].pole.shape});
-  }
+  CheckedStructure structure{request.config.stem().string(), request.experiment.beam,
+                             request.experiment.elements,    request.experiment.damping,
+                             observed_modes(found),          found[0].record.channels};
+  for (const RecordModes& one : found)
+    for (const std::string& warning : one.record.warnings)
+      structure.warnings.push_back(one.name + ": " + warning);
   return structure;
 }
 

@@ -50,6 +50,24 @@ Beam with_tip(Beam beam, const Function& f) {
   return beam;
 }
 
+/// Of the first body there: what else rides on it, a sensor, is known.
+double first_tip_mass(const Beam& beam) {
+  for (const Body& body : beam.bodies)
+    if (body.position == beam.length()) return body.mass;
+  return 0;
+}
+
+Beam with_tip_mass(Beam beam, double change) {
+  if (change == 0) return beam;
+  for (Body& body : beam.bodies)
+    if (body.position == beam.length()) {
+      body.mass = std::max(0.0, body.mass + change);
+      return beam;
+    }
+  beam.bodies.push_back({beam.length(), std::max(0.0, change)});
+  return beam;
+}
+
 double tip_inertia(const Beam& beam) {
   return fem::value_of(beam, {fem::BeamParameter::Quantity::tip_rotary_inertia, {}});
 }
@@ -121,17 +139,15 @@ std::vector<Candidate> of_one(const Beam& beam) {
   c->changed = [](const Beam& b, double x) { return with_beam_mass(b, 1 + x); };
   c->value = [](const Beam& b, double x) { return (1 + x) * b.mass(); };
   c = add({"free_length", "m", "m"}, -0.5 * length, length, 0.05 * length);
+  c->exchangeable = true;
   c->changed = with_length;
   c->value = [](const Beam& b, double x) { return b.length() + x; };
   if (free_tip(beam)) {
-    c = add({"tip_mass", "kg", "kg"}, -tip, 10 * (tip + beam.mass()),
+    c = add({"tip_mass", "kg", "kg"}, -first_tip_mass(beam), 10 * (tip + beam.mass()),
             std::max(0.2 * tip, 0.05 * beam.mass()));
-    c->changed = [](const Beam& b, double x) {
-      return x == 0 ? b
-                    : fem::with_value(b, {fem::BeamParameter::Quantity::tip_mass, {}},
-                                      std::max(0.0, b.tip_mass() + x));
-    };
-    c->value = [](const Beam& b, double x) { return b.tip_mass() + x; };
+    c->exchangeable = true;
+    c->changed = with_tip_mass;
+    c->value = [](const Beam& b, double x) { return first_tip_mass(b) + x; };
   }
   if (free_tip(beam) && tip > 0) {
     c = add({"tip_rotary_inertia", "m2", "kg m2"}, -tip_inertia(beam) / tip, length * length,

@@ -18,6 +18,7 @@ struct Candidate {
   double scale = 1;             ///< a change that counts
   double lower = 0, upper = 0;  ///< what is possible
   double plausible_lower = 0, plausible_upper = 0;  ///< what careful work may get wrong
+  bool exchangeable = false;  ///< may be another one altogether: a weight, a length in the clamp
   std::function<fem::Beam(const fem::Beam&, double)> changed = {};
   std::function<double(const fem::Beam&, double)> value = {};  ///< of the quantity itself, at x
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/signal/chi_square_limit.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -74,10 +76,11 @@ void judge(const ModelCheck& check, Explanation& e) {
   }
   // A change held at its limit fits nothing.
   const Index freedom = e.freedom + std::count(e.at_limit.begin(), e.at_limit.end(), true);
-  e.verdict = freedom > 0 && e.chi_square > chi_square_limit(freedom) ? Verdict::leaves_much
-              : !known                                                ? Verdict::undetermined
-              : e.plausible                                           ? Verdict::explains
-                                                                      : Verdict::implausible;
+  e.verdict = freedom > 0 && e.chi_square > chi_square_limit(static_cast<double>(freedom))
+                  ? Verdict::leaves_much
+              : !known      ? Verdict::undetermined
+              : e.plausible ? Verdict::explains
+                            : Verdict::implausible;
 }
 
 }  // namespace

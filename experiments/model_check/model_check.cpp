@@ -7,7 +7,9 @@
 
 #include "experiments/input/spelling.hpp"
 #include "experiments/model_check/changed_frequencies.hpp"
+#include "experiments/model_check/contradictions.hpp"
 #include "experiments/model_check/explanation.hpp"
+#include "experiments/signal/chi_square_limit.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 
@@ -16,8 +18,9 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr double most_apart = 0.3;   // of identified and predicted frequency, relative
-constexpr double least_alike = 0.5;  // MAC
+constexpr double most_apart = 0.3;               // of identified and predicted frequency, relative
+constexpr double farthest = 0.6931471805599453;  // of the lowest mode, where nothing is nearer: a factor of 2
+constexpr double least_alike = 0.5;              // MAC
 constexpr Index most_modes = 15;
 
 bool has_shapes(const CheckedStructure& structure) {
@@ -56,7 +59,10 @@ void match(const CheckedStructure& structure, std::size_t number, ModelCheck& ch
       if (has_shapes(structure) && mode.shape.size() == system.outputs.rows())
         couple.assurance =
             modal_assurance(mode.shape, (system.outputs * modes.shape.col(m)).cast<std::complex<double>>());
-      if (couple.apart < most_apart && !(couple.assurance < least_alike)) couples.push_back(couple);
+      const bool far = m == modes.rigid && couple.apart < farthest &&
+                       (m + 1 >= predicted.size() ||
+                        std::abs(std::log(mode.frequency_hz / predicted[m + 1])) > 2 * couple.apart);
+      if ((couple.apart < most_apart || far) && !(couple.assurance < least_alike)) couples.push_back(couple);
     }
   std::sort(couples.begin(), couples.end(),
             [](const Couple& a, const Couple& b) { return a.apart < b.apart; });
@@ -66,13 +72,18 @@ void match(const CheckedStructure& structure, std::size_t number, ModelCheck& ch
     if (told[couple.predicted] || taken[couple.identified]) continue;
     told[couple.predicted] = taken[couple.identified] = true;
     found.push_back({number, static_cast<int>(couple.predicted) + 1, predicted[couple.predicted],
-                     damping[couple.predicted], structure.modes[couple.identified], couple.assurance});
+                     damping[couple.predicted], structure.modes[couple.identified], couple.assurance,
+                     couple.apart >= most_apart});
   }
   std::sort(found.begin(), found.end(),
             [](const CheckedMode& a, const CheckedMode& b) { return a.number < b.number; });
   check.modes.insert(check.modes.end(), found.begin(), found.end());
+  std::vector<ObservedMode> strays;
   for (std::size_t i = 0; i < taken.size(); ++i)
-    if (!taken[i]) check.strays.emplace_back(number, structure.modes[i]);
+    if (!taken[i]) strays.push_back(structure.modes[i]);
+  std::vector<std::string> sentences = contradictions_of(found, strays);
+  check.contradictions.insert(check.contradictions.end(), sentences.begin(), sentences.end());
+  for (ObservedMode& stray : strays) check.strays.emplace_back(number, std::move(stray));
 }
 
 std::vector<Candidate> chosen(const std::vector<std::string>& names, std::vector<Candidate> possible) {
@@ -100,13 +111,8 @@ double CheckedMode::difference() const {
   return std::log(identified.frequency_hz / predicted_hz);
 }
 
-double chi_square_limit(Index freedom) {
-  const double part = 2 / (9 * static_cast<double>(freedom));
-  return static_cast<double>(freedom) * std::pow(1 - part + 1.6448536 * std::sqrt(part), 3);
-}
-
 ModelCheck check_model(std::vector<CheckedStructure> structures, const ModelCheckSettings& settings) {
-  ModelCheck check{std::move(structures), settings, {}, {}, {}, {}, 0, false, {}, {}};
+  ModelCheck check{std::move(structures), settings, {}, {}, {}, {}, 0, false, {}, {}, {}, {}};
   std::vector<fem::Beam> beams;
   for (std::size_t s = 0; s < check.structures.size(); ++s) {
     match(check.structures[s], s, check);
@@ -114,14 +120,15 @@ ModelCheck check_model(std::vector<CheckedStructure> structures, const ModelChec
   }
   if (check.modes.empty())
     throw std::invalid_argument(fmt::format(
-        "none of the {} identified modes lies within {:.0f} % of a predicted one; expected one at "
-        "least",
+        "none of the {} identified modes lies within {:.0f} % of a predicted one, or within a factor of 2 of "
+        "the lowest; expected one at least",
         check.strays.size(), 100 * most_apart));
+  set_far_structures_aside(check);
   check.candidates = chosen(settings.candidates, candidates_of(beams));
   const ChangedFrequencies frequencies(check);
   const VectorXd variance = variances(check), differences = frequencies.left({}, VectorXd());
   check.chi_square = (differences.array().square() / variance.array()).sum();
-  check.right = check.chi_square <= chi_square_limit(differences.size());
+  check.right = check.chi_square <= chi_square_limit(static_cast<double>(differences.size()));
   check.effect.resize(differences.size(), static_cast<Index>(check.candidates.size()));
   for (std::size_t c = 0; c < check.candidates.size(); ++c)
     check.effect.col(static_cast<Index>(c)) =
@@ -135,6 +142,7 @@ ModelCheck check_model(std::vector<CheckedStructure> structures, const ModelChec
     std::stable_sort(list->begin(), list->end(), [](const Explanation& a, const Explanation& b) {
       return std::pair(a.verdict, a.chi_square) < std::pair(b.verdict, b.chi_square);
     });
+  check.outlier = outlier_of(check);
   return check;
 }
 

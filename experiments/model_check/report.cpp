@@ -226,7 +226,8 @@ void fill(const ModelCheck& check, Results& results) {
                              {"predicted_damping_ratio", mode.predicted_damping_ratio},
                              {"damping_ratio", mode.identified.damping_ratio},
                              {"damping_ratio_standard_deviation", mode.identified.damping_ratio_deviation},
-                             {"mac", mode.assurance}});
+                             {"mac", mode.assurance},
+                             {"far", mode.far}});
   for (const Candidate& c : check.candidates) {
     Json candidate{{"name", c.name},
                    {"unit", c.unit == "%" ? "1" : c.unit},
@@ -235,7 +236,10 @@ void fill(const ModelCheck& check, Results& results) {
   }
   for (const Explanation& e : check.single) json["single_changes"].push_back(values_of(check, e));
   for (const Explanation& e : check.pairs) json["pairs"].push_back(values_of(check, e));
+  json["contradictions"] = check.contradictions;
   json["conclusions"] = conclusions(check);
+  for (const CheckedStructure& structure : check.structures)
+    for (const std::string& warning : structure.warnings) json["record_warnings"].push_back(warning);
 }
 
 }  // namespace
@@ -245,6 +249,16 @@ Results report(const ModelCheck& check) {
   results.command = "check";
   fill(check, results);
   results.heading("The model against the modes identified");
+  for (const CheckedStructure& structure : check.structures)
+    for (const std::string& warning : structure.warnings) results.paragraph(warning);
+  for (const std::string& sentence : check.contradictions) results.paragraph(sentence);
+  for (const CheckedMode& mode : check.modes)
+    if (mode.far)
+      results.paragraph(fmt::format(
+          "The identified mode at {:.4g} Hz is taken for {}, {:+.0f} % from its prediction, since none is "
+          "nearer.",
+          mode.identified.frequency_hz, label(check, mode),
+          100 * (mode.identified.frequency_hz / mode.predicted_hz - 1)));
   results.table(mode_table(check));
   if (!check.strays.empty()) {
     std::string text;

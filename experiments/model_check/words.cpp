@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "experiments/input/spelling.hpp"
 #include "experiments/model_check/explanation.hpp"
 #include "experiments/model_check/report.hpp"
+#include "experiments/signal/chi_square_limit.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -93,6 +95,44 @@ void tell_best(const ModelCheck& check, const std::vector<Explanation>& all, con
   if (best && best != plausible) sentences.push_back(text(*best, "{} of all, with implausible values,"));
 }
 
+/// What may be another one altogether and would then explain, "tip mass 0.27 instead of 0.71 kg"; whether
+/// there is such a thing. A weight is exchanged more easily than a length.
+bool tell_exchanged(const ModelCheck& check, std::vector<std::string>& sentences) {
+  if (!with(check.single, Verdict::explains).empty()) return false;
+  auto some = with(check.single, Verdict::implausible);
+  const auto candidate = [&](const Explanation* e) -> const Candidate& {
+    return check.candidates[e->candidates[0]];
+  };
+  std::erase_if(some, [&](const Explanation* e) { return !candidate(e).exchangeable; });
+  std::stable_partition(some.begin(), some.end(),
+                        [&](const Explanation* e) { return candidate(e).name == "tip_mass"; });
+  std::string text;
+  for (const Explanation* one : some) {
+    const Candidate& c = candidate(one);
+    text += (text.empty() ? "" : ", or ") + readable(c.name);
+    for (std::size_t s = 0; s < check.structures.size(); ++s)
+      text += fmt::format("{} {:.3g} instead of {:.3g} {}", s == 0 ? "" : ",",
+                          c.value(check.structures[s].beam, one->change[0]),
+                          c.value(check.structures[s].beam, 0), c.value_unit);
+  }
+  if (text.empty()) return false;
+  text[0] = static_cast<char>(std::toupper(text[0]));
+  sentences.push_back(
+      text +
+      " explains it: more than careful work gets wrong, as much as a wrong number in the file "
+      "does, or the record of another beam.");
+  return true;
+}
+
+/// The structure that stands against all others.
+void tell_outlier(const ModelCheck& check, std::vector<std::string>& sentences) {
+  if (!check.outlier) return;
+  sentences.push_back(fmt::format(
+      "{} contradicts the others: without it {}.", check.structures[check.outlier->structure].name,
+      check.outlier->others ? "one change explains them, " + change_text(check, *check.outlier->others)
+                            : "they agree with their descriptions"));
+}
+
 /// Candidates whose effects are proportional, by the weighted cosine between them.
 void tell_twins(const ModelCheck& check, std::vector<std::string>& sentences) {
   constexpr double alike = 0.999;
@@ -119,7 +159,7 @@ std::vector<std::string> conclusions(const ModelCheck& check) {
   std::vector<std::string> sentences;
   const std::string size =
       fmt::format("chi^2 {:.3g} of {} {}, at most {:.3g} in 95 of 100 cases", check.chi_square, count,
-                  count == 1 ? "frequency" : "frequencies", chi_square_limit(count));
+                  count == 1 ? "frequency" : "frequencies", chi_square_limit(static_cast<double>(count)));
   if (check.right) {
     sentences.push_back(
         fmt::format("The beam as described agrees with what was identified: {}. No change is "
@@ -128,8 +168,10 @@ std::vector<std::string> conclusions(const ModelCheck& check) {
   } else {
     sentences.push_back(
         fmt::format("The beam as described does not agree with what was identified: {}.", size));
+    tell_outlier(check, sentences);
+    const bool exchanged = tell_exchanged(check, sentences);
     if (!tell(check, check.single, "single change", sentences)) {
-      tell_best(check, check.single, "single change", sentences);
+      if (!exchanged) tell_best(check, check.single, "single change", sentences);
       if (!check.pairs.empty() && !tell(check, check.pairs, "pair of changes", sentences))
         tell_best(check, check.pairs, "pair", sentences);
     }

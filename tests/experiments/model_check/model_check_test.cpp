@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/model_check/report.hpp"
@@ -150,6 +151,52 @@ TEST(ModelCheck, ComparesShapesWhereThereAreSeveralChannels) {
   const ModelCheck check = check_model({beam}, {});
   ASSERT_EQ(check.modes.size(), 2u);
   for (const CheckedMode& mode : check.modes) EXPECT_NEAR(mode.assurance, 1, 1e-9);
+}
+
+// A record of the beam with 0.27 kg under a description with 0.71 kg: f1 is 40 % off.
+TEST(ModelCheck, FindsAMassThatIsWrongByAFactor) {
+  for (const int modes : {1, 3}) {
+    const ModelCheck check = check_model({structure(cantilever(0.71), "tip_mass", 0.27 - 0.71, modes)}, {});
+    ASSERT_EQ(check.modes.size(), static_cast<std::size_t>(modes));
+    EXPECT_TRUE(check.modes[0].far);
+    const auto tip = std::find_if(check.single.begin(), check.single.end(), [&](const Explanation& one) {
+      return candidate_of(check, one).name == "tip_mass";
+    });
+    EXPECT_NEAR(tip->change[0], 0.27 - 0.71, 1e-3);
+    EXPECT_THAT(testing::PrintToString(conclusions(check)), HasSubstr("ip mass 0.27 instead of 0.71 kg"));
+  }
+}
+
+// Two records of the beam and one of a lighter one; the modes as their merging leaves them.
+TEST(ModelCheck, NamesTheRecordThatContradictsTheOthers) {
+  CheckedStructure beam = structure(cantilever(0.71), "", 0, 1);
+  beam.modes[0].records = {"a.csv", "b.csv"};
+  beam.modes.push_back({1.43 * beam.modes[0].frequency_hz, 1e-3, 0.01, 1e-4, {}, {"c.csv"}});
+  const ModelCheck check = check_model({beam}, {});
+  ASSERT_EQ(check.contradictions.size(), 1u);
+  EXPECT_THAT(check.contradictions[0], HasSubstr("c.csv contradicts a.csv, b.csv: mode 1"));
+  beam.modes[1].records = {"a.csv", "c.csv"};  // beside mode 1 in one record: another motion
+  EXPECT_TRUE(check_model({beam}, {}).contradictions.empty());
+}
+
+// Four tip masses, one description far off: it is named and does not spoil the others, which agree.
+TEST(ModelCheck, LeavesOutTheStructureThatContradictsTheOthers) {
+  std::vector<CheckedStructure> several;
+  for (const double mass : {1.4, 0.71, 0.27})
+    several.push_back(structure(cantilever(mass), "tip_mass", mass == 0.71 ? 0.27 - 0.71 : 0.0, 1));
+  several[0].name = "heavy", several[1].name = "middle", several[2].name = "light";
+  const ModelCheck check = check_model(several, {});
+  EXPECT_TRUE(check.right);
+  ASSERT_EQ(check.contradictions.size(), 1u);
+  EXPECT_THAT(check.contradictions[0], HasSubstr("middle contradicts the others"));
+  EXPECT_THAT(check.contradictions[0], HasSubstr("light predicts"));
+  several[1] =
+      structure(cantilever(0.71), "bending_stiffness", -0.3, 1);  // 16 % off: within reach of its mode
+  several[1].name = "middle";
+  const ModelCheck near = check_model(several, {});
+  ASSERT_TRUE(near.outlier.has_value());
+  EXPECT_EQ(near.outlier->structure, 1u);
+  EXPECT_THAT(testing::PrintToString(conclusions(near)), HasSubstr("middle contradicts the others"));
 }
 
 TEST(ModelCheck, RefusesCandidatesThatAreNone) {
