@@ -1,8 +1,12 @@
 #include "apps/command_line.hpp"
 
+#include <filesystem>
 #include <iostream>
+#include <new>
+#include <system_error>
 
 #include "apps/command.hpp"
+#include "experiments/input/clean_text.hpp"
 #include "experiments/input/input_error.hpp"
 
 namespace beamid::apps {
@@ -21,6 +25,12 @@ void print_help(std::ostream& stream) {
             "  beamid --version        the version\n";
 }
 
+/// Says what was wrong. Names of files and what they hold may not command a terminal.
+int refuse(const char* before, const std::exception& error, const std::string& after = "") {
+  std::cerr << before << experiments::clean_lines(error.what() + after) << "\n";
+  return 2;
+}
+
 int run(const std::vector<std::string>& words) {
   if (words.empty() || words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
     print_help(words.empty() ? std::cerr : std::cout);
@@ -36,8 +46,7 @@ int run(const std::vector<std::string>& words) {
       try {
         return command.run(command, {words.begin() + 1, words.end()});
       } catch (const UsageError& error) {
-        std::cerr << "beamid: " << error.what() << "\nTry: beamid " << command.name << " --help\n";
-        return 2;
+        return refuse("beamid: ", error, "\nTry: beamid " + command.name + " --help");
       }
     }
     known += (known.empty() ? "" : ", ") + command.name;
@@ -54,16 +63,21 @@ int run_command_line(int count, char** words) {
     if (!std::cout) throw std::runtime_error("standard output cannot be written");
     return code;
   } catch (const UsageError& error) {
-    std::cerr << "beamid: " << error.what() << "\nTry: beamid --help\n";
-    return 2;
+    return refuse("beamid: ", error, "\nTry: beamid --help");
   } catch (const experiments::InputError& error) {
-    std::cerr << error.what() << "\n";
-    return 2;
+    return refuse("", error);
   } catch (const std::invalid_argument& error) {
-    std::cerr << "beamid: " << error.what() << "\n";
-    return 2;
+    return refuse("beamid: ", error);
+  } catch (const std::bad_alloc&) {
+    std::cerr
+        << "beamid: more memory was asked for than there is; expected a smaller record, mesh or ensemble\n";
+    return 1;
+  } catch (const std::filesystem::filesystem_error& error) {
+    const std::string file = error.path2().empty() ? error.path1().string() : error.path2().string();
+    refuse("beamid: ", std::runtime_error("'" + file + "': " + error.code().message()));
+    return error.code() == std::errc::filename_too_long ? 2 : 1;
   } catch (const std::exception& error) {
-    std::cerr << "beamid: " << error.what() << "\n";
+    refuse("beamid: ", error);
     return 1;
   }
 }

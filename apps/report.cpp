@@ -1,8 +1,12 @@
 // beamid report: what several commands found, on one page.
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <filesystem>
 #include <iostream>
 
 #include "apps/command.hpp"
+#include "experiments/input/clean_text.hpp"
 #include "experiments/output/joined_report.hpp"
 #include "experiments/output/report_pdf.hpp"
 
@@ -35,8 +39,9 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   std::vector<fs::path> folders;
   for (const std::string& folder : values["dir"].as<std::vector<std::string>>()) folders.emplace_back(folder);
   const fs::path pdf = values.count("pdf") ? new_file(values, "pdf") : fs::path();
-  const fs::path page =
-      values.count("out") ? new_file(values, "out") : fs::path(pdf.string() + ".partial.html");
+  const fs::path page = values.count("out")
+                            ? new_file(values, "out")
+                            : fs::path(fmt::format("{}.partial-{}.html", pdf.string(), getpid()));
   if (!pdf.empty()) experiments::browser_for_pdf();
   experiments::write_joined_report(folders, page);
   if (!pdf.empty()) {
@@ -51,9 +56,10 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       throw;
     }
     leave();
-    std::cout << "Printed to " << pdf.string() << "\n";
+    std::cout << "Printed to " << experiments::clean_text(pdf.string()) << "\n";
   }
-  if (values.count("out")) std::cout << "Written to " << page.string() << ": open it in a browser\n";
+  if (values.count("out"))
+    std::cout << "Written to " << experiments::clean_text(page.string()) << ": open it in a browser\n";
   return 0;
 }
 

@@ -6,6 +6,7 @@
 
 #include "apps/command.hpp"
 #include "experiments/continuum/description.hpp"
+#include "experiments/input/clean_text.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/read_frame.hpp"
@@ -57,7 +58,7 @@ int validate_frame(const fs::path& file, const TomlTable& root) {
   const FrameExperiment experiment = read_frame(root);
   const fem::StructuralSystem system = at_place(
       {file.string()}, [&] { return fem::assemble(experiment.frame, experiment.elements_per_member); });
-  std::cout << file.string() << ": valid\n"
+  std::cout << clean_text(file.string()) << ": valid\n"
             << fmt::format("  {} First mode predicted at {:.4f} Hz.\n", frame_text(experiment, system.size()),
                            fem::modes(system, 1).frequency_hz()[0]);
   return 0;
@@ -97,13 +98,13 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 
   const fem::Beam& beam = experiment.beam;
   std::cout
-      << file.string() << ": valid\n"
+      << clean_text(file.string()) << ": valid\n"
       << fmt::format(
              "  beam     {:g} m, EI = {} N m2, {:.6g} kg with {:.6g} kg at its tip; first mode predicted at "
              "{:.4f} Hz\n",
              beam.length(), bending_stiffness_text(beam), beam.mass(), beam.tip_mass(),
              fem::modes(system, 1).frequency_hz()[0])
-      << "  record   " << record_line << "\n"
+      << "  record   " << clean_text(record_line) << "\n"
       << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
                      experiment.reduction.name, experiment.model.name, experiment.filter.name,
                      experiment.discretisation);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/input/clean_text.hpp"
 #include "experiments/input/spelling.hpp"
 #include "experiments/input/toml_node.hpp"
 
@@ -19,6 +20,15 @@ const char* expected_number(Sign sign) {
       return "a positive number";
   }
   return "";
+}
+
+/// Texts reach terminals, pages and the scripts of figures.
+void refuse_control(const Place& place, const std::string& path, const std::string& text) {
+  if (const std::size_t at = find_control(text); at != std::string::npos)
+    throw InputError(place,
+                     fmt::format("{} holds a control character (byte {} of the text, {:#04x}); expected "
+                                 "a text of one line, without any",
+                                 path, at + 1, static_cast<unsigned char>(text[at])));
 }
 
 }  // namespace
@@ -47,6 +57,7 @@ std::optional<std::string> TomlTable::find_text(const std::string& key) const {
   const toml::node* const node = node_->table->get(key);
   if (node == nullptr) return std::nullopt;
   if (!node->is_string()) refuse(key, "a text in quotes");
+  refuse_control(value_place(key), path(key), node->as_string()->get());
   return node->as_string()->get();
 }
 
@@ -112,6 +123,7 @@ std::optional<std::vector<std::string>> TomlTable::find_texts(const std::string&
     if (!text || !element.is_string())
       throw InputError(node_->at(element.source()),
                        fmt::format("{} holds {}; expected a text in quotes", path(key), found(element)));
+    refuse_control(node_->at(element.source()), path(key), *text);
     texts.push_back(*text);
   }
   return texts;

@@ -4,10 +4,13 @@
 
 #include <cmath>
 
+#include "experiments/input/clean_text.hpp"
+
 namespace beamid::experiments {
 
-std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+std::string csv_field(std::string_view raw) {
+  const std::string text = clean_lines(raw);
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
   return field + '"';

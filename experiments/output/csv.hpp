@@ -6,7 +6,8 @@
 
 namespace beamid::experiments {
 
-/// A text as one CSV field [rfc4180]: quoted where it holds a comma, a quote or a line break.
+/// A text, cleaned (clean_text.hpp), as one CSV field [rfc4180]: quoted where it holds a comma, a quote or a
+/// line break.
 std::string csv_field(std::string_view text);
 
 /// The shortest decimal number that reads back as the same double; empty when it is NaN.

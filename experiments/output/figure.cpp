@@ -6,7 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/input/clean_text.hpp"
 #include "experiments/output/csv.hpp"
+#include "experiments/output/drawing.hpp"
 #include "experiments/output/envelope.hpp"
 #include "experiments/output/file.hpp"
 #include "experiments/output/gnuplot.hpp"
@@ -89,7 +91,7 @@ void add_columns(const Panel& panel, const Curve& curve, std::vector<Fields>& co
     std::string text;
     for (const std::string& part : {panel.title, curve.label + bound})
       if (!part.empty()) text += plain_text(part) + " | ";
-    return csv_field(text + plain_text(axis));
+    return csv_field(clean_text(text + plain_text(axis)));  // one line: the script skips one
   };
   columns.push_back(column(header(panel.x_axis.label, ""), curve.x, kept));
   if (!band) columns.push_back(column(header(panel.y_axis.label, ""), curve.y, kept));
@@ -126,21 +128,34 @@ std::vector<std::string> files_of(const Figure& figure) {
 }
 
 void write(const Figure& figure, const std::filesystem::path& folder) {
+  write_data(figure, folder);
+  draw(figure, folder);
+}
+
+void write_data(const Figure& figure, const std::filesystem::path& folder) {
   check(figure);
-  const std::string script = figure.name + ".gp";
   write_file(folder / (figure.name + ".csv"), data_of(figure));
-  write_file(folder / script, gnuplot_script(figure));
+  write_file(folder / (figure.name + ".gp"), gnuplot_script(figure));
+}
+
+void draw(const Figure& figure, const std::filesystem::path& folder) {
+  constexpr double longest = 120;  // [s]
+  const auto fail = [&](const std::string& why, bool hopeless) {
+    std::error_code ignored;
+    for (const char* ending : {".svg", ".png"})
+      std::filesystem::remove(folder / (figure.name + ending), ignored);
+    throw NotDrawn("figure '" + figure.name + "' is not drawn: " + why, hopeless);
+  };
   ProcessResult gnuplot;
   try {
     // "-d" leaves the user's own settings out, which would change the picture.
-    gnuplot = run_process({"gnuplot", "-d", script}, folder);
+    gnuplot = run_process({"gnuplot", "-d", figure.name + ".gp"}, folder, longest);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error("figure '" + figure.name + "': " + error.what() +
-                             "; the Debian package gnuplot-nox has it");
+    fail(std::string(error.what()) + "; the Debian package gnuplot-nox has it", true);
   }
+  if (!gnuplot.ended) fail(fmt::format("gnuplot has not ended after {:g} s", longest), true);
   if (gnuplot.exit_code != 0)
-    throw std::runtime_error(fmt::format("figure '{}': gnuplot failed (exit code {}): {}", figure.name,
-                                         gnuplot.exit_code, gnuplot.output));
+    fail(fmt::format("gnuplot failed (exit code {}): {}", gnuplot.exit_code, gnuplot.output), false);
   for (const char* ending : {".svg", ".png"}) {
     std::error_code error;
     const auto picture = folder / (figure.name + ending);

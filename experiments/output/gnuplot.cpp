@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/input/clean_text.hpp"
 #include "experiments/output/gnuplot_axes.hpp"
 #include "experiments/output/gnuplot_curves.hpp"
 #include "experiments/output/text.hpp"
@@ -115,28 +116,30 @@ do for [picture in 'svg png'] {{
 }  // namespace
 
 std::string gnuplot_text(const std::string& label) {
-  std::string out = "'";
-  int depth = 0;
-  for (std::size_t i = 0; i < label.size(); ++i) {
-    const char c = label[i];
-    if ((c == '^' || c == '_') && i + 1 < label.size() && label[i + 1] == '{' &&
-        label.find('}', i) != std::string::npos) {
+  const std::string text = clean_text(label);
+  std::string out = "\"";
+  std::ptrdiff_t depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const auto closing = [&] { return std::count(text.begin() + static_cast<long>(i), text.end(), '}'); };
+    if (std::string_view(text).substr(i, 3) == "\\U+")
+      continue;  // gnuplot knows no way to write it literally
+    if ((c == '^' || c == '_') && i + 1 < text.size() && text[i + 1] == '{' && closing() > depth) {
       out += c;
       out += '{';
       ++i, ++depth;
     } else if (c == '}' && depth > 0) {
       out += c;
       --depth;
-    } else if (c == '\'') {
-      out += "''";
-    } else if (c == '\n' || c == '\r') {
-      out += ' ';
     } else {
-      if (std::string("^_@&~{}\\").find(c) != std::string::npos) out += '\\';
-      out += c;
+      // A backslash for "enhanced text", written as two, and the character by its octal code where the
+      // script's own language would take it for a command or the string's end.
+      if (std::string("^_@&~{}\\").find(c) != std::string::npos) out += "\\\\";
+      out += std::string("\"`@\\").find(c) != std::string::npos ? fmt::format("\\{:03o}", int{c})
+                                                                : std::string(1, c);
     }
   }
-  return out + '\'';
+  return out + '"';
 }
 
 std::string gnuplot_script(const Figure& figure) {

@@ -7,8 +7,9 @@
 
 namespace beamid::experiments {
 
-/// A text as gnuplot shall read it: single-quoted (nothing is executed within) and with all that "enhanced
-/// text" would interpret taken literally, but for "^{...}" and "_{...}".
+/// A text as gnuplot shall read it: cleaned (clean_text.hpp), in double quotes, with octal codes for what
+/// these would execute or expand ("`", "@"), and with all that "enhanced text" would interpret taken
+/// literally, but for "^{...}" and "_{...}".
 std::string gnuplot_text(const std::string& label);
 
 /// The script that draws NAME.svg and NAME.png from NAME.csv.

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "experiments/input/clean_text.hpp"
 #include "experiments/output/cell_text.hpp"
 
 namespace beamid::experiments {
@@ -16,34 +17,17 @@ namespace {
 constexpr std::array<std::pair<char, std::string_view>, 4> entities{
     {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}}};
 
-/// Bytes of the UTF-8 sequence that begins the text, 0 where none does.
-std::size_t sequence(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const std::size_t length = byte(0) < 0x80   ? 1
-                             : byte(0) < 0xC2 ? 0
-                             : byte(0) < 0xE0 ? 2
-                             : byte(0) < 0xF0 ? 3
-                             : byte(0) < 0xF5 ? 4
-                                              : 0;
-  if (length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-  return length;
-}
-
 }  // namespace
 
 std::string escaped(std::string_view text) {
   std::string result;
-  while (!text.empty()) {
-    const std::size_t length = sequence(text);
-    const auto* const special = std::find_if(entities.begin(), entities.end(),
-                                             [&](const auto& e) { return e.first == text.front(); });
+  for (const char letter : clean_lines(text)) {
+    const auto* const special =
+        std::find_if(entities.begin(), entities.end(), [&](const auto& e) { return e.first == letter; });
     if (special != entities.end())
       result += special->second;
     else
-      result += length == 0 ? std::string_view("?") : text.substr(0, length);
-    text.remove_prefix(std::max<std::size_t>(length, 1));
+      result += letter;
   }
   return result;
 }

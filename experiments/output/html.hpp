@@ -9,7 +9,7 @@
 
 namespace beamid::experiments {
 
-/// Text with the characters that HTML takes for its own written as entities; bytes that are not UTF-8 as "?".
+/// Text, cleaned (clean_text.hpp), with the characters that HTML takes for its own written as entities.
 std::string escaped(std::string_view text);
 
 /// The text that escaped() was made of.

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "experiments/input/input_error.hpp"
+#include "experiments/input/json_file.hpp"
 #include "experiments/input/text_file.hpp"
 #include "experiments/output/file.hpp"
 #include "experiments/output/html.hpp"
@@ -50,20 +51,16 @@ NamedResults read_results(const fs::path& folder) {
   NamedResults read{folder.lexically_normal().filename().string(), {}};
   if (read.name.empty() || read.name == ".")
     read.name = fs::absolute(folder).lexically_normal().parent_path().filename();
-  try {
-    read.json = Json::parse(read_text(file, "the results of a beamid command"));
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError({file.string()},
-                     std::string("no JSON (") + error.what() + "); expected the results of a beamid command");
-  }
-  if (!read.json.is_object() || read.json.value("program", "") != "beamid")
+  read.json = read_json(file, "the results of a beamid command");
+  if (read.json.value("program", Json()) != "beamid")
     throw InputError({file.string()}, "not written by beamid; expected the results of one of its commands");
+  for (const char* key : {"command", "version"})
+    if (!read.json.value(key, Json()).is_string())
+      throw InputError({file.string()},
+                       fmt::format("no text '{}'; expected the results of a beamid command", key));
   const fs::path timing = folder / "timing.json";
-  const Json times = fs::exists(timing)
-                         ? Json::parse(read_text(timing, "the times of a beamid command"), nullptr, false)
-                         : Json();
-  if (times.is_object() && times.contains("made_with") && times["made_with"].is_object())
-    read.made_with = times["made_with"];
+  const Json times = fs::exists(timing) ? read_json(timing, "the times of a beamid command") : Json::object();
+  if (times.contains("made_with") && times["made_with"].is_object()) read.made_with = times["made_with"];
   return read;
 }
 
@@ -110,6 +107,11 @@ void write_joined_report(const std::vector<fs::path>& folders, const fs::path& f
     std::vector<ReportSection> found = sections_of(read_text(page, "the page of a beamid command"));
     if (found.empty())
       throw InputError({page.string()}, "no page of beamid; expected the one that --out has written");
+    for (const ReportSection& section : found)
+      if (const std::string tag = foreign_tag(section.html); !tag.empty())
+        throw InputError(
+            {page.string()},
+            fmt::format("<{}>, which beamid does not write; expected a page as --out wrote it", tag));
     commands.push_back(command_of(found[0]));
     for (ReportSection& section : found) {
       section.title = results.back().name + ": " + section.title;

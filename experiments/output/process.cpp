@@ -1,18 +1,50 @@
 #include "experiments/output/process.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 
 namespace beamid::experiments {
 
-ProcessResult run_process(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Whether something can be read before the deadline.
+bool wait_for(int descriptor, const std::optional<Clock::time_point>& deadline) {
+  for (;;) {
+    int left = -1;  // [ms]
+    if (deadline) {
+      const auto span = std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now()).count();
+      left = static_cast<int>(std::clamp<decltype(span)>(span, 0, 3'600'000));
+    }
+    pollfd watched{descriptor, POLLIN, 0};
+    const int ready = poll(&watched, 1, left);
+    if (ready > 0) return true;
+    if (ready == 0 && Clock::now() >= *deadline) return false;
+    if (ready < 0 && errno != EINTR) return true;  // read() says what is wrong
+  }
+}
+
+}  // namespace
+
+ProcessResult run_process(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                          double longest) {
+  std::optional<Clock::time_point> deadline;
+  if (longest > 0.0)
+    deadline =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(longest));
   const std::string& program = arguments.at(0);
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -38,12 +70,14 @@ ProcessResult run_process(const std::vector<std::string>& arguments, const std::
 
   ProcessResult result;
   std::array<char, 4096> buffer;
-  for (ssize_t count; (count = read(ends[0], buffer.data(), buffer.size())) != 0;) {
+  while ((result.ended = wait_for(ends[0], deadline))) {
+    const ssize_t count = read(ends[0], buffer.data(), buffer.size());
     if (count > 0)
       result.output.append(buffer.data(), static_cast<std::size_t>(count));
-    else if (errno != EINTR)
+    else if (count == 0 || errno != EINTR)
       break;
   }
+  if (!result.ended) kill(child, SIGKILL);
   close(ends[0]);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

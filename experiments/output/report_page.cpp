@@ -1,5 +1,7 @@
 #include "experiments/output/report_page.hpp"
 
+#include <set>
+
 #include "experiments/output/html.hpp"
 
 namespace beamid::experiments {
@@ -13,6 +15,7 @@ constexpr std::string_view head = R"(<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="generator" content="beamid )" BEAMID_VERSION R"(">
 <style>
@@ -68,8 +71,14 @@ ReportSection report_section(const Results& results, const std::filesystem::path
       body += html_table(std::get<Table>(part));
     }
   }
-  for (const Figure& figure : results.figures)
-    body += html_picture(folder / (figure.name + ".svg"), description(figure));
+  for (const Figure& figure : results.figures) {
+    const std::filesystem::path svg = folder / (figure.name + ".svg");
+    body += std::filesystem::exists(svg)
+                ? html_picture(svg, description(figure))
+                : "<p class=\"note\">Figure " + escaped(figure.name) +
+                      " is not drawn (results.json says why): " + escaped(figure.name) +
+                      ".csv holds its data, `gnuplot " + escaped(figure.name) + ".gp` draws it.</p>\n";
+  }
   section.html = "<h1>" + escaped(section.title) + "</h1>\n";
   if (!results.command_line.empty()) section.html += "<pre>" + escaped(results.command_line) + "</pre>\n";
   section.html += body;
@@ -107,6 +116,17 @@ std::vector<ReportSection> sections_of(const std::string& page) {
     sections.push_back(std::move(section));
   }
   return sections;
+}
+
+std::string foreign_tag(std::string_view html) {
+  static const std::set<std::string_view> own{"h1",         "h2",    "p",  "b",  "pre", "figure",
+                                              "figcaption", "table", "tr", "th", "td",  "img"};
+  for (std::size_t at = html.find('<'); at != std::string_view::npos; at = html.find('<', at + 1)) {
+    const std::size_t begin = at + (html.substr(at).starts_with("</") ? 2 : 1);
+    const std::string_view name = html.substr(begin, html.find_first_of(" \t\r\n/>", begin) - begin);
+    if (!own.contains(name)) return std::string(name.empty() ? "..." : name.substr(0, 40));
+  }
+  return "";
 }
 
 std::string command_of(const ReportSection& section) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/output/results.hpp"
@@ -24,6 +25,10 @@ std::string report_page(const std::vector<ReportSection>& sections);
 
 /// The sections of a page that report_page() made; empty when it did not.
 std::vector<ReportSection> sections_of(const std::string& page);
+
+/// The name of the first tag in a section that report_section() never writes; empty where there is none. A
+/// page from elsewhere may not bring scripts, frames or files along.
+std::string foreign_tag(std::string_view html);
 
 /// The command that repeats a section, as report_section() wrote it; empty where it did not.
 std::string command_of(const ReportSection& section);

@@ -26,6 +26,19 @@ bool is_pdf(const fs::path& file) {
   return stream.read(head.data(), 4) && head == "%PDF";
 }
 
+/// A file's address [rfc3986]: all but plain letters and slashes by their codes, as "#" ends a path.
+std::string address_of(const fs::path& file) {
+  std::string address = "file://";
+  for (const char letter : fs::absolute(file).string()) {
+    const auto byte = static_cast<unsigned char>(letter);
+    const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                       (letter >= '0' && letter <= '9') ||
+                       std::string_view("/-._~").find(letter) != std::string_view::npos;
+    address += plain ? std::string(1, letter) : fmt::format("%{:02X}", byte);
+  }
+  return address;
+}
+
 /// The browser's own files, which it would leave in the user's home.
 class Profile {
  public:
@@ -75,7 +88,7 @@ void print_pdf(const fs::path& page, const fs::path& pdf) {
                                  "--no-pdf-header-footer",
                                  "--print-to-pdf=" + printed.string()};
   if (geteuid() == 0) words.insert(words.begin() + 3, "--no-sandbox");  // it starts as root only without
-  words.push_back("file://" + fs::absolute(page).string());
+  words.push_back(address_of(page));
   const ProcessResult result = run_process(words, profile.folder());
   if (result.exit_code != 0 || !is_pdf(printed))
     throw std::runtime_error(

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "experiments/input/clean_text.hpp"
+#include "experiments/output/drawing.hpp"
 #include "experiments/output/library_versions.hpp"
 #include "experiments/output/report_page.hpp"
 #include "experiments/output/text.hpp"
@@ -50,6 +53,33 @@ std::vector<std::string> files_of(const Results& results) {
   return files;
 }
 
+// What gnuplot said to those it did not draw. One that is missing or hangs is not asked again.
+std::vector<std::string> draw_all(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+  std::vector<std::string> failures;
+  for (const Figure& figure : figures) {
+    try {
+      draw(figure, folder);
+    } catch (const NotDrawn& failure) {
+      failures.emplace_back(failure.what());
+      if (failure.hopeless()) break;
+    }
+  }
+  return failures;
+}
+
+// "files" names what is there, "warnings" why a picture is not.
+void tell_undrawn(Json& json, const std::vector<std::string>& failures, const std::filesystem::path& folder) {
+  Json files = Json::array();
+  for (const auto& file : json["files"]) {
+    const std::filesystem::path path = file.get<std::string>();
+    const bool picture = path.extension() == ".svg" || path.extension() == ".png";
+    if (!picture || std::filesystem::exists(folder / path)) files.push_back(file);
+  }
+  json.erase("files");
+  for (const std::string& failure : failures) json["warnings"].push_back(failure);
+  json["files"] = files;
+}
+
 }  // namespace
 
 Json to_json(const Results& results) {
@@ -74,10 +104,13 @@ Json to_json(const Results& results) {
 }
 
 void write(const Results& results, ResultDirectory& directory) {
-  directory.write("results.json", text_of(to_json(results)));
+  Json json = to_json(results);
   for (const auto& part : results.report)
     if (const auto* table = std::get_if<Table>(&part)) directory.write(table->name + ".csv", to_csv(*table));
-  for (const Figure& figure : results.figures) write(figure, directory.path());
+  for (const Figure& figure : results.figures) write_data(figure, directory.path());
+  if (const auto failures = draw_all(results.figures, directory.path()); !failures.empty())
+    tell_undrawn(json, failures, directory.path());
+  directory.write("results.json", text_of(json));
   for (const Attachment& attachment : results.attachments) attachment.write(directory.path());
   directory.write("report.html", report_page({report_section(results, directory.path())}));
   Json timing;
@@ -87,7 +120,8 @@ void write(const Results& results, ResultDirectory& directory) {
   directory.write("timing.json", text_of(timing));
 }
 
-void print(std::ostream& stream, const Results& results) {
+void print(std::ostream& terminal, const Results& results) {
+  std::ostringstream stream;
   bool first = true;
   for (const auto& part : results.report) {
     if (!std::exchange(first, false)) stream << '\n';
@@ -100,6 +134,7 @@ void print(std::ostream& stream, const Results& results) {
       print(stream, std::get<Table>(part));
     }
   }
+  terminal << clean_lines(stream.str());  // names from files may not command a terminal
 }
 
 void print_json(std::ostream& stream, const Results& results) {

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "experiments/input/input_error.hpp"
+#include "experiments/input/json_file.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/text_file.hpp"
 #include "experiments/input/words.hpp"
@@ -78,10 +79,9 @@ Json manifest_of(const SweepSource& source, const SweepPlan& plan, const Shard& 
 }
 
 Json read_manifest(const std::filesystem::path& file) {
-  const std::string text = read_text(file, "the manifest.json of a sweep");
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || json.value("program", "") != "beamid sweep" ||
-      !json.contains("hash") || !json["hash"].is_string())
+  Json json = read_json(file, "the manifest.json of a sweep");
+  if (json.value("program", Json()) != "beamid sweep" || !json.value("hash", Json()).is_string() ||
+      !json.value("shard", Json()).is_object())
     throw InputError({file.string()}, "no manifest of a sweep; expected a folder that beamid sweep wrote");
   return json;
 }
@@ -96,6 +96,8 @@ SweepPlan plan_of(const Json& manifest, const std::filesystem::path& file) {
     plan.seed = told.at("seed").get<std::uint64_t>();
     plan.once = told.value("identify", "") == "once";
     check(plan);
+  } catch (const Json::exception&) {
+    throw InputError({file.string()}, "no plan of a sweep; expected what beamid sweep wrote");
   } catch (const std::exception& error) {
     throw InputError({file.string()}, fmt::format("no plan of a sweep: {}", error.what()));
   }

@@ -220,14 +220,5 @@ TEST_F(Tutorial, ShowsTheBiasOfForwardEuler) {
   EXPECT_NEAR(results.at("damping_n_s_per_m").at("estimate").get<double>(), predicted, 2e-3 * predicted);
 }
 
-TEST_F(Tutorial, LeavesNothingBehindWhenFiguresCannotBeDrawn) {
-  const auto before = place_.files();
-  const Outcome outcome = place_.run("identify --config cantilever.toml --out results", "PATH=/nowhere");
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_THAT(outcome.err, HasSubstr("cannot start 'gnuplot'"));
-  EXPECT_EQ(place_.files(), before);
-}
-
 }  // namespace
 }  // namespace beamid::apps

@@ -1,14 +1,21 @@
 #include "experiments/output/figure.hpp"
 
+#include <gtest/gtest.h>
+#include <vtkNew.h>
+#include <vtkXMLParser.h>
+
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <set>
 
-#include <gtest/gtest.h>
-
+#include "experiments/output/drawing.hpp"
 #include "experiments/output/envelope.hpp"
 #include "experiments/output/gnuplot.hpp"
+#include "experiments/output/html.hpp"
 #include "experiments/output/process.hpp"
 #include "tests/experiments/output/temporary_folder.hpp"
 
@@ -76,10 +83,12 @@ TEST(Figure, IsTheSameWheneverDrawn) {
 }
 
 TEST(Figure, TakesLabelsLiterally) {
-  EXPECT_EQ(gnuplot_text("massa1_test1-1"), R"('massa1\_test1-1')");
-  EXPECT_EQ(gnuplot_text("m/s^{2}"), "'m/s^{2}'");
-  EXPECT_EQ(gnuplot_text("it's {a} `b` @c\nd"), R"('it''s \{a\} `b` \@c d')");
-  EXPECT_EQ(gnuplot_text("open ^{brace"), R"('open \^\{brace')");
+  EXPECT_EQ(gnuplot_text("massa1_test1-1"), R"("massa1\\_test1-1")");
+  EXPECT_EQ(gnuplot_text("m/s^{2}"), "\"m/s^{2}\"");
+  EXPECT_EQ(gnuplot_text("it's {a} `b` @c\nd"), R"("it's \\{a\\} \140b\140 \\\100c d")");
+  EXPECT_EQ(gnuplot_text("open ^{brace"), R"("open \\^\\{brace")");
+  EXPECT_EQ(gnuplot_text(std::string("A,x\\\0,`touch executed`", 22)),
+            R"("A,x\\\134,\140touch executed\140")");
 
   TemporaryFolder folder;
   Figure figure = every_style();
@@ -87,6 +96,88 @@ TEST(Figure, TakesLabelsLiterally) {
   figure.panels[0].curves[1].label = "\"`touch executed`\" \\";
   write(figure, folder.path);
   EXPECT_EQ(folder.entries(), 4u);
+}
+
+/// Expat's verdict; it asks nothing of the elements.
+bool well_formed(const std::string& xml) {
+  class Parser : public vtkXMLParser {
+   public:
+    static Parser* New() { return new Parser; }
+
+   private:
+    void StartElement(const char*, const char**) override {}
+    void EndElement(const char*) override {}
+  };
+  return vtkNew<Parser>()->Parse(xml.c_str()) == 1;
+}
+
+// Oracle: the labels read back from the SVG, which an XML parser takes. Two apostrophes, or one in front,
+// lost the whole folder of results; NUL in one label ran the next one as a shell command.
+TEST(Figure, DrawsEveryLabelAndRunsNone) {
+  TemporaryFolder folder;
+  std::string printable;
+  for (char c = ' '; c <= '~'; ++c) printable += c;
+  const std::vector<std::pair<std::string, std::string>> labels{
+      {"w''", "w''"},
+      {"'tip'", "'tip'"},
+      {printable, printable},
+      {std::string("A,x\\\0", 5), "A,x\\"},
+      {"`touch executed`", "`touch executed`"},
+      {"$(touch executed) @x", "$(touch executed) @x"},
+      {"^{a^{b}", "a^{b"},
+      {"{}}{ %d #", "{}}{ %d #"},
+      {"Beschleunigung [m/s\xb2]\x1b[2J", "Beschleunigung [m/s²][2J"},
+      {"two\nlines", "two lines"},
+      {"\\U+0007", "U+0007"}};
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(5, 0, 1);
+  Figure figure{"labels", {{"'", {"'x'"}, {"y''"}, {}}}, 1, 1, 900, 900};
+  for (const auto& [label, drawn] : labels) figure.panels[0].curves.push_back({label, x, x});
+  write(figure, folder.path);
+  EXPECT_EQ(folder.entries(), 4u);
+
+  const std::string svg = contents(folder.path / "labels.svg");
+  EXPECT_TRUE(well_formed(svg));
+  std::string text;
+  bool inside = false;
+  for (const char c : svg) {
+    if (!inside && c != '<') text += c;
+    inside = c == '<' || (inside && c != '>');
+  }
+  text = unescaped(text);
+  for (std::size_t at; (at = text.find("&#39;")) != std::string::npos;) text.replace(at, 5, "'");
+  for (std::size_t at; (at = text.find("\u00a0")) != std::string::npos;) text.replace(at, 2, " ");
+  for (const auto& [label, drawn] : labels) EXPECT_NE(text.find(drawn), std::string::npos) << drawn;
+  // One line of names, whatever they hold: the script passes over one.
+  const std::string csv = contents(folder.path / "labels.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+}
+
+// What gnuplot cannot draw is no reason to lose it; one that hangs is not waited for.
+TEST(Figure, IsNotDrawnWithoutAFault) {
+  TemporaryFolder folder;
+  Figure figure = every_style();
+  write_data(figure, folder.path);
+  std::ofstream(folder.path / "styles.gp") << "set output 'styles.svg'\nno command\n";
+  try {
+    draw(figure, folder.path);
+    FAIL();
+  } catch (const NotDrawn& failure) {
+    EXPECT_FALSE(failure.hopeless());
+    EXPECT_NE(std::string(failure.what()).find("figure 'styles' is not drawn: gnuplot failed (exit code 1)"),
+              std::string::npos)
+        << failure.what();
+  }
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
+TEST(Process, IsKilledWhenItsTimeIsOver) {
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(run_process({"sleep", "30"}, "/tmp", 0.2).ended);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  const ProcessResult in_time = run_process({"sh", "-c", "echo done; exit 3"}, "/tmp", 30);
+  EXPECT_TRUE(in_time.ended);
+  EXPECT_EQ(in_time.output, "done\n");
+  EXPECT_EQ(in_time.exit_code, 3);
 }
 
 // A run that diverged is a result: its figure is drawn without the values it lacks.

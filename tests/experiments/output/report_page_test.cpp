@@ -27,7 +27,7 @@ TEST(Base64, GivesThePublishedVectors) {
 
 TEST(EscapedText, ShowsWhatHtmlWouldTakeForItsOwn) {
   EXPECT_EQ(escaped("K < 3 & \"ξ\" > 2"), "K &lt; 3 &amp; &quot;ξ&quot; &gt; 2");
-  EXPECT_EQ(escaped("a\xff\xc3"), "a??");
+  EXPECT_EQ(escaped("a\xff\xc3\x1b[2J"), "aÿÃ[2J");
   for (const std::string text : {"&lt;", "<&>\"", "plain", "&amp;lt;"})
     EXPECT_EQ(unescaped(escaped(text)), text);
 }
@@ -54,7 +54,7 @@ TEST(ReportPage, HoldsAllThatWasPrintedAndNeedsNoNetwork) {
         "<pre>beamid identify 'my record.csv' --config a.toml</pre>", "<p>First line\nand second</p>",
         "<th>K [N/m]</th>", "<td class=\"number\">509.39</td>", "<td class=\"number\">-</td>"})
     EXPECT_THAT(page, HasSubstr(text));
-  for (const char* outside : {"http", "src=\"/", "@import", "<script", "url("})
+  for (const char* outside : {"http:", "https:", "src=\"/", "@import", "<script", "url("})
     EXPECT_THAT(page, Not(HasSubstr(outside)));
 }
 
