@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "experiments/experiment.hpp"
 #include "experiments/input/record_table.hpp"
 
 namespace beamid::experiments {
@@ -13,7 +15,19 @@ namespace beamid::experiments {
 /// as most of the file's numbers are. The others are named in a remark.
 class CollectedSignals {
  public:
-  explicit CollectedSignals(std::string file) : file_(std::move(file)) {}
+  struct Signal {
+    std::string name, unit;
+    std::vector<double> values;
+    int digits = 15;
+  };
+
+  /// @param most_numbers that the file may hold in all (read_apart.hpp).
+  CollectedSignals(std::string file, std::size_t most_numbers)
+      : file_(std::move(file)), most_numbers_(most_numbers) {}
+
+  /// To be called before memory is taken for them. @throws InputError when the sum of all that were announced
+  /// is above what the file may hold.
+  void announce(const std::string& name, const std::vector<std::size_t>& extent);
 
   /// @param digits significant ones: 7 in single precision, 15 in double.
   void add(std::string name, std::string unit, std::vector<double> values, int digits);
@@ -29,18 +43,31 @@ class CollectedSignals {
   /// @returns whether it is one of them.
   bool set(const std::string& name, double value);
 
-  /// @throws InputError when there is no signal of at least two samples.
-  RecordTable table() const;
+  /// What set() made of a number. @param interval [s]
+  void set_interval(std::string name, double interval) {
+    interval_name_ = std::move(name), interval_ = interval;
+  }
+
+  /// Times are in the unit that their signal states, by its name or beside it, and in seconds where it states
+  /// none, which a remark then says.
+  /// @throws InputError when there is no signal of at least two samples, or when times and a stated interval
+  /// contradict each other or times are in another unit, unless the format states them itself.
+  RecordTable table(const RecordFormat& format) const;
+
+  const std::string& file() const { return file_; }
+  const std::vector<Signal>& signals() const { return signals_; }
+  double interval() const { return interval_; }                        ///< [s]; 0: none stated
+  const std::string& interval_name() const { return interval_name_; }  ///< of the number that stated it
 
  private:
-  struct Signal {
-    std::string name, unit;
-    std::vector<double> values;
-    int digits;
-  };
+  void find_time(RecordTable& table, const RecordFormat& format) const;
+
   std::string file_;
+  std::size_t most_numbers_;
+  double announced_ = 0.0;
   std::vector<Signal> signals_;
   double interval_ = 0.0;
+  std::string interval_name_;
 };
 
 }  // namespace beamid::experiments

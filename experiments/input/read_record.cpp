@@ -150,6 +150,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   record.input_path = format.input;
   if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
   record.remarks = table.remarks;
+  record.warnings = table.warnings;
   return format.window ? cut(record, format, table.file) : record;
 }
 

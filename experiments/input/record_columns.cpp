@@ -80,11 +80,16 @@ RecordColumns columns_of_header(RecordTable& table) {
 
 std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index) {
   if (table.time == index) return ColumnMeaning{std::nullopt, "", 1};
-  if (const auto meaning = parse_column_name(name_of(table, index))) return meaning;
-  if (index >= table.units.size()) return std::nullopt;
+  const auto meaning = parse_column_name(name_of(table, index));
+  if (index >= table.units.size()) return meaning;
   const auto unit = stated_unit(table.units[index]);
-  if (!unit) return std::nullopt;
-  return ColumnMeaning{unit->quantity, name_of(table, index), unit->factor};
+  if (!unit) return meaning;
+  if (!meaning) return ColumnMeaning{unit->quantity, name_of(table, index), unit->factor};
+  if (unit->quantity != meaning->quantity || unit->factor != meaning->factor)
+    throw InputError({table.file, table.header_line},
+                     fmt::format("'{}' has the unit '{}'; expected the one of its name", table.names[index],
+                                 table.units[index]));
+  return meaning;
 }
 
 std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted) {

@@ -21,7 +21,8 @@ struct RecordColumns {
   std::vector<RecordColumn> channels;
 };
 
-/// What a column's name says ("acceleration_g"), or else the unit that the file gives it.
+/// What a column's name says ("acceleration_g"), or the unit that the file gives it.
+/// @throws InputError at the header where they contradict each other.
 std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index);
 
 /// The column that a description names. @throws InputError at the header or the first row.

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "experiments/input/clean_text.hpp"
 #include "experiments/input/text_file.hpp"
 
 namespace beamid::experiments {
@@ -29,7 +30,10 @@ std::string reader_of(const std::filesystem::path& file, const RecordFormat& for
 }
 
 RecordTable read_table(const std::filesystem::path& file, const RecordFormat& format) {
-  return record_reader_registry().make(reader_of(file, format), {})->read(file, format);
+  RecordTable table = record_reader_registry().make(reader_of(file, format), {})->read(file, format);
+  for (auto* texts : {&table.names, &table.units, &table.remarks, &table.warnings})
+    for (std::string& text : *texts) text = clean_text(text);
+  return table;
 }
 
 }  // namespace beamid::experiments

@@ -33,7 +33,7 @@ RecordReaderRegistry& record_reader_registry();
 /// @throws InputError when there is no such file, std::invalid_argument when there is no such reader.
 std::string reader_of(const std::filesystem::path& file, const RecordFormat& format);
 
-/// The file's columns, by reader_of(). @throws InputError.
+/// The file's columns, by reader_of(), with names and units cleaned (clean_text.hpp). @throws InputError.
 RecordTable read_table(const std::filesystem::path& file, const RecordFormat& format);
 
 }  // namespace beamid::experiments

@@ -38,6 +38,7 @@ struct RecordTable {
   std::vector<std::size_t> skipped_lines;    ///< left out already, as they have another number of columns
   std::function<TextField(std::size_t row, std::size_t column)> cell;  ///< absent in binary files
   std::vector<std::string> remarks;                                    ///< sentences for reports
+  std::vector<std::string> warnings;                                   ///< what may make any result wrong
 
   std::size_t width() const { return columns.size(); }
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }

@@ -272,6 +272,7 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
   found.sampling = check_sampling(found.time, found.resolution);
   for (InspectedChannel& channel : found.channels) analyse(found, channel);
   found.remarks = table.remarks;
+  found.remarks.insert(found.remarks.end(), table.warnings.begin(), table.warnings.end());
   return found;
 }
 

@@ -3,51 +3,19 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
-#include "experiments/input/collected_signals.hpp"
+#include "experiments/input/read_apart.hpp"
 #include "experiments/input/record_reader.hpp"
 #include "experiments/input/text_file.hpp"
+#include "experiments/record_files/hdf5/handle.hpp"
+#include "experiments/record_files/hdf5/own_storage.hpp"
 
 namespace beamid::experiments {
 namespace {
-
-/// An HDF5 identifier that closes itself.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-  bool open() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-/// Silences HDF5, which would print its whole stack of errors, and, at the program's end, a complaint about
-/// what a damaged file left open.
-class Quiet {
- public:
-  Quiet() {
-    H5dont_atexit();
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
 
 std::optional<double> number_attribute(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return std::nullopt;
@@ -90,10 +58,8 @@ std::string text_attribute(hid_t object, const char* name) {
 constexpr const char* sampling[] = {"sampling_rate_hz", "sampling_interval_s", "dt", "fs", "Fs", "Delta_X"};
 
 struct Walk {
-  CollectedSignals signals;
-  std::size_t most_numbers;
-  std::string file;
-  std::optional<InputError> failure;
+  CollectedSignals& signals;
+  std::exception_ptr failure = nullptr;  // none may pass through HDF5
 };
 
 void take_sampling(Walk& walk, hid_t object, const std::string& path) {
@@ -112,13 +78,11 @@ void take_dataset(Walk& walk, hid_t dataset, const std::string& path) {
   hsize_t extent[2] = {1, 1};
   H5Sget_simple_extent_dims(space, extent, nullptr);
   if (extent[0] == 0 || extent[1] == 0) return;
-  if (extent[0] > walk.most_numbers / extent[1])
-    throw InputError({walk.file},
-                     fmt::format("'{}' claims {} x {} numbers; expected no more than the file can hold", path,
-                                 extent[0], extent[1]));
+  require_own_storage(dataset, path, walk.signals.file());
+  walk.signals.announce(path, {extent, extent + std::max(rank, 1)});
   std::vector<double> values(extent[0] * extent[1]);
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    throw InputError({walk.file}, fmt::format("'{}' cannot be read; expected numbers", path));
+    throw InputError({walk.signals.file()}, fmt::format("'{}' cannot be read; expected numbers", path));
   std::string unit = text_attribute(dataset, "units");
   if (unit.empty()) unit = text_attribute(dataset, "unit");
   const int digits = kind == H5T_FLOAT && H5Tget_size(type) <= 4 ? 7 : 15;
@@ -137,13 +101,17 @@ void take_dataset(Walk& walk, hid_t dataset, const std::string& path) {
 herr_t visit(hid_t root, const char* name, const H5O_info_t* info, void* data) {
   Walk& walk = *static_cast<Walk*>(data);
   const std::string path = std::string(name) == "." ? "" : std::string("/") + name;
+  constexpr std::ptrdiff_t deepest = 64;  // each object is sought by its path
   try {
+    if (std::count(path.begin(), path.end(), '/') > deepest)
+      throw InputError({walk.signals.file()},
+                       fmt::format("groups within groups, more than {}; expected fewer", deepest));
     const Handle object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
     if (!object.open()) return 0;
     if (info->type == H5O_TYPE_DATASET) take_dataset(walk, object, path);
     if (info->type == H5O_TYPE_GROUP) take_sampling(walk, object, path);
-  } catch (const InputError& error) {
-    walk.failure = error;
+  } catch (...) {
+    walk.failure = std::current_exception();
     return 1;
   }
   return 0;
@@ -157,19 +125,23 @@ class Hdf5Reader final : public RecordReader {
             !beginning.starts_with("MATLAB"));
   }
 
-  RecordTable read(const std::filesystem::path& path, const RecordFormat&) const override {
+  RecordTable read(const std::filesystem::path& path, const RecordFormat& format) const override {
     const std::string name = path.string();
     const std::size_t size = count_bytes(path, "an HDF5 file");
+    return read_apart(name, "HDF5", reading_limits(size), collect).table(format);
+  }
+
+ private:
+  static void collect(CollectedSignals& signals) {
+    const std::string& name = signals.file();
     const Quiet quiet;
     const Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file.open()) throw InputError({name}, "cannot be opened by HDF5; expected an undamaged HDF5 file");
-    constexpr std::size_t compression = 1100;  // more than deflate ever reaches
-    Walk walk{CollectedSignals(name), size * compression / 4 + 64, name, std::nullopt};
+    Walk walk{signals};
     const herr_t ended = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC);
-    if (walk.failure) throw *walk.failure;
+    if (walk.failure) std::rethrow_exception(walk.failure);
     if (ended < 0)
       throw InputError({name}, "cannot be walked through by HDF5; expected an undamaged HDF5 file");
-    return walk.signals.table();
   }
 };
 

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "experiments/input/fields.hpp"
 #include "experiments/input/record_reader.hpp"
 #include "experiments/input/text_cells.hpp"
 #include "experiments/input/text_file.hpp"
+#include "experiments/input/time_unit.hpp"
 #include "experiments/record_files/lvm/lvm_lines.hpp"
 
 namespace beamid::experiments {
@@ -20,8 +23,8 @@ using std::string_view;
 /// Walks the lines of a measurement file and fills a table.
 class LvmFile {
  public:
-  LvmFile(const std::string& name, std::shared_ptr<const std::string> content)
-      : content_(std::move(content)), lines_(name, *content_), cells_(name, content_) {
+  LvmFile(const std::string& name, std::shared_ptr<const std::string> content, const RecordFormat& format)
+      : content_(std::move(content)), lines_(name, *content_), cells_(name, content_), format_(format) {
     table_.file = name;
   }
 
@@ -41,9 +44,68 @@ class LvmFile {
 
  private:
   void begin_segment() {
-    segment_ = lines_.read_segment();
+    end_segment();
+    const LvmSegment before = std::exchange(segment_, lines_.read_segment());
+    if (++segments_ > 1) check_like(before);
+    clock_ = segment_clock();
     rows_begun_ = false;
-    ++segments_;
+    rows_before_ = table_.lines.size();
+  }
+
+  /// Units hold for all segments; an absent label contradicts none.
+  void check_like(const LvmSegment& before) {
+    if (segment_.units.empty()) segment_.units = before.units;
+    if (segment_.x_units.empty()) segment_.x_units = before.x_units;
+    if (segment_.dimensions.empty()) segment_.dimensions = before.dimensions;
+    const auto check = [&](const char* what, const std::vector<std::string>& now,
+                           const std::vector<std::string>& then) {
+      if (!then.empty() && now != then)
+        throw InputError(segment_.place,
+                         fmt::format("{} '{}' after '{}' in the segment before; expected the same", what,
+                                     fmt::join(now, "', '"), fmt::join(then, "', '")));
+    };
+    check("Y_Unit_Label", segment_.units, before.units);
+    check("X_Unit_Label", segment_.x_units, before.x_units);
+    check("X_Dimension", segment_.dimensions, before.dimensions);
+  }
+
+  bool over_time() const { return segment_.dimensions.empty() || segment_.dimensions[0] == "Time"; }
+
+  /// What the segment's header says of its instants.
+  std::optional<Clock> segment_clock() const {
+    if (!over_time() || segment_.intervals.empty() || !(segment_.intervals[0] > 0)) return std::nullopt;
+    const auto factor = x_factor();
+    if (!factor) return std::nullopt;
+    return Clock{*factor * (segment_.starts.empty() ? 0.0 : segment_.starts[0]),
+                 *factor * segment_.intervals[0]};
+  }
+
+  std::string x_unit() const { return segment_.x_units.empty() ? "" : segment_.x_units[0]; }
+  std::optional<double> x_factor() const { return seconds_per(x_unit(), "X", table_.file, format_); }
+
+  /// The instants of a segment without X columns, by its own header; and whether it is whole.
+  void end_segment() {
+    const std::size_t rows = table_.lines.size() - rows_before_;
+    const double stated =
+        segment_.samples.empty() ? 0.0 : *std::max_element(segment_.samples.begin(), segment_.samples.end());
+    if (segments_ > 0 && stated > 0 && stated != static_cast<double>(rows))
+      table_.warnings.push_back(
+          fmt::format("Segment {} has {} rows where its header states {:g} samples{}.", segments_, rows,
+                      stated, static_cast<double>(rows) < stated ? ": the others are lost" : ""));
+    if (rows == 0 || has_x_ || !clock_) return;
+    for (const auto* values : {&segment_.starts, &segment_.intervals})
+      if (std::any_of(values->begin(), values->end(), [&](double value) { return value != values->front(); }))
+        throw InputError(segment_.place, "channels of different X0 or Delta_X; expected the same for all");
+    if (instants_.empty()) first_clock_ = clock_;
+    one_interval_ = one_interval_ && std::abs(clock_->interval / first_clock_->interval - 1) < 1e-9;
+    if (!instants_.empty() && clock_->start < instants_.back() + 0.5 * clock_->interval)
+      throw InputError(
+          segment_.place,
+          fmt::format("a segment that begins at {:g} s, where the one before runs to {:g} s; expected "
+                      "segments in succession",
+                      clock_->start, instants_.back()));
+    for (std::size_t k = 0; k < rows; ++k)
+      instants_.push_back(clock_->start + static_cast<double>(k) * clock_->interval);
   }
 
   /// "X_Value	Acceleration	Comment", or "X_Value	A	X_Value	B	Comment".
@@ -93,13 +155,16 @@ class LvmFile {
     if (values_.empty()) values_.resize(1 + y_.size()), precision_.resize(1 + y_.size());
     const bool has_x = !x_.empty() && x_[0] < lines_.fields().size() && !lines_.fields()[x_[0]].empty();
     if (table_.lines.empty()) has_x_ = has_x;
+    if (table_.lines.size() == rows_before_ && has_x != has_x_)
+      throw lines_.bad(
+          fmt::format("a segment with{} X_Value; expected all of them alike", has_x ? "" : "out"));
     for (std::size_t k = 1; has_x_ && k < x_.size(); ++k)
       if (x_[k] < lines_.fields().size() && lines_.fields()[x_[k]] != lines_.fields()[x_[0]])
         throw InputError({table_.file, lines_.number(),
                           static_cast<std::size_t>(lines_.fields()[x_[k]].data() - lines_.line().data()) + 1},
                          fmt::format("X {} beside {}; expected channels sampled at the same instants",
                                      lines_.fields()[x_[k]], lines_.fields()[x_[0]]));
-    values_[0].push_back(has_x_ ? value(x_[0]) : 0.0);
+    if (has_x_) values_[0].push_back(value(x_[0]));
     if (has_x_ && std::isfinite(values_[0].back())) add_precision(0, lines_.fields()[x_[0]]);
     for (std::size_t k = 0; k < y_.size(); ++k) {
       values_[k + 1].push_back(value(y_[k]));
@@ -115,21 +180,39 @@ class LvmFile {
     precision_[column].add(pointed);
   }
 
+  /// One clock for all segments; nothing where they do not follow each other at one interval.
+  std::optional<Clock> common_clock() const {
+    const auto [start, interval] = *first_clock_;
+    const auto last = static_cast<double>(instants_.size() - 1);
+    // Where a segment begins late all that follow do.
+    if (!one_interval_ || std::abs(instants_.back() - start - last * interval) > 0.5 * interval)
+      return std::nullopt;
+    return first_clock_;
+  }
+
+  void add_time(std::string unit, std::vector<double> times, const PrintedPrecision& precision) {
+    table_.names.emplace_back("X_Value"), table_.units.push_back(std::move(unit));
+    table_.columns.push_back(std::move(times));
+    table_.precision.push_back(precision);
+  }
+
   void finish() {
+    end_segment();
     if (table_.lines.empty())
       throw lines_.bad("no row of numbers; expected a segment with X_Value and channels");
     std::vector<std::size_t> fields;
     if (has_x_) {
-      table_.names.emplace_back("X_Value"), table_.units.emplace_back("s");
-      table_.columns.push_back(std::move(values_[0]));
-      table_.precision.push_back(precision_[0]);
+      const auto factor = over_time() ? x_factor() : std::nullopt;
+      add_time(x_unit().empty() && over_time() ? "s" : x_unit(), std::move(values_[0]), precision_[0]);
       fields.push_back(x_[0]);
-      if (segment_.dimensions.empty() || segment_.dimensions[0] == "Time") table_.time = 0;
-    } else if (!segment_.intervals.empty() && segment_.intervals[0] > 0) {
-      if (std::any_of(segment_.intervals.begin(), segment_.intervals.end(),
-                      [&](double dx) { return dx != segment_.intervals[0]; }))
-        throw lines_.bad("channels of different Delta_X; expected the same for all");
-      table_.clock = {segment_.starts.empty() ? 0.0 : segment_.starts[0], segment_.intervals[0]};
+      if (factor == 1.0) table_.time = 0;
+    } else if (instants_.size() == table_.lines.size() && instants_.size() > 1) {
+      table_.clock = common_clock();
+      if (!table_.clock) {  // the instants stand in no field
+        add_time("s", std::move(instants_), PrintedPrecision::of_digits(15));
+        fields.push_back(std::numeric_limits<std::size_t>::max());
+        table_.time = 0;
+      }
     }
     for (std::size_t k = 0; k < y_.size(); ++k) {
       table_.names.push_back(channels_[k]);
@@ -145,8 +228,12 @@ class LvmFile {
   std::shared_ptr<const std::string> content_;
   LvmLines lines_;
   LvmSegment segment_;
-  std::size_t segments_ = 0;
+  std::optional<Clock> clock_, first_clock_;  ///< of the segment, and of the first
+  bool one_interval_ = true;                  ///< in all of them
+  std::vector<double> instants_;              ///< of the rows, by the headers of their segments
+  std::size_t segments_ = 0, rows_before_ = 0;
   TextCells cells_;
+  const RecordFormat& format_;
   RecordTable table_;
   bool rows_begun_ = false, has_x_ = false;
   std::vector<std::string> channels_;
@@ -162,9 +249,10 @@ class LvmReader final : public RecordReader {
            beginning.starts_with("\xEF\xBB\xBFLabVIEW Measurement");
   }
 
-  RecordTable read(const std::filesystem::path& file, const RecordFormat&) const override {
+  RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const override {
     constexpr const char* expected = "a LabVIEW measurement file";
-    return LvmFile(file.string(), std::make_shared<const std::string>(read_text(file, expected))).read();
+    return LvmFile(file.string(), std::make_shared<const std::string>(read_text(file, expected)), format)
+        .read();
   }
 };
 

@@ -1,14 +1,14 @@
 // MATLAB files of level 5 and 7.3, through matio.
 #include <fmt/format.h>
-#include <hdf5.h>
 #include <matio.h>
 
 #include <filesystem>
 #include <memory>
 
-#include "experiments/input/collected_signals.hpp"
+#include "experiments/input/read_apart.hpp"
 #include "experiments/input/record_reader.hpp"
 #include "experiments/input/text_file.hpp"
+#include "experiments/record_files/hdf5/own_storage.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -77,62 +77,90 @@ class MatReader final : public RecordReader {
     return beginning.starts_with("MATLAB 5.0 MAT-file") || beginning.starts_with("MATLAB 7.3 MAT-file");
   }
 
-  RecordTable read(const std::filesystem::path& path, const RecordFormat&) const override {
+  RecordTable read(const std::filesystem::path& path, const RecordFormat& format) const override {
+    const std::string name = path.string();
     const std::size_t size =
         count_bytes(path, "a MATLAB file");  // says in the usual words when there is none
-    const std::string name = path.string();
-    Mat_LogInitFunc("beamid", [](int, char*) {});
-    H5dont_atexit();  // else HDF5, below level 7.3, complains at the end of what a damaged file left open
-    const std::unique_ptr<mat_t, Closing> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
-    if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
-    constexpr std::size_t compression = 1100;  // more than zlib ever reaches
-    most_numbers_ = size * compression / 8 + 64;
-    CollectedSignals signals(name);
-    while (const std::unique_ptr<matvar_t, Closing> found{Mat_VarReadNextInfo(file.get())}) {
-      const bool is_struct = found->class_type == MAT_C_STRUCT;
-      if (found->name == nullptr || (!is_numeric(*found) && !is_struct)) continue;
-      refuse_huge(name, *found);
-      Mat_VarReadDataAll(file.get(), found.get());
-      if (!is_struct) {
-        add(*found, found->name, signals);
-        continue;
-      }
-      const unsigned fields = Mat_VarGetNumberOfFields(found.get());
-      char* const* const names = Mat_VarGetStructFieldnames(found.get());
-      for (unsigned k = 0; names != nullptr && k < fields; ++k) {
-        const matvar_t* const field = Mat_VarGetStructFieldByIndex(found.get(), k, 0);
-        if (field != nullptr && is_numeric(*field))
-          add(*field, fmt::format("{}.{}", found->name, names[k]), signals);
-      }
-    }
-    return signals.table();
+    return read_apart(name, "matio", reading_limits(size), collect).table(format);
   }
 
  private:
-  void refuse_huge(const std::string& name, const matvar_t& variable) const {
-    double count = 1;
-    for (int d = 0; variable.dims != nullptr && d < variable.rank; ++d)
-      count *= static_cast<double>(variable.dims[d]);
-    if (count > static_cast<double>(most_numbers_))
-      throw InputError({name},
-                       fmt::format("'{}' claims {:.3g} numbers; expected no more than the file can hold",
-                                   variable.name, count));
+  static void collect(CollectedSignals& signals) {
+    const std::string& name = signals.file();
+    Mat_LogInitFunc("beamid", [](int, char*) {});
+    const std::unique_ptr<mat_t, Closing> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
+    if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
+    if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);
+    while (const std::unique_ptr<matvar_t, Closing> found{Mat_VarReadNextInfo(file.get())}) {
+      const bool holds_others = found->class_type == MAT_C_STRUCT || found->class_type == MAT_C_CELL;
+      if (found->name == nullptr || (!is_numeric(*found) && !holds_others)) continue;
+      announce(*found, found->name, signals);
+      Mat_VarReadDataAll(file.get(), found.get());
+      add(*found, found->name, 0, signals);
+    }
   }
 
-  void add(const matvar_t& variable, const std::string& name, CollectedSignals& signals) const {
-    if (variable.rank != 2 || variable.data == nullptr || variable.dims == nullptr) return;
-    const std::size_t rows = variable.dims[0], columns = variable.dims[1];
-    if (rows == 0 || columns == 0 || rows > most_numbers_ / columns) return;
-    const std::size_t count = rows * columns;
-    if (variable.data_size <= 0 || variable.nbytes < count * static_cast<std::size_t>(variable.data_size))
+  static std::vector<std::size_t> extent(const matvar_t& variable) {
+    if (variable.dims == nullptr || variable.rank < 1) return {};
+    return {variable.dims, variable.dims + variable.rank};
+  }
+
+  static std::size_t elements(const matvar_t& variable) {
+    std::size_t count = 1;
+    for (const std::size_t size : extent(variable)) count *= size;
+    return count;
+  }
+
+  static void announce(const matvar_t& variable, const std::string& name, CollectedSignals& signals) {
+    signals.announce(name, extent(variable));
+  }
+
+  /// A variable, or whatever lies within it: "data.hammer", "run(2).tip.x", "channel{3}".
+  static void add(matvar_t& variable, const std::string& name, int depth, CollectedSignals& signals) {
+    constexpr int deepest = 64;
+    if (depth > deepest)
+      throw InputError({signals.file()},
+                       fmt::format("structs within structs, more than {}; expected fewer", deepest));
+    if (variable.data == nullptr) return;
+    const std::size_t count = elements(variable);
+    if (variable.class_type == MAT_C_CELL) {
+      for (std::size_t k = 0; k < count; ++k)
+        if (matvar_t* const cell = Mat_VarGetCell(&variable, static_cast<int>(k)))
+          add(*cell, fmt::format("{}{{{}}}", name, k + 1), depth + 1, signals);
+    } else if (variable.class_type == MAT_C_STRUCT) {
+      add_fields(variable, name, count, depth, signals);
+    } else if (is_numeric(variable)) {
+      if (depth > 0) announce(variable, name, signals);
+      add_numbers(variable, name, signals);
+    }
+  }
+
+  static void add_fields(matvar_t& variable, const std::string& name, std::size_t count, int depth,
+                         CollectedSignals& signals) {
+    const unsigned fields = Mat_VarGetNumberOfFields(&variable);
+    char* const* const names = Mat_VarGetStructFieldnames(&variable);
+    for (std::size_t k = 0; k < count; ++k)
+      for (unsigned f = 0; names != nullptr && f < fields; ++f)
+        if (matvar_t* const field = Mat_VarGetStructFieldByIndex(&variable, f, k))
+          add(*field,
+              count == 1 ? fmt::format("{}.{}", name, names[f])
+                         : fmt::format("{}({}).{}", name, k + 1, names[f]),
+              depth + 1, signals);
+  }
+
+  static void add_numbers(const matvar_t& variable, const std::string& name, CollectedSignals& signals) {
+    if (variable.rank != 2 || variable.dims == nullptr) return;
+    const std::size_t rows = variable.dims[0], columns = variable.dims[1], count = rows * columns;
+    if (count == 0 || variable.data_size <= 0 ||
+        variable.nbytes < count * static_cast<std::size_t>(variable.data_size))
       return;
-    const std::vector<double> values = numbers(variable, count);
+    std::vector<double> values = numbers(variable, count);
     if (values.empty()) return;
     const int digits = variable.class_type == MAT_C_SINGLE ? 7 : 15;
     if (count == 1)
       signals.set(name, values[0]);
     else if (rows == 1 || columns == 1)
-      signals.add(name, "", values, digits);
+      signals.add(name, "", std::move(values), digits);
     else
       signals.add_matrix(
           [&](std::size_t k, bool is_row) {
@@ -140,13 +168,11 @@ class MatReader final : public RecordReader {
           },
           "", values, rows, columns, digits);
   }
-
-  mutable std::size_t most_numbers_ = 0;
 };
 
 const bool registered = record_reader_registry().add(
     {"mat",
-     "MATLAB files of level 5 and 7.3: vectors, columns of matrices, fields of structs",
+     "MATLAB files of level 5 and 7.3: vectors, columns of matrices, fields of structs of any depth, cells",
      "",
      {},
      {},

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <optional>
+#include <set>
 
 #include "experiments/input/fields.hpp"
 #include "experiments/input/record_reader.hpp"
 #include "experiments/input/text_file.hpp"
+#include "experiments/input/time_unit.hpp"
 #include "experiments/record_files/uff/universal_function.hpp"
 
 namespace beamid::experiments {
@@ -29,8 +33,8 @@ std::string name_of(const UniversalFunction& function) {
 
 /// The label's unit; without one the dataset's kind of quantity in the file's own units, which are not known
 /// here.
-std::string unit_of(const UniversalFunction& function) {
-  return function.unit == "NONE" ? "" : function.unit;
+std::string stated(const std::string& unit) {
+  return unit == "NONE" ? "" : unit;
 }
 
 class UniversalFileReader final : public RecordReader {
@@ -47,11 +51,13 @@ class UniversalFileReader final : public RecordReader {
     return false;
   }
 
-  RecordTable read(const std::filesystem::path& file, const RecordFormat&) const override {
+  RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const override {
     const std::string bytes = read_bytes(file, "a Universal File");
     RecordTable table;
     table.file = file.string();
     std::size_t others = 0;
+    std::set<std::string> taken;
+    std::map<std::string, int> copies;  // of each name: the last number given
     const UniversalFunction* first = nullptr;
     const std::vector<UniversalFunction> functions = read_universal_functions(table.file, bytes);
     const auto is_history = [](const UniversalFunction& f) {
@@ -64,15 +70,16 @@ class UniversalFileReader final : public RecordReader {
       }
       if (first == nullptr) {
         first = &function;
-        begin(table, function);
+        begin(table, function, format);
       }
       check_same_instants(table.file, *first, function);
-      std::string name = name_of(function), unique = name;
-      for (int copy = 2; std::find(table.names.begin(), table.names.end(), unique) != table.names.end();
-           ++copy)
-        unique = fmt::format("{} ({})", name, copy);
+      const std::string name = name_of(function);
+      std::string unique = name;
+      for (int& copy = copies[name]; !taken.insert(unique).second;
+           unique = fmt::format("{} ({})", name, copy))
+        copy = std::max(copy + 1, 2);
       table.names.push_back(unique);
-      table.units.push_back(unit_of(function));
+      table.units.push_back(stated(function.unit));
       table.columns.push_back(function.values);
       table.precision.push_back(PrintedPrecision::of_digits(15));
     }
@@ -87,24 +94,28 @@ class UniversalFileReader final : public RecordReader {
   }
 
  private:
-  static void begin(RecordTable& table, const UniversalFunction& function) {
+  static void begin(RecordTable& table, const UniversalFunction& function, const RecordFormat& format) {
+    const std::string unit = stated(function.abscissa_unit);
+    const std::optional<double> factor =
+        seconds_per(unit, "the abscissa of '" + name_of(function) + "'", table.file, format);
     if (function.even) {
       if (!(function.step > 0))
         throw InputError({table.file},
                          fmt::format("abscissa increment {}; expected a positive one", function.step));
-      table.clock = {function.start, function.step};
+      if (factor) table.clock = {function.start * *factor, function.step * *factor};
       return;
     }
-    table.names.emplace_back("time"), table.units.emplace_back("s");
+    table.names.emplace_back("time"), table.units.push_back(unit.empty() ? "s" : unit);
     table.columns.push_back(function.abscissa);
     table.precision.push_back(PrintedPrecision::of_digits(6));  // of E13.5
-    table.time = 0;
+    if (factor == 1.0) table.time = 0;                          // else found by its unit
   }
 
   static void check_same_instants(const std::string& file, const UniversalFunction& first,
                                   const UniversalFunction& other) {
     if (first.even != other.even || first.points != other.points || first.start != other.start ||
-        first.step != other.step || first.abscissa != other.abscissa)
+        first.step != other.step || first.abscissa_unit != other.abscissa_unit ||
+        first.abscissa != other.abscissa)
       throw InputError(
           {file}, fmt::format("'{}' and '{}' are sampled at different instants; expected the same for all",
                               name_of(first), name_of(other)));

@@ -79,7 +79,8 @@ LvmSegment LvmLines::read_segment() {
     const auto found = keys.find(key);
     return found == keys.end() ? std::vector<std::string>{} : found->second;
   };
-  return {list("Y_Unit_Label"), list("X_Dimension"), numbers(list("X0")), numbers(list("Delta_X"))};
+  return {list("Y_Unit_Label"),     list("X_Dimension"),      list("X_Unit_Label"), numbers(list("X0")),
+          numbers(list("Delta_X")), numbers(list("Samples")), {file_, number_, 1}};
 }
 
 std::vector<double> LvmLines::numbers(const std::vector<std::string>& words) const {

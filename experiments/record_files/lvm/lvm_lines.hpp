@@ -11,8 +11,9 @@ namespace beamid::experiments {
 
 /// What a segment's header says of its channels; empty: nothing.
 struct LvmSegment {
-  std::vector<std::string> units, dimensions;
-  std::vector<double> starts, intervals;
+  std::vector<std::string> units, dimensions, x_units;
+  std::vector<double> starts, intervals, samples;
+  Place place = {};  ///< of the header's end
 };
 
 /// Walks a file that is in memory.

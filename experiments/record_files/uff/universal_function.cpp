@@ -50,6 +50,7 @@ UniversalFunction read_function(UniversalLines& lines) {
         fmt::format("{} points in a file of {} bytes; expected a number it can hold", points, lines.size()));
   function.points = static_cast<std::size_t>(points);
   lines.next_of_header("record 8, the abscissa");
+  function.abscissa_unit = lines.field(47, 20);
   lines.next_of_header("record 9, the ordinate");
   function.kind = static_cast<int>(lines.whole(0, 10, "the ordinate's kind"));
   function.label = lines.field(26, 20);

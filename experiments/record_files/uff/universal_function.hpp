@@ -9,7 +9,7 @@ namespace beamid::experiments {
 /// A dataset's header, records 6 to 9, and its samples.
 struct UniversalFunction {
   int type = 0, node = 0, direction = 0, ordinate = 0, kind = 0;
-  std::string identity, label, unit;
+  std::string identity, label, unit, abscissa_unit;
   std::size_t points = 0;
   bool even = true;
   double start = 0.0, step = 0.0;

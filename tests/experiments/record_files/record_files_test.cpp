@@ -55,9 +55,10 @@ std::string lvm(const std::string& x_columns, char decimal = '.', bool two_segme
   text += std::string("Decimal_Separator\t") + decimal + "\r\nMulti_Headings\tYes\r\nX_Columns\t" +
           x_columns + "\r\nTime_Pref\tRelative\r\n***End_of_Header***\t\r\n\t\r\n";
   const auto segment = [&](int from, int to) {
-    std::string rows =
-        "Channels\t2\t\t\r\nSamples\t20\t20\t\r\nY_Unit_Label\tg\tN\t\r\nX_Dimension\tTime\tTime\t\r\n"
-        "X0\t0,0\t0,0\t\r\nDelta_X\t0,010000\t0,010000\t\r\n***End_of_Header***\t\t\t\r\n";
+    const std::string count = std::to_string(to - from), start = printed("%.6f", 0.01 * from);
+    std::string rows = "Channels\t2\t\t\r\nSamples\t" + count + "\t" + count +
+                       "\t\r\nY_Unit_Label\tg\tN\t\r\nX_Dimension\tTime\tTime\t\r\nX0\t" + start + "\t" +
+                       start + "\t\r\nDelta_X\t0,010000\t0,010000\t\r\n***End_of_Header***\t\t\t\r\n";
     rows += x_columns == "Multi" ? "X_Value\tTip\tX_Value\tHammer\tComment\r\n"
                                  : "X_Value\tTip\tHammer\tComment\r\n";
     for (int k = from; k < to; ++k) {
@@ -83,10 +84,80 @@ TEST(LvmReader, ReadsEveryArrangementOfItsColumns) {
 }
 
 TEST(LvmReader, JoinsSegmentsAndSaysSo) {
-  const TemporaryFile file("test.lvm", lvm("One", '.', true));
-  const Record record = read_record(file.path());
-  expect_both(record, 1e-5);
-  EXPECT_THAT(record.remarks, ElementsAre("2 segments are joined."));
+  for (const char* x_columns : {"No", "One", "Multi"}) {
+    const TemporaryFile file("test.lvm", lvm(x_columns, '.', true));
+    const Record record = read_record(file.path());
+    expect_both(record, 1e-5);
+    EXPECT_THAT(record.remarks, ElementsAre("2 segments are joined."));
+    EXPECT_THAT(record.warnings, testing::IsEmpty());
+  }
+}
+
+struct LvmHeader {
+  double start, interval;
+  std::string unit = "g";
+  int stated = 20;
+  bool x_value = false;
+};
+
+/// Segments of 20 rows each.
+std::string lvm_segments(const std::vector<LvmHeader>& headers) {
+  std::string text = "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n";
+  for (const LvmHeader& header : headers) {
+    text += "Channels\t1\nSamples\t" + std::to_string(header.stated) + "\nY_Unit_Label\t" + header.unit +
+            "\nX_Dimension\tTime\nX0\t" + printed("%.6f", header.start) + "\nDelta_X\t" +
+            printed("%.6f", header.interval) + "\n***End_of_Header***\n" +
+            (header.x_value ? "X_Value\t" : "") + "Tip\n";
+    for (int k = 0; k < 20; ++k)
+      text += (header.x_value ? printed("%.6f", header.start + k * header.interval) + "\t" : std::string()) +
+              printed("%.6f", first_signal(k)) + "\n";
+  }
+  return text;
+}
+
+std::string lvm_error(const std::vector<LvmHeader>& headers) {
+  const TemporaryFile file("parts.lvm", lvm_segments(headers));
+  return input_error_of(file, [&] { read_record(file.path()); });
+}
+
+// Each of these was read as one record at the last segment's interval, start and unit.
+TEST(LvmReader, TakesInstantsAndUnitsFromEachSegmentsOwnHeader) {
+  EXPECT_EQ(lvm_error({{0.0, 0.004}, {0.08, 0.004}}), "no error");
+  EXPECT_EQ(lvm_error({{0.0, 0.004}, {0.08, 0.001}}),
+            "parts.lvm:41:1: time 0.081 after 0.08, an interval of 0.001; expected the median interval 0.004 "
+            "within "
+            "5 %");
+  EXPECT_EQ(lvm_error({{0.0, 0.004}, {100.0, 0.004}}),
+            "parts.lvm:40:1: time 100 after 0.076, an interval of 99.924; expected the median interval 0.004 "
+            "within "
+            "5 %");
+  EXPECT_EQ(lvm_error({{0.0, 0.004}, {0.0, 0.004}}),
+            "parts.lvm:38:1: a segment that begins at 0 s, where the one before runs to 0.076 s; expected "
+            "segments in "
+            "succession");
+  EXPECT_EQ(lvm_error({{0.0, 0.004, "mm"}, {0.08, 0.004, "g"}}),
+            "parts.lvm:38:1: Y_Unit_Label 'g' after 'mm' in the segment before; expected the same");
+  EXPECT_EQ(lvm_error({{0.0, 0.004, "g", 20, true}, {0.08, 0.004}}),
+            "parts.lvm:40:1: a segment without X_Value; expected all of them alike");
+}
+
+// Oracle: the headers. As they are, the instants are those of both segments.
+TEST(LvmReader, MakesStampsWhereSegmentsDoNotFollowEachOther) {
+  const TemporaryFile file("parts.lvm", lvm_segments({{1.0, 0.004}, {3.0, 0.001}}));
+  RecordFormat format;
+  format.irregular = true;
+  const Record record = read_record(file.path(), format);
+  ASSERT_EQ(record.size(), 40);
+  for (int k = 0; k < 20; ++k) {
+    EXPECT_DOUBLE_EQ(record.time[k], 1.0 + 0.004 * k);
+    EXPECT_DOUBLE_EQ(record.time[20 + k], 3.0 + 0.001 * k);
+  }
+}
+
+TEST(LvmReader, WarnsOfATornSegment) {
+  const TemporaryFile file("torn.lvm", lvm_segments({{0.0, 0.004, "g", 900}}));
+  EXPECT_THAT(read_record(file.path()).warnings,
+              ElementsAre("Segment 1 has 20 rows where its header states 900 samples: the others are lost."));
 }
 
 TEST(LvmReader, RefusesBadFieldsAtTheirPlaces) {
@@ -112,16 +183,17 @@ TEST(LvmReader, LetsAStatedRateReplaceARoundedInterval) {
 
 // ---- Universal File
 
-std::string records_6_to_11(int node, int ordinate, int points, bool even, const char* unit) {
+std::string records_6_to_11(int node, int ordinate, int points, bool even, const char* unit,
+                            const char* abscissa_unit = "s", double step = 0.01) {
   char line[200];
   std::string text;
   std::snprintf(line, sizeof(line), "%5d%10d%5d%10d %10s%10d%4d %10s%10d%4d\n", 1, 0, 0, 0, "NONE", node, 3,
                 "NONE", 0, 0);
   text += line;
   std::snprintf(line, sizeof(line), "%10d%10d%10d%13.5e%13.5e%13.5e\n", ordinate, points, even ? 1 : 0, 0.0,
-                even ? 0.01 : 0.0, 0.0);
+                even ? step : 0.0, 0.0);
   text += line;
-  std::snprintf(line, sizeof(line), "%10d%5d%5d%5d %-20s %-20s\n", 17, 0, 0, 0, "Time", "s");
+  std::snprintf(line, sizeof(line), "%10d%5d%5d%5d %-20s %-20s\n", 17, 0, 0, 0, "Time", abscissa_unit);
   text += line;
   std::snprintf(line, sizeof(line), "%10d%5d%5d%5d %-20s %-20s\n", 12, 0, 0, 0, "NONE", unit);
   text += line;
@@ -197,6 +269,43 @@ TEST(Uff58Reader, ReadsBinaryOfBothByteOrders) {
       }
 }
 
+// Oracle: the same numbers in another unit of time; frequencies were wrong by 1000.
+TEST(Uff58Reader, TakesTheUnitOfTheAbscissa) {
+  const auto file_of = [](const char* unit, bool even) {
+    return "    -1\n    58\n" + identification() + records_6_to_11(1, 2, 3, even, "g", unit, 4.0) +
+           (even ? "  1.00000E+00  2.00000E+00  3.00000E+00\n"
+                 : "  0.00000E+00  1.00000E+00  4.00000E+00  2.00000E+00  8.00000E+00  3.00000E+00\n") +
+           "    -1\n";
+  };
+  for (const bool even : {true, false}) {
+    const TemporaryFile milli("ms.uff", file_of("ms", even)), plain("s.uff", file_of("", even)),
+        other("min.uff", file_of("min", even));
+    EXPECT_NEAR(read_record(milli.path()).interval(), 0.004, 1e-15);
+    EXPECT_NEAR(read_record(plain.path()).interval(), 4.0, 1e-15);
+    EXPECT_EQ(input_error_of(other, [&] { read_record(other.path()); }),
+              "min.uff: the abscissa of '1:+Z' is in 'min'; expected times in s, ms, us, or record.time or "
+              "record.sampling_rate_hz in the configuration");
+    RecordFormat stated;
+    stated.sampling_rate = 10.0;
+    if (even) {
+      EXPECT_NEAR(read_record(other.path(), stated).interval(), 0.1, 1e-15);
+    }
+  }
+}
+
+// 4000 datasets of one name took 57 s: the names (2), (3), ... were sought from the start for each.
+TEST(Uff58Reader, NumbersManyDatasetsOfOneName) {
+  const std::string one = "    -1\n    58\n" + identification() + records_6_to_11(1, 2, 3, true, "g") +
+                          "  1.00000E+00  2.00000E+00  3.00000E+00\n    -1\n";
+  std::string all;
+  for (int k = 0; k < 4000; ++k) all += one;
+  const TemporaryFile file("many.uff", all);
+  const RecordTable table = read_table(file.path(), {});
+  ASSERT_EQ(table.names.size(), 4000u);
+  EXPECT_EQ(table.names[0], "1:+Z");
+  EXPECT_EQ(table.names[3999], "1:+Z (4000)");
+}
+
 TEST(Uff58Reader, ReadsNumbersThatTouch) {
   std::string text = "    -1\n    58\n" + identification() + records_6_to_11(1, 2, 3, true, "g");
   const TemporaryFile file("test.uff", text + "-1.00000E+000-2.00000E+000-3.00000E+000\n    -1\n");
@@ -268,6 +377,64 @@ TEST(MatReader, ReadsLevelFiveAndSevenPointThree) {
         input_error_of(file, [&] { read_record(file.path(), missing); }),
         HasSubstr("no column 'acc'; the file holds: acceleration_g, data.hammer(:,1), data.hammer(:,2)"));
   }
+}
+
+matvar_t* vector_of(double (*signal)(int), bool as_row) {
+  std::size_t size[2] = {as_row ? 1u : samples, as_row ? samples : 1u};
+  std::vector<double> values = values_of(signal);
+  return Mat_VarCreate(nullptr, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size, values.data(), 0);
+}
+
+// Oracle: what was written. Only the first element of a struct array was read, and nothing below one level.
+TEST(MatReader, ReadsStructsOfAnyDepthTheirArraysAndCells) {
+  for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    const TemporaryFile made("deep.mat", "");
+    mat_t* const file = Mat_CreateVer(made.path().c_str(), nullptr, version);
+    ASSERT_NE(file, nullptr);
+    write_variable(file, "Fs", 1, 1, {100.0});
+    std::size_t one[2] = {1, 1}, two[2] = {1, 2};
+    const char* outer[] = {"tip"};
+    const char* inner[] = {"x"};
+    matvar_t* const runs = Mat_VarCreateStruct("run", 2, two, outer, 1);
+    for (std::size_t k = 0; k < 2; ++k) {
+      matvar_t* const tip = Mat_VarCreateStruct(nullptr, 2, one, inner, 1);
+      Mat_VarSetStructFieldByName(tip, "x", 0, vector_of(k == 0 ? first_signal : second_signal, k == 0));
+      Mat_VarSetStructFieldByName(runs, "tip", k, tip);
+    }
+    Mat_VarWrite(file, runs, MAT_COMPRESSION_NONE);
+    Mat_VarFree(runs);
+    matvar_t* const cells = Mat_VarCreate("channel", MAT_C_CELL, MAT_T_CELL, 2, two, nullptr, 0);
+    Mat_VarSetCell(cells, 0, vector_of(second_signal, true));
+    Mat_VarSetCell(cells, 1, vector_of(first_signal, false));
+    Mat_VarWrite(file, cells, MAT_COMPRESSION_NONE);
+    Mat_VarFree(cells);
+    Mat_Close(file);
+    EXPECT_THAT(read_table(made.path(), {}).names,
+                testing::UnorderedElementsAre("run(1).tip.x", "run(2).tip.x", "channel{1}", "channel{2}"));
+    RecordFormat format;
+    format.channels = {{Quantity::acceleration, "channel{2}", 0, 9.80665},
+                       {Quantity::force, "run(2).tip.x", 0, 1}};
+    expect_both(read_record(made.path(), format), 1e-13);
+  }
+}
+
+// A rate that contradicts the times beside it was ignored.
+TEST(MatReader, RefusesARateThatContradictsTheTimes) {
+  const TemporaryFile made("rate.mat", "");
+  mat_t* const file = Mat_CreateVer(made.path().c_str(), nullptr, MAT_FT_MAT5);
+  std::vector<double> times;
+  for (int k = 0; k < samples; ++k) times.push_back(0.004 * k);
+  write_variable(file, "t", samples, 1, times);
+  write_variable(file, "Fs", 1, 1, {1000.0});
+  write_variable(file, "acceleration_g", samples, 1, values_of(first_signal));
+  Mat_Close(file);
+  EXPECT_EQ(
+      input_error_of(made, [&] { read_record(made.path()); }),
+      "rate.mat: Fs means an interval of 0.001 s, and 't' has one of 0.004 s; expected them to agree, or "
+      "record.time or record.sampling_rate_hz in the configuration");
+  RecordFormat stated;
+  stated.sampling_rate = 250;
+  EXPECT_DOUBLE_EQ(read_record(made.path(), stated).interval(), 0.004);
 }
 
 void attribute(hid_t object, const char* name, const char* text) {
@@ -358,6 +525,25 @@ TEST(ReadRecord, TakesUnequalIntervalsOnlyWhenToldAndRepeatedStampsNever) {
   const TemporaryFile twice("twice.csv", "time_s,force_n\n0,1\n0.1,2\n0.1,3\n");
   EXPECT_EQ(input_error_of(twice, [&] { read_record(twice.path(), format); }),
             "twice.csv:4:1: time 0.1 after 0.1; expected increasing times");
+}
+
+// A header in Latin-1, as most German loggers write it, made figures that no browser draws.
+TEST(ReadRecord, TurnsNamesIntoUtf8WithoutControlCharacters) {
+  const TemporaryFile file("latin.csv", "Zeit [s];Beschleunigung [m/s\xb2]\x1b[2J\n0;1\n0.1;2\n0.2;3\n");
+  const RecordTable table = read_table(file.path(), {});
+  EXPECT_THAT(table.names, ElementsAre("Zeit [s]", "Beschleunigung [m/s²][2J"));
+  RecordFormat format;
+  format.time = ColumnDescription{Quantity::acceleration, "Zeit [s]", 0, 1.0};
+  format.channels = {{Quantity::acceleration, "Beschleunigung [m/s²][2J", 0, 1.0}};
+  EXPECT_EQ(read_record(file.path(), format).samples, Eigen::RowVector3d(1, 2, 3));
+}
+
+TEST(ReadRecord, RefusesAUnitThatContradictsTheName) {
+  const TemporaryFile file("units.txt", "time_s\tacceleration_g\ns\tm/s2\n0\t1\n0.1\t2\n0.2\t3\n");
+  RecordFormat format;
+  format.skip_malformed = true;
+  EXPECT_EQ(input_error_of(file, [&] { read_record(file.path(), format); }),
+            "units.txt:1: 'acceleration_g' has the unit 'm/s2'; expected the one of its name");
 }
 
 // ---- damage

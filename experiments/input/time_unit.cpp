@@ -1,0 +1,21 @@
+#include "experiments/input/time_unit.hpp"
+
+#include <fmt/format.h>
+
+#include "experiments/input/input_error.hpp"
+#include "experiments/input/spelling.hpp"
+#include "experiments/input/units.hpp"
+
+namespace beamid::experiments {
+
+std::optional<double> seconds_per(const std::string& unit, const std::string& what, const std::string& file,
+                                  const RecordFormat& format) {
+  if (unit.empty()) return 1.0;
+  if (const auto stated = stated_unit(unit); stated && !stated->quantity) return stated->factor;
+  if (format.time || format.sampling_rate) return std::nullopt;
+  throw InputError({file}, fmt::format("{} is in '{}'; expected times in {}, or record.time or "
+                                       "record.sampling_rate_hz in the configuration",
+                                       what, unit, joined(symbols(time_units()))));
+}
+
+}  // namespace beamid::experiments
