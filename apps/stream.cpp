@@ -1,5 +1,6 @@
 // beamid stream: samples on standard input, stiffness and damping after each on standard output.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <iostream>
@@ -7,10 +8,10 @@
 #include "apps/command.hpp"
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/failure_response.hpp"
+#include "experiments/input/json_file.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/input/spelling.hpp"
-#include "experiments/input/text_file.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/output/file.hpp"
 #include "experiments/preparation/prepared_record.hpp"
@@ -45,20 +46,30 @@ void tell_preparation(const Experiment& experiment, const Record& earlier) {
 }
 
 void resume(StreamedIdentification& stream, const std::string& file) {
-  const std::string text = read_text(file, "a state that --save-state wrote");
+  const nlohmann::json saved = read_json(file, "a state that --save-state wrote");
   try {
-    stream.resume(nlohmann::json::parse(text));
-  } catch (const nlohmann::json::exception&) {
-    throw InputError({file}, "not JSON; expected what --save-state wrote");
+    stream.resume(saved);
   } catch (const std::invalid_argument& error) {
     throw InputError({file}, error.what());
   }
 }
 
+// An earlier state may be replaced, any other file may not: asked before the first sample.
+void require_replaceable(const fs::path& file) {
+  const fs::file_status status = fs::symlink_status(file);
+  if (!fs::exists(status)) return;
+  try {
+    if (fs::is_regular_file(status) && read_json(file, "a state").contains("covariance")) return;
+  } catch (const InputError&) {
+  }
+  throw UsageError("stream: " + file.string() +
+                   " exists and is no state that --save-state wrote; expected another name");
+}
+
 // Beside the file first: a state is there as a whole or not at all.
 void save(const StreamedIdentification& stream, const fs::path& file) {
-  fs::path part = file;
-  part += ".part";
+  const fs::path part = fmt::format("{}.partial-{}", file.string(), getpid());
+  fs::remove(part);  // a link there would be followed
   write_file(part, stream.save().dump(1) + "\n");
   fs::rename(part, file);
 }
@@ -113,6 +124,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   StreamedIdentification stream =
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
   tell_preparation(experiment, earlier);
+  if (values.count("save-state")) require_replaceable(values["save-state"].as<std::string>());
   if (values.count("resume")) resume(stream, values["resume"].as<std::string>());
   follow(stream);
   if (!values.count("save-state")) return 0;

@@ -125,6 +125,13 @@ Identifiability find_identifiability(const Experiment& experiment, const std::fi
   Identifiability result;
   const Experiment complete = completed(experiment, result.notes);
   const double rate = complete.simulation.sampling_rate;
+  constexpr double most_samples = 1e6;
+  if (!(complete.simulation.duration * rate < most_samples))
+    throw std::invalid_argument(
+        fmt::format("a record of {:g} s at {:g} Hz has {:.3g} samples; expected at most {:g}: set "
+                    "simulation.duration_s or "
+                    "simulation.sampling_rate_hz, or check that the beam is described in SI units",
+                    complete.simulation.duration, rate, complete.simulation.duration * rate, most_samples));
   const auto samples = static_cast<Index>(std::llround(complete.simulation.duration * rate)) + 1;
 
   progress("the test as described");

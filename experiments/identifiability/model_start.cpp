@@ -1,8 +1,11 @@
 #include "experiments/identifiability/model_start.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "experiments/finest_discretisation.hpp"
 #include "experiments/nonlinear_reproduction.hpp"
@@ -50,9 +53,15 @@ SimulatedTest clean_test(const Experiment& experiment, const std::filesystem::pa
 VectorXd model_start(const ObservedMotion& motion, Experiment experiment, const std::filesystem::path& folder,
                      const std::vector<Sensor>& sensors, Index begin, const Progress& progress) {
   const double rate = 1.0 / motion.interval;
-  const Index samples =
-      std::max(fewest_start_samples,
-               static_cast<Index>(std::ceil(start_periods * slowest_period(motion.model) * rate)));
+  constexpr double most_samples = 2e5;
+  const double period = slowest_period(motion.model), needed = std::ceil(start_periods * period * rate);
+  if (!(needed < most_samples))
+    throw std::invalid_argument(
+        fmt::format("{:g} periods of the first mode, of {:.3g} s each, are {:.3g} samples at {:g} Hz; "
+                    "expected at most {:g}: lower "
+                    "simulation.sampling_rate_hz, or check that the beam is described in SI units",
+                    start_periods, period, needed, rate, most_samples));
+  const Index samples = std::max(fewest_start_samples, static_cast<Index>(needed));
   if (experiment.simulation.method.name == "modal")
     experiment.simulation.method.options["modes"] = static_cast<double>(motion.model.mode_shapes.cols());
   const Record record =

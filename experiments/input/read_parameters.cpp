@@ -47,8 +47,9 @@ ParameterChoice read_parameter(const TomlTable& table, double length) {
   choice.name = table.find_text("name").value_or("");
   const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   if (table.contains("name") &&
-      (choice.name.empty() || !std::all_of(choice.name.begin(), choice.name.end(), plain)))
-    table.refuse("name", "small letters, digits and underscores, as in a key");
+      (choice.name.empty() || choice.name.size() > 100 ||  // which files are named after
+       !std::all_of(choice.name.begin(), choice.name.end(), plain)))
+    table.refuse("name", "at most 100 small letters, digits and underscores, as in a key");
   if (table.contains("from_m") || table.contains("to_m")) {
     const double from = position_on_beam(table, "from_m", length);
     const double to = position_on_beam(table, "to_m", length);

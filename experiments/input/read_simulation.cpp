@@ -88,6 +88,7 @@ std::vector<Sensor> read_sensors(const TomlTable& table, const fem::Beam& beam) 
   for (const TomlTable& one : table.find_tables("sensors")) {
     Sensor sensor;
     sensor.name = one.find_text("name").value_or("");
+    if (sensor.name.size() > 100) one.refuse("name", "at most 100 letters, as files are named after it");
     sensor.quantity = *find_quantity(one.find_text("quantity", quantities).value_or("acceleration"));
     sensor.position = read_position(one, beam, sensor.quantity);
     sensor.distance = read_distance(one, beam, sensor.quantity, sensor.position);

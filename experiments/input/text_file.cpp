@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <system_error>
+#include <vector>
 
 #include "experiments/input/input_error.hpp"
 
@@ -22,6 +22,7 @@ std::ifstream open_input(const std::filesystem::path& file, const std::string& e
   const std::filesystem::file_status status = std::filesystem::status(file, failure);
   if (!std::filesystem::exists(status)) throw InputError(place, "no such file; expected " + expected);
   if (std::filesystem::is_directory(status)) throw InputError(place, "a directory; expected " + expected);
+  if (std::filesystem::is_character_file(status)) throw InputError(place, "a device; expected " + expected);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(place, "cannot be opened; expected " + expected + " that may be read");
   return stream;
@@ -29,7 +30,11 @@ std::ifstream open_input(const std::filesystem::path& file, const std::string& e
 
 std::string read_bytes(const std::filesystem::path& file, const std::string& expected) {
   std::ifstream stream = open_input(file, expected);
-  std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  std::string bytes;
+  for (std::vector<char> part(1 << 16); stream;) {
+    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+    bytes.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
   if (stream.bad()) throw InputError({file.string()}, "cannot be read to its end; expected " + expected);
   if (bytes.empty()) throw InputError({file.string()}, "an empty file; expected " + expected);
   return bytes;

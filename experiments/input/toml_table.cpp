@@ -57,7 +57,11 @@ toml::table* table_at(toml::table& root, const Override& over) {
     toml::node* node = table->get(name);
     if (bracket != std::string::npos) {
       toml::array* const array = node ? node->as_array() : nullptr;
-      const std::size_t number = std::strtoul(part.c_str() + bracket + 1, nullptr, 10);
+      const std::string count = part.substr(bracket + 1, part.size() - bracket - 2);
+      if (!part.ends_with(']') || count.empty() || count.find_first_not_of("0123456789") != std::string::npos)
+        throw InputError({over.origin, 0, 0},
+                         fmt::format("'{}'; expected a table by its number, as {}[1]", part, name));
+      const std::size_t number = std::strtoul(count.c_str(), nullptr, 10);
       if (!array || number < 1 || number > array->size())
         throw InputError({over.origin, 0, 0}, fmt::format("there is no {}; {} has {} tables, counted from 1",
                                                           part, name, array ? array->size() : 0));
@@ -80,7 +84,7 @@ void set(toml::table& table, const std::string& key, const filters::OptionValue&
     table.insert_or_assign(key, static_cast<std::int64_t>(*number));
   } else if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
     toml::array array;
-    for (const double number : *numbers) array.push_back(number);
+    for (const double one : *numbers) array.push_back(one);
     table.insert_or_assign(key, std::move(array));
   } else {
     std::visit(

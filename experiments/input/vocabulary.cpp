@@ -135,8 +135,10 @@ void refuse_unknown_keys(const TomlTable& root) {
   std::stable_sort(unknown.begin(), unknown.end(),
                    [](const UnknownKey& a, const UnknownKey& b) { return a.place.line < b.place.line; });
   std::string message = unknown.front().message;
-  for (std::size_t i = 1; i < unknown.size(); ++i)
+  constexpr std::size_t most = 10;
+  for (std::size_t i = 1; i < std::min(unknown.size(), most); ++i)
     message.append("\n").append(to_string(unknown[i].place)).append(": ").append(unknown[i].message);
+  if (unknown.size() > most) message += fmt::format("\n... and {} more unknown keys", unknown.size() - most);
   throw InputError(unknown.front().place, message);
 }
 

@@ -42,12 +42,12 @@ std::vector<double> numbers(const MatrixXd& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
 
-MatrixXd matrix(const nlohmann::json& saved, const char* key, Index rows) {
+MatrixXd matrix(const nlohmann::json& saved, const char* key, Index rows, Index columns) {
   const auto numbers = saved.at(key).get<std::vector<double>>();
   const auto size = static_cast<Index>(numbers.size());
-  if (size % rows != 0)
-    throw std::invalid_argument(fmt::format("{} has {} numbers; expected rows of {}", key, size, rows));
-  return Eigen::Map<const MatrixXd>(numbers.data(), rows, size / rows);
+  if (size != rows * columns)
+    throw std::invalid_argument(fmt::format("{} has {} numbers; expected {} x {}", key, size, rows, columns));
+  return Eigen::Map<const MatrixXd>(numbers.data(), rows, columns);
 }
 
 }  // namespace
@@ -99,12 +99,14 @@ void StreamedIdentification::resume(const nlohmann::json& saved) {
     check("interval_s", interval_);
     const auto n = static_cast<Index>(state_names(prepared_.model).size());
     filters::SavedRun run;
-    run.belief = {matrix(saved, "mean", n), matrix(saved, "covariance", n), matrix(saved, "factor", n)};
+    const Index of_factor = saved.at("factor").empty() ? 0 : n;  // not every filter keeps one
+    run.belief = {matrix(saved, "mean", n, 1), matrix(saved, "covariance", n, n),
+                  matrix(saved, "factor", n, of_factor)};
     run.time = saved.at("time_s").get<double>();
     run.step = saved.at("step").get<Index>();
     running_->resume(run);
-  } catch (const nlohmann::json::exception& error) {
-    throw std::invalid_argument(std::string(error.what()) + "; expected what --save-state wrote");
+  } catch (const nlohmann::json::exception&) {
+    throw std::invalid_argument("a key is missing or of another type; expected what --save-state wrote");
   }
 }
 

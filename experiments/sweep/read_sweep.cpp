@@ -39,6 +39,9 @@ void refuse_unknown(const VariedKey& varied) {
     if (!within) table += varied.key[i];
     if (varied.key[i] == ']') within = false;
   }
+  if (within)
+    throw std::invalid_argument(
+        fmt::format("'{}' has a bracket that is not closed; expected as sensors[1].noise_m", varied.key));
   const auto known = std::find_if(vocabulary().begin(), vocabulary().end(),
                                   [&](const TableVocabulary& one) { return one.table == table; });
   if (known == vocabulary().end() || table.empty() || table == "frame" || table == "sweep")

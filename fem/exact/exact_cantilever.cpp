@@ -28,6 +28,9 @@ double find_root(double mu, double kappa, int wanted) {
   double left = 1e-6, at_left = f(left);
   for (int found = 0;;) {
     const double right = left + step, at_right = f(right);
+    if (!std::isfinite(at_right))
+      throw std::invalid_argument(
+          "exact cantilever: tip mass or inertia beyond double precision beside the beam's");
     if (at_left * at_right <= 0.0 && ++found == wanted) {
       std::uintmax_t iterations = 200;
       const auto tolerance = boost::math::tools::eps_tolerance<double>(52);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace beamid::fem {
 namespace {
@@ -104,7 +105,14 @@ HarmonicChain::Sweep HarmonicChain::sweep(double omega, bool keep) const {
     if (i + 1 == nodes.size()) break;
 
     const UniformPiece& piece = pieces[i];
-    const int steps = std::max(1, static_cast<int>(std::ceil(piece.length * piece.wave_number(omega))));
+    const double waves = piece.length * piece.wave_number(omega);
+    constexpr double most_waves = 1e6;  // of a mode number that nobody asks for
+    if (!(waves < most_waves))
+      throw std::invalid_argument(
+          "exact modes: the beam's length, stiffness, mass and springs lie too far apart for double "
+          "precision; "
+          "expected all of them in SI units");
+    const int steps = std::max(1, static_cast<int>(std::ceil(waves)));
     const double step = piece.length / steps;
     const Matrix4d rate = piece.rate(omega, result.scale),
                    t = transition(rate * (step / result.scale.length));

@@ -28,7 +28,7 @@ class EnsembleKalmanFilter final : public Filter {
  public:
   EnsembleKalmanFilter(std::unique_ptr<DiscreteModel> model, const Options& options)
       : Filter(std::move(model)),
-        members_(whole_number(options.number("members"), 2, "enkf", "members")),
+        members_(whole_number(options.number("members"), 2, "enkf", "members", 1000000)),
         seed_(whole_number(options.number("seed"), 0, "enkf", "seed")),
         inflation_(options.number("inflation")),
         transform_(options.text("update") == "transform"),

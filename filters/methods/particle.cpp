@@ -31,7 +31,7 @@ class ParticleFilter final : public Filter {
  public:
   ParticleFilter(std::unique_ptr<DiscreteModel> model, const Options& options)
       : Filter(std::move(model)),
-        count_(whole_number(options.number("particles"), 2, "particle", "particles")),
+        count_(whole_number(options.number("particles"), 2, "particle", "particles", 1000000)),
         seed_(whole_number(options.number("seed"), 0, "particle", "seed")),
         resample_below_(options.number("resample_below")),
         regularise_(options.flag("regularise")),
