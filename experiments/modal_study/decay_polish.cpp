@@ -85,18 +85,47 @@ std::vector<Pole> poles_of(const JointDecayFit& fit) {
   return poles;
 }
 
+/// What was rejected for the company it was in, the strongest first, is tried once more with those that
+/// stayed: all of them have to.
+void try_again(Modes lost, const StabilisationSettings& settings, RecordModes& found) {
+  std::sort(lost.begin(), lost.end(),
+            [](const ModeEstimate& a, const ModeEstimate& b) { return a.strength > b.strength; });
+  for (const ModeEstimate& one : lost) {
+    RecordModes tried = found;
+    tried.modes.push_back(one);
+    std::erase_if(tried.stabilisation.rejected, [&](const PoleCluster& cluster) {
+      return cluster.pole.rate == one.pole.rate && cluster.orders == one.orders;
+    });
+    const std::size_t rejected = tried.stabilisation.rejected.size();
+    if (reject_twin(poles_of(tried.modes), tried)) continue;
+    const auto fit = fit_or_reject(tried);
+    if (!fit || reject_least_certain(*fit, settings, tried) || reject_twin(poles_of(*fit), tried) ||
+        tried.stabilisation.rejected.size() != rejected)
+      continue;
+    for (std::size_t m = 0; m < tried.modes.size(); ++m) tried.modes[m].pole = fitted_pole(*fit, m);
+    found = std::move(tried);
+  }
+}
+
 }  // namespace
 
 void polish(RecordModes& found, const StabilisationSettings& settings) {
   const bool any = !found.modes.empty();
   while (reject_twin(poles_of(found.modes), found)) {
   }
+  const Modes all = found.modes;
   while (!found.modes.empty()) {
     const auto fit = fit_or_reject(found);
     if (!fit || reject_least_certain(*fit, settings, found)) continue;
     const std::vector<Pole> poles = poles_of(*fit);
     if (reject_twin(poles, found)) continue;
+    Modes lost;
+    for (const ModeEstimate& mode : all)
+      if (std::none_of(found.modes.begin(), found.modes.end(),
+                       [&](const ModeEstimate& one) { return one.pole.rate == mode.pole.rate; }))
+        lost.push_back(mode);
     for (std::size_t m = 0; m < poles.size(); ++m) found.modes[m].pole = poles[m];
+    try_again(lost, settings, found);
     std::sort(found.modes.begin(), found.modes.end(),
               [](const auto& a, const auto& b) { return a.pole.frequency_hz() < b.pole.frequency_hz(); });
     found.polished = true;

@@ -133,7 +133,7 @@ void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found)
     else if (std::none_of(found.modes.begin(), found.modes.end(),
                           [&](const ModeEstimate& mode) { return near(line, mode.pole); }) &&
              std::none_of(rejected.begin(), rejected.end(), [&](const PoleCluster& cluster) {
-               return cluster.orders.size() > 1 && near(line, cluster.pole);
+               return cluster.objection.starts_with("overtone") && near(line, cluster.pole);
              }))
       missed.push_back(line.frequency_hz);
   }

@@ -36,7 +36,7 @@ double energy_of_noise(const RecordModes& found) {
 /// The multiple of `base` that a mode is; 0: none.
 int multiple_of(const ModeEstimate& base, const ModeEstimate& mode) {
   constexpr int most = 5;
-  constexpr double off = 0.003, damping_off = 0.25, largest = 0.5;
+  constexpr double off = 0.005, damping_off = 0.4, largest = 0.5;
   const double f = mode.pole.frequency_hz(), f1 = base.pole.frequency_hz();
   const auto n = static_cast<int>(std::lround(f / f1));
   if (n < 2 || n > most || mode.strength > largest * base.strength) return 0;
