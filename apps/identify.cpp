@@ -3,7 +3,7 @@
 
 #include "apps/deliver.hpp"
 #include "apps/identify_request.hpp"
-#include "experiments/damping_law/damping_law.hpp"
+#include "experiments/damping_law/compared_laws.hpp"
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/failure_response.hpp"
 #include "experiments/model_setting.hpp"
@@ -96,10 +96,25 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
 void refuse_what_needs_one_record(const options::variables_map& values,
                                   const std::vector<IdentifyRequest>& requests) {
   const Experiment& experiment = requests[0].experiment;
-  if (!damping_law(values).empty()) throw UsageError("identify: --damping-law takes one RECORD");
   if (!experiment.smoother.empty()) throw UsageError("identify: a smoother takes one RECORD");
   if (experiment.estimator != "filter")
     throw UsageError("identify: estimator " + experiment.estimator + " takes one RECORD");
+}
+
+/// Every record's damping law, and whether one holds for all.
+Results laws_of(const std::vector<IdentifyRequest>& requests, const std::string& law,
+                const fs::path& folder) {
+  std::vector<StudiedRecord> studied;
+  for (const IdentifyRequest& one : requests) {
+    const Record& record = one.prepared.record;
+    try {
+      studied.push_back(
+          {one.file.filename().string(), record, study_damping_law(one.experiment, record, law, folder)});
+    } catch (const std::invalid_argument& error) {
+      throw InputError({one.file.string()}, error.what());
+    }
+  }
+  return report(requests[0].experiment, studied);
 }
 
 JointIdentification oscillator_of(const std::vector<IdentifyRequest>& requests) {
@@ -126,11 +141,13 @@ JointComparison model_of(const std::vector<IdentifyRequest>& requests, const fs:
   return joint_comparison(std::move(found));
 }
 
-Results identify_together(const std::vector<IdentifyRequest>& requests, const fs::path& folder) {
+Results identify_together(const std::vector<IdentifyRequest>& requests, const std::string& law,
+                          const fs::path& folder) {
   bool free = true;
   for (const IdentifyRequest& one : requests) free = free && one.is_free_oscillator();
-  Results results = free ? report(requests[0].experiment, oscillator_of(requests))
-                         : report(requests[0].experiment, model_of(requests, folder));
+  Results results = !law.empty() ? laws_of(requests, law, folder)
+                    : free       ? report(requests[0].experiment, oscillator_of(requests))
+                                 : report(requests[0].experiment, model_of(requests, folder));
   std::string thinned;
   for (const IdentifyRequest& one : requests)
     if (!one.window.empty()) results.paragraph(one.file.filename().string() + ": " + one.window);
@@ -155,7 +172,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   if (requests.size() > 1) refuse_what_needs_one_record(values, requests);
   deliver(values, [&] {
     try {
-      return requests.size() > 1 ? identify_together(requests, config.parent_path())
+      return requests.size() > 1 ? identify_together(requests, law, config.parent_path())
                                  : identify_one(requests[0], law, config.parent_path());
     } catch (const std::invalid_argument& error) {
       throw InputError({config.string()}, error.what());
@@ -175,7 +192,8 @@ Command identify_command() {
           "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
           "  beamid identify --config cantilever.toml --estimator both\n"
           "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
-          "  beamid identify --config cantilever.toml --damping-law auto --out results\n",
+          "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
+          "  beamid identify hard.csv soft.csv --config cantilever.toml --damping-law auto\n",
           run};
 }
 

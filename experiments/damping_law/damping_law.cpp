@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "experiments/damping_law/law_sections.hpp"
 #include "experiments/damping_law/slow_record.hpp"
 #include "experiments/input/spelling.hpp"
+#include "experiments/modal_study/decay_part.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/nonlinear_reproduction.hpp"
 #include "experiments/preparation/analysable_record.hpp"
@@ -28,15 +31,14 @@ bool drags(const std::string& law) {
   return law == "quadratic" || law == "both";
 }
 
-// Amplitudes of the first channel's mode as displacement [m], at the ends of the record.
+// Amplitudes of the first channel's mode as displacement [m], at the ends of the record, as if its damping
+// did not change.
 void take_amplitudes(const Record& record, DampingLawStudy& study) {
   const double omega = 2.0 * pi * study.modal.frequency_hz;
   const Quantity quantity = record.channels[output_channels(record)[0]].quantity;
-  const double reading = quantity == Quantity::acceleration ? omega * omega
-                         : quantity == Quantity::velocity   ? omega
-                                                            : 1.0;
   const double span = record.time[record.size() - 1] - record.time[0];
-  study.first_amplitude = study.modal.amplitude / reading;
+  study.first_amplitude =
+      study.modal.amplitude * displacement_per_reading(quantity, study.modal.frequency_hz);
   study.last_amplitude = study.first_amplitude * std::exp(-study.modal.damping_ratio * omega * span);
 }
 
@@ -52,6 +54,18 @@ JointModel model_of(const std::string& law, ModelSetting setting, double frictio
   if (drags(law)) ask("quadratic_damping");
   return std::move(
       *model_registry().make("damped", {{"friction_velocity_m_per_s", friction_velocity}}, setting));
+}
+
+// The law against sections of the decay, and the amplitudes that the record shows: it says nothing of smaller
+// ones.
+void test_by_sections(const Record& record, DampingLawStudy& study) {
+  const FittedLaw& law = study.supported();
+  const DecaySections found = decay_sections(record, study.modal);
+  study.sections = found.sections;
+  if (study.sections.empty() || law.state.size() == 0) return;
+  study.first_amplitude = std::hypot(law.state[0], law.state[1] / (2.0 * pi * study.modal.frequency_hz));
+  study.last_amplitude = found.last_amplitude;
+  study.misfit = misfit_of(law, study.sections, static_cast<Index>(law.model.unknowns.size()));
 }
 
 // Motion, offsets and the terms that both have; the others begin at zero.
@@ -163,15 +177,18 @@ double FittedLaw::damping_ratio(double a) const {
   return equivalent / (2.0 * value("mass") * omega);
 }
 
-DampingLawStudy study_damping_law(const Experiment& experiment, const Record& read, const std::string& law,
+DampingLawStudy study_damping_law(const Experiment& experiment, const Record& whole, const std::string& law,
                                   const std::filesystem::path& folder) {
-  const Record record = analysable(read).record;
   constexpr double smoothing = 0.05;  // of the last velocity: 0.2 % of what friction dissipates there
   constexpr double least = 0.002;     // of the first velocity, which steps of a 48th of a period still follow
   const auto& all = damping_laws();
   if (law != "auto" && std::find(all.begin(), all.end(), law) == all.end())
     throw std::invalid_argument("unknown damping law '" + law + "'; known: auto, " + joined(all));
   DampingLawStudy study;
+  study.warnings = whole.warnings;
+  AnalysableRecord ready = analysable(whole);
+  if (!ready.remark.empty()) study.remarks.push_back(std::move(ready.remark));
+  const Record& record = ready.record;
   const ModelSetting setting = model_setting(experiment, record, experiment.reduction, folder);
   ModalAnalysisSettings modal;
   modal.expected_frequency_hz =
@@ -203,12 +220,13 @@ DampingLawStudy study_damping_law(const Experiment& experiment, const Record& re
         fitter.fit(name, study.friction_velocity, study.noise, name == "both" ? &reference : &first));
     if (study.named && name == law) study.chosen = study.laws.size() - 1;
   }
-  if (study.named) return study;
   const auto better = [](const FittedLaw& a, const FittedLaw& b) {
     return a.possible != b.possible ? a.possible : a.bic < b.bic;
   };
-  study.chosen = static_cast<std::size_t>(std::min_element(study.laws.begin(), study.laws.end(), better) -
-                                          study.laws.begin());
+  if (!study.named)
+    study.chosen = static_cast<std::size_t>(std::min_element(study.laws.begin(), study.laws.end(), better) -
+                                            study.laws.begin());
+  test_by_sections(record, study);
   return study;
 }
 

@@ -7,6 +7,7 @@
 
 #include "experiments/estimates.hpp"
 #include "experiments/experiment.hpp"
+#include "experiments/modal_analysis/amplitude_dependence.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/output/results.hpp"
 
@@ -36,6 +37,16 @@ struct FittedLaw {
   double frequency_hz(double amplitude) const;  ///< sqrt((K + 3/4 K3 a^2) / M) / 2 pi
 };
 
+/// What a law leaves of frequency and damping ratio in sections of a decay.
+struct LawMisfit {
+  Eigen::Index sections = 0, freedom = 0;
+  double chi_square = 0;
+  bool tested = false;      ///< there are more values than unknowns
+  bool lacks = false;       ///< chi^2 above its 95 %
+  double largest = 0;       ///< of the damping ratio, relative to the law's
+  double at_amplitude = 0;  ///< there [m]
+};
+
 /// What a record says of its damping.
 struct DampingLawStudy {
   ModalEstimate modal;      ///< of the first channel
@@ -43,8 +54,12 @@ struct DampingLawStudy {
   Eigen::MatrixXd samples;  ///< used: low-passed, decimated (p x M)
   Eigen::VectorXd noise;    ///< of all fits alike (p)
   int decimation = 1;
-  double friction_velocity = 0.0;                      ///< [m/s]
-  double first_amplitude = 0.0, last_amplitude = 0.0;  ///< of the displacement [m]
+  double friction_velocity = 0.0;  ///< [m/s]
+  /// Of the displacement [m]: at the record's beginning, and where it ends or noise hides its damping.
+  double first_amplitude = 0.0, last_amplitude = 0.0;
+  std::vector<AmplitudePoint> sections;        ///< that share no sample, amplitudes as displacement [m]
+  LawMisfit misfit;                            ///< of the law supported
+  std::vector<std::string> warnings, remarks;  ///< of the record
   std::vector<FittedLaw> laws;  ///< in the order of damping_laws(), or viscous and the one named
   std::size_t chosen = 0;       ///< of laws: the lowest BIC of those possible, or the one named
   bool named = false;
@@ -52,12 +67,15 @@ struct DampingLawStudy {
   const FittedLaw& supported() const { return laws[chosen]; }
 };
 
-/// Fits the laws to one record with one noise (model `damped`, cubic stiffness asked in all of them).
+/// Fits the laws to one record with one noise (model `damped`, cubic stiffness asked in all of them). Missing
+/// readings (NaN) end the part that is taken.
 ///
 /// The record is low-passed and decimated to about eight samples per period, which ends modes above four
 /// times the frequency; the motion is integrated in 48 steps per period. The noise of each channel is what
 /// the richest law leaves, and where that is denser near the mode, white noise as dense as that (between half
-/// and one and a half times the frequency): a law is not preferred because it fits a neighbour's beat.
+/// and one and a half times the frequency): a law is not preferred because it fits a neighbour's beat. The
+/// best of the laws may be wrong all the same: it is held against frequency and damping ratio in sections of
+/// the decay, found without it (law_sections.hpp).
 ///
 ///     AIC = 2 k - 2 ln L [akaike1974],   BIC = k ln M - 2 ln L [schwarz1978]
 ///
@@ -65,6 +83,9 @@ struct DampingLawStudy {
 /// @throws std::invalid_argument on another law, or where the record shows no mode or no law can be fitted.
 DampingLawStudy study_damping_law(const Experiment& experiment, const Record& record, const std::string& law,
                                   const std::filesystem::path& folder = {});
+
+/// What the record supports, and whether that fits: sentences.
+std::string law_words(const DampingLawStudy& study);
 
 /// Tables, figures, words and results.json keys of `beamid identify --damping-law`.
 Results report(const Experiment& experiment, const Record& record, const std::string& record_name,

@@ -140,6 +140,41 @@ std::string verdict(const DampingLawStudy& study) {
   return text;
 }
 
+// Whether the best of the laws is good enough.
+std::string fit_words(const DampingLawStudy& study) {
+  const LawMisfit& misfit = study.misfit;
+  if (!misfit.tested)
+    return fmt::format(
+        "Whether any of these laws fits cannot be tested: {} section{} of the decay that share no sample, "
+        "too "
+        "few for a law of {} unknowns.",
+        misfit.sections, misfit.sections == 1 ? "" : "s", study.supported().model.unknowns.size());
+  const std::string size = fmt::format(
+      "chi^2 {:.3g} of {} degrees of freedom in {} sections of the decay, the damping ratio "
+      "{:+.2g} % off at {:.3g} mm",
+      misfit.chi_square, misfit.freedom, misfit.sections, 100.0 * misfit.largest, 1e3 * misfit.at_amplitude);
+  if (!misfit.lacks) return "The law fits sections of the decay: " + size + " at most.";
+  return fmt::format(
+      "Lack of fit: {} damping does not describe this decay ({}). It is the nearest of these laws, its "
+      "intervals are {:.2g} times too narrow for what is left, and nothing follows from it beyond {:.3g} to "
+      "{:.3g} mm.",
+      title_of(study.supported().name), size,
+      std::sqrt(misfit.chi_square / static_cast<double>(misfit.freedom)), 1e3 * study.last_amplitude,
+      1e3 * study.first_amplitude);
+}
+
+Curve section_curve(const DampingLawStudy& study) {
+  const auto count = static_cast<Index>(study.sections.size());
+  VectorXd a(count), xi(count), half(count);
+  for (Index i = 0; i < count; ++i) {
+    const AmplitudePoint& section = study.sections[static_cast<std::size_t>(i)];
+    a[i] = 1e3 * section.amplitude;
+    xi[i] = 100.0 * section.damping_ratio;
+    half[i] = 196.0 * section.damping_ratio_deviation;
+  }
+  return {"sections of the decay", a, xi, CurveStyle::points, xi - half, xi + half};
+}
+
 Figure figure(const Record& record, const DampingLawStudy& study) {
   Panel ratios{"damping ratio by amplitude", {"amplitude [mm]", true}, {"damping ratio [%]"}, {}};
   constexpr Index points = 60;
@@ -155,6 +190,7 @@ Figure figure(const Record& record, const DampingLawStudy& study) {
     ratios.curves.push_back(
         {title_of(law.name), 1e3 * a, xi, chosen ? CurveStyle::line : CurveStyle::dashed});
   }
+  if (!study.sections.empty()) ratios.curves.push_back(section_curve(study));
   const Channel& channel = record.channels[output_channels(record)[0]];
   Panel left{"what the laws leave of the record",
              {"time [s]"},
@@ -186,6 +222,11 @@ Json values(const FittedLaw& law) {
 
 }  // namespace
 
+std::string law_words(const DampingLawStudy& study) {
+  return study.misfit.lacks ? fit_words(study) + " " + verdict(study)
+                            : verdict(study) + " " + fit_words(study);
+}
+
 Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
                const DampingLawStudy& study) {
   Results results;
@@ -202,15 +243,26 @@ Results report(const Experiment& experiment, const Record& record, const std::st
                     {"first_amplitude_m", study.first_amplitude},
                     {"last_amplitude_m", study.last_amplitude},
                     {"supported", study.supported().name},
+                    {"lack_of_fit",
+                     {{"tested", study.misfit.tested},
+                      {"lacks", study.misfit.lacks},
+                      {"sections", study.misfit.sections},
+                      {"freedom", study.misfit.freedom},
+                      {"chi_square", study.misfit.chi_square},
+                      {"largest_relative_damping_ratio", study.misfit.largest}}},
                     {"laws", Json::array()}};
   for (const FittedLaw& law : study.laws) results.values["laws"].push_back(values(law));
   results.heading(experiment.title.empty() ? record_name : experiment.title);
+  for (const std::string& warning : study.warnings) results.paragraph(warning);
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz; mode at {:.4f} Hz. Low-passed and decimated by "
       "{} to {} samples for the fits.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
       study.modal.frequency_hz, study.decimation, study.samples.cols()));
+  for (const std::string& remark : study.remarks) results.paragraph(remark);
+  if (study.misfit.lacks) results.paragraph(fit_words(study));
   results.paragraph(verdict(study));
+  if (!study.misfit.lacks) results.paragraph(fit_words(study));
   results.table(law_table(study));
   results.table(estimate_table(study));
   results.table(amplitude_table(study));

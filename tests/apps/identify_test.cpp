@@ -191,8 +191,18 @@ TEST_F(Tutorial, RefusesWhatSeveralRecordsCannotHave) {
             "for each");
   EXPECT_EQ(place_.run(twice + "--smoother rts").first_error_line(),
             "beamid: identify: a smoother takes one RECORD");
-  EXPECT_EQ(place_.run(twice + "--damping-law auto").first_error_line(),
-            "beamid: identify: --damping-law takes one RECORD");
+}
+
+// Oracle: the record was simulated with viscous damping, in all of its parts.
+TEST_F(Tutorial, FindsOneDampingLawInTwoPartsOfARecord) {
+  const Outcome outcome = place_.run(
+      "identify tip_acceleration.csv tip_acceleration.csv --config cantilever.toml --window 2 9 3 10 "
+      "--damping-law auto --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  ASSERT_EQ(found.at("compared_laws").size(), 2u);
+  for (const json& one : found.at("compared_laws")) EXPECT_TRUE(one.at("holds").get<bool>()) << one;
+  for (const json& one : found.at("records")) EXPECT_EQ(one.at("supported"), "viscous");
 }
 
 // Oracle: the truth. Higher modes are in the first seconds, and kept from the filter without being told.
