@@ -114,6 +114,7 @@ Experiment read_experiment(const TomlTable& root) {
   const TomlTable beam = root.table("beam");
   experiment.beam = read_beam(beam);
   experiment.elements = beam.find_whole_number("elements", 1, most_elements).value_or(experiment.elements);
+  experiment.format.irregular = true;  // as [record] has it unless it says otherwise
   if (const auto record = root.find_table("record")) {
     experiment.record_file = record->find_text("file");
     if (experiment.record_file && experiment.record_file->empty())
