@@ -52,7 +52,7 @@ Table mode_table(const ModalSummary& s) {
                1e-3 * rounded_among(acceleration[i], acceleration), s.mac[i], 100.0 * s.damping_ratio[i]});
   }
   table.note = fmt::format(
-      "mesh error: relative, estimated from half the elements; exact: against the continuum, where its "
+      "mesh error: relative, estimated from finer meshes; exact: against the continuum, where its "
       "solution is known. digits: on which solver and Rayleigh quotient agree. eff. mass: moved by a motion "
       "of the base, {:.1f} % of {:.6g} kg in these modes. release: share of each mode in displacement and "
       "acceleration of the {} after a static deflection there.",

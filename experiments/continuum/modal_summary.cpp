@@ -12,6 +12,7 @@
 #include "fem/damping.hpp"
 #include "fem/exact/exact_modes.hpp"
 #include "fem/free_decay.hpp"
+#include "fem/refinement.hpp"
 #include "fem/stiffness_solver.hpp"
 
 namespace beamid::experiments {
@@ -24,16 +25,21 @@ VectorXd unknowns(Index count) {
   return VectorXd::Constant(count, unknown);
 }
 
-// Two meshes tell the error of the finer one, when its order is known.
-VectorXd coarser_mesh_error(const Experiment& experiment, const ModalSummary& fine) {
-  const int half = experiment.elements / 2;
-  if (half < 1) return unknowns(fine.modes.size());
-  const auto coarse = fem::assemble(experiment.beam, half, {fine.observed});
-  const auto ratio = static_cast<double>(fine.elements) / static_cast<double>(coarse.mesh.elements.size());
-  if (ratio == 1.0) return unknowns(fine.modes.size());  // breaks leave no coarser mesh
+// From meshes with every element cut in two and in four. What is too large for that is told from half the
+// elements, where that is half in every piece: its elements are so short that their order is the known one.
+VectorXd mesh_error(const Experiment& experiment, const ModalSummary& summary) {
+  constexpr int most_refined = 20000;
+  const Index count = summary.modes.size();
   const double order = experiment.beam.mass_model == fem::MassModel::lumped ? 2.0 : 4.0;
-  return discretisation_error(fine.modes, fem::modes(coarse, std::min(fine.modes.size(), coarse.size())),
-                              ratio, order);
+  const auto finer = [&](int parts) {
+    return fem::modes(fem::assemble_refined(experiment.beam, experiment.elements, parts, {summary.observed}),
+                      count);
+  };
+  if (summary.elements <= most_refined) return discretisation_error(summary.modes, finer(2), finer(4), order);
+  const auto coarse = fem::assemble(experiment.beam, experiment.elements / 2, {summary.observed});
+  const auto elements = static_cast<Index>(coarse.mesh.elements.size());
+  if (2 * elements != summary.elements) return unknowns(count);
+  return discretisation_error(summary.modes, fem::modes(coarse, std::min(count, coarse.size())), 2.0, order);
 }
 
 void compare_with_exact(const fem::Beam& beam, ModalSummary& summary) {
@@ -63,7 +69,7 @@ void release(ModalSummary& summary) {
 }
 
 void doubt(ModalSummary& summary) {
-  summary.notes = doubts(summary.modes);
+  for (std::string& sentence : doubts(summary.modes)) summary.notes.push_back(std::move(sentence));
   if (summary.modes.rigid > 0)
     summary.notes.push_back(fmt::format(
         "{} rigid-body mode{}: the beam can move without strain, and has no static shape to be released "
@@ -88,6 +94,11 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
   summary.elements = static_cast<Index>(summary.system.mesh.elements.size());
   summary.degrees_of_freedom = summary.system.size();
   summary.total_mass = total_mass(experiment.beam);
+  if (count > summary.system.size())
+    summary.notes.push_back(
+        fmt::format("{} modes asked for; the mesh of {} element{} has {} coordinates, and as "
+                    "many modes. More elements have more.",
+                    count, summary.elements, summary.elements == 1 ? "" : "s", summary.system.size()));
   count = std::min(count, summary.system.size());
   progress("modes");
   summary.modes = fem::modes(summary.system, count);
@@ -110,8 +121,8 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
     summary.system = {};
     summary.modes.shape.resize(0, 0);
   }
-  progress("modes of half the elements");
-  summary.discretisation_error = coarser_mesh_error(experiment, summary);
+  progress("modes of finer meshes");
+  summary.discretisation_error = mesh_error(experiment, summary);
   doubt(summary);
   return summary;
 }

@@ -20,14 +20,13 @@ struct ModalSummary {
   Eigen::Index elements = 0, degrees_of_freedom = 0;
   fem::StructuralSystem system;  ///< empty, as are the shapes, when it is too large to be drawn
   fem::Modes modes;
-  fem::Point observed;  ///< what "release" refers to
-  Eigen::VectorXd
-      discretisation_error;            ///< relative, estimated: |f_h - f_2h| / (2^p - 1) / f, p = 4, lumped 2
-  Eigen::VectorXd exact_frequency_hz;  ///< of the continuum
-  Eigen::VectorXd mac;                 ///< with the exact shape, of deflections at the nodes
-  Eigen::VectorXd effective_mass;      ///< (phi^T M r)^2 under a motion of the base, phi^T M phi = 1 [kg]
-  Eigen::VectorXd release_amplitude;   ///< at the observed point, released from a unit static deflection [-]
-  Eigen::VectorXd damping_ratio;       ///< by the damping law, dashpots aside
+  fem::Point observed;                   ///< what "release" refers to
+  Eigen::VectorXd discretisation_error;  ///< relative, estimated (mode_trust.hpp)
+  Eigen::VectorXd exact_frequency_hz;    ///< of the continuum
+  Eigen::VectorXd mac;                   ///< with the exact shape, of deflections at the nodes
+  Eigen::VectorXd effective_mass;        ///< (phi^T M r)^2 under a motion of the base, phi^T M phi = 1 [kg]
+  Eigen::VectorXd release_amplitude;  ///< at the observed point, released from a unit static deflection [-]
+  Eigen::VectorXd damping_ratio;      ///< by the damping law, dashpots aside
   std::optional<fem::ComplexModes> complex;                            ///< where dashpots act
   double total_mass = 0.0;                                             ///< all that moves [kg]
   double static_stiffness = std::numeric_limits<double>::quiet_NaN();  ///< at the observed point [N/m]

@@ -11,6 +11,20 @@ namespace beamid::experiments {
 
 using Eigen::Index, Eigen::VectorXd;
 
+VectorXd discretisation_error(const fem::Modes& modes, const fem::Modes& halved, const fem::Modes& quartered,
+                              double order) {
+  constexpr double slowest = 0.75;
+  VectorXd error = VectorXd::Constant(modes.size(), std::numeric_limits<double>::quiet_NaN());
+  for (Index i = modes.rigid; i < modes.size(); ++i) {
+    const double first = modes.angular_frequency[i] / halved.angular_frequency[i] - 1.0,
+                 second = halved.angular_frequency[i] / quartered.angular_frequency[i] - 1.0;
+    const double left = first == 0.0 ? 0.0 : std::abs(second / first);
+    error[i] = std::max(std::abs(first) / (1.0 - std::clamp(left, std::pow(0.5, order), slowest)),
+                        std::abs(first + second));
+  }
+  return error;
+}
+
 VectorXd discretisation_error(const fem::Modes& fine, const fem::Modes& coarse, double ratio, double order) {
   VectorXd error = VectorXd::Constant(fine.size(), std::numeric_limits<double>::quiet_NaN());
   for (Index i = fine.rigid; i < std::min(fine.size(), coarse.size()); ++i)

@@ -47,8 +47,8 @@ TEST(ModalSummary, LeavesOutWhatIsNotKnown) {
   fem::Beam beam = fem::Cantilever{1.0, 100.0, 2.0};
   beam.segments[0].section.bending_stiffness = fem::Variation::linear(100, 50);
   const ModalSummary summary = summarise_modes(experiment_of(beam, 1), 1, silent);
-  EXPECT_TRUE(std::isnan(summary.exact_frequency_hz[0]));    // no closed form
-  EXPECT_TRUE(std::isnan(summary.discretisation_error[0]));  // no coarser mesh
+  EXPECT_TRUE(std::isnan(summary.exact_frequency_hz[0]));  // no closed form
+  EXPECT_GT(summary.discretisation_error[0], 0.0);         // a finer mesh there always is
 }
 
 }  // namespace
