@@ -4,6 +4,7 @@
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_reduction.hpp"
 #include "experiments/record_inputs.hpp"
+#include "fem/gauge_row.hpp"
 #include "fem/parametric_system.hpp"
 
 namespace beamid::experiments {
@@ -88,7 +89,7 @@ ModelSetting model_setting(const Experiment& experiment, const Record& record, c
       names.push_back(setting.system.output_names[rows[i]]);
     } else {
       const double position = channel.position.value_or(fem::natural_point(beam).position);
-      outputs.row(i) = -channel.distance * MatrixXd(fem::curvature_row(setting.system, position));
+      outputs.row(i) = -channel.distance * MatrixXd(fem::gauge_row(setting.system, beam, position));
       names.push_back(channel.name + "_strain");
     }
   }

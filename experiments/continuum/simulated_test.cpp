@@ -8,6 +8,7 @@
 #include "experiments/continuum/excitation_history.hpp"
 #include "experiments/random.hpp"
 #include "experiments/signal/cubic_spline.hpp"
+#include "fem/gauge_row.hpp"
 #include "fem/modes.hpp"
 #include "fem/parametric_system.hpp"
 
@@ -37,14 +38,14 @@ VectorXd clean_history(const SimulatedTest& test, Quantity quantity, Index outpu
 }
 
 // An output row for every strain gauge, -c w'' at its node, behind those of the points.
-void add_gauges(SimulatedTest& test, std::vector<Index>& outputs) {
+void add_gauges(const fem::Beam& beam, SimulatedTest& test, std::vector<Index>& outputs) {
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
     const Sensor& sensor = test.sensors[i];
     if (sensor.quantity != Quantity::strain) continue;
     fem::StructuralSystem& system = test.system;
     outputs[i] = system.outputs.rows();
     const Eigen::MatrixXd gauge =
-        -sensor.distance * Eigen::MatrixXd(fem::curvature_row(system, *sensor.position));
+        -sensor.distance * Eigen::MatrixXd(fem::gauge_row(system, beam, *sensor.position));
     Eigen::MatrixXd rows(system.outputs.rows() + 1, system.size());
     rows << Eigen::MatrixXd(system.outputs), gauge;
     system.outputs = rows.sparseView();
@@ -166,7 +167,7 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   test.excitation.position = points[input].position;
   progress("assembling");
   test.system = fem::assemble(fem::with_nodes(experiment.beam, gauges), experiment.elements, points.all());
-  add_gauges(test, outputs);
+  add_gauges(experiment.beam, test, outputs);
 
   constexpr int fewest_between_stamps = 8;
   const int steps = acquisition.jitter > 0 ? std::max(settings.steps_per_sample, fewest_between_stamps)

@@ -5,6 +5,7 @@
 
 #include "experiments/input/read_experiment.hpp"
 #include "fem/assembly.hpp"
+#include "fem/gauge_row.hpp"
 #include "fem/parametric_system.hpp"
 
 namespace beamid::experiments {
@@ -53,7 +54,7 @@ TEST(ModelSetting, ReadsStrainAlsoAtAClampedRootAndBesideRegions) {
   const ModelSetting setting = model_setting(e, record({gauge, {Quantity::acceleration, "tip"}}), none);
   const fem::StructuralSystem by_hand =
       fem::assemble(fem::with_nodes(e.beam, {0.0, 0.47}), e.elements, {{"tip", 1.1}});
-  const MatrixXd curvature = MatrixXd(fem::curvature_row(by_hand, 0.0));
+  const MatrixXd curvature = MatrixXd(fem::gauge_row(by_hand, e.beam, 0.0));
   EXPECT_LT((MatrixXd(setting.system.outputs).row(0) + 0.003 * curvature).norm(), 1e-14 * curvature.norm());
   const auto model = model_registry().make("beam", {}, setting);
   EXPECT_EQ(model->unknowns.size(), 1u);
