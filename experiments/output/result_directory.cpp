@@ -2,14 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -31,6 +35,10 @@ fs::path resolved(const fs::path& given) {
 fs::path nearest_existing(fs::path path) {
   while (!fs::exists(path)) path = path.parent_path();
   return path;
+}
+
+std::string staging_prefix(const fs::path& destination) {
+  return "." + destination.filename().string() + ".partial-";
 }
 
 bool is_mount_point(const fs::path& folder) {
@@ -66,6 +74,44 @@ bool exchange(const fs::path& one, const fs::path& other) {
   return false;
 }
 
+// Locks that this process holds on its staging folders, of which the system frees it however it ends.
+std::map<fs::path, int>& held() {
+  static std::map<fs::path, int> locks;
+  return locks;
+}
+
+int open_locked(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0 || flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  close(descriptor);
+  return -1;
+}
+
+void unlock(const fs::path& folder) {
+  if (const auto lock = held().find(folder); lock != held().end()) {
+    close(lock->second);
+    held().erase(lock);
+  }
+}
+
+// Removes what processes have left that ended before their commit: folders named `prefix` and the process.
+void clear_abandoned(const fs::path& parent, const std::string& prefix) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(parent, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const char* const end = name.data() + name.size();
+    pid_t process = 0;
+    if (!name.starts_with(prefix) || std::from_chars(name.data() + prefix.size(), end, process).ptr != end ||
+        process <= 0)
+      continue;
+    if (kill(process, 0) == 0 || errno != ESRCH) continue;
+    const int lock = open_locked(entry.path());  // not of a process of another machine or container
+    if (lock < 0) continue;
+    fs::remove_all(entry.path(), ignored);
+    close(lock);
+  }
+}
+
 std::string reason() {
   return std::strerror(errno);
 }
@@ -91,12 +137,13 @@ ResultDirectory::ResultDirectory(const fs::path& destination, bool force)
     throw std::invalid_argument(name + ": '" + existing.string() + "' is a file; expected a folder");
   if (access(existing.c_str(), W_OK | X_OK) != 0)
     throw std::runtime_error("cannot write " + name + ": '" + existing.string() + "': " + reason());
-  staging_ = parent / fmt::format(".{}.partial-{}", destination_.filename().string(), getpid());
+  staging_ = parent / fmt::format("{}{}", staging_prefix(destination_), getpid());
 }
 
 ResultDirectory::~ResultDirectory() {
   std::error_code ignored;  // nothing better can be done on the way out
   if (staged_) fs::remove_all(staging_, ignored);
+  unlock(staging_);
   if (committed_ || created_.empty()) return;
   // Folders made on the way to the destination go as well, as far as they are empty.
   for (fs::path folder = destination_.parent_path(); fs::remove(folder, ignored) && folder != created_;)
@@ -128,7 +175,9 @@ const fs::path& ResultDirectory::path() {
     while (!fs::exists(missing)) created_ = std::exchange(missing, missing.parent_path());
     fs::create_directories(parent);
     fs::remove_all(staging_);  // of a killed process that had the same number
+    clear_abandoned(parent, staging_prefix(destination_));
     fs::create_directory(staging_);
+    if (const int lock = open_locked(staging_); lock >= 0) held().insert_or_assign(staging_, lock);
     if (fs::exists(destination_)) fs::permissions(staging_, fs::status(destination_).permissions());
   } catch (const fs::filesystem_error& error) {
     throw std::runtime_error("cannot write output folder '" + given_.string() +

@@ -1,8 +1,10 @@
 #include "experiments/output/result_directory.hpp"
 
-#include <stdexcept>
-
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <stdexcept>
 
 #include "tests/experiments/output/temporary_folder.hpp"
 
@@ -47,6 +49,25 @@ TEST(ResultDirectory, LeavesNothingWithoutCommit) {
   } catch (const std::runtime_error&) {
   }
   EXPECT_EQ(temporary.entries(), 0u);
+}
+
+// A process that has ended without a commit, one that has not, and a folder of another name.
+TEST(ResultDirectory, ClearsWhatEndedProcessesLeft) {
+  TemporaryFolder temporary;
+  const pid_t ended = fork();
+  if (ended == 0) _exit(0);
+  waitpid(ended, nullptr, 0);
+  const std::string prefix = ".out.partial-";
+  const fs::path abandoned = temporary.path / (prefix + std::to_string(ended)),
+                 of_another = temporary.path / (prefix + std::to_string(getppid())),
+                 of_someone = temporary.path / (prefix + "notes");
+  for (const fs::path& folder : {abandoned, of_another, of_someone}) fs::create_directory(folder);
+  std::ofstream(abandoned / "a.txt") << "half";
+  ResultDirectory directory(temporary.path / "out", false);
+  directory.write("a.txt", "text");
+  directory.commit();
+  EXPECT_FALSE(fs::exists(abandoned));
+  EXPECT_TRUE(fs::exists(of_another) && fs::exists(of_someone));
 }
 
 TEST(ResultDirectory, TakesThePlaceOfAnEmptyFolder) {
