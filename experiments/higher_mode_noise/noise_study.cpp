@@ -11,11 +11,24 @@
 namespace beamid::experiments {
 namespace {
 
+// Failed, or on another motion than the first mode's: one such trial would be all of a mean.
+bool is_lost(const FirstMode& f) {
+  constexpr double stiffness_lost = 5.0, damping_lost = 100.0;  // [%]
+  return !(std::abs(f.stiffness_error) < stiffness_lost && std::abs(f.damping_error) < damping_lost &&
+           std::isfinite(f.damping_deviation));
+}
+
 NoiseStatistics statistics_of(const std::vector<FirstMode>& found) {
   NoiseStatistics s;
   double count = 0.0, stiffness_deviation = 0.0, damping_deviation = 0.0;
+  double squares = 0.0;
+  int reached = 0;
   for (const FirstMode& f : found) {
-    if (!std::isfinite(f.damping_error) || !std::isfinite(f.damping_deviation)) {
+    if (std::isfinite(f.normalised_square)) {
+      squares += f.normalised_square;
+      ++reached;
+    }
+    if (is_lost(f)) {
       ++s.failed;
       continue;
     }
@@ -24,7 +37,6 @@ NoiseStatistics statistics_of(const std::vector<FirstMode>& found) {
     s.damping_mean_percent += f.damping_error;
     s.stiffness_rms_percent += f.stiffness_error * f.stiffness_error;
     s.damping_rms_percent += f.damping_error * f.damping_error;
-    s.normalised_square += f.normalised_square;
     stiffness_deviation += f.stiffness_deviation;
     damping_deviation += f.damping_deviation;
   }
@@ -32,7 +44,7 @@ NoiseStatistics statistics_of(const std::vector<FirstMode>& found) {
   s.damping_mean_percent /= count;
   s.stiffness_rms_percent = std::sqrt(s.stiffness_rms_percent / count);
   s.damping_rms_percent = std::sqrt(s.damping_rms_percent / count);
-  s.normalised_square /= count;
+  s.normalised_square = squares / reached;
   s.stiffness_ratio = s.stiffness_rms_percent / (stiffness_deviation / count);
   s.damping_ratio = s.damping_rms_percent / (damping_deviation / count);
   return s;

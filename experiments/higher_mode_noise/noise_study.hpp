@@ -30,13 +30,13 @@ struct NoiseSettings {
   std::vector<double> factors{1e-2, 1e2};  ///< on R of `white`, tried beside 1
 };
 
-/// Over the trials of one case; errors relative to the truth.
+/// Over the trials of one case that were not lost; errors relative to the truth.
 struct NoiseStatistics {
   double stiffness_mean_percent = 0.0, damping_mean_percent = 0.0;
   double stiffness_rms_percent = 0.0, damping_rms_percent = 0.0;
   double stiffness_ratio = 0.0, damping_ratio = 0.0;  ///< rms error over the deviation reported
-  double normalised_square = 0.0;                     ///< mean; 1 where consistent
-  int failed = 0;                                     ///< trials in which the filter failed; not counted
+  double normalised_square = 0.0;                     ///< mean of all that ended; 1 where consistent
+  int failed = 0;  ///< trials lost: the filter failed, or K is 5 % off or more, or C 100 %
 };
 
 struct NoiseCase {

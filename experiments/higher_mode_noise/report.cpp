@@ -9,6 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Value = double NoiseStatistics::*;
+constexpr auto trials_lost = &NoiseStatistics::failed;
 
 const char* name(Blow blow) {
   return blow == Blow::release ? "release" : "hammer";
@@ -25,8 +26,9 @@ std::vector<Cell> leading_cells(const NoiseStudy& study, const NoiseCase& c) {
 }
 
 // One value of every treatment.
+template <class Member>
 Table treatment_table(const NoiseStudy& study, const std::vector<NoiseCase>& cases, const char* table_name,
-                      std::string title, Value value, const char* suffix, const char* format) {
+                      std::string title, Member value, const char* suffix, const char* format) {
   Table table = leading(table_name, std::move(title));
   table.column({"modes", "modes", "{:.0f}"});
   for (const Treatment treatment : treatments)
@@ -34,7 +36,7 @@ Table treatment_table(const NoiseStudy& study, const std::vector<NoiseCase>& cas
   for (const NoiseCase& c : cases) {
     std::vector<Cell> row = leading_cells(study, c);
     row.emplace_back(static_cast<double>(c.modes));
-    for (const NoiseStatistics& s : c.treatments) row.emplace_back(s.*value);
+    for (const NoiseStatistics& s : c.treatments) row.emplace_back(static_cast<double>(s.*value));
     table.row(std::move(row));
   }
   return table;
@@ -169,6 +171,12 @@ Results report(const NoiseStudy& study) {
     results.heading(blow == Blow::release ? "Released" : "Struck by a hammer");
     results.paragraph(verdicts(study, blow));
   }
+  results.table(
+      treatment_table(study, study.cases, "trials_lost",
+                      fmt::format("Trials lost, of {}: K 5 % off or more, C 100 %, or the filter failed; "
+                                  "the tables below are of the others",
+                                  s.trials),
+                      trials_lost, "trials_lost", "{:.0f}"));
   results.table(treatment_table(study, study.cases, "damping_error", "C: rms error [%]",
                                 &NoiseStatistics::damping_rms_percent, "damping_rms_error_percent",
                                 "{:.3g}"));
