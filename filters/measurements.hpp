@@ -12,7 +12,7 @@ namespace beamid::filters {
 struct Measurements {
   Eigen::VectorXd time;     ///< increasing (N) [s]
   Eigen::MatrixXd outputs;  ///< y (p x N)
-  Eigen::MatrixXd inputs;   ///< u (m x N), each held until the next stamp; empty: no input
+  Eigen::MatrixXd inputs;   ///< how m inputs run to the next stamp: InputPaths (m (d + 1) x N); empty: none
   Eigen::MatrixXd output_deviations =
       {};                        ///< of the noise: R_k = diag(squares) (p x N); empty: the model's R
   double time_resolution = 0.0;  ///< stamps are exact to within this [s]; see SampleClock

@@ -28,6 +28,7 @@ separator = "semicolon"
 header_lines = 2
 sampling_rate_hz = 1000
 window_s = [0.5, 2]
+input = "linear"
 time = { column = 1, unit = "ms" }
 channels = [
   { quantity = "acceleration", column = 3, unit = "g" },
@@ -71,6 +72,7 @@ TEST(ReadExperiment, ReadsEveryKey) {
   EXPECT_EQ(format.sampling_rate, 1000.0);
   EXPECT_EQ(format.window, std::pair(0.5, 2.0));
   EXPECT_EQ(format.window_place.line, 17u);
+  EXPECT_EQ(format.input, InputPath::linear);
   ASSERT_TRUE(format.time);
   EXPECT_EQ(format.time->number, 1);
   EXPECT_EQ(format.time->factor, 1e-3);
