@@ -14,9 +14,9 @@ StepInput::StepInput(const VectorXd& path, Index inputs)
                                : path.size()) {
   if (inputs_ == 0) return;
   degree_ = path.size() / inputs_ - 1;
-  if (degree_ < 0 || path.size() % inputs_ != 0)
+  if (degree_ < 0 || degree_ > highest_degree || path.size() % inputs_ != 0)
     throw std::invalid_argument("the input of a step has " + std::to_string(path.size()) +
-                                " entries; expected a multiple of the model's " + std::to_string(inputs_));
+                                " entries; expected 1 to 5 times the model's " + std::to_string(inputs_));
 }
 
 VectorXd StepInput::at(double s) const {

@@ -21,7 +21,7 @@ class StepInput {
 
   /// @param path which must outlive this; empty: no input
   /// @param inputs m; 0, of a model that does not say: all of the path, held
-  /// @throws std::invalid_argument when the path is no multiple of m.
+  /// @throws std::invalid_argument when the path is no multiple of m, or d above the highest degree.
   StepInput(const Eigen::VectorXd& path, Eigen::Index inputs);
 
   Eigen::Index size() const { return inputs_; }    ///< m; 0 without a path

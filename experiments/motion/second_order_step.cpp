@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "experiments/motion/rational_step.hpp"
+#include "filters/schemes/forced_oscillator.hpp"
 #include "filters/schemes/matrix_exponential.hpp"
 
 namespace beamid::experiments {
@@ -61,7 +62,8 @@ class SecondOrderStep final : public filters::DiscreteModel {
   double dt_;
   filters::Noise noise_;
   RationalStep::Scheme scheme_;
-  std::optional<RationalStep> rational_;  // absent: oscillators in closed form
+  bool apart_ = false;                    // oscillators in closed form
+  std::optional<RationalStep> rational_;  // all coordinates together; absent where it is never needed
   // The equations at unknowns_, and what is known of them: a step and the outputs after it share them.
   VectorXd unknowns_, held_input_;
   bool has_form_ = false, has_slopes_ = false, is_set_ = false;
@@ -71,8 +73,32 @@ class SecondOrderStep final : public filters::DiscreteModel {
 
   void prepare() {
     is_set_ = false;
-    if (scheme_ != RationalStep::Scheme::exponential || !motion_->decoupled() || motion_->input_size() > 0)
-      rational_.emplace(scheme_, dt_, motion_->frequencies());
+    apart_ = scheme_ == RationalStep::Scheme::exponential && motion_->decoupled();
+    if (!apart_ || motion_->input_size() > 0) rational_.emplace(scheme_, dt_, motion_->frequencies());
+  }
+
+  // dt A of oscillator i, or its change along an unknown
+  Matrix2d turn(const SecondOrderForm& form, Index i, double rate) const {
+    Matrix2d z;
+    z << 0.0, dt_ * rate, -dt_ * form.stiffness(i, i), -dt_ * form.damping(i, i);
+    return z;
+  }
+
+  // dt B p_j of oscillator i in columns; none without inputs
+  filters::ForcedOscillator::Pushes pushes(const SecondOrderForm& form, Index i,
+                                           const VectorXd& input) const {
+    const Index m = form.inputs.cols(), count = m > 0 ? input.size() / m : 0;
+    filters::ForcedOscillator::Pushes found(2, count);
+    found.row(0).setZero();
+    if (count > 0) found.row(1).noalias() = dt_ * (form.inputs.row(i) * input.reshaped(m, count));
+    return found;
+  }
+
+  bool moves_apart(const VectorXd& input) const {
+    if (!apart_ || input.size() == 0) return apart_;
+    for (Index i = 0; i < form_.stiffness.rows(); ++i)
+      if (!filters::ForcedOscillator::takes(turn(form_, i, 1.0))) return false;
+    return true;
   }
 
   void evaluate(const VectorXd& state, bool slopes) {
@@ -99,10 +125,10 @@ class SecondOrderStep final : public filters::DiscreteModel {
       next[at.biases[i]] += dt_ * state[at.drifts[i]];
       if (tangent) (*tangent)(at.biases[i], at.drifts[i]) = dt_;
     }
-    if (rational_)
-      step_together(state, input, next, tangent);
+    if (moves_apart(input))
+      step_apart(state, input, next, tangent);
     else
-      step_apart(state, next, tangent);
+      step_together(state, input, next, tangent);
   }
 
   void step_together(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
@@ -120,14 +146,17 @@ class SecondOrderStep final : public filters::DiscreteModel {
         state, slopes_, tangent->block(0, at.unknowns, moving, static_cast<Index>(slopes_.size())));
   }
 
-  void step_apart(const VectorXd& state, VectorXd& next, MatrixXd* tangent) {
+  void step_apart(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
     const StateLayout& at = motion_->layout();
     const Index r = at.coordinates;
-    Matrix2d a, slope;
     for (Index i = 0; i < r; ++i) {
-      a << 0.0, dt_, -dt_ * form_.stiffness(i, i), -dt_ * form_.damping(i, i);
-      const filters::Exponential2x2 exponential(a);
-      const Vector2d before(state[i], state[r + i]), after = exponential.value() * before;
+      const Matrix2d z = turn(form_, i, 1.0);
+      const filters::Exponential2x2 exponential(z);
+      const Vector2d before(state[i], state[r + i]);
+      Vector2d after = exponential.value() * before;
+      const auto pushed = pushes(form_, i, input);
+      std::optional<filters::ForcedOscillator> forced;
+      if (pushed.cols() > 0) after += forced.emplace(z, exponential.value(), pushed).value();
       next[i] = after[0];
       next[r + i] = after[1];
       if (!tangent) continue;
@@ -136,10 +165,12 @@ class SecondOrderStep final : public filters::DiscreteModel {
       (*tangent)(r + i, i) = exponential.value()(1, 0);
       (*tangent)(r + i, r + i) = exponential.value()(1, 1);
       for (std::size_t j = 0; j < slopes_.size(); ++j) {
-        const double w = slopes_[j].stiffness(i, i), d = slopes_[j].damping(i, i);
-        if (w == 0.0 && d == 0.0) continue;
-        slope << 0.0, 0.0, -dt_ * w, -dt_ * d;
-        const Vector2d moved = exponential.derivative(slope) * before;
+        const Matrix2d along = turn(slopes_[j], i, 0.0);
+        const auto pushed_along = pushes(slopes_[j], i, input);
+        if (along.isZero(0.0) && pushed_along.isZero(0.0)) continue;
+        const Matrix2d slope = exponential.derivative(along);
+        Vector2d moved = slope * before;
+        if (forced) moved += forced->derivative(along, slope, pushed_along);
         (*tangent)(i, at.unknowns + static_cast<Index>(j)) = moved[0];
         (*tangent)(r + i, at.unknowns + static_cast<Index>(j)) = moved[1];
       }

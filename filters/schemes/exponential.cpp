@@ -5,16 +5,15 @@
 //
 // with the exact tangent: d x+/d theta_j is the directional derivative of the exponential along dA/dtheta_j.
 // The powers s^j / j! are a chain of integrators, so that the inputs enter by augmenting A [vanloan1978].
-// Two coordinates take the exponential in closed form and the integral as the series
-//
-//     sum_k Z^k B h_k,   h_k = sum_j j! / (k + j + 1)! p_j.
+// Two coordinates take the exponential in closed form, and the integral too (forced_oscillator.hpp).
 #include "filters/scheme.hpp"
+#include "filters/schemes/forced_oscillator.hpp"
 #include "filters/schemes/matrix_exponential.hpp"
 #include "filters/step_input.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <unsupported/Eigen/MatrixFunctions>
 
 namespace beamid::filters {
@@ -29,14 +28,11 @@ class Exponential final : public Scheme {
     if (&model != model_) bind(model);
     linear_->motion_matrix(state, a_);
     next = state;
-    const bool forced = linear_->input_size() > 0;
-    constexpr double farthest = 3.0;  // rounding grows with e^|Z|
-    if (linear_->motion_size() == 2 && (!forced || size_of(a_ * dt) <= farthest)) {
-      step_oscillator(state, dt, next, tangent);
-      if (forced) push_oscillator(state, input, dt, next, tangent);
-    } else {
+    const bool forced = linear_->input_size() > 0 && input.size() > 0;
+    if (linear_->motion_size() == 2 && (!forced || ForcedOscillator::takes(a_ * dt)))
+      step_oscillator(state, input, dt, next, tangent);
+    else
       step_general(state, input, dt, next, tangent);
-    }
   }
 
   Amplification amplification(std::complex<double> z) const override { return {std::exp(z), std::exp(z)}; }
@@ -50,14 +46,18 @@ class Exponential final : public Scheme {
     model_ = &model;
   }
 
-  // |Z| in coordinates that are scaled to make it small.
-  static double size_of(const Matrix2d& z) {
-    return std::max(std::abs(z(0, 0)), std::abs(z(1, 1))) + std::sqrt(std::abs(z(0, 1) * z(1, 0)));
-  }
-
-  void step_oscillator(const VectorXd& state, double dt, VectorXd& next, MatrixXd* tangent) {
-    const Exponential2x2 exponential(a_.topLeftCorner<2, 2>() * dt);
+  void step_oscillator(const VectorXd& state, const VectorXd& input, double dt, VectorXd& next,
+                       MatrixXd* tangent) {
+    const Matrix2d z = a_ * dt;
+    const Exponential2x2 exponential(z);
+    std::optional<ForcedOscillator> forced;
+    const StepInput path(input, linear_->input_size());
     next.head<2>() = exponential.value() * state.head<2>();
+    if (path.size() > 0 && linear_->input_size() > 0) {
+      linear_->input_matrix(state, b_);
+      forced.emplace(z, exponential.value(), pushes_of(path, dt));
+      next.head<2>() += forced->value();
+    }
     if (!tangent) return;
     tangent->setZero(state.size(), state.size());
     tangent->diagonal().setOnes();
@@ -65,52 +65,19 @@ class Exponential final : public Scheme {
     const Vector2d motion = state.head<2>();
     for (Index j = 0; j < linear_->parameter_size(); ++j) {
       linear_->motion_matrix_derivative(state, j, derivative_);
-      const Matrix2d slope = exponential.derivative(derivative_.topLeftCorner<2, 2>() * dt);
+      const Matrix2d turn = derivative_.topLeftCorner<2, 2>() * dt, slope = exponential.derivative(turn);
       tangent->block<2, 1>(0, 2 + j).noalias() = slope * motion;
-    }
-  }
-
-  // h_k in columns, as many as matter (m x K)
-  void find_moments(const StepInput& path, double size) {
-    constexpr double rounding = 1e-18;
-    Index terms = 1;
-    for (double term = 1.0; term > rounding; ++terms) term *= size / static_cast<double>(terms + 1);
-    moments_.setZero(path.size(), terms);
-    for (Index j = 0; j <= path.degree(); ++j) {
-      double weight = 1.0 / static_cast<double>(j + 1);
-      for (Index k = 0; k < terms; ++k) {
-        moments_.col(k) += weight * path.coefficient(j);
-        weight /= static_cast<double>(k + j + 2);
-      }
-    }
-  }
-
-  void push_oscillator(const VectorXd& state, const VectorXd& input, double dt, VectorXd& next,
-                       MatrixXd* tangent) {
-    const Matrix2d z = a_ * dt;
-    const StepInput path(input, linear_->input_size());
-    if (path.size() == 0) return;
-    find_moments(path, size_of(z));
-    linear_->input_matrix(state, b_);
-    pushes_.noalias() = dt * (b_ * moments_);
-    const Index last = moments_.cols() - 1;
-    Vector2d sum = Vector2d::Zero();
-    for (Index k = last; k >= 0; --k) sum = z * sum + pushes_.col(k);
-    next.head<2>() += sum;
-    if (!tangent) return;
-    for (Index j = 0; j < linear_->parameter_size(); ++j) {
-      linear_->motion_matrix_derivative(state, j, derivative_);
+      if (!forced) continue;
       linear_->input_matrix_derivative(state, j, b_);
-      const Matrix2d turn = derivative_ * dt;
-      slopes_.noalias() = dt * (b_ * moments_);
-      Vector2d slope = Vector2d::Zero();
-      sum.setZero();
-      for (Index k = last; k >= 0; --k) {
-        slope = z * slope + turn * sum + slopes_.col(k);
-        sum = z * sum + pushes_.col(k);
-      }
-      tangent->block<2, 1>(0, 2 + j) += slope;
+      tangent->block<2, 1>(0, 2 + j) += forced->derivative(turn, slope, pushes_of(path, dt));
     }
+  }
+
+  // dt B p_j, of the matrix in b_
+  ForcedOscillator::Pushes pushes_of(const StepInput& path, double dt) const {
+    ForcedOscillator::Pushes found(2, path.degree() + 1);
+    for (Index j = 0; j <= path.degree(); ++j) found.col(j) = dt * (b_ * path.coefficient(j));
+    return found;
   }
 
   void step_general(const VectorXd& state, const VectorXd& input, double dt, VectorXd& next,
@@ -160,7 +127,7 @@ class Exponential final : public Scheme {
 
   const ContinuousModel* model_ = nullptr;
   const LinearMotion* linear_ = nullptr;
-  MatrixXd a_, b_, derivative_, moments_, pushes_, slopes_;
+  MatrixXd a_, b_, derivative_;
 };
 
 const bool registered =
