@@ -22,7 +22,7 @@ void leave_out(const std::vector<Run>& runs, std::vector<double>& samples) {
 }
 
 bool is_dead(const std::vector<double>& samples) {
-  constexpr double far_larger = 1e3, noise_only = 2;
+  constexpr double far_larger = 1e3, out_of_reach = 1e4, noise_only = 2;
   constexpr Index fewest = 64;
   std::vector<double> finite;
   for (const double value : samples)
@@ -32,6 +32,7 @@ bool is_dead(const std::vector<double>& samples) {
     return true;
   const Eigen::Map<const VectorXd> signal(finite.data(), static_cast<Index>(finite.size()));
   const double middle = median(finite), power = (signal.array() - middle).square().mean();
+  if (std::abs(middle) > out_of_reach * std::sqrt(power)) return true;
   if (signal.size() < fewest || !(std::abs(middle) > far_larger * std::sqrt(power))) return false;
   const double noise = noise_floor(signal);
   return power < noise_only * noise * noise;

@@ -16,7 +16,8 @@ enum class SignalKind {
 };
 
 struct Defects {
-  bool dead = false;  ///< constant but for spikes, or nothing but noise on an offset a thousand times larger
+  bool dead = false;  ///< constant but for spikes, on an offset ten thousand times larger, or a thousand
+                      ///< times and noise
   std::vector<Run> spikes, clipped, dropped, repeated;
   std::optional<Rattle> rattle;
 };

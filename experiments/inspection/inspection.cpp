@@ -180,7 +180,7 @@ void analyse(const Inspection& found, InspectedChannel& channel) {
   if (!(signal.maxCoeff() > signal.minCoeff())) return;
   channel.frequency_hz = strongest_frequency(signal, interval);
   channel.events = find_events(signal, interval, channel.noise, channel.frequency_hz);
-  if (channel.events.empty()) channel.events = find_slow_release(signal, interval, channel.frequency_hz);
+  take_slow_release(signal, interval, channel.frequency_hz, channel.events);
   if (!channel.events.empty() && channel.events.front().pulse) channel.frequency_hz = 0;  // pulses have none
   if (channel.frequency_hz > 0)
     channel.wandering = offset_drift(signal, 1 / (channel.frequency_hz * interval), channel.noise);

@@ -70,7 +70,7 @@ std::vector<Window> windows_of(const VectorXd& signal, Index length) {
 
 std::optional<Rattle> find_rattle(const VectorXd& signal, double step) {
   constexpr Index fewest = 1024, longest = 512, shortest = 64, windows_wanted = 16;
-  constexpr double louder = 9, flat = 0.1, audible = 1e-8;  // of the motion's mean square
+  constexpr double louder = 9, flat = 0.1, least = 1e-8, most = 0.01;  // of the motion's mean square
   constexpr std::size_t in_succession = 3;
   if (signal.size() < fewest) return {};
   const auto share = static_cast<std::size_t>(signal.size() / windows_wanted);
@@ -82,7 +82,8 @@ std::optional<Rattle> find_rattle(const VectorXd& signal, double step) {
       floor = std::max(lower_quartile(powers), rounding);
   if (!(floor > 0)) return {};
   const auto loud = [&](const Window& window) {
-    return window.power > std::max(louder * floor, audible * window.size * window.size) &&
+    const double motion = window.size * window.size;
+    return window.power > std::max(louder * floor, least * motion) && window.power < most * motion &&
            window.flatness > flat;
   };
   for (const Window& window : windows)

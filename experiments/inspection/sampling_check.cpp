@@ -15,6 +15,10 @@ SamplingCheck check_sampling(const std::vector<double>& times, double resolution
   SamplingCheck check;
   check.interval = median(intervals);
   const double tolerated = 0.05 * check.interval + 1.01 * resolution;
+  std::vector<double> from_median;
+  for (const double interval : intervals) from_median.push_back(std::abs(interval - check.interval));
+  const double scatter = median(from_median) / check.interval;  // where stamps jitter, late ones are no gaps
+  const double late = (scatter > 0.05 ? 2.5 : 1.5) * check.interval + 1.01 * resolution;
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     const double interval = intervals[i];
@@ -22,7 +26,7 @@ SamplingCheck check_sampling(const std::vector<double>& times, double resolution
       check.repeats.push_back(i + 1);
     } else if (interval < 0) {
       check.returns.push_back(i + 1);
-    } else if (interval > 1.5 * check.interval + 1.01 * resolution) {
+    } else if (interval > late) {
       check.gaps.push_back(i + 1);
       check.longest_gap = std::max(check.longest_gap, interval);
     } else {
@@ -32,8 +36,7 @@ SamplingCheck check_sampling(const std::vector<double>& times, double resolution
   }
   const double mean = sum / std::max(count, 1.0);
   for (const double interval : intervals)
-    if (interval > 0 && interval <= 1.5 * check.interval + 1.01 * resolution)
-      check.jitter += (interval - mean) * (interval - mean);
+    if (interval > 0 && interval <= late) check.jitter += (interval - mean) * (interval - mean);
   check.jitter = std::sqrt(check.jitter / std::max(count, 1.0));
   return check;
 }

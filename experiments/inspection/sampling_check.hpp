@@ -9,7 +9,8 @@ namespace beamid::experiments {
 struct SamplingCheck {
   double interval = 0.0;  ///< median [s]
   double jitter = 0.0;    ///< root mean square of the intervals' distance from their mean, gaps aside [s]
-  std::vector<std::size_t> gaps;     ///< samples that come more than half an interval too late
+  std::vector<std::size_t>
+      gaps;  ///< samples that come more than half an interval too late; where stamps jitter, more than 1.5
   std::vector<std::size_t> repeats;  ///< samples whose stamp is that of the one before
   std::vector<std::size_t> returns;  ///< samples before the one before
   double longest_gap = 0.0;          ///< [s]

@@ -47,17 +47,27 @@ std::vector<SignalEvent> find_events(const VectorXd& signal, double interval, do
   return events;
 }
 
-std::vector<SignalEvent> find_slow_release(const VectorXd& signal, double interval, double frequency_hz) {
+void take_slow_release(const VectorXd& signal, double interval, double frequency_hz,
+                       std::vector<SignalEvent>& events) {
   constexpr double deflected = 1.0 / 3;
-  constexpr Index fewest = 64;
+  constexpr Index fewest = 65, apart = 16;
+  if (signal.size() < fewest) return;
   const VectorXd differences = signal.tail(signal.size() - 1) - signal.head(signal.size() - 1);
-  if (differences.size() < fewest) return {};
   const VectorXd deviation = signal.array() - median(signal);
   const double largest = deviation.cwiseAbs().maxCoeff();
-  for (const SignalEvent& event : find_events(differences, interval, noise_floor(differences), frequency_hz))
-    if (!event.pulse && std::abs(deviation[event.sample]) > deflected * largest)
-      return {{event.sample, deviation[event.sample], false}};
-  return {};
+  for (const SignalEvent& event :
+       find_events(differences, interval, noise_floor(differences), frequency_hz)) {
+    const Index at = event.sample;
+    if (event.pulse || !(std::abs(deviation[at]) > deflected * largest)) continue;
+    std::erase_if(events, [&](const SignalEvent& pull) {
+      if (pull.sample >= at) return pull.sample - at < apart;
+      const auto held = deviation.segment((pull.sample + at) / 2, at - (pull.sample + at) / 2).array();
+      return held.minCoeff() * held.maxCoeff() > 0;
+    });
+    events.push_back({at, deviation[at], false});
+    break;
+  }
+  std::sort(events.begin(), events.end(), [](const auto& a, const auto& b) { return a.sample < b.sample; });
 }
 
 }  // namespace beamid::experiments

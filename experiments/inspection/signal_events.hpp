@@ -23,9 +23,10 @@ struct SignalEvent {
 std::vector<SignalEvent> find_events(const Eigen::VectorXd& signal, double interval, double noise,
                                      double frequency_hz);
 
-/// The release of a hand that pulled slowly: the signal's differences rise as an event does, from a
-/// deflection of a third of the largest deviation or more; its size is that deflection. At most one.
-std::vector<SignalEvent> find_slow_release(const Eigen::VectorXd& signal, double interval,
-                                           double frequency_hz);
+/// Adds the release of a hand that pulled slowly: the signal's differences rise as an event does, from a
+/// deflection of a third of the largest deviation or more; its size is that deflection. The pull itself, from
+/// which on the signal stays on one side until then, is no event.
+void take_slow_release(const Eigen::VectorXd& signal, double interval, double frequency_hz,
+                       std::vector<SignalEvent>& events);
 
 }  // namespace beamid::experiments

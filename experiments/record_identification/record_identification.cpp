@@ -123,6 +123,15 @@ Eigen::MatrixXd reproduced(const Record& record, std::complex<double> rate) {
   return decay;
 }
 
+// Deviations of the readings that are there from that decay (p).
+VectorXd left_of_readings(const Record& record, std::complex<double> rate) {
+  const Eigen::ArrayXXd left = record.samples - reproduced(record, rate);
+  constexpr double fitted = 5;
+  return (left.isFinite().select(left, 0).square().rowwise().sum() /
+          (left.isFinite().cast<double>().rowwise().sum() - fitted).max(1))
+      .sqrt();
+}
+
 // What the whole record says of every sample, by the model that the last pass was made with.
 std::vector<filters::Gaussian> smoothed(const Experiment& experiment, const RecordIdentification& found,
                                         const filters::Measurements& measured) {
@@ -182,11 +191,12 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
   result.modal = analyse(experiment, even.record, result);
 
   const std::complex<double> rate = result.modal.rate();
-  const ShapeFit left = fit_shapes(even.record.samples, dt, {rate, 0.0}, {true, false});
-  const double of_readings = 1 / std::sqrt(even.share);  // what is filled in has no noise of its own
+  const VectorXd left =
+      even.remark.empty()
+          ? fit_shapes(record.samples, dt, {rate, 0.0}, {true, false}).residual_standard_deviation
+          : left_of_readings(record, rate);
   result.noise_deviation =
-      (of_readings * left.residual_standard_deviation)
-          .cwiseMax(smallest_noise * even.record.samples.cwiseAbs().rowwise().maxCoeff());
+      left.cwiseMax(smallest_noise * even.record.samples.cwiseAbs().rowwise().maxCoeff());
   result.noise_from_record.assign(record.channels.size(), true);
   for (Index i = 0; i < record.samples.rows(); ++i)
     if (const auto given = experiment.noise.find(record.channels[i].quantity);
@@ -195,7 +205,8 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
       result.noise_from_record[i] = false;
     }
   result.near_mode = noise_near_mode(even.record.samples.row(0).transpose(), dt, result.modal);
-  result.near_mode.deviation *= of_readings / std::sqrt(even.density);
+  // Of one reading: what is filled in has no noise of its own, and an even grid may be denser than they are.
+  result.near_mode.deviation /= std::sqrt(even.share * even.density);
   result.interval_factor = widening(result);
 
   const double beam_stiffness =

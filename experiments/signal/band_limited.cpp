@@ -93,19 +93,22 @@ struct Interpolation {
   std::vector<Row> rows;
   int iterations = 0;
 
-  /// From `nodes` on; what is left of the signal.
+  /// Minimises |A x - y|^2 + stiffness |x - x_0|^2 from the nodes x_0 on: what the stamps hardly see stays
+  /// where it was. Repeated, it leaves stiffness^n of what they do see. What is left of the signal.
   VectorXd solve(const VectorXd& signal, VectorXd& nodes) {
+    constexpr double stiffness = 0.01;
+    const VectorXd begun = nodes;
     VectorXd left = signal - values(rows, nodes), gradient = transposed(rows, left, nodes.size()),
              direction = gradient;
     double size = gradient.squaredNorm();
     constexpr int most = 200;
-    const double enough = 1e-10 * signal.norm();
+    const double enough = 1e-9 * signal.norm();
     for (int k = 0; k < most && left.norm() > enough && std::sqrt(size) > enough; ++k, ++iterations) {
       const VectorXd along = values(rows, direction);
-      const double step = size / std::max(along.squaredNorm(), 1e-300);
+      const double step = size / std::max(along.squaredNorm() + stiffness * direction.squaredNorm(), 1e-300);
       nodes += step * direction;
       left -= step * along;
-      gradient = transposed(rows, left, nodes.size());
+      gradient = transposed(rows, left, nodes.size()) - stiffness * (nodes - begun);
       const double next = gradient.squaredNorm();
       direction = gradient + next / size * direction;
       size = next;
@@ -120,9 +123,12 @@ BandLimited::BandLimited(VectorXd time, const VectorXd& signal) {
   const CubicSpline spline(time, signal);
   const Index count = time.size();
   const double last = time[count - 1];
-  rate_ = static_cast<double>(count - 1) / (last - time[0]);
+  const double widest = (time.tail(count - 1) - time.head(count - 1)).maxCoeff(),
+               mean_rate = static_cast<double>(count - 1) / (last - time[0]);
+  const double between = std::ceil((last - time[0]) * std::min(mean_rate, 1 / widest) - 1e-6);
+  rate_ = between / (last - time[0]);
   first_ = time[0] - static_cast<double>(reach) / rate_;
-  nodes_.resize(count + 2 * reach);
+  nodes_.resize(static_cast<Index>(between) + 1 + 2 * reach);
   for (Index j = 0; j < nodes_.size(); ++j) {
     const double at = first_ + static_cast<double>(j) / rate_;
     if (at < time[0])
@@ -136,7 +142,7 @@ BandLimited::BandLimited(VectorXd time, const VectorXd& signal) {
   for (const double at : time) interpolation.rows.push_back(row_at((at - first_) * rate_));
   VectorXd left = interpolation.solve(signal, nodes_);
   constexpr int rounds = 3;  // each leaves less of what the one before had wrong at the ends
-  for (int round = 0; round < rounds && count > 8 * reach; ++round) {
+  for (int round = 0; round < rounds && nodes_.size() > 10 * reach; ++round) {
     for (int end = 0; end < 2; ++end) {
       nodes_.reverseInPlace();
       predict(nodes_, nodes_.size() - 2 * reach);

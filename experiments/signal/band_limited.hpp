@@ -5,11 +5,12 @@
 
 namespace beamid::experiments {
 
-/// y(t) = sum_j x_j h(t R - j), with R the mean sampling rate and h a sinc under a Kaiser window that spans
-/// 16 nodes to either side [oppenheim2010, sec. 7.5]. The x_j, on an even grid that reaches 16 nodes beyond
-/// both ends, are least squares of y(t_k) = y_k, by conjugate gradients [bjorck1996, sec. 7.4] that begin at
-/// the cubic spline through the stamps: what the stamps leave open, in gaps and beyond the ends, stays the
-/// spline's (its point reflection, beyond the ends).
+/// y(t) = sum_j x_j h(t R - j), with R one over the widest interval (with more nodes the noise of the
+/// readings would grow between them) and h a sinc under a Kaiser window that spans 16 nodes to either side
+/// [oppenheim2010, sec. 7.5]. The x_j, on an even grid that reaches 16 nodes beyond both ends, are least
+/// squares of y(t_k) = y_k, by conjugate gradients [bjorck1996, sec. 7.4] that begin at the cubic spline
+/// through the stamps and are held there by a weak spring, four times, each time from where the one before
+/// ended: what the stamps leave open stays the spline's (its point reflection, beyond the ends).
 class BandLimited {
  public:
   /// @param time (N), strictly increasing [s], N >= 4; @param signal (N)
@@ -22,8 +23,9 @@ class BandLimited {
   /// Its values at points (M) from the first stamp to the last.
   Eigen::VectorXd operator()(const Eigen::VectorXd& at) const;
 
+  double rate() const { return rate_; }  ///< R
   int iterations() const { return iterations_; }
-  /// How far it misses the samples, rms over the signal's: what lies above half the mean rate.
+  /// How far it misses the samples, rms over the signal's: what lies above half of R.
   double misfit() const { return misfit_; }
 
   /// The largest |sum_j e^(i 2 pi f (j - u)) h(u - j) - 1| over u: the error relative to its amplitude of a

@@ -45,6 +45,12 @@ double strongest(const Record& record) {
   return frequency;
 }
 
+/// How far the interpolation of any channel is off, relative to the signal, and the lowest rate of its nodes
+/// [Hz].
+struct Quality {
+  double error = 0, rate = 0;
+};
+
 /// The readings of one channel that are there, parted where two are further apart than `gap`.
 struct Part {
   VectorXd time, signal;
@@ -110,12 +116,12 @@ class Resample final : public PreparationStep {
     even.time = first + Eigen::ArrayXd::LinSpaced(static_cast<Index>(points), 0, points - 1) / rate;
     even.samples.setConstant(record.samples.rows(), even.size(), std::numeric_limits<double>::quiet_NaN());
     even.time_resolution = 0;
-    double error = 0;
+    Quality quality{0, 1 / mean};
     for (Index row = 0; row < record.samples.rows(); ++row)
       for (const Part& part : parts_of(record.time, record.samples.row(row).transpose(), gap))
-        error = std::max(error, put(part, row, even));
+        put(part, row, even, quality);
     const Index gaps = within.size() - within.count();
-    const double frequency = strongest(even), relative = frequency * mean;
+    const double frequency = strongest(even), relative = frequency / quality.rate;
     record = std::move(even);
     const std::string how = fmt::format(
         "Resampled at {:.6g} Hz {} through intervals of {:.4g} to {:.4g} s{}; ", rate,
@@ -127,15 +133,16 @@ class Resample final : public PreparationStep {
                        "through every second sample alone it misses the others by up to {:.2g} % of the "
                        "signal (noise included), through all of them by about a sixteenth of that in a "
                        "smooth signal.",
-                       100 * error);
+                       100 * quality.error);
     return how +
            fmt::format(
-               "at the strongest frequency, {:.4g} Hz, which is {:.3g} of the mean rate, the kernel errs "
-               "by {:.1g} of the amplitude (straight lines by {:.2g}), and by less than 1e-4 up to 0.4 of "
-               "the rate; {} samples at either end rest on a linear prediction. It misses the samples "
-               "themselves by {:.1g} % of the signal.",
-               frequency, relative, BandLimited::kernel_error(std::min(relative, 0.5)),
-               linear_interpolation_error(relative), BandLimited::end_nodes, 100 * error);
+               "at the strongest frequency, {:.4g} Hz, the kernel errs by {:.1g} of the amplitude (straight "
+               "lines by {:.2g}), and by less than 1e-4 up to {:.4g} Hz; what lies higher is not kept. {} "
+               "samples at either end rest on a linear prediction. It misses the samples themselves by "
+               "{:.1g} % of the signal.",
+               frequency, BandLimited::kernel_error(std::min(relative, 0.5)),
+               linear_interpolation_error(frequency * mean), 0.4 * quality.rate, BandLimited::end_nodes,
+               100 * quality.error);
   }
 
   void follow(std::vector<FollowedChannel>&, std::complex<double>, double) const override {}
@@ -143,11 +150,11 @@ class Resample final : public PreparationStep {
   bool takes_any_record() const override { return true; }
 
  private:
-  /// The even samples within the part's time; how far the interpolation is off, relative to the signal.
-  double put(const Part& part, Index row, Record& even) const {
+  /// The even samples within the part's time.
+  void put(const Part& part, Index row, Record& even, Quality& quality) const {
     constexpr Index fewest = 4, fewest_for_sinc = 64;
     const Index count = part.time.size();
-    if (count < fewest) return 0;
+    if (count < fewest) return;
     const double* const times = even.time.data();
     const double slack = 1e-9 * even.interval();
     const Index from = std::lower_bound(times, times + even.size(), part.time[0] - slack) - times,
@@ -156,11 +163,12 @@ class Resample final : public PreparationStep {
     const VectorXd at = even.time.segment(from, points);
     if (spline_ || count < fewest_for_sinc) {
       even.samples.row(row).segment(from, points) = CubicSpline(part.time, part.signal)(at).transpose();
-      return count > 2 * fewest ? left_out_error(part.time, part.signal) : 0;
+      if (count > 2 * fewest) quality.error = std::max(quality.error, left_out_error(part.time, part.signal));
+      return;
     }
     const BandLimited band(part.time, part.signal);
     even.samples.row(row).segment(from, points) = band(at).transpose();
-    return band.misfit();
+    quality = {std::max(quality.error, band.misfit()), std::min(quality.rate, band.rate())};
   }
 
   static constexpr double most_points = 1e8;

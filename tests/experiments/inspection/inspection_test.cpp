@@ -60,9 +60,9 @@ TEST(Inspection, FindsNothingWrongWithAGoodRecord) {
   EXPECT_TRUE(found.sampling.uniform);
   EXPECT_TRUE(found.skipped_lines.empty());
   const InspectedChannel& channel = found.channels.at(0);
-  EXPECT_TRUE(channel.clipped.empty());
-  EXPECT_TRUE(channel.dropped.empty());
-  EXPECT_FALSE(channel.dead);
+  EXPECT_TRUE(channel.defects.clipped.empty());
+  EXPECT_TRUE(channel.defects.dropped.empty());
+  EXPECT_FALSE(channel.defects.dead);
   EXPECT_NEAR(channel.frequency_hz, frequency, 0.1);
 }
 
@@ -78,9 +78,10 @@ TEST(Inspection, FindsClipping) {
   std::vector<double> signal = two_hits(0.01);
   for (double& sample : signal) sample = std::clamp(sample, -7.0, 7.0);
   const InspectedChannel channel = inspected(signal).channels.at(0);
-  ASSERT_FALSE(channel.clipped.empty());
-  EXPECT_EQ(channel.clipped[0].value, 7.0);
-  EXPECT_NEAR(static_cast<double>(channel.clipped[0].first), 506, 2);  // asin(0.7) / (2 pi 20 Hz) later
+  ASSERT_FALSE(channel.defects.clipped.empty());
+  EXPECT_EQ(channel.defects.clipped[0].value, 7.0);
+  EXPECT_NEAR(static_cast<double>(channel.defects.clipped[0].first), 506,
+              2);  // asin(0.7) / (2 pi 20 Hz) later
 }
 
 TEST(Inspection, FindsDropOuts) {
@@ -88,10 +89,10 @@ TEST(Inspection, FindsDropOuts) {
   std::fill(signal.begin() + 1000, signal.begin() + 1030, 0.0);
   std::fill(signal.begin() + 3000, signal.begin() + 3005, std::nan(""));
   const InspectedChannel channel = inspected(signal).channels.at(0);
-  ASSERT_EQ(channel.dropped.size(), 2u);
-  EXPECT_EQ(channel.dropped[0].first, 1000u);
-  EXPECT_EQ(channel.dropped[0].length, 30u);
-  EXPECT_EQ(channel.dropped[1].first, 3000u);
+  ASSERT_EQ(channel.defects.dropped.size(), 2u);
+  EXPECT_EQ(channel.defects.dropped[0].first, 1000u);
+  EXPECT_EQ(channel.defects.dropped[0].length, 30u);
+  EXPECT_EQ(channel.defects.dropped[1].first, 3000u);
   EXPECT_EQ(channel.missing, 5u);
 }
 
@@ -141,10 +142,43 @@ TEST(Inspection, TakesAnUndescribedFileAsItIs) {
   const Inspection found = inspect(file.path(), {});
   EXPECT_TRUE(found.has_time);
   ASSERT_EQ(found.channels.size(), 2u);
-  EXPECT_TRUE(found.channels[0].dead);
-  EXPECT_FALSE(found.channels[1].dead);
+  EXPECT_TRUE(found.channels[0].defects.dead);
+  EXPECT_FALSE(found.channels[1].defects.dead);
   EXPECT_FALSE(found.channels[1].quantity.has_value());
   EXPECT_NEAR(found.channels[1].frequency_hz, 0.3 * rate / (2 * std::numbers::pi), 0.5);
+}
+
+/// Noise of 0.01 and a motion of one unit that a slow hand lets go at 1 s: 12 Hz.
+std::vector<double> let_go() {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal(0, 0.003);
+  std::vector<double> signal(5000);
+  for (std::size_t k = 0; k < signal.size(); ++k) {
+    const double t = static_cast<double>(k) / rate - 1;
+    signal[k] = normal(random) + (t < -0.5   ? 0
+                                  : t < -0.2 ? (t + 0.5) / 0.3
+                                  : t < 0    ? 1
+                                             : std::exp(-t) * std::cos(2 * std::numbers::pi * 12 * t));
+  }
+  return signal;
+}
+
+TEST(Inspection, FindsTheReleaseOfASlowHand) {
+  const InspectedChannel channel = inspected(let_go()).channels.at(0);
+  ASSERT_EQ(channel.events.size(), 1u);
+  EXPECT_NEAR(static_cast<double>(channel.events[0].sample), 1000, 15);
+}
+
+TEST(Inspection, FindsDriftAndStartUp) {
+  std::vector<double> signal = two_hits(0.01);
+  EXPECT_FALSE(inspected(signal).channels.at(0).wandering.has_value());
+  for (std::size_t k = 0; k < signal.size(); ++k) signal[k] += 3 * std::sin(0.001 * static_cast<double>(k));
+  ASSERT_TRUE(inspected(signal).channels.at(0).wandering.has_value());
+  EXPECT_FALSE(inspected(signal).channels.at(0).wandering->start_up);
+  signal = two_hits(0.01);
+  for (std::size_t k = 0; k < signal.size(); ++k) signal[k] += 6 * std::exp(-0.005 * static_cast<double>(k));
+  ASSERT_TRUE(inspected(signal).channels.at(0).wandering.has_value());
+  EXPECT_TRUE(inspected(signal).channels.at(0).wandering->start_up);
 }
 
 // Oracle: what ../shared/data/README.md and the files themselves say.
@@ -153,7 +187,7 @@ TEST(Inspection, FindsWhatIsKnownOfTheMeasuredRecords) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no measured records beside the project";
   const Inspection double_hit = inspect(folder / "unb-tip-mass/massa4_test1-4.txt", {});
   ASSERT_EQ(double_hit.channels.size(), 3u);
-  EXPECT_TRUE(double_hit.channels[0].dead);
+  EXPECT_TRUE(double_hit.channels[0].defects.dead);
   const std::vector<SignalEvent>& hits = double_hit.channels[2].events;
   ASSERT_EQ(hits.size(), 2u);
   EXPECT_NEAR(double_hit.time[static_cast<std::size_t>(hits[0].sample)], 0.006, 0.002);
@@ -164,6 +198,12 @@ TEST(Inspection, FindsWhatIsKnownOfTheMeasuredRecords) {
   const Inspection moving = inspect(folder / "dropbear-moving-support/slow_10_steps_test0.txt", {});
   EXPECT_THAT(moving.skipped_lines, testing::ElementsAre(8u));
   EXPECT_EQ(moving.channels.at(0).events.size(), 10u);
+  for (const InspectedChannel* sound : {&double_hit.channels[1], &double_hit.channels[2],
+                                        &impulse.channels[0], &moving.channels[0], &moving.channels[2]}) {
+    const Defects& none = sound->defects;
+    EXPECT_TRUE(none.clipped.empty() && none.dropped.empty() && none.spikes.empty() && none.repeated.empty());
+    EXPECT_FALSE(none.rattle.has_value());
+  }
 }
 
 }  // namespace
