@@ -41,15 +41,13 @@ std::string frequencies_text(const std::vector<double>& frequencies_hz) {
   constexpr std::size_t most = 6;
   const std::size_t shown = std::min(most, frequencies_hz.size());
   std::string text;
-  for (std::size_t i = 0; i < shown; ++i)
-    text += fmt::format("{}{:.4g}",
-                        i == 0                                             ? ""
-                        : i + 1 == shown && shown == frequencies_hz.size() ? " and "
-                                                                           : ", ",
-                        frequencies_hz[i]);
-  return text +
-         (shown < frequencies_hz.size() ? fmt::format(" and {} more", frequencies_hz.size() - shown) : "") +
-         " Hz";
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == frequencies_hz.size();
+    text += fmt::format("{}{:.4g}", i == 0 ? "" : last ? " and " : ", ", frequencies_hz[i]);
+  }
+  text += " Hz";
+  if (shown < frequencies_hz.size()) text += fmt::format(" and {} more", frequencies_hz.size() - shown);
+  return text;
 }
 
 }  // namespace beamid::experiments

@@ -20,7 +20,7 @@ struct RecordLine {
 /// (spectral_peaks.hpp).
 std::vector<RecordLine> record_lines(const Eigen::MatrixXd& samples, double interval);
 
-/// "22.80 and 65.74 Hz".
+/// "22.8 and 65.74 Hz"; of more than 6 the first and how many there are.
 std::string frequencies_text(const std::vector<double>& frequencies_hz);
 
 }  // namespace beamid::experiments

@@ -49,11 +49,11 @@ std::string predicted_by(double frequency_hz, const ModelCheck& check, std::size
 }  // namespace
 
 std::vector<std::string> contradictions_of(const std::vector<CheckedMode>& matched,
-                                           const std::vector<ObservedMode>& strays) {
+                                           std::vector<ObservedMode>& strays) {
   std::vector<std::string> sentences;
-  for (const ObservedMode& stray : strays) {
+  std::erase_if(strays, [&](const ObservedMode& stray) {
     const CheckedMode* mode = in_place_of(stray, matched);
-    if (!mode) continue;
+    if (!mode) return false;
     const ObservedMode *few = &stray, *many = &mode->identified;
     if (few->records.size() > many->records.size()) std::swap(few, many);
     sentences.push_back(fmt::format(
@@ -61,7 +61,8 @@ std::vector<std::string> contradictions_of(const std::vector<CheckedMode>& match
         "another beam, another mass or another clamping was recorded.",
         joined(few->records), few->records.size() > 1 ? "" : "s", joined(many->records), mode->number,
         few->frequency_hz, many->frequency_hz));
-  }
+    return true;
+  });
   return sentences;
 }
 

@@ -10,9 +10,10 @@ namespace beamid::experiments {
 /// Of one structure: a record that shows no mode where others do, but one of its own within a factor of 2 of
 /// it and nearer to it than to any other, is of another beam. The fewer are named:
 /// "c.csv contradicts a.csv, b.csv: mode 1 is at 19.86 Hz there and at 14.4 Hz here."
-/// @param matched modes of the structure; @param strays those without a prediction
+/// @param matched modes of the structure; @param strays those without a prediction; loses those that are
+/// named
 std::vector<std::string> contradictions_of(const std::vector<CheckedMode>& matched,
-                                           const std::vector<ObservedMode>& strays);
+                                           std::vector<ObservedMode>& strays);
 
 /// Modes of structures that are far off their prediction leave the check where more than half of the
 /// structures are not; the contradictions name them, and whose prediction they meet.
