@@ -51,13 +51,17 @@ std::string quoted(const std::string& word) {
   return result + "'";
 }
 
-/// What repeats the command. Where its results went is no part of it.
+/// What repeats the command. Where its results went is no part of it, nor what changes none of them: how many
+/// worked on a sweep, and whether it was interrupted.
 std::string command_line(const Command& command, const std::vector<std::string>& arguments) {
   std::string line = "beamid " + command.name;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& word = arguments[i];
-    if (word == "--out") ++i;
-    if (word == "--out" || word == "--force" || word == "--json" || word.starts_with("--out=")) continue;
+    const bool sweeps = command.name == "sweep" &&
+                        (word == "--threads" || word == "--resume" || word.starts_with("--threads="));
+    if (word == "--out" || (sweeps && word == "--threads")) ++i;
+    if (sweeps || word == "--out" || word == "--force" || word == "--json" || word.starts_with("--out="))
+      continue;
     line += " " + quoted(word);
   }
   return line;

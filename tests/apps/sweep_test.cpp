@@ -66,6 +66,7 @@ TEST_F(Sweep, IsTheSameOnAnyNumberOfThreads) {
   expect_success(sweep("--seeds 8 --threads 1 --out one"));
   expect_success(sweep("--seeds 8 --threads 3 --out three"));
   expect_same(place_, "one", "three");
+  EXPECT_EQ(contents(place_.folder() / "one/report.html"), contents(place_.folder() / "three/report.html"));
 }
 
 TEST_F(Sweep, GoesOnWhereItWasKilled) {
