@@ -22,6 +22,17 @@ const char* expected_number(Sign sign) {
   return "";
 }
 
+/// No laboratory has numbers beyond these in SI units; squares and products of others leave double precision.
+constexpr double largest = 1e30, smallest = 1e-100;
+
+bool is_out_of_proportion(double value) {
+  return std::abs(value) > largest || (value != 0 && std::abs(value) < smallest);
+}
+
+std::string expected_size(Sign sign) {
+  return fmt::format("{} of a size from {:g} to {:g}", expected_number(sign), smallest, largest);
+}
+
 /// Texts reach terminals, pages and the scripts of figures.
 void refuse_control(const Place& place, const std::string& path, const std::string& text) {
   if (const std::size_t at = find_control(text); at != std::string::npos)
@@ -41,6 +52,7 @@ std::optional<double> TomlTable::find_number(const std::string& key, Sign sign) 
   if (!std::isfinite(value) || (sign == Sign::positive && value <= 0) ||
       (sign == Sign::not_negative && value < 0))
     refuse(key, std::isfinite(value) ? expected_number(sign) : "a finite number");
+  if (is_out_of_proportion(value)) refuse(key, expected_size(sign));
   return value;
 }
 
@@ -107,6 +119,9 @@ std::optional<std::vector<double>> TomlTable::find_numbers(const std::string& ke
         (sign == Sign::not_negative && *value < 0))
       throw InputError(node_->at(element.source()), fmt::format("{} holds {}; expected {}", path(key),
                                                                 found(element), expected_number(sign)));
+    if (is_out_of_proportion(*value))
+      throw InputError(node_->at(element.source()), fmt::format("{} holds {}; expected {}", path(key),
+                                                                found(element), expected_size(sign)));
     numbers.push_back(*value);
   }
   return numbers;
