@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -13,10 +12,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <new>
+
+#include "experiments/input/apart_pipe.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -25,75 +25,6 @@ using SteadyClock = std::chrono::steady_clock;
 
 /// How the child ended its work; the first byte it sends.
 enum class Outcome : char { found = 'f', refused = 'r', no_memory = 'm' };
-
-/// The child's end of a pipe: numbers and texts as they lie in memory.
-class Sender {
- public:
-  explicit Sender(int descriptor) : descriptor_(descriptor) {}
-
-  void bytes(const void* from, std::size_t count) const {
-    for (const char* at = static_cast<const char*>(from); count > 0;) {
-      const ssize_t written = ::write(descriptor_, at, count);
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) _exit(1);  // nobody listens
-      at += written, count -= static_cast<std::size_t>(written);
-    }
-  }
-  template <class Number>
-  void number(Number value) const {
-    bytes(&value, sizeof value);
-  }
-  void text(const std::string& text) const {
-    number(text.size());
-    bytes(text.data(), text.size());
-  }
-
- private:
-  int descriptor_;
-};
-
-/// The parent's end. Each of its functions is false where nothing more comes.
-class Receiver {
- public:
-  Receiver(int descriptor, SteadyClock::time_point deadline) : descriptor_(descriptor), deadline_(deadline) {}
-  ~Receiver() { close(descriptor_); }
-  Receiver(const Receiver&) = delete;
-  Receiver& operator=(const Receiver&) = delete;
-
-  bool bytes(void* to, std::size_t count) {
-    for (char* at = static_cast<char*>(to); count > 0;) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline_ - SteadyClock::now()).count();
-      pollfd watched{descriptor_, POLLIN, 0};
-      const int ready =
-          left > 0 ? poll(&watched, 1, static_cast<int>(std::min<long long>(left, 3'600'000))) : 0;
-      if (ready < 0 && errno == EINTR) continue;
-      if (ready == 0 && left > 3'600'000) continue;
-      late_ = ready == 0;
-      const ssize_t got = ready > 0 ? ::read(descriptor_, at, count) : 0;
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) return false;
-      at += got, count -= static_cast<std::size_t>(got);
-    }
-    return true;
-  }
-  template <class Number>
-  bool number(Number& value) {
-    return bytes(&value, sizeof value);
-  }
-  bool text(std::string& text) {
-    constexpr std::size_t longest = 1 << 20;
-    std::size_t size = 0;
-    if (!number(size) || size > longest) return false;
-    text.resize(size);
-    return bytes(text.data(), size);
-  }
-  bool late() const { return late_; }
-
- private:
-  int descriptor_;
-  SteadyClock::time_point deadline_;
-  bool late_ = false;
-};
 
 std::size_t memory_now() {
   std::ifstream stream("/proc/self/statm");
@@ -122,7 +53,7 @@ void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
   limit(RLIMIT_CORE, 0, 0);
   limit(RLIMIT_CPU, seconds, seconds + 1);
   limit(RLIMIT_AS, memory, memory);
-  const Sender out(descriptor);
+  const PipeSender out(descriptor);
   try {
     CollectedSignals signals(file, limits.numbers);
     read(signals);
@@ -147,7 +78,7 @@ void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
 }
 
 /// @returns false where what comes is not whole.
-bool receive(Receiver& in, const ReadingLimits& limits, CollectedSignals& signals) {
+bool receive(PipeReceiver& in, const ReadingLimits& limits, CollectedSignals& signals) {
   double interval = 0.0;
   std::string interval_name;
   std::size_t count = 0;
@@ -204,8 +135,8 @@ CollectedSignals read_apart(const std::string& file, const std::string& library,
   const int reason = errno;
   close(ends[1]);
   // Whoever waits for a disk or for others on the machine takes no processor time.
-  Receiver in(ends[0],
-              SteadyClock::now() + std::chrono::milliseconds(std::llround(1e3 * (60 + 10 * limits.seconds))));
+  PipeReceiver in(ends[0], SteadyClock::now() +
+                               std::chrono::milliseconds(std::llround(1e3 * (60 + 10 * limits.seconds))));
   if (child < 0)
     throw std::runtime_error("no process that reads '" + file + "' can be started: " + std::strerror(reason));
 

@@ -13,6 +13,7 @@
 #include "experiments/input/text_cells.hpp"
 #include "experiments/input/text_file.hpp"
 #include "experiments/input/time_unit.hpp"
+#include "experiments/record_files/lvm/lvm_instants.hpp"
 #include "experiments/record_files/lvm/lvm_lines.hpp"
 
 namespace beamid::experiments {
@@ -47,7 +48,6 @@ class LvmFile {
     end_segment();
     const LvmSegment before = std::exchange(segment_, lines_.read_segment());
     if (++segments_ > 1) check_like(before);
-    clock_ = segment_clock();
     rows_begun_ = false;
     rows_before_ = table_.lines.size();
   }
@@ -69,21 +69,13 @@ class LvmFile {
     check("X_Dimension", segment_.dimensions, before.dimensions);
   }
 
-  bool over_time() const { return segment_.dimensions.empty() || segment_.dimensions[0] == "Time"; }
-
-  /// What the segment's header says of its instants.
-  std::optional<Clock> segment_clock() const {
-    if (!over_time() || segment_.intervals.empty() || !(segment_.intervals[0] > 0)) return std::nullopt;
-    const auto factor = x_factor();
-    if (!factor) return std::nullopt;
-    return Clock{*factor * (segment_.starts.empty() ? 0.0 : segment_.starts[0]),
-                 *factor * segment_.intervals[0]};
+  /// Of one unit of X; nothing where X is no time, or in a unit that the format states.
+  std::optional<double> x_seconds() const {
+    if (!segment_.over_time()) return std::nullopt;
+    return seconds_per(segment_.x_unit(), "X", table_.file, format_);
   }
 
-  std::string x_unit() const { return segment_.x_units.empty() ? "" : segment_.x_units[0]; }
-  std::optional<double> x_factor() const { return seconds_per(x_unit(), "X", table_.file, format_); }
-
-  /// The instants of a segment without X columns, by its own header; and whether it is whole.
+  /// Its instants, where it has no X columns, and whether it is whole.
   void end_segment() {
     const std::size_t rows = table_.lines.size() - rows_before_;
     const double stated =
@@ -92,20 +84,7 @@ class LvmFile {
       table_.warnings.push_back(
           fmt::format("Segment {} has {} rows where its header states {:g} samples{}.", segments_, rows,
                       stated, static_cast<double>(rows) < stated ? ": the others are lost" : ""));
-    if (rows == 0 || has_x_ || !clock_) return;
-    for (const auto* values : {&segment_.starts, &segment_.intervals})
-      if (std::any_of(values->begin(), values->end(), [&](double value) { return value != values->front(); }))
-        throw InputError(segment_.place, "channels of different X0 or Delta_X; expected the same for all");
-    if (instants_.empty()) first_clock_ = clock_;
-    one_interval_ = one_interval_ && std::abs(clock_->interval / first_clock_->interval - 1) < 1e-9;
-    if (!instants_.empty() && clock_->start < instants_.back() + 0.5 * clock_->interval)
-      throw InputError(
-          segment_.place,
-          fmt::format("a segment that begins at {:g} s, where the one before runs to {:g} s; expected "
-                      "segments in succession",
-                      clock_->start, instants_.back()));
-    for (std::size_t k = 0; k < rows; ++k)
-      instants_.push_back(clock_->start + static_cast<double>(k) * clock_->interval);
+    if (!has_x_) instants_.add(segment_, rows, x_seconds());
   }
 
   /// "X_Value	Acceleration	Comment", or "X_Value	A	X_Value	B	Comment".
@@ -180,16 +159,6 @@ class LvmFile {
     precision_[column].add(pointed);
   }
 
-  /// One clock for all segments; nothing where they do not follow each other at one interval.
-  std::optional<Clock> common_clock() const {
-    const auto [start, interval] = *first_clock_;
-    const auto last = static_cast<double>(instants_.size() - 1);
-    // Where a segment begins late all that follow do.
-    if (!one_interval_ || std::abs(instants_.back() - start - last * interval) > 0.5 * interval)
-      return std::nullopt;
-    return first_clock_;
-  }
-
   void add_time(std::string unit, std::vector<double> times, const PrintedPrecision& precision) {
     table_.names.emplace_back("X_Value"), table_.units.push_back(std::move(unit));
     table_.columns.push_back(std::move(times));
@@ -202,14 +171,14 @@ class LvmFile {
       throw lines_.bad("no row of numbers; expected a segment with X_Value and channels");
     std::vector<std::size_t> fields;
     if (has_x_) {
-      const auto factor = over_time() ? x_factor() : std::nullopt;
-      add_time(x_unit().empty() && over_time() ? "s" : x_unit(), std::move(values_[0]), precision_[0]);
+      const std::string unit = segment_.x_unit();
+      add_time(unit.empty() && segment_.over_time() ? "s" : unit, std::move(values_[0]), precision_[0]);
       fields.push_back(x_[0]);
-      if (factor == 1.0) table_.time = 0;
-    } else if (instants_.size() == table_.lines.size() && instants_.size() > 1) {
-      table_.clock = common_clock();
+      if (x_seconds() == 1.0) table_.time = 0;
+    } else if (instants_.times().size() == table_.lines.size()) {
+      table_.clock = instants_.clock();
       if (!table_.clock) {  // the instants stand in no field
-        add_time("s", std::move(instants_), PrintedPrecision::of_digits(15));
+        add_time("s", instants_.times(), PrintedPrecision::of_digits(15));
         fields.push_back(std::numeric_limits<std::size_t>::max());
         table_.time = 0;
       }
@@ -228,9 +197,7 @@ class LvmFile {
   std::shared_ptr<const std::string> content_;
   LvmLines lines_;
   LvmSegment segment_;
-  std::optional<Clock> clock_, first_clock_;  ///< of the segment, and of the first
-  bool one_interval_ = true;                  ///< in all of them
-  std::vector<double> instants_;              ///< of the rows, by the headers of their segments
+  LvmInstants instants_;
   std::size_t segments_ = 0, rows_before_ = 0;
   TextCells cells_;
   const RecordFormat& format_;

@@ -14,6 +14,9 @@ struct LvmSegment {
   std::vector<std::string> units, dimensions, x_units;
   std::vector<double> starts, intervals, samples;
   Place place = {};  ///< of the header's end
+
+  bool over_time() const { return dimensions.empty() || dimensions[0] == "Time"; }
+  std::string x_unit() const { return x_units.empty() ? "" : x_units[0]; }
 };
 
 /// Walks a file that is in memory.
