@@ -27,7 +27,8 @@ fem::Beam with_nodes_for(const Experiment& experiment, const Record& record) {
     if (channel.quantity == Quantity::strain)
       nodes.push_back(channel.position.value_or(fem::natural_point(experiment.beam).position));
   for (const ParameterChoice& parameter : experiment.parameters)
-    if (parameter.region) nodes.insert(nodes.end(), {parameter.region->first, parameter.region->second});
+    if (parameter.region && parameter.quantity == "bending_stiffness")
+      nodes.insert(nodes.end(), {parameter.region->first, parameter.region->second});
   return nodes.empty() ? experiment.beam : fem::with_nodes(experiment.beam, nodes);
 }
 

@@ -25,6 +25,7 @@ const std::vector<ParameterQuantity>& parameter_quantities() {
   static const std::vector<ParameterQuantity> quantities{
       {"bending_stiffness", "N m2", "n_m2"},
       {"tip_mass", "kg", "kg"},
+      {"body_mass", "kg", "kg"},
       {"tip_rotary_inertia", "kg m2", "kg_m2"},
       {"root_rotational_stiffness", "N m/rad", "n_m_per_rad"},
       {"root_translational_stiffness", "N/m", "n_per_m"},
@@ -64,8 +65,9 @@ void require_quantity(const ParameterChoice& choice, const std::vector<std::stri
   if (std::find(known.begin(), known.end(), choice.quantity) == known.end())
     refuse(choice, fmt::format("model '{}' has no parameter '{}'; it asks about {}", model, choice.quantity,
                                joined(known)));
-  if (choice.region && choice.quantity != "bending_stiffness")
-    refuse(choice, choice.quantity + " has no regions; expected bending_stiffness, or no from_m and to_m");
+  if (choice.region && choice.quantity != "bending_stiffness" && choice.quantity != "body_mass")
+    refuse(choice, choice.quantity +
+                       " has no regions; expected bending_stiffness or body_mass, or no from_m and to_m");
   if (choice.mode && choice.quantity != "damping_ratio" && choice.quantity != "frequency")
     refuse(choice, choice.quantity + " belongs to no mode; expected damping_ratio or frequency, or no mode");
 }

@@ -16,14 +16,15 @@ Region region_of(const Beam& beam, const BeamParameter& parameter) {
   const double length = beam.length();
   if (!parameter.region) return {0.0, length};
   const auto [from, to] = *parameter.region;
-  if (parameter.quantity == Quantity::bending_stiffness && from >= 0.0 && from < to && to <= length)
-    return *parameter.region;
+  const bool has_regions =
+      parameter.quantity == Quantity::bending_stiffness || parameter.quantity == Quantity::body_mass;
+  if (has_regions && from >= 0.0 && from < to && to <= length) return *parameter.region;
   std::ostringstream message;
   message << "region is " << from << " to " << to << " m; expected ";
-  if (parameter.quantity == Quantity::bending_stiffness)
+  if (has_regions)
     message << "a begin before its end, both between 0 and the beam's length, " << length << " m";
   else
-    message << "none: only the bending stiffness has regions";
+    message << "none: only the bending stiffness and bodies have regions";
   throw std::invalid_argument(message.str());
 }
 
@@ -123,6 +124,26 @@ void set_at_tip(Beam& beam, double Body::*property, double found, double value) 
   beam.bodies.push_back(body);
 }
 
+bool is_in(const Body& body, const Region& region) {
+  return body.position >= region.first && body.position <= region.second;
+}
+
+double body_mass(const Beam& beam, const Region& region) {
+  double sum = 0.0;
+  for (const Body& body : beam.bodies)
+    if (is_in(body, region)) sum += body.mass;
+  if (sum > 0.0) return sum;
+  std::ostringstream message;
+  message << "no body with mass lies between " << region.first << " and " << region.second
+          << " m; expected a region that holds one";
+  throw std::invalid_argument(message.str());
+}
+
+auto first_at_tip(auto& beam) {
+  return std::find_if(beam.bodies.begin(), beam.bodies.end(),
+                      [&](const Body& body) { return body.position == beam.length(); });
+}
+
 double sum_at_root(const Beam& beam, double Spring::*property) {
   double sum = 0.0;
   for (const Spring& spring : beam.springs)
@@ -148,7 +169,9 @@ double value_of(const Beam& beam, const BeamParameter& parameter) {
     case Quantity::bending_stiffness:
       return bending_integral(beam, region) / (region.second - region.first);
     case Quantity::tip_mass:
-      return beam.tip_mass();
+      return first_at_tip(beam) == beam.bodies.end() ? 0.0 : first_at_tip(beam)->mass;
+    case Quantity::body_mass:
+      return body_mass(beam, region);
     case Quantity::tip_rotary_inertia: {
       double sum = 0.0;
       for (const Body& body : beam.bodies)
@@ -181,7 +204,14 @@ Beam with_value(const Beam& beam, const BeamParameter& parameter, double value) 
       scale_bending(changed, region_of(beam, parameter), value / found);
       break;
     case Quantity::tip_mass:
-      set_at_tip(changed, &Body::mass, found, value);
+      if (first_at_tip(changed) == changed.bodies.end())
+        changed.bodies.push_back({changed.length(), value, 0.0, 0.0});
+      else
+        first_at_tip(changed)->mass = value;
+      break;
+    case Quantity::body_mass:
+      for (Body& body : changed.bodies)
+        if (is_in(body, region_of(beam, parameter))) body.mass *= value / found;
       break;
     case Quantity::tip_rotary_inertia:
       set_at_tip(changed, &Body::rotary_inertia, found, value);

@@ -57,7 +57,8 @@ class Differentiation {
     for (const BeamParameter& parameter : parameters) {
       result_.values.conservativeResize(result_.values.size() + 1);
       result_.values[result_.values.size() - 1] = value_of(beam, parameter);
-      if (parameter.region) beam_ = with_nodes(beam_, {parameter.region->first, parameter.region->second});
+      if (parameter.region && parameter.quantity == Quantity::bending_stiffness)
+        beam_ = with_nodes(beam_, {parameter.region->first, parameter.region->second});
       needs_chords_ |= parameter.quantity == Quantity::axial_load && beam.axial_load == 0.0;
     }
     result_.system = assemble(beam_, elements_, points_);
@@ -128,11 +129,12 @@ class Differentiation {
 
   ParametricSystem::Derivative of_other(const BeamParameter& parameter, double value) const {
     const double length = beam_.length(), mass = beam_.mass();
-    const double step = parameter.quantity == Quantity::axial_load ? load_step()
-                        : parameter.quantity == Quantity::tip_mass ? std::max(value, mass)
-                        : parameter.quantity == Quantity::tip_rotary_inertia
-                            ? std::max(value, mass * length * length)
-                            : value;
+    const double step =
+        parameter.quantity == Quantity::axial_load ? load_step()
+        : parameter.quantity == Quantity::tip_mass || parameter.quantity == Quantity::body_mass
+            ? std::max(value, mass)
+        : parameter.quantity == Quantity::tip_rotary_inertia ? std::max(value, mass * length * length)
+                                                             : value;
     const bool axial = parameter.quantity == Quantity::axial_load;
     const StructuralSystem moved = assembled(axial ? with_load(loaded_.axial_load + step)
                                                    : with_value(loaded_, parameter, value + step));

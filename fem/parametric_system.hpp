@@ -14,18 +14,19 @@ namespace beamid::fem {
 struct BeamParameter {
   enum class Quantity {
     bending_stiffness,             ///< E I, mean over the region, all of it in proportion [N m2]
-    tip_mass,                      ///< [kg]
+    tip_mass,                      ///< of the first body at the tip: others there, a sensor, keep theirs [kg]
+    body_mass,                     ///< of all bodies in the region, in proportion [kg]
     tip_rotary_inertia,            ///< of the tip mass about its own centre [kg m2]
     root_rotational_stiffness,     ///< of an elastic root [N m/rad]
     root_translational_stiffness,  ///< of an elastic root [N/m]
     axial_load                     ///< P, positive in compression [N]
   };
   Quantity quantity = Quantity::bending_stiffness;
-  std::optional<std::pair<double, double>> region;  ///< bending stiffness: from, to [m]; absent: all of it
+  std::optional<std::pair<double, double>> region;  ///< bending stiffness, bodies: from, to [m]; absent: all
 };
 
-/// What the beam has of it. @throws std::invalid_argument when it has no such thing (an elastic root), or the
-/// region is off the beam or empty.
+/// What the beam has of it. @throws std::invalid_argument when it has no such thing (an elastic root, a body
+/// with mass), or the region is off the beam or empty.
 double value_of(const Beam& beam, const BeamParameter& parameter);
 
 /// The beam with another value of it. Damage and variation along the region keep their proportions; a section

@@ -42,11 +42,10 @@ void read_tip(const TomlTable& table, fem::Beam& beam) {
   const double sensor = table.find_number("sensor_mass_kg", Sign::not_negative).value_or(0);
   const double inertia = table.find_number("tip_rotary_inertia_kg_m2", Sign::not_negative).value_or(0);
   const double eccentricity = table.find_number("tip_eccentricity_m").value_or(0);
-  const bool together = eccentricity == 0.0;  // the sensor sits on the tip itself
-  const double at_centre = together ? mass + sensor : mass;
-  if (at_centre > 0.0 || inertia > 0.0)
-    beam.bodies.push_back({beam.length(), at_centre, inertia, eccentricity});
-  if (!together && sensor > 0.0) beam.bodies.push_back({beam.length(), sensor, 0.0, 0.0});
+  // The tip's body comes first, also without mass, so that the sensor is not taken for it.
+  if (mass > 0.0 || inertia > 0.0 || sensor > 0.0)
+    beam.bodies.push_back({beam.length(), mass, inertia, eccentricity});
+  if (sensor > 0.0) beam.bodies.push_back({beam.length(), sensor, 0.0, 0.0});
 }
 
 }  // namespace

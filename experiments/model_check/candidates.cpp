@@ -142,12 +142,19 @@ std::vector<Candidate> of_one(const Beam& beam) {
   c->exchangeable = true;
   c->changed = with_length;
   c->value = [](const Beam& b, double x) { return b.length() + x; };
+  constexpr auto own = [](const Beam& b) {  // a sensor beside it keeps its mass
+    return fem::value_of(b, {fem::BeamParameter::Quantity::tip_mass, {}});
+  };
   if (free_tip(beam)) {
-    c = add({"tip_mass", "kg", "kg"}, -first_tip_mass(beam), 10 * (tip + beam.mass()),
+    c = add({"tip_mass", "kg", "kg"}, -own(beam), 10 * (tip + beam.mass()),
             std::max(0.2 * tip, 0.05 * beam.mass()));
     c->exchangeable = true;
-    c->changed = with_tip_mass;
-    c->value = [](const Beam& b, double x) { return first_tip_mass(b) + x; };
+    c->changed = [own](const Beam& b, double x) {
+      return x == 0 ? b
+                    : fem::with_value(b, {fem::BeamParameter::Quantity::tip_mass, {}},
+                                      std::max(0.0, own(b) + x));
+    };
+    c->value = [own](const Beam& b, double x) { return own(b) + x; };
   }
   if (free_tip(beam) && tip > 0) {
     c = add({"tip_rotary_inertia", "m2", "kg m2"}, -tip_inertia(beam) / tip, length * length,

@@ -28,6 +28,7 @@ constexpr Index most_dense = 30;
 
 const std::vector<std::string> quantities{"bending_stiffness",
                                           "tip_mass",
+                                          "body_mass",
                                           "tip_rotary_inertia",
                                           "root_rotational_stiffness",
                                           "root_translational_stiffness",

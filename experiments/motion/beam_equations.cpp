@@ -54,6 +54,7 @@ void move_row(const fem::StructuralSystem& from, Index row, const fem::Structura
 std::optional<Property> beam_quantity(const std::string& name) {
   if (name == "bending_stiffness") return Property::bending_stiffness;
   if (name == "tip_mass") return Property::tip_mass;
+  if (name == "body_mass") return Property::body_mass;
   if (name == "tip_rotary_inertia") return Property::tip_rotary_inertia;
   if (name == "root_rotational_stiffness") return Property::root_rotational_stiffness;
   if (name == "root_translational_stiffness") return Property::root_translational_stiffness;
@@ -68,7 +69,8 @@ std::vector<ParameterDefault> beam_defaults(const fem::Beam& beam,
     const ParameterChoice& choice = choices[j];
     const auto quantity = beam_quantity(choice.quantity);
     if (!quantity) continue;
-    const bool mass = *quantity == Property::tip_mass || *quantity == Property::tip_rotary_inertia;
+    const bool mass = *quantity == Property::tip_mass || *quantity == Property::body_mass ||
+                      *quantity == Property::tip_rotary_inertia;
     try {
       defaults[j] = {fem::value_of(beam, parameter_of(choice.quantity, choice.region)),
                      mass ? mass_doubt : stiffness_doubt};
