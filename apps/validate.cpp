@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "apps/command.hpp"
+#include "experiments/channel_places.hpp"
 #include "experiments/continuum/description.hpp"
 #include "experiments/input/clean_text.hpp"
 #include "experiments/input/method_choice.hpp"
@@ -33,10 +34,10 @@ std::string columns_text(const RecordFormat& format) {
   return text.empty() ? "columns by the names in the record's header" : text;
 }
 
-std::string channels_text(const Record& record) {
+std::string readings_text(const Record& record) {
   std::string text;
   for (Eigen::Index i = 0; i < record.samples.rows(); ++i)
-    text += fmt::format("{}{} up to {:.4g} {}", i ? ", " : "", to_string(record.channels[i].quantity),
+    text += fmt::format("{}{} up to {:.4g} {}", i ? ", " : "", channel_text(record.channels[i]),
                         record.samples.row(i).cwiseAbs().maxCoeff(), si_unit(record.channels[i].quantity));
   return text;
 }
@@ -44,7 +45,7 @@ std::string channels_text(const Record& record) {
 std::string record_text(const fs::path& file, const Record& record) {
   return fmt::format("{}: {} samples from {:.6g} to {:.6g} s at {:.6g} Hz; {}", file.filename().string(),
                      record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
-                     channels_text(record));
+                     readings_text(record));
 }
 
 // What the model says of the record's channels shows only when it is made.
@@ -88,7 +89,8 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   else if (experiment.record_file)
     record_file = file.parent_path() / *experiment.record_file;
   if (values.count("record") || (!record_file.empty() && fs::exists(record_file))) {
-    const Record record = prepared_record(record_file, experiment.format);
+    const Record read = prepared_record(record_file, experiment.format);
+    const Record record = at_place({file.string()}, [&] { return with_places(read, experiment); });
     check_model(experiment, file.parent_path(), record);
     record_line = record_text(record_file, record);
   } else if (!record_file.empty()) {

@@ -77,15 +77,25 @@ fem::ResponseMethod completed(const Simulation& settings, SimulatedTest& test) {
   fem::ResponseMethod method = settings.method;
   const double limit = 0.5 * settings.sampling_rate;
   const Audible audible = audible_modes(test.system, limit);
-  if (method.name == "modal" && !method.options.contains("modes")) {
-    method.options["modes"] = static_cast<double>(std::max<Index>(1, audible.count));
-    test.notes.push_back(fmt::format("Of {} modes {} are taken: {}. simulation.modes sets another number.",
-                                     test.system.size(), method.options["modes"],
+  if (audible.count == 0 && audible.next_hz > 0.0)
+    test.notes.push_back(fmt::format(
+        "ALIASED: no mode lies below half the sampling rate, {:g} Hz. The first, at {:.5g} Hz, appears in "
+        "the "
+        "record at {:.5g} Hz.",
+        limit, audible.next_hz, std::abs(std::remainder(audible.next_hz, settings.sampling_rate))));
+  if (method.name == "modal" && !method.options.contains("modes") && audible.count > 0) {
+    method.options["modes"] = static_cast<double>(audible.count);
+    test.notes.push_back(fmt::format("{} of {} modes {} used: {}. simulation.modes sets another number.",
+                                     audible.count, test.system.size(), audible.count == 1 ? "is" : "are",
                                      audible.next_hz > 0.0
-                                         ? fmt::format("those below {:g} Hz, half the sampling rate", limit)
+                                         ? fmt::format("{} below {:g} Hz, half the sampling rate",
+                                                       audible.count == 1 ? "the one" : "those", limit)
                                          : "the lowest"));
-  } else if (audible.next_hz > 0.0 && (method.name != "modal" || method.options["modes"] == 0.0 ||
-                                       method.options["modes"] > static_cast<double>(audible.count))) {
+  } else if (method.name == "modal" && !method.options.contains("modes")) {
+    method.options["modes"] = 1.0;
+  } else if (audible.count > 0 && audible.next_hz > 0.0 &&
+             (method.name != "modal" || method.options["modes"] == 0.0 ||
+              method.options["modes"] > static_cast<double>(audible.count))) {
     test.notes.push_back(fmt::format(
         "Half the sampling rate is {:g} Hz, the frequency of mode {} is {:.5g} Hz: this mode and those "
         "above it appear in the record at other frequencies.",
@@ -138,6 +148,31 @@ VectorXd readings_at(const Clock& clock, const VectorXd& step_time, const Vector
   for (Index k = 0; k < readings.size(); ++k)
     if (const double t = clock.time[k] - clock.event; t >= 0) readings[k] = spline(std::min(t, last));
   return readings;
+}
+
+/// The force at the samples as one more channel of the record: a measured test has its force, too. Without it
+/// a forced motion would be taken for a free decay.
+void add_force(SimulatedTest& test, const Clock& clock, const VectorXd& force, Index steps, double length) {
+  constexpr double visible = 1e-3;  // of the force's root mean square
+  const Index samples = clock.time.size() - clock.before;
+  const VectorXd sampled = force(Eigen::seqN(Index{0}, samples, steps));
+  VectorXd missed = VectorXd::Zero(force.size());
+  for (Index k = 0; steps > 1 && k + 1 < force.size(); ++k) {
+    const double part = static_cast<double>(k % steps) / static_cast<double>(steps);
+    missed[k] = force[k] - (1.0 - part) * sampled[k / steps] - part * sampled[k / steps + 1];
+  }
+  if (const double loss = missed.norm(); loss > visible * force.norm())
+    test.notes.push_back(
+        fmt::format("Between the samples the force moves off the straight line by {:.2g} % of its size: an "
+                    "identification that takes the recorded force for straight is wrong by as much. A higher "
+                    "sampling_rate_hz helps.",
+                    100.0 * loss / force.norm()));
+  test.record.samples.conservativeResize(test.record.samples.rows() + 1, Eigen::NoChange);
+  test.record.samples.bottomRows(1) =
+      readings_at(clock, test.response.time, force, steps, Quantity::force).transpose();
+  const double position = *test.excitation.position;
+  test.record.channels.push_back({Quantity::force, name_of_place(position, length), position, 0.0});
+  test.record.input_path = InputPath::linear;
 }
 
 }  // namespace
@@ -200,6 +235,12 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
             .transpose();
     test.record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance});
   }
+  if (history.base_acceleration.size() > 0)
+    test.record.warnings.push_back(
+        "The base moves, which the record does not hold: an identification takes this motion for a free "
+        "decay.");
+  else if (history.loading.inputs.size() > 0)
+    add_force(test, clock, history.loading.inputs.row(input), steps, experiment.beam.length());
   lose_samples(acquisition, test.record, settings.seed);
   return test;
 }

@@ -15,13 +15,13 @@ namespace beamid::experiments {
 
 struct SimulatedTest {
   fem::StructuralSystem system;
-  fem::Response response;          ///< at every step; fields at the frames
-  std::vector<Sensor> sensors;     ///< names and positions filled in
-  Record record;                   ///< what the sensors show, noise and defects included
-  Acquisition acquisition;         ///< what was done to them
-  Excitation excitation;           ///< position and deflection filled in
-  fem::ResponseMethod method;      ///< its number of modes filled in
-  double step = 0.0;               ///< of the integration [s]
+  fem::Response response;       ///< at every step; fields at the frames
+  std::vector<Sensor> sensors;  ///< names and positions filled in
+  Record record;                ///< what the sensors show, noise and defects included; behind them the force
+  Acquisition acquisition;      ///< what was done to them
+  Excitation excitation;        ///< position and deflection filled in
+  fem::ResponseMethod method;   ///< its number of modes filled in
+  double step = 0.0;            ///< of the integration [s]
   std::vector<std::string> notes;  ///< what a reader should know, a sentence each
 };
 

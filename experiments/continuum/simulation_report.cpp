@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/channel_places.hpp"
 #include "experiments/continuum/acquisition_text.hpp"
 #include "experiments/continuum/description.hpp"
 #include "experiments/input/column_name.hpp"
+#include "experiments/input/record_places.hpp"
 #include "experiments/input/units.hpp"
 #include "experiments/input/write_record.hpp"
 #include "experiments/output/field_history.hpp"
+#include "experiments/output/file.hpp"
 #include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/spectrum.hpp"
 
@@ -120,7 +123,8 @@ Json values(const Experiment& experiment, const SimulatedTest& test) {
             {"elements", test.system.mesh.elements.size()},
             {"degrees_of_freedom", test.system.size()},
             {"frames", test.response.frames.size()},
-            {"sensors", Json::array()}};
+            {"sensors", Json::array()},
+            {"channels", channel_values(test.record)}};
   const std::vector<std::string> columns = column_names(test.record);
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
     const Sensor& sensor = test.sensors[i];
@@ -190,10 +194,14 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
                                 settings.sampling_rate));
   results.table(sensor_table(*test));
   if (const std::string text = acquisition_text(*test); !text.empty()) results.paragraph(text);
+  if (test->record.channels.size() > test->sensors.size())
+    results.paragraph("The record holds the force, too: " + channel_text(test->record.channels.back()) + ".");
   add_notes(results, test->notes);
 
-  results.attachments.push_back({{"record.csv"}, [test](const std::filesystem::path& folder) {
+  results.attachments.push_back({{"record.csv", "record.toml"}, [test](const std::filesystem::path& folder) {
                                    write_record(test->record, folder / "record.csv");
+                                   write_file(folder / "record.toml",
+                                              places_text(test->record, "record.csv"));
                                  }});
   const std::vector<std::string> columns = column_names(test->record);
   for (std::size_t i = 0; i < test->sensors.size(); ++i)

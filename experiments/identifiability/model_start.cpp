@@ -47,7 +47,11 @@ SimulatedTest clean_test(const Experiment& experiment, const std::filesystem::pa
   clean.sensors = sensors;
   for (Sensor& sensor : clean.sensors) sensor.noise = 0.0;
   clean.simulation.duration = duration;
-  return simulate(clean, folder, 0, progress);
+  SimulatedTest test = simulate(clean, folder, 0, progress);
+  const std::size_t shown = test.sensors.size();  // a force is no channel here: it is known or not, as asked
+  test.record.channels.resize(shown);
+  test.record.samples.conservativeResize(static_cast<Index>(shown), Eigen::NoChange);
+  return test;
 }
 
 VectorXd model_start(const ObservedMotion& motion, Experiment experiment, const std::filesystem::path& folder,

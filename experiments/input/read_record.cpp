@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/input/record_columns.hpp"
+#include "experiments/input/record_places.hpp"
 #include "experiments/input/record_reader.hpp"
 
 namespace beamid::experiments {
@@ -151,6 +152,10 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
   record.remarks = table.remarks;
   record.warnings = table.warnings;
+  std::vector<std::string> names;
+  for (const RecordColumn& column : columns.channels)
+    names.push_back(column.index < table.names.size() ? table.names[column.index] : "");
+  take_places(file, names, record);
   return format.window ? cut(record, format, table.file) : record;
 }
 

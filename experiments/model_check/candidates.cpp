@@ -50,24 +50,6 @@ Beam with_tip(Beam beam, const Function& f) {
   return beam;
 }
 
-/// Of the first body there: what else rides on it, a sensor, is known.
-double first_tip_mass(const Beam& beam) {
-  for (const Body& body : beam.bodies)
-    if (body.position == beam.length()) return body.mass;
-  return 0;
-}
-
-Beam with_tip_mass(Beam beam, double change) {
-  if (change == 0) return beam;
-  for (Body& body : beam.bodies)
-    if (body.position == beam.length()) {
-      body.mass = std::max(0.0, body.mass + change);
-      return beam;
-    }
-  beam.bodies.push_back({beam.length(), std::max(0.0, change)});
-  return beam;
-}
-
 double tip_inertia(const Beam& beam) {
   return fem::value_of(beam, {fem::BeamParameter::Quantity::tip_rotary_inertia, {}});
 }

@@ -7,17 +7,26 @@
 // v' = (e f - K x - C v) / M. An acceleration of the base enters as a force that grows with M and tells
 // nothing of it.
 //
-// Observed: displacement x, velocity v or acceleration v' + b (absolute, with that of the base), in any mix.
+// x is the displacement at the first observation. Observed at any place, where the first mode of the beam
+// moves r times as much: displacement r x, velocity r v or acceleration r v' + b (absolute, with that of the
+// base), in any mix.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "experiments/joint_model.hpp"
+#include "fem/modes.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// One observed channel.
+struct ObservedChannel {
+  Quantity quantity = Quantity::acceleration;
+  double reading = 1.0;  // r
+};
 
 // What is known of the oscillator.
 struct Known {
@@ -29,7 +38,7 @@ struct Known {
 
 class SingleDegreeOfFreedom final : public filters::LinearMotion {
  public:
-  SingleDegreeOfFreedom(Known known, std::vector<Quantity> observed, bool sensor_bias)
+  SingleDegreeOfFreedom(Known known, std::vector<ObservedChannel> observed, bool sensor_bias)
       : known_(std::move(known)),
         observed_(std::move(observed)),
         bias_(sensor_bias ? (known_.mass_unknown ? 5 : 4) : 0),
@@ -45,7 +54,8 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
   }
   std::vector<filters::Label> output_labels() const override {
     std::vector<filters::Label> labels;
-    for (const Quantity quantity : observed_) labels.push_back({to_string(quantity), si_unit(quantity)});
+    for (const ObservedChannel& one : observed_)
+      labels.push_back({to_string(one.quantity), si_unit(one.quantity)});
     return labels;
   }
   Index motion_size() const override { return 2; }
@@ -75,22 +85,22 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
   void output(const VectorXd& state, const VectorXd& input, VectorXd& output) const override {
     output.resize(static_cast<Index>(observed_.size()));
     for (Index i = 0; i < output.size(); ++i) {
-      if (observed_[i] == Quantity::displacement) output[i] = state[0];
-      if (observed_[i] == Quantity::velocity) output[i] = state[1];
-      if (observed_[i] != Quantity::acceleration) continue;
-      output[i] =
-          -(state[2] * state[0] + state[3] * state[1]) / mass(state) + (bias_ > 0 ? state[bias_] : 0.0);
-      if (input.size() == 0) continue;
-      output[i] += pushed(state, input);
-      if (known_.base >= 0) output[i] += input[known_.base];
+      const auto& [quantity, reading] = observed_[static_cast<std::size_t>(i)];
+      if (quantity == Quantity::displacement) output[i] = reading * state[0];
+      if (quantity == Quantity::velocity) output[i] = reading * state[1];
+      if (quantity != Quantity::acceleration) continue;
+      const double restored = (state[2] * state[0] + state[3] * state[1]) / mass(state);
+      output[i] = reading * (pushed(state, input) - restored) + (bias_ > 0 ? state[bias_] : 0.0);
+      if (known_.base >= 0 && input.size() > 0) output[i] += input[known_.base];
     }
   }
   void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) const override {
     jacobian.setZero(static_cast<Index>(observed_.size()), 2 + parameters_);
     for (Index i = 0; i < jacobian.rows(); ++i) {
-      if (observed_[i] == Quantity::displacement) jacobian(i, 0) = 1.0;
-      if (observed_[i] == Quantity::velocity) jacobian(i, 1) = 1.0;
-      if (observed_[i] == Quantity::acceleration) {
+      const auto& [quantity, reading] = observed_[static_cast<std::size_t>(i)];
+      if (quantity == Quantity::displacement) jacobian(i, 0) = reading;
+      if (quantity == Quantity::velocity) jacobian(i, 1) = reading;
+      if (quantity == Quantity::acceleration) {
         jacobian.row(i).head<4>() << -state[2], -state[3], -state[0], -state[1];
         jacobian.row(i) /= mass(state);
         if (known_.mass_unknown) {
@@ -98,6 +108,7 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
           for (Index k = 0; k < input.size(); ++k)
             if (k != known_.base) jacobian(i, 4) -= known_.forces[k] * input[k] / (mass(state) * mass(state));
         }
+        jacobian.row(i) *= reading;
         if (bias_ > 0) jacobian(i, bias_) = 1.0;
       }
     }
@@ -105,7 +116,7 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
 
  private:
   Known known_;
-  std::vector<Quantity> observed_;
+  std::vector<ObservedChannel> observed_;
   Index bias_;  // its place in the state; 0: none
   Index parameters_;
 
@@ -146,12 +157,28 @@ std::vector<Unknown> unknowns(const Known& known, double stiffness, const ModelS
   return unknowns;
 }
 
+// Displacement at every observation per that at the first one, r (p), in the first mode of the beam as
+// described: nearer to what sensors at several places read than the shape of any reduction.
+VectorXd readings(const ModelSetting& setting) {
+  constexpr double node = 1e-6;  // of the largest reading
+  const MatrixXd rows = setting.system.outputs;
+  if ((rows.rowwise() - rows.row(0)).isZero(0.0)) return VectorXd::Ones(rows.rows());
+  const VectorXd seen = rows * fem::modes(setting.system, 1).shape.col(0);
+  if (!(std::abs(seen[0]) > node * seen.cwiseAbs().maxCoeff())) {
+    const std::string& name = setting.observations[0].name;
+    throw std::invalid_argument("model 'sdof' is about the motion at its first channel" +
+                                (name.empty() ? "" : " '" + name + "'") +
+                                ", where the first mode does not move; expected another channel first");
+  }
+  return seen / seen[0];
+}
+
 std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
   const fem::StructuralSystem system = reduced(setting).system;
   if (system.size() != 1)
     throw std::invalid_argument("model 'sdof' needs a reduction to one coordinate; this one keeps " +
                                 std::to_string(system.size()));
-  std::vector<Quantity> observed;
+  std::vector<ObservedChannel> observed;
   std::vector<Index> accelerometers;
   auto model = std::make_unique<JointModel>();
   for (const Observation& observation : setting.observations) {
@@ -161,10 +188,14 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
           to_string(observation.quantity));
     if (observation.quantity == Quantity::acceleration && options.flag("sensor_bias"))
       accelerometers.push_back(static_cast<Index>(observed.size()));
-    observed.push_back(observation.quantity);
+    observed.push_back({observation.quantity});
   }
   if (observed.empty()) throw std::invalid_argument("model 'sdof' needs at least one observed quantity");
+  const VectorXd factors = readings(setting);
+  for (std::size_t i = 0; i < observed.size(); ++i) observed[i].reading = factors[static_cast<Index>(i)];
   const double reading = system.outputs.coeff(0, 0);  // output per unit of the coordinate
+  if (reading == 0.0)
+    throw std::invalid_argument("model 'sdof': the reduction does not move its first channel");
   Known known;
   known.mass = system.mass.coeff(0, 0) / (reading * reading);
   const double stiffness = system.stiffness.assembled().coeff(0, 0) / (reading * reading);

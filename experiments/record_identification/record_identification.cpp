@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "experiments/channel_places.hpp"
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/modal_analysis/shape_fit.hpp"
@@ -29,12 +30,6 @@ constexpr double first_damping_ratio = 0.01;  // of C0, with a standard deviatio
 // Smallest noise taken from a record, relative to its largest reading. One simulated without noise would else
 // make P0 and R differ by more digits than double precision has.
 constexpr double smallest_noise = 1e-6;
-
-std::vector<Quantity> observed(const Record& record) {
-  std::vector<Quantity> quantities;
-  for (const Channel& channel : record.channels) quantities.push_back(channel.quantity);
-  return quantities;
-}
 
 // Largest displacement [m] at frequency w [rad/s] behind a channel's largest reading.
 double displacement_scale(const Record& record, double w) {
@@ -159,19 +154,20 @@ void take_quiet_noise(const Eigen::VectorXd& quiet_noise, const Record& record, 
   found.interval_factor = widening(found);
 }
 
-// The model, the beam's frequency, and what the model is made of.
+// The model, the beam's frequency, and what the model is made of: every channel read where it sits.
 reduction::ReducedModel take_model(const Experiment& experiment, const Record& record,
                                    RecordIdentification& result) {
-  const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
-  result.beam_frequency_hz = fem::modes(system, 1).frequency_hz()[0];
-  const auto method =
-      reduction::reduction_registry().make(experiment.reduction.name, experiment.reduction.options);
-  reduction::ReducedModel reduced = reduce(system, *method);
+  ModelSetting setting = model_setting(experiment, with_places(record, experiment), experiment.reduction);
+  if (!setting.forces.empty())
+    throw std::invalid_argument(
+        "a free decay observes displacement, velocity or acceleration; found a channel of force");
+  setting.damping = {};  // the prior is made here
+  setting.parameters.clear();
+  result.beam_frequency_hz = fem::modes(setting.system, 1).frequency_hz()[0];
   result.model = at_place(experiment.model.place, [&] {
-    return *model_registry().make(experiment.model.name, experiment.model.options,
-                                  at_one_point(reduced.system, observed(record)));
+    return *model_registry().make(experiment.model.name, experiment.model.options, setting);
   });
-  return reduced;
+  return reduced(setting);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/channel_places.hpp"
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/discretisation_bias.hpp"
 #include "experiments/record_identification/record_figures.hpp"
@@ -140,11 +141,17 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   results.command = "identify";
   results.configuration = configuration(experiment, record, found, record_name);
   results.values = values(found, record);
+  const Record placed = with_places(record, experiment);
+  results.values["channels"] = channel_values(placed);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
       experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes()));
+  if (record.channels.size() > 1 ||
+      *placed.channels[0].position != fem::natural_point(experiment.beam).position)
+    results.paragraph("Stiffness, damping and mass are those of the motion at the first channel of " +
+                      channels_text(placed) + ".");
   if (const auto& failure = found.identification.run.failure) {
     const double smallest = failure->smallest_eigenvalue;
     results.paragraph(
