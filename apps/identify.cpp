@@ -10,6 +10,7 @@
 #include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 #include "experiments/record_comparison/comparison.hpp"
+#include "experiments/record_comparison/run_verdict.hpp"
 #include "experiments/record_identification/joint_comparison.hpp"
 #include "experiments/record_identification/joint_identification.hpp"
 #include "experiments/record_identification/noise_source.hpp"
@@ -41,7 +42,8 @@ Comparison identify_by_comparison(Experiment experiment, const Record& record, c
 
 Results identify_generally(const Experiment& experiment, const Record& record, const fs::path& file,
                            const fs::path& folder) {
-  const Comparison found = identify_by_comparison(experiment, record, file, folder);
+  Comparison found = identify_by_comparison(experiment, record, file, folder);
+  judge_runs(found);
   Results results = report(experiment, found);
   results.command = "identify";
   results.configuration["on_failure"] = to_string(experiment.on_failure);

@@ -13,6 +13,7 @@ struct FoundMode {
   double frequency_hz = 0.0;             ///< undamped; not positive or NaN: nothing oscillates
   double damping_ratio = 0.0;            ///< negative: the motion grows
   double damping_ratio_deviation = 0.0;  ///< standard deviation of the ratio; 0: not known
+  double frequency_deviation_hz = 0.0;   ///< likewise
 };
 
 /// Largest relative distance of a found frequency from that of the record.

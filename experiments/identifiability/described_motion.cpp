@@ -39,7 +39,7 @@ VectorXd described_state(const Experiment& experiment, const JointModel& model) 
   VectorXd state = VectorXd::Zero(static_cast<Index>(model.motion->state_labels().size()));
   for (std::size_t j = 0; j < model.unknowns.size(); ++j) {
     const Unknown& unknown = model.unknowns[j];
-    const double value = true_value(experiment, model, j).value_or(unknown.guess);
+    const double value = true_value(experiment, model.equivalent_mass, unknown).value_or(unknown.guess);
     double& entry = state[model.unknown_places[j]];
     try {
       entry = unknown.to_state(value);

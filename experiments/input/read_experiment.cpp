@@ -67,6 +67,12 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
     experiment.reductions.push_back(read_reduction(table));
   read_comparison(root, experiment);
   choose("model", "name", experiment.model, model_registry(), {});
+  // Static shapes are K and M of one coordinate; of a model of modes they would be an error of its own.
+  const std::string& model = experiment.model.name;
+  if (!root.contains("reduction") && (model == "beam" || model == "modal"))
+    experiment.reduction = {"modal_truncation",
+                            reduction::reduction_registry().completed("modal_truncation", {}),
+                            root.value_place("reduction")};
   choose("filter", "method", experiment.filter, filters::filter_registry(),
          {"discretisation", "on_failure", "smoother", "estimator"});
   if (const auto table = root.find_table("filter")) {

@@ -24,7 +24,9 @@ ComparedRecord chosen_channels(ComparedRecord compared, const std::vector<std::s
         std::find(names.begin(), names.end(), all.channels[i].name) != names.end())
       kept.push_back(static_cast<Eigen::Index>(i));
 
-  Record record{all.time, all.samples(kept, Eigen::all), {}, all.time_resolution};
+  Record record = all;
+  record.samples = all.samples(kept, Eigen::all);
+  record.channels.clear();
   for (const Eigen::Index i : kept) record.channels.push_back(all.channels[static_cast<std::size_t>(i)]);
   if (compared.sensor_noise.size() > 0) compared.sensor_noise = compared.sensor_noise(kept).eval();
   compared.record = std::move(record);

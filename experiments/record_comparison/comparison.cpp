@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "experiments/channel_places.hpp"
 #include "experiments/continuum/simulated_test.hpp"
 #include "experiments/finest_discretisation.hpp"
 #include "experiments/input/choice_text.hpp"
@@ -15,6 +16,7 @@
 #include "experiments/motion/following_motion.hpp"
 #include "experiments/record_comparison/compared_run.hpp"
 #include "experiments/record_comparison/started_model.hpp"
+#include "experiments/record_comparison/true_value.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "filters/filter.hpp"
@@ -24,15 +26,30 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-// What to expect of the record's first channel, whatever model looks at it.
-std::optional<double> modal_frequency(const Record& record, double expected_hz) {
+// The mode of the record's first channel near the beam's first one, whatever model looks at it. Nothing where
+// a measured force moves the beam: the record is then no decay of its modes.
+std::optional<ModalEstimate> modal_analysis(const Record& record, double beam_hz) {
+  if (!force_channels(record).empty()) return {};
   try {
     ModalAnalysisSettings settings;
-    settings.expected_frequency_hz = expected_hz;
-    return dominant_mode(record.samples.row(output_channels(record)[0]), record.interval(), settings)
-        .frequency_hz;
+    settings.expected_frequency_hz = shown_at(beam_hz, 1.0 / record.interval());
+    return dominant_mode(record.samples.row(output_channels(record)[0]), record.interval(), settings);
   } catch (const std::invalid_argument&) {
     return {};
+  } catch (const std::runtime_error&) {  // its least squares do not converge
+    return {};
+  }
+}
+
+void refuse_dead_channels(const Record& record) {
+  for (const Index i : output_channels(record)) {
+    const Channel& channel = record.channels[static_cast<std::size_t>(i)];
+    const double first = record.samples(i, 0);
+    if ((record.samples.row(i).array() == first).all())
+      throw std::invalid_argument(
+          fmt::format("channel '{}' is dead: it shows {:g} {} throughout; expected motion, or other channels "
+                      "(--channel, record.channels)",
+                      channel.name, first, si_unit(channel.quantity)));
   }
 }
 
@@ -92,7 +109,7 @@ ComparedRecord simulated_record(const Experiment& truth, const std::filesystem::
   ComparedRecord compared;
   compared.name = "simulated";
   compared.record = test.record;
-  compared.sensor_noise.resize(static_cast<Index>(test.sensors.size()));
+  compared.sensor_noise = VectorXd::Zero(static_cast<Index>(test.record.channels.size()));
   for (std::size_t i = 0; i < test.sensors.size(); ++i)
     compared.sensor_noise[static_cast<Index>(i)] = test.sensors[i].noise;
   compared.truth = truth;
@@ -103,22 +120,41 @@ ComparedRecord simulated_record(const Experiment& truth, const std::filesystem::
 Comparison compare(const Experiment& experiment, ComparedRecord record, const std::filesystem::path& folder,
                    const Progress& progress) {
   Comparison comparison{std::move(record), {}};
+  comparison.compared.record = with_places(std::move(comparison.compared.record), experiment);
   const Record& samples = comparison.compared.record;
   if (output_channels(samples).empty())
     throw std::invalid_argument("the record holds forces only; expected at least one channel of motion");
+  refuse_dead_channels(samples);
   RunContext context{experiment, comparison.compared, {}};
   const double beam_frequency =
       fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
-  context.modal_frequency_hz = modal_frequency(samples, beam_frequency);
+  comparison.modal = modal_analysis(samples, beam_frequency);
+  if (const auto& modal = comparison.modal) {
+    context.modal = FoundMode{};
+    context.modal->frequency_hz = modal->frequency_hz;
+    context.modal->damping_ratio = modal->damping_ratio;
+  }
+  const double rate = 1.0 / samples.interval();
+  const bool aliased = 2.0 * beam_frequency > rate;
+  if (aliased)
+    comparison.warnings.push_back(fmt::format(
+        "ALIASED: the beam's first mode, at {:.5g} Hz, lies above half the sampling rate, {:.5g} Hz. The "
+        "record "
+        "shows it at {:.5g} Hz, as it would show any mode at a multiple of {:.5g} Hz plus or minus that: "
+        "which of them it is only the initial estimates say.",
+        beam_frequency, 0.5 * rate, shown_at(beam_frequency, rate), rate));
   for (const Choice& reduction : experiment.reductions) {
     std::optional<ModelSetting> setting;
     std::optional<StartedModel> started;
+    double mass = 0.0;
     std::string refusal;
     progress(to_text(reduction));
     try {
       setting = model_setting(experiment, samples, reduction, folder);
       started = started_model(experiment.model, *setting, measurements(samples),
-                              context.modal_frequency_hz.value_or(beam_frequency));
+                              context.modal && !aliased ? context.modal->frequency_hz : beam_frequency);
+      if (const auto& truth = comparison.compared.truth; truth && started->model.equivalent_mass > 0.0)
+        mass = true_mass(*truth, samples, reduction, folder);
     } catch (const std::invalid_argument& error) {
       refusal = error.what();
     }
@@ -133,7 +169,7 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
                                                                    : discretisation;
         progress(fmt::format("{}, {}, {}", to_text(reduction), used.name, scheme));
         comparison.runs.push_back(
-            started ? run_once(context, *setting, *started, {used, scheme, experiment.passes})
+            started ? run_once(context, *setting, *started, {used, scheme, experiment.passes, mass})
                     : refused(refusal));
         ComparedRun& run = comparison.runs.back();
         run.reduction = to_text(reduction);

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "experiments/divergence.hpp"
 #include "experiments/estimates.hpp"
 #include "experiments/experiment.hpp"
+#include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/output/results.hpp"
 #include "experiments/progress.hpp"
 #include "filters/diagnostics.hpp"
@@ -47,12 +49,15 @@ struct ComparedRun {
   std::string reduction, filter, discretisation;  ///< with the options that were chosen
   Status status = Status::converged;
   std::string reason;               ///< where it did not converge
+  std::string step_cause;           ///< what the discretisation alone does to the mode; empty: nothing much
   Eigen::Index coordinates = 0;     ///< r, of the model
   double observed_per_freedom = 0;  ///< p / r, the paper's O/F ratio
   std::vector<ComparedParameter> parameters;
   double response_error_percent = 0.0;
   Eigen::VectorXd noise;               ///< standard deviation assumed in the last pass (p)
+  Eigen::VectorXd noise_left;          ///< root mean square of what the best motion leaves (p)
   std::optional<double> frequency_hz;  ///< of the model's first mode at the estimate
+  std::optional<FoundMode> mode;       ///< likewise, where its equations tell it
   double seconds = 0.0;                ///< all passes of the filter
   double response_seconds = 0.0;       ///< the reproduction and the bound
   Eigen::MatrixXd reproduced;          ///< (p x N)
@@ -67,6 +72,8 @@ struct ComparedRun {
 struct Comparison {
   ComparedRecord compared;
   std::vector<ComparedRun> runs;
+  std::optional<ModalEstimate> modal = {};  ///< of the first output, near the beam's mode; absent: none found
+  std::vector<std::string> warnings = {};   ///< for the first lines of a report
 };
 
 const char* to_string(ComparedRun::Status status);

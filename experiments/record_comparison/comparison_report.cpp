@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "experiments/channel_places.hpp"
 #include "experiments/continuum/description.hpp"
 #include "experiments/diagnostics_report.hpp"
-#include "experiments/input/column_name.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/record_comparison/comparison.hpp"
 #include "experiments/record_comparison/comparison_figures.hpp"
@@ -90,6 +90,7 @@ Json values(const ComparedRun& run, const std::vector<std::string>& outputs) {
             {"discretisation", run.discretisation},
             {"status", to_string(run.status)}};
   if (!run.reason.empty()) json["reason"] = run.reason;
+  if (!run.step_cause.empty()) json["step_cause"] = run.step_cause;
   json["events"] = experiments::values(run.run.events);
   if (run.diagnostics) json["diagnostics"] = experiments::values(*run.diagnostics, outputs);
   json["coordinates"] = run.coordinates;
@@ -129,21 +130,24 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   results.values = {{"record", comparison.compared.name},
                     {"samples", record.size()},
                     {"sampling_rate_hz", 1.0 / record.interval()},
+                    {"channels", channel_values(record)},
+                    {"record_warnings", Json::array()},
                     {"runs", Json::array()}};
   const std::optional<RecordInputs> inputs = record_inputs(record);
   if (inputs) results.values["inputs_between_samples"] = to_string(inputs->path);
+  for (const auto* list : {&record.warnings, &comparison.warnings})
+    for (const std::string& warning : *list) results.values["record_warnings"].push_back(warning);
   std::vector<std::string> outputs;
   for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
   for (const ComparedRun& run : comparison.runs) results.values["runs"].push_back(values(run, outputs));
 
   results.heading(experiment.title.empty() ? "Reduced against continuum" : experiment.title);
-  std::string channels;
-  for (const std::string& column : column_names(record))
-    if (column != "time_s") channels += (channels.empty() ? "" : ", ") + column;
+  for (const std::string& warning : record.warnings) results.paragraph(warning);
+  for (const std::string& warning : comparison.warnings) results.paragraph(warning);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} passes.{}",
                   comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],
-                  1.0 / record.interval(), channels, experiment.model.name, experiment.passes,
+                  1.0 / record.interval(), channels_text(record), experiment.model.name, experiment.passes,
                   inputs ? " " + words(*inputs) : ""));
   results.table(run_table(comparison));
   for (const std::string& name : parameter_names(comparison))

@@ -25,13 +25,6 @@ std::string parameter_text(const ComparedRun& run, const ComparedRun& reference,
   return text + fmt::format(", {:+.3g} % from the reference", 100.0 * (e.value / other - 1.0));
 }
 
-std::string time_text(const ComparedRun& run, const ComparedRun& reference) {
-  const double ratio = reference.seconds / run.seconds;
-  if (&run == &reference) return fmt::format("{:.2g} s", run.seconds);
-  return ratio >= 1.0 ? fmt::format("{:.2g} s, {:.3g} times faster", run.seconds, ratio)
-                      : fmt::format("{:.2g} s, {:.3g} times slower", run.seconds, 1.0 / ratio);
-}
-
 std::string run_text(const Comparison& comparison, const ComparedRun& run, const ComparedRun& reference) {
   const bool alone = comparison.runs.size() == 1;
   std::string text = fmt::format("{}{} ({} coordinate{}): ", name_of(comparison, run),
@@ -39,8 +32,12 @@ std::string run_text(const Comparison& comparison, const ComparedRun& run, const
                                  run.coordinates == 1 ? "" : "s");
   for (std::size_t j = 0; j < run.parameters.size(); ++j)
     text += (j ? "; " : "") + parameter_text(run, reference, j);
-  return text + fmt::format(". It reproduces the record to {:.3g} % and took {}.", run.response_error_percent,
-                            time_text(run, reference));
+  return text + fmt::format(". It leaves {:.3g} % of the record.", run.response_error_percent);
+}
+
+// Whether a run says anything of its model.
+bool is_sound(const ComparedRun& run) {
+  return run.status == ComparedRun::Status::converged && run.step_cause.empty();
 }
 
 // An error many times its own deviation is not noise: the model is at fault.
@@ -49,25 +46,41 @@ std::string bias_text(const Comparison& comparison) {
   std::string biased;
   for (const ComparedRun& run : comparison.runs)
     for (const ComparedParameter& p : run.parameters)
-      if (run.status == ComparedRun::Status::converged && p.truth &&
-          std::abs(p.estimate.value - *p.truth) > surely * p.estimate.deviation)
-        biased += fmt::format("{}{} of {} ({:.0f} deviations)", biased.empty() ? "" : ", ", p.estimate.name,
-                              name_of(comparison, run),
+      if (is_sound(run) && p.truth && std::abs(p.estimate.value - *p.truth) > surely * p.estimate.deviation)
+        biased += fmt::format("{}{} of {} ({:.0f} standard deviations)", biased.empty() ? "" : ", ",
+                              p.estimate.name, name_of(comparison, run),
                               std::abs(p.estimate.value - *p.truth) / p.estimate.deviation);
   if (biased.empty()) return {};
-  return "Beyond their own intervals are " + biased +
+  return "Outside their own intervals: " + biased +
          ": an error of the model or of its discretisation, which no interval of a filter shows.";
 }
 
+// "modal_truncation" of "modal_truncation:modes=3".
+std::string method_of(const ComparedRun& run) {
+  return run.reduction.substr(0, run.reduction.find(':'));
+}
+
 // Whether a smaller model, otherwise identified alike, leaves less of the record: impossible on the right
-// branch.
+// branch where the larger one can move in all the shapes of the smaller, as of the same method, or as the
+// mesh.
 bool worse_than_smaller(const Comparison& comparison, const ComparedRun& run) {
   constexpr double clearly = 1.25;
   return std::any_of(comparison.runs.begin(), comparison.runs.end(), [&](const ComparedRun& smaller) {
-    return smaller.status == ComparedRun::Status::converged && smaller.coordinates < run.coordinates &&
-           smaller.filter == run.filter && smaller.discretisation == run.discretisation &&
+    const bool nested = run.reduction == "none" || method_of(smaller) == method_of(run);
+    return nested && smaller.status == ComparedRun::Status::converged &&
+           smaller.coordinates < run.coordinates && smaller.filter == run.filter &&
+           smaller.discretisation == run.discretisation &&
            clearly * smaller.response_error_percent < run.response_error_percent;
   });
+}
+
+// What a discretisation does by itself explains all else that is seen of its run.
+std::string step_text(const Comparison& comparison) {
+  std::string text;
+  for (const ComparedRun& run : comparison.runs)
+    if (!run.step_cause.empty())
+      text += fmt::format("{}{}: {}", text.empty() ? "" : " ", name_of(comparison, run), run.step_cause);
+  return text;
 }
 
 // A model that leaves much of the record is blind to some of its modes, or the filter has settled on a wrong
@@ -76,7 +89,7 @@ std::string misfit_text(const Comparison& comparison) {
   constexpr double much = 20.0;
   std::string poor, wrong;
   for (const ComparedRun& run : comparison.runs) {
-    if (run.status != ComparedRun::Status::converged) continue;
+    if (!is_sound(run)) continue;
     const bool worse = worse_than_smaller(comparison, run);
     if (!worse && run.response_error_percent <= much) continue;
     std::string& list = worse ? wrong : poor;
@@ -85,35 +98,109 @@ std::string misfit_text(const Comparison& comparison) {
   }
   std::string text;
   if (!poor.empty())
-    text =
-        "Much of the record is left by " + poor +
-        ": modes that the model does not have, or guesses so far off that the filter has settled on a wrong "
-        "answer. If a larger model leaves as much, start from nearer guesses or smaller deviations.";
+    text = "Large residual: much of the record is left by " + poor +
+           ". The model lacks modes that the record has, or the filter has settled on a wrong answer. If a "
+           "larger "
+           "model leaves as much, start from nearer initial estimates or smaller deviations.";
   if (!wrong.empty())
     text += (text.empty() ? "" : " ") + std::string("More of the record than a smaller model is left by ") +
             wrong +
-            ": the filter has settled on a wrong answer. Start from nearer guesses or smaller deviations.";
+            ": the filter has settled on a wrong answer. Start from nearer initial estimates or smaller "
+            "deviations.";
   return text;
 }
 
-// A deviation below the bound, by more than what was believed beforehand explains: the filter was sure before
-// it was right, and the next pass would move.
+// Why a deviation is smaller than the record allows.
+std::string why_surer(const Comparison& comparison, const ComparedRun& run) {
+  constexpr double clearly = 0.8;
+  if (run.filter.starts_with("particle"))
+    return "its particles have collapsed onto a few values, so that neither estimate nor deviation counts: "
+           "use "
+           "a filter of the Kalman family";
+  if (run.remarks.size() > run.run.remarks.size()) return "its estimate has not settled";
+  if (comparison.compared.sensor_noise.size() > 0)
+    for (Eigen::Index i = 0; i < run.noise.size(); ++i)
+      if (run.noise[i] < clearly * run.noise_left[i])
+        return fmt::format("[noise] assumes {:.2g} of what the motion leaves of the record",
+                           run.noise[i] / run.noise_left[i]);
+  return "the filter was linearised too far from its estimate: filter more often ([compare] passes), or "
+         "start "
+         "from nearer initial estimates";
+}
+
+// A deviation below the bound, by more than what was known beforehand explains.
 std::string surer_text(const Comparison& comparison) {
   constexpr double clearly = 0.8;
-  std::string surer;
-  for (const ComparedRun& run : comparison.runs)
+  std::string text;
+  for (const ComparedRun& run : comparison.runs) {
+    std::string surer;
     for (const ComparedParameter& p : run.parameters) {
-      if (run.status != ComparedRun::Status::converged || !p.bound) continue;
+      if (!is_sound(run) || !p.bound) continue;
       const double least = 1.0 / std::hypot(1.0 / *p.bound, 1.0 / p.estimate.prior_deviation);
       if (p.estimate.deviation < clearly * least)
-        surer += fmt::format("{}{} of {} ({:.2g} of the bound)", surer.empty() ? "" : ", ", p.estimate.name,
-                             name_of(comparison, run), p.estimate.deviation / least);
+        surer += fmt::format("{}{} {:.2g}", surer.empty() ? "" : ", ", p.estimate.name,
+                             p.estimate.deviation / least);
     }
-  if (surer.empty()) return {};
-  return "Surer than the record allows is the filter of " + surer +
-         ": it was linearised too far from what it found. Filter more often ([compare] passes), or start "
-         "from "
-         "nearer guesses.";
+    if (!surer.empty())
+      text +=
+          fmt::format("{}Overconfident: standard deviations of {}, as parts of the Cramer-Rao bound: {}; {}.",
+                      text.empty() ? "" : " ", name_of(comparison, run), surer, why_surer(comparison, run));
+  }
+  return text;
+}
+
+// What runs say of themselves beyond the remarks of their filters.
+std::string own_remarks(const Comparison& comparison) {
+  std::string text;
+  for (const ComparedRun& run : comparison.runs)
+    for (std::size_t i = run.run.remarks.size(); i < run.remarks.size(); ++i)
+      text += fmt::format("{}{}: {}", text.empty() ? "" : " ", name_of(comparison, run), run.remarks[i]);
+  return text;
+}
+
+// By the work of a step: linearised once, several times, or many points moved.
+int cost_rank(const ComparedRun& run) {
+  const std::string name = run.filter.substr(0, run.filter.find(':'));
+  int rank = 6;
+  for (const char* const kind : {"particle", "enkf", "ukf", "ckf", "iekf", "ekf"}) {
+    if (name.find(kind) != std::string::npos) return rank;
+    --rank;
+  }
+  return rank;
+}
+
+/// Largest difference of a parameter, in the deviations of the first run.
+double apart(const ComparedRun& one, const ComparedRun& other) {
+  double largest = 0.0;
+  for (std::size_t j = 0; j < one.parameters.size(); ++j)
+    largest =
+        std::max(largest, std::abs(one.parameters[j].estimate.value - other.parameters[j].estimate.value) /
+                              one.parameters[j].estimate.deviation);
+  return largest;
+}
+
+// Filters that answer alike on the same model need not all be run.
+std::string agreement_text(const Comparison& comparison) {
+  constexpr double alike = 0.2;
+  std::string text;
+  for (const ComparedRun& run : comparison.runs) {
+    std::string others;
+    double largest = 0.0;
+    for (const ComparedRun& other : comparison.runs)
+      if (is_sound(run) && is_sound(other) && other.reduction == run.reduction &&
+          other.discretisation == run.discretisation && other.parameters.size() == run.parameters.size() &&
+          cost_rank(other) > cost_rank(run) && apart(run, other) < alike) {
+        others += (others.empty() ? "" : ", ") + other.filter;
+        largest = std::max(largest, apart(run, other));
+      }
+    if (others.empty()) continue;
+    const std::string filter = run.filter;
+    text += fmt::format(
+        "{}{}: {} agrees with {} within {:.1g} standard deviations and is the cheaper one: it is enough "
+        "here.",
+        text.empty() ? "" : " ", name_of(comparison, run), filter, others, std::max(largest, 0.01));
+  }
+  return text;
 }
 
 // How far the best model is from a sensor's own noise, where that is known.
@@ -148,9 +235,11 @@ const ComparedRun* reference_run(const Comparison& comparison) {
 
 std::vector<std::string> words(const Comparison& comparison) {
   const ComparedRun* reference = reference_run(comparison);
-  if (!reference) return {"No run converged."};
   std::vector<std::string> paragraphs;
-  paragraphs.push_back(run_text(comparison, *reference, *reference));
+  if (reference)
+    paragraphs.push_back(run_text(comparison, *reference, *reference));
+  else
+    paragraphs.push_back("No run converged.");
   for (const ComparedRun& run : comparison.runs) {
     if (&run == reference) continue;
     if (run.status != ComparedRun::Status::converged)
@@ -159,9 +248,12 @@ std::vector<std::string> words(const Comparison& comparison) {
     else if (run.parameters.size() == reference->parameters.size())
       paragraphs.push_back(run_text(comparison, run, *reference));
   }
-  if (const std::string text = bias_text(comparison); !text.empty()) paragraphs.push_back(text);
-  for (const std::string& text :
-       {misfit_text(comparison), surer_text(comparison), excess_text(comparison, *reference)})
+  std::vector<std::string> remarks{step_text(comparison)};
+  if (reference)
+    remarks.insert(remarks.end(), {bias_text(comparison), misfit_text(comparison), surer_text(comparison),
+                                   own_remarks(comparison), excess_text(comparison, *reference),
+                                   agreement_text(comparison)});
+  for (const std::string& text : remarks)
     if (!text.empty()) paragraphs.push_back(text);
   return paragraphs;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "experiments/finest_discretisation.hpp"
+#include "experiments/motion/reduced_motion.hpp"
 #include "experiments/record_comparison/nonlinear_guess.hpp"
 #include "reduction/reduction.hpp"
 
@@ -71,6 +72,24 @@ StartedModel started_model(const Choice& model, const ModelSetting& setting,
   }
   const Eigen::VectorXd mean = carried_over(small, heard.mean, first);
   return {std::move(first), {mean, heard.unknowns}};
+}
+
+JointModel on_basis_at(const Choice& model, const ModelSetting& setting, const JointModel& from,
+                       const Eigen::VectorXd& state) {
+  const auto* motion = dynamic_cast<const ReducedMotion*>(from.motion.get());
+  if (!motion || motion->description().properties() == 0) return from;
+  ModelSetting there = setting;
+  there.parameters = choices_at(from, state);
+  try {
+    JointModel made = *model_registry().make(model.name, model.options, there);
+    if (made.motion_size() != from.motion_size()) return from;
+    made.unknowns = from.unknowns;
+    return made;
+  } catch (const std::invalid_argument&) {  // no such beam
+    return from;
+  } catch (const std::runtime_error&) {
+    return from;
+  }
 }
 
 }  // namespace beamid::experiments

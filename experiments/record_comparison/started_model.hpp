@@ -23,4 +23,15 @@ struct StartedModel {
 StartedModel started_model(const Choice& model, const ModelSetting& setting,
                            const filters::Measurements& record, double frequency_hz);
 
+/// The model with its basis where a state's unknowns are, what is known beforehand as it was; the model
+/// itself where its motion does not depend on a basis that the beam's properties turn, or none can be made
+/// there.
+///
+/// Held in the shapes of another beam, a reduction's frequencies err to second order in the difference, its
+/// modal damping to first order.
+/// @param from made of `setting`, with the unknowns' guesses
+/// @param state of that model (n)
+JointModel on_basis_at(const Choice& model, const ModelSetting& setting, const JointModel& from,
+                       const Eigen::VectorXd& state);
+
 }  // namespace beamid::experiments

@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "experiments/model_setting.hpp"
 #include "experiments/oscillator.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
@@ -19,6 +20,7 @@ const std::map<std::string, Property>& properties() {
   static const std::map<std::string, Property> known{
       {"bending_stiffness", Property::bending_stiffness},
       {"tip_mass", Property::tip_mass},
+      {"body_mass", Property::body_mass},
       {"tip_rotary_inertia", Property::tip_rotary_inertia},
       {"root_rotational_stiffness", Property::root_rotational_stiffness},
       {"root_translational_stiffness", Property::root_translational_stiffness},
@@ -45,8 +47,16 @@ std::optional<double> rayleigh_coefficient(const fem::DampingLaw& law, bool of_m
 
 }  // namespace
 
-std::optional<double> true_value(const Experiment& truth, const JointModel& model, std::size_t j) {
-  const Unknown& unknown = model.unknowns[j];
+double true_mass(const Experiment& truth, const Record& record, const Choice& reduction,
+                 const std::filesystem::path& folder) {
+  Experiment alone = truth;
+  alone.parameters.clear();
+  const fem::StructuralSystem system = reduced(model_setting(alone, record, reduction, folder)).system;
+  const double reading = system.size() == 1 ? system.outputs.coeff(0, 0) : 0.0;
+  return reading != 0.0 ? system.mass.coeff(0, 0) / (reading * reading) : 0.0;
+}
+
+std::optional<double> true_value(const Experiment& truth, double mass, const Unknown& unknown) {
   if (const auto found = properties().find(unknown.quantity); found != properties().end())
     return property(truth.beam, unknown, found->second);
   if (unknown.quantity == "mass_damping" || unknown.quantity == "stiffness_damping")
@@ -60,8 +70,7 @@ std::optional<double> true_value(const Experiment& truth, const JointModel& mode
   const double ratio =
       hysteretic ? std::nan("") : fem::damping_ratios(truth.damping, modes.angular_frequency)[mode - 1];
   if (unknown.quantity == "damping_ratio") return ratio;
-  const auto oscillator =
-      Oscillator::from_frequency(model.equivalent_mass, modes.angular_frequency[0], ratio);
+  const auto oscillator = Oscillator::from_frequency(mass, modes.angular_frequency[0], ratio);
   if (unknown.quantity == "stiffness") return oscillator.stiffness;
   if (unknown.quantity == "damping") return oscillator.damping;
   if (unknown.quantity == "mass") return 1.0 / std::pow((system.outputs * modes.shape.col(0))[0], 2);

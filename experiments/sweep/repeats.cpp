@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <new>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
+#include "experiments/divergence.hpp"
 #include "experiments/identification.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/input/read_reduction.hpp"
@@ -27,16 +27,19 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double smallest_noise = 1e-6;  // of a channel's root mean square, as in a comparison
-constexpr double near = 0.05;            // likewise: a motion whose frequency is farther off is another one
 
-VectorXd assumed_noise(const Experiment& experiment, const Record& clean, const VectorXd& sensor_noise) {
-  VectorXd noise(clean.samples.rows());
-  for (Index i = 0; i < noise.size(); ++i) {
-    const auto given = experiment.noise.find(clean.channels[static_cast<std::size_t>(i)].quantity);
-    const double size = std::sqrt(clean.samples.row(i).squaredNorm() / static_cast<double>(clean.size()));
-    noise[i] =
-        given != experiment.noise.end() ? given->second : std::max(sensor_noise[i], smallest_noise * size);
-  }
+// Of the sensors, never less than what keeps P0 / R within the digits of a number.
+VectorXd simulated_noise(const Record& clean, const VectorXd& sensor_noise) {
+  const VectorXd size =
+      (clean.samples.rowwise().squaredNorm() / static_cast<double>(clean.size())).cwiseSqrt();
+  return sensor_noise.head(size.size()).cwiseMax(smallest_noise * size);
+}
+
+VectorXd assumed_noise(const Experiment& experiment, const Record& clean, VectorXd noise) {
+  for (Index i = 0; i < noise.size(); ++i)
+    if (const auto given = experiment.noise.find(clean.channels[static_cast<std::size_t>(i)].quantity);
+        given != experiment.noise.end())
+      noise[i] = given->second;
   return noise;
 }
 
@@ -64,7 +67,8 @@ struct Repeats::Common {
   Record clean;  ///< without noise
   std::string reduction;
   std::vector<Observation> observations;
-  JointModel model;
+  JointModel model, true_model;  ///< of the beam assumed, and of the one simulated
+  bool one_place = true;         ///< all channels read the same displacement
   VectorXd sensor_noise, noise;  ///< put into the records, and assumed by the filter (p)
   std::vector<std::optional<double>> truth, bound;
   double frequency_hz = 0.0;  ///< of the beam simulated
@@ -103,12 +107,8 @@ ComparedRun Repeats::Common::judged(const filters::Gaussian& last) const {
   ComparedRun run;
   const std::vector<Estimate> found = estimates(model, last);
   for (std::size_t j = 0; j < found.size(); ++j) run.parameters.push_back({found[j], truth[j], bound[j]});
-  const Oscillator oscillator = identification_at(model, last).found;
-  const double found_hz =
-      std::sqrt(std::max(0.0, oscillator.stiffness / oscillator.mass)) / (2.0 * std::numbers::pi);
-  if (std::abs(found_hz / frequency_hz - 1.0) < near) return run;
-  run.status = ComparedRun::Status::diverged;
-  run.reason = fmt::format("moves at {:.4g} Hz where the beam has {:.4g} Hz", found_hz, frequency_hz);
+  run.reason = divergence(identification_at(model, last), frequency_hz);
+  if (!run.reason.empty()) run.status = ComparedRun::Status::diverged;
   return run;
 }
 
@@ -116,7 +116,8 @@ std::optional<filters::OscillatorTrials> Repeats::Common::lanes(const Choice& fi
                                                                 const std::string& scheme) const {
   const auto& specs = filters::filter_registry().find(filter.name).options;
   if (choice_text(filter, specs) != "ekf" || (scheme != "exponential" && scheme != "forward_euler") ||
-      !model.offsets.empty() || observations.size() > 3 || experiment.on_failure != filters::OnFailure::stop)
+      !model.offsets.empty() || observations.size() > 3 || !one_place ||
+      experiment.on_failure != filters::OnFailure::stop)
     return {};
   filters::OscillatorTrials kind{model.equivalent_mass,    clean.interval(), {}, {}, {},
                                  scheme == "forward_euler"};
@@ -144,8 +145,7 @@ ComparedRun Repeats::Common::alone(const Choice& filter, const std::string& sche
     const filters::FilterRun found = filter_record(model, {clean.time, trial.outputs, {}}, settings);
     if (!found.failure) return judged(found.last);
     run.status = ComparedRun::Status::diverged;
-    run.reason = fmt::format("sample {}, {:.4f} s: {}", found.failure->step, found.failure->time,
-                             found.failure->reason);
+    run.reason = failure_text(*found.failure);
   } catch (const std::invalid_argument& error) {
     run.status = ComparedRun::Status::refused;
     run.reason = error.what();
@@ -202,26 +202,37 @@ std::shared_ptr<const Repeats::Common> Repeats::common_of(std::size_t number) co
   const auto silent = [](const std::string&) {};
   const auto& folder_of_truth = (source_.truth ? *source_.truth : source_.config).file;
   common->clean = simulated_record(truth, folder_of_truth.parent_path(), silent).record;
-  const ModelSetting setting =
-      model_setting(experiment, common->clean, experiment.reductions[0], source_.config.file.parent_path());
+  const std::filesystem::path folder = source_.config.file.parent_path();
+  const Choice& reduction = experiment.reductions[0];
+  const ModelSetting setting = model_setting(experiment, common->clean, reduction, folder);
   if (!setting.forces.empty())
     throw std::invalid_argument("identifying once takes free motion; found a measured force");
   common->observations = setting.observations;
-  common->reduction = to_text(experiment.reductions[0]);
-  common->model = std::move(*model_registry().make(experiment.model.name, experiment.model.options, setting));
-  common->noise = assumed_noise(experiment, common->clean, common->sensor_noise);
+  common->reduction = to_text(reduction);
+  const auto made = [&](const ModelSetting& of) {
+    return std::move(*model_registry().make(experiment.model.name, experiment.model.options, of));
+  };
+  common->model = made(setting);
+  truth.parameters.clear();
+  common->true_model = made(model_setting(truth, common->clean, reduction, folder));
+  const MatrixXd rows = setting.system.outputs;
+  common->one_place = (rows.rowwise() - rows.row(0)).isZero(0.0);
+  common->noise =
+      assumed_noise(experiment, common->clean, simulated_noise(common->clean, common->sensor_noise));
   common->frequency_hz = fem::modes(fem::assemble(truth.beam, truth.elements), 1).frequency_hz()[0];
-  const JointModel& model = common->model;
-  for (std::size_t j = 0; j < model.unknowns.size(); ++j)
-    common->truth.push_back(true_value(truth, model, j));
+  for (const Unknown& unknown : common->model.unknowns)
+    common->truth.push_back(true_value(truth, common->true_model.equivalent_mass, unknown));
   common->bound = bounds(*common);
   return common;
 }
 
-/// Cramer-Rao at the true K and C and the motion nearest to the record's with them, its start unknown.
+/// Cramer-Rao of the beam simulated: at its K and C and the motion nearest to the record's with them, its
+/// start unknown, with the noise that its sensors have. None where they have none.
 std::vector<std::optional<double>> Repeats::bounds(const Common& common) {
-  const JointModel& model = common.model;
+  const JointModel& model = common.true_model;
   std::vector<std::optional<double>> found(common.truth.size());
+  if (common.sensor_noise.isZero(0.0)) return found;
+  const VectorXd noise = simulated_noise(common.clean, common.sensor_noise);
   const filters::Measurements clean = measurements(common.clean);
   const StartDirections directions =
       start_directions(model, common.observations,
@@ -231,7 +242,7 @@ std::vector<std::optional<double>> Repeats::bounds(const Common& common) {
     if (!common.truth[j] || !std::isfinite(*common.truth[j])) return found;
     state[model.unknown_places[j]] = model.unknowns[j].to_state(*common.truth[j]);
   }
-  const auto discrete = finest(model, clean.interval(), common.noise.cwiseAbs2().asDiagonal());
+  const auto discrete = finest(model, clean.interval(), noise.cwiseAbs2().asDiagonal());
   const VectorXd start = reproduce(*discrete, state, directions, clean).initial_state;
   const filters::InformationFactor information =
       filters::information_factor(*discrete, start, clean.size(), directions.all());

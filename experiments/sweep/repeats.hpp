@@ -22,9 +22,9 @@ void require_once(const SweepSource& source, const SweepPlan& plan);
 /// guess and no second pass, as compare() has them.
 ///
 /// The motion without noise, the model and the bound are worked out once for all seeds of a sample. The bound
-/// is that at the true K and C. The extended filter with its own options, moved exactly or by forward Euler,
-/// takes several records side by side (filters/batch.hpp), others one after another; what comes out of a
-/// record depends on that record alone.
+/// is that of the beam and of the sensors simulated, at its K and C. The extended filter with its own
+/// options, moved exactly or by forward Euler, takes several records side by side (filters/batch.hpp), others
+/// one after another; what comes out of a record depends on that record alone.
 class Repeats {
  public:
   Repeats(const SweepSource& source, const SweepPlan& plan) : source_(source), plan_(plan) {}

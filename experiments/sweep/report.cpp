@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -148,6 +149,34 @@ std::vector<std::string> troubles(const std::vector<SweepRow>& rows) {
   return found;
 }
 
+/// What a ratio below 1 means: chance, as far as that goes, or information that the bound does not count.
+std::string below_bound_text(const SweepPlan& plan, const std::vector<PointStatistics>& all) {
+  constexpr std::size_t shown = 4;
+  constexpr double surely = 3.0;  // standard deviations: one row of hundreds by chance
+  std::string chance, beyond;
+  std::size_t count = 0;
+  for (const PointStatistics& one : all) {
+    if (!(one.rms_over_bound < 1.0)) continue;
+    const double least = 1.0 - surely / std::sqrt(2.0 * one.converged);
+    if (one.rms_over_bound >= least && chance.empty())
+      chance = fmt::format("rms / bound is 1 at best; with {} runs values down to {:.3f} are chance.",
+                           one.converged, std::max(0.0, least));
+    if (one.rms_over_bound >= least || ++count > shown) continue;
+    const std::string name = name_of(plan, all, one, plan.varied.size());
+    beyond += fmt::format("{}{} {:.3g}{}", beyond.empty() ? "" : ", ", one.parameter, one.rms_over_bound,
+                          name.empty() ? "" : " at " + name);
+  }
+  if (beyond.empty()) return chance;
+  if (count > shown) beyond += fmt::format(" and {} more", count - shown);
+  return fmt::format(
+      "{}{}Errors below the Cramer-Rao bound, rms / bound: {}. No unbiased estimate from the records alone "
+      "can do "
+      "that: the initial estimates, which are information that the bound leaves out, are at or near the "
+      "truth. "
+      "Such rows say nothing of how good the filter is.",
+      chance, chance.empty() ? "" : " ", beyond);
+}
+
 std::string plan_text(const SweepPlan& plan) {
   std::string keys;
   for (const VariedKey& key : plan.varied) keys += (keys.empty() ? "" : "; ") + key.text;
@@ -194,6 +223,7 @@ Results report(const Json& manifest, const SweepPlan& plan, std::vector<SweepRow
   results.paragraph(
       "Errors are estimate - truth, relative to the truth, of the runs that converged. Bound: Cramer-Rao. "
       "Intervals of the shares: Wilson, 95 %.");
+  if (const std::string text = below_bound_text(plan, all); !text.empty()) results.paragraph(text);
   for (const std::string& trouble : troubles(*kept)) results.paragraph(trouble);
   results.values["cases"] = plan.cases();
   results.values["points"] = Json::array();

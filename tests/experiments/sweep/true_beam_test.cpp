@@ -1,0 +1,131 @@
+// Truth and bound of a sweep belong to the beam and the sensors simulated. Oracles: modal masses and
+// frequencies of both beams; a bound is proportional to the noise; Wilson's interval by hand.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "experiments/input/read_experiment.hpp"
+#include "experiments/sweep/manifest.hpp"
+#include "experiments/sweep/perform.hpp"
+#include "experiments/sweep/read_sweep.hpp"
+#include "experiments/sweep/report.hpp"
+#include "experiments/sweep/statistics.hpp"
+#include "experiments/sweep/sweep.hpp"
+#include "fem/assembly.hpp"
+#include "fem/modes.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// One mode below half the sampling rate.
+constexpr const char* rig = R"([beam]
+length_m = 1.10
+width_m = 0.060
+height_m = 0.006
+youngs_modulus_pa = 2.12e11
+mass_kg = 3.055
+tip_mass_kg = 0.36
+elements = 8
+[damping]
+ratio = 0.01
+[[sensors]]
+name = "tip"
+quantity = "displacement"
+noise_m = 0.0003
+[simulation]
+duration_s = 4
+sampling_rate_hz = 40
+[reduction]
+method = "modal_truncation"
+[noise]
+displacement_m = 0.0003
+[compare]
+passes = 1
+)";
+
+SweepPlan plan_with(const std::vector<std::string>& vary, int seeds, bool once) {
+  SweepPlan plan;
+  for (const std::string& text : vary) plan.varied.push_back(parse_varied(text));
+  plan.seeds = seeds;
+  plan.once = once;
+  check(plan);
+  return plan;
+}
+
+std::vector<SweepRow> swept(const SweepPlan& plan) {
+  return perform({{"rig.toml", rig}, {}, {}}, plan, {}, [](const std::string&) {});
+}
+
+struct Mode {
+  double mass, omega;  // at the tip [kg], [rad/s]
+};
+
+Mode first_mode(double tip_mass) {
+  const Experiment experiment =
+      read_experiment(TomlTable::parse(rig, "rig.toml", {{"beam", "tip_mass_kg", tip_mass, "the test"}}));
+  const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
+  const fem::Modes modes = fem::modes(system, 1);
+  const double tip = (system.outputs * modes.shape.col(0))[0];
+  return {1.0 / (tip * tip), modes.angular_frequency[0]};
+}
+
+TEST(SweepTruth, IsThatOfTheBeamSimulatedWhateverMassIsAssumed) {
+  const Mode lighter = first_mode(0.30), assumed = first_mode(0.36);
+  const double truth = lighter.mass * lighter.omega * lighter.omega;
+  const double bias = 100.0 * (assumed.mass / lighter.mass - 1.0);  // of M omega^2 with the wrong M: 5.8 %
+  ASSERT_GT(bias, 5.0);
+  for (const bool once : {true, false}) {
+    const SweepPlan plan = plan_with({"truth.beam.tip_mass_kg=0.30"}, 8, once);
+    const auto rows = swept(plan);
+    for (const PointStatistics& one : statistics(plan, rows)) {
+      EXPECT_NEAR(one.bias_percent, bias, 5.0 * one.bias_percent_error + 0.05) << one.parameter << once;
+      if (one.parameter == "stiffness") {
+        EXPECT_EQ(one.coverage.count, 0) << once;
+        EXPECT_NEAR(rows[0].truth / truth, 1.0, 1e-9) << once;
+      }
+    }
+  }
+}
+
+TEST(SweepBound, FollowsTheNoiseSimulatedAndNotTheOneAssumed) {
+  for (const bool once : {true, false}) {
+    const SweepPlan plan = plan_with({"sensors[1].noise_m=1e-4,1e-3"}, 1, once);
+    const auto rows = swept(plan);
+    ASSERT_EQ(rows.size(), 4u);
+    EXPECT_NEAR(rows[2].bound / rows[0].bound, 10.0, once ? 1e-6 : 1.0) << once;
+  }
+}
+
+TEST(SweepReport, PrintsNoErrorBelowTheBoundWithoutASentence) {
+  const auto text_of = [](double error) {
+    const SweepPlan plan = plan_with({"beam.length_m=1,2"}, 50, false);
+    std::vector<SweepRow> rows;
+    for (std::size_t i = 0; i < 50; ++i) {
+      SweepRow row;
+      row.number = i;
+      row.values = {"1"};
+      row.filter = "ekf";
+      row.status = "converged";
+      row.parameter = "stiffness";
+      row.truth = 10.0;
+      row.error = i % 2 == 0 ? error : -error;
+      row.estimate = row.truth + row.error;
+      row.deviation = row.bound = 1.0;
+      row.lower = row.estimate - 2.0;
+      row.upper = row.estimate + 2.0;
+      rows.push_back(row);
+    }
+    std::string text;
+    for (const auto& part : report(manifest_of({{"rig.toml", rig}, {}, {}}, plan, {}), plan, rows).report)
+      if (const auto* paragraph = std::get_if<Paragraph>(&part)) text += paragraph->text + "\n";
+    return text;
+  };
+  // Of 50 runs the ratio scatters by 1 / sqrt(100): three times that is chance.
+  EXPECT_THAT(text_of(0.3), testing::HasSubstr("below the Cramer-Rao bound, rms / bound: stiffness 0.3"));
+  EXPECT_THAT(text_of(0.9), testing::HasSubstr("values down to 0.700 are chance"));
+  EXPECT_THAT(text_of(0.9), testing::Not(testing::HasSubstr("below the Cramer-Rao bound")));
+  EXPECT_THAT(text_of(1.1), testing::Not(testing::HasSubstr("rms / bound")));
+}
+
+}  // namespace
+}  // namespace beamid::experiments
