@@ -30,10 +30,10 @@ Eigen::ArrayXd without_line(const Eigen::VectorXd& signal) {
 }
 
 /// By the first sixteenth of a period: near the middle of the signal it is at rest; what is far from it and
-/// does not swing to the other side within a period and a quarter is a sensor that starts, or a deflection
+/// does not swing to the other side within four fifths of a period is a sensor that starts, or a deflection
 /// that is held.
 Beginning beginning_of(const Eigen::VectorXd& signal, double samples_per_period) {
-  constexpr double far = 0.25, swing = 0.3, periods = 1.25, few = 1.0 / 16;
+  constexpr double far = 0.25, swing = 0.3, periods = 0.8, few = 1.0 / 16;
   const Eigen::ArrayXd drifting = without_line(signal),
                        deviation = drifting - median(Eigen::VectorXd(drifting));
   const auto samples = [&](double count) {
@@ -86,8 +86,8 @@ double settled_from(const LocalMotion& motion) {
 }
 
 struct Event {
-  double time = 0;        ///< [s], from the first sample
-  bool start_up = false;  ///< none but the end of a start-up
+  double time = 0;  ///< [s], from the first sample
+  DecayWindow::Behind kind = DecayWindow::Behind::event;
 };
 
 /// The last hit or release: the last onset, but behind a start-up only where the motion at the mode's
@@ -109,7 +109,7 @@ std::optional<Event> last_event(const Eigen::VectorXd& signal, double interval, 
     return Event{motion.time[largest]};
   }
   const std::vector<Rise> rises = rises_of(motion);
-  if (rises.empty()) return Event{settled_from(motion), true};
+  if (rises.empty()) return Event{settled_from(motion), DecayWindow::Behind::start_up};
   return Event{sudden && onset >= rises.back().low - 2 * period ? onset : rises.back().peak};
 }
 
@@ -133,15 +133,20 @@ std::string DecayWindow::words() const {
   return fmt::format(
       "No window was given: identified is the decay from {:.4g} to {:.4g} s, from {:g} periods behind {}, at "
       "{:.4g} s, over two time constants of {:.3g} s. record.window_s or --window takes the place of this.",
-      from, to, settling, start_up ? "the end of the sensor's start-up" : "the last event", event,
-      time_constant);
+      from, to, settling,
+      behind == Behind::start_up ? "the end of the sensor's start-up"
+      : behind == Behind::gap    ? "a gap"
+                                 : "the last event",
+      event, time_constant);
 }
 
 std::optional<DecayWindow> decay_window(const Experiment& experiment, const Record& whole) {
   const Record record = analysable(whole).record;
   const double last = record.time[record.size() - 1];
   const double period = 1 / expected_frequency_hz(experiment, record);
-  const auto happened = last_event(record.samples.row(0).transpose(), record.interval(), period);
+  auto happened = last_event(record.samples.row(0).transpose(), record.interval(), period);
+  const bool begins_behind_gap = record.time[0] > whole.time[0] + record.interval();
+  if (!happened && begins_behind_gap) happened = Event{0.0, DecayWindow::Behind::gap};
   if (!happened) return {};
   const double event = record.time[0] + happened->time;
   std::optional<DecayWindow> window;
@@ -152,7 +157,7 @@ std::optional<DecayWindow> decay_window(const Experiment& experiment, const Reco
     if (!mode || !(mode->rate().real() < 0)) continue;
     const double time_constant = -1 / mode->rate().real();
     const double to = from + std::max(time_constants * time_constant, least * period);
-    window = {event, settling, from, std::min(last, to), time_constant, happened->start_up};
+    window = {event, settling, from, std::min(last, to), time_constant, happened->kind};
     if (mode->companions.empty()) break;
   }
   return window;

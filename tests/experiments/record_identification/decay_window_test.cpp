@@ -61,7 +61,7 @@ TEST(DecayWindow, TakesNoStartUpForAnEvent) {
   start_up(released);
   const auto window = decay_window(simulated.experiment(), released);
   ASSERT_TRUE(window);
-  EXPECT_FALSE(window->start_up);
+  EXPECT_EQ(window->behind, DecayWindow::Behind::event);
   EXPECT_NEAR(window->event, 2.0, 1.5 * period);
 }
 
@@ -73,9 +73,25 @@ TEST(DecayWindow, WaitsForASensorToSettle) {
   start_up(moving);
   const auto window = decay_window(simulated.experiment(), moving);
   ASSERT_TRUE(window);
-  EXPECT_TRUE(window->start_up);
+  EXPECT_EQ(window->behind, DecayWindow::Behind::start_up);
   EXPECT_GT(window->from, 0.2 * std::log(3 / 0.03));
   EXPECT_LT(window->event, 0.92 + 2 * 2 * std::numbers::pi / simulated.mode.angular_frequency());
+}
+
+// Half a second is missing behind the release: what is left before it is too short.
+TEST(DecayWindow, BeginsBehindAGapThatTheMotionGoesThrough) {
+  const test::SimulatedBeam simulated;
+  const Record whole = released_at({0.5}, 17);
+  const auto after = Index(std::lround(1.5 / interval)), before = Index(std::lround(1.0 / interval));
+  Record gap = whole;
+  gap.time.resize(before + whole.size() - after);
+  gap.samples.resize(1, gap.time.size());
+  gap.time << whole.time.head(before), whole.time.tail(whole.size() - after);
+  gap.samples << whole.samples.leftCols(before), whole.samples.rightCols(whole.size() - after);
+  const auto window = decay_window(simulated.experiment(), gap);
+  ASSERT_TRUE(window);
+  EXPECT_EQ(window->behind, DecayWindow::Behind::gap);
+  EXPECT_NEAR(window->event, 1.5, 2 * interval);
 }
 
 // The motion comes up over three periods, as no sample of a hit or of a sudden release does.
