@@ -13,11 +13,11 @@
 #include "experiments/divergence.hpp"
 #include "experiments/finest_discretisation.hpp"
 #include "experiments/identification.hpp"
-#include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/nonlinear_reproduction.hpp"
 #include "experiments/record_comparison/true_value.hpp"
 #include "experiments/record_inputs.hpp"
+#include "experiments/recorded_frequency.hpp"
 #include "experiments/reproduction.hpp"
 #include "experiments/start_belief.hpp"
 #include "filters/fisher_information.hpp"
@@ -185,17 +185,6 @@ void add_deviations(const filters::LinearMotion& motion, const VectorXd& state,
   found.damping_ratio_deviation = std::sqrt(variance[1]);
 }
 
-// The frequency of a model too large for that, from what it reproduces.
-std::optional<double> shown_frequency(const VectorXd& signal, double dt, double expected_hz) {
-  try {
-    ModalAnalysisSettings settings;
-    settings.expected_frequency_hz = expected_hz;
-    return dominant_mode(signal, dt, settings).frequency_hz;
-  } catch (const std::invalid_argument&) {
-    return {};
-  }
-}
-
 void judge(ComparedRun& run, const RunContext& context, const JointModel& model, double interval) {
   const std::optional<double> expected =
       context.modal ? std::optional(context.modal->frequency_hz) : std::nullopt;
@@ -206,9 +195,11 @@ void judge(ComparedRun& run, const RunContext& context, const JointModel& model,
     if (run.mode) add_deviations(*motion, state, run.unknown_state, model.unknown_places, *run.mode);
     found = run.mode.value_or(FoundMode{});
   } else {
-    const auto shown = expected ? shown_frequency(run.reproduced.row(0), interval, *expected) : std::nullopt;
-    if (!shown) return;
-    found.frequency_hz = *shown;
+    if (!expected) return;
+    const auto shown = recorded_frequency(run.reproduced.row(0), measurements(context.compared.record).inputs,
+                                          interval, *expected);
+    if (!shown.value_hz) return;
+    found.frequency_hz = *shown.value_hz;
   }
   if (found.frequency_hz > 0.0) run.frequency_hz = found.frequency_hz;
   found.frequency_hz = shown_at(found.frequency_hz, 1.0 / interval);

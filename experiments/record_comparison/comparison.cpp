@@ -11,12 +11,12 @@
 #include "experiments/finest_discretisation.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/input/read_reduction.hpp"
-#include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/motion/following_motion.hpp"
 #include "experiments/record_comparison/compared_run.hpp"
 #include "experiments/record_comparison/started_model.hpp"
 #include "experiments/record_comparison/true_value.hpp"
+#include "experiments/recorded_frequency.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "filters/filter.hpp"
@@ -128,13 +128,26 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
   RunContext context{experiment, comparison.compared, {}};
   const double beam_frequency =
       fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+  const double rate = 1.0 / samples.interval();
   comparison.modal = modal_analysis(samples, beam_frequency);
   if (const auto& modal = comparison.modal) {
     context.modal = FoundMode{};
     context.modal->frequency_hz = modal->frequency_hz;
     context.modal->damping_ratio = modal->damping_ratio;
+  } else {
+    const filters::Measurements measured = measurements(samples);
+    const RecordedFrequency recorded =
+        recorded_frequency(measured.outputs.row(0).transpose(), measured.inputs, samples.interval(),
+                           shown_at(beam_frequency, rate));
+    if (recorded.value_hz) {
+      context.modal = FoundMode{};
+      context.modal->frequency_hz = *recorded.value_hz;
+    } else {
+      comparison.compared.notes.push_back(
+          "The record's own frequency could not be had without a model (" + recorded.failure +
+          "): the beam's takes its place as a first estimate, and runs are not checked against it.");
+    }
   }
-  const double rate = 1.0 / samples.interval();
   const bool aliased = 2.0 * beam_frequency > rate;
   if (aliased)
     comparison.warnings.push_back(fmt::format(
