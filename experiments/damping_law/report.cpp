@@ -6,6 +6,7 @@
 #include "experiments/continuum/description.hpp"
 #include "experiments/damping_law/damping_law.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/record_inputs.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -260,6 +261,10 @@ Results report(const Experiment& experiment, const Record& record, const std::st
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
       study.modal.frequency_hz, study.decimation, study.samples.cols()));
   for (const std::string& remark : study.remarks) results.paragraph(remark);
+  if (const auto inputs = record_inputs(record)) {
+    results.values["inputs_between_samples"] = to_string(inputs->path);
+    results.paragraph(words(*inputs));
+  }
   if (study.misfit.lacks) results.paragraph(fit_words(study));
   results.paragraph(verdict(study));
   if (!study.misfit.lacks) results.paragraph(fit_words(study));

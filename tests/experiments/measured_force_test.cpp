@@ -9,6 +9,7 @@
 #include "experiments/joint_model.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/one_coordinate.hpp"
+#include "experiments/record_comparison/chosen_channels.hpp"
 #include "experiments/record_inputs.hpp"
 #include "filters/batch_estimator.hpp"
 
@@ -181,6 +182,18 @@ TEST(RecordInputs, AreStraightAcrossAGapAndSaySo) {
   EXPECT_EQ(inputs->path, InputPath::band_limited);
   EXPECT_EQ(inputs->straight, 1);
   EXPECT_NE(words(*inputs).find("straight over 1 of 200 intervals"), std::string::npos) << words(*inputs);
+}
+
+TEST(RecordInputs, AreThoseOfEveryPartOfTheRecord) {
+  Record given = record(Truth(0.01), {frequency}, 20, 10);
+  given.input_path = InputPath::held;
+  given.warnings = {"clipped"};
+  const Record part = given.window(0.5, 2.0);
+  EXPECT_EQ(part.input_path, InputPath::held);
+  EXPECT_EQ(part.warnings, given.warnings);
+  const ComparedRecord chosen = chosen_channels({"", given, {}, {}, {}}, {"x"});
+  EXPECT_EQ(chosen.record.input_path, InputPath::held);
+  EXPECT_EQ(chosen.record.warnings, given.warnings);
 }
 
 TEST(RecordInputs, OfFreeMotionAreNone) {
