@@ -105,7 +105,7 @@ class UniversalFileReader final : public RecordReader {
       if (factor) table.clock = {function.start * *factor, function.step * *factor};
       return;
     }
-    table.names.emplace_back("time"), table.units.push_back(unit.empty() ? "s" : unit);
+    table.names.emplace_back("time"), table.units.push_back(unit.empty() || factor == 1.0 ? "s" : unit);
     table.columns.push_back(function.abscissa);
     table.precision.push_back(PrintedPrecision::of_digits(6));  // of E13.5
     if (factor == 1.0) table.time = 0;                          // else found by its unit

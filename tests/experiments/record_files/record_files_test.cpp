@@ -282,6 +282,10 @@ TEST(Uff58Reader, TakesTheUnitOfTheAbscissa) {
         other("min.uff", file_of("min", even));
     EXPECT_NEAR(read_record(milli.path()).interval(), 0.004, 1e-15);
     EXPECT_NEAR(read_record(plain.path()).interval(), 4.0, 1e-15);
+    for (const char* unit : {"s", "SEC", "Seconds", "NONE"}) {
+      const TemporaryFile old("old.uff", file_of(unit, even));
+      EXPECT_NEAR(read_record(old.path()).interval(), 4.0, 1e-15) << unit;
+    }
     EXPECT_EQ(input_error_of(other, [&] { read_record(other.path()); }),
               "min.uff: the abscissa of '1:+Z' is in 'min'; expected times in s, ms, us, or record.time or "
               "record.sampling_rate_hz in the configuration");
