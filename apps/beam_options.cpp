@@ -1,6 +1,7 @@
 #include "apps/beam_options.hpp"
 
 #include "experiments/input/read_experiment.hpp"
+#include "experiments/plausibility.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -157,7 +158,9 @@ BeamSource read_beam(const Command& command, const options::variables_map& value
 
 Results blame_config(const BeamSource& source, const std::function<Results()>& find) {
   try {
-    return find();
+    Results results = find();
+    warn(results, source.experiment);
+    return results;
   } catch (const std::invalid_argument& error) {
     if (source.config.empty()) throw;
     throw InputError({source.config.string()}, error.what());

@@ -39,8 +39,8 @@ struct BeamSource {
 BeamSource read_beam(const Command& command, const options::variables_map& values,
                      const std::vector<KeyOption>& more = {});
 
-/// Runs `find`; what a library finds wrong with the experiment becomes an InputError of its file, if there is
-/// one.
+/// Runs `find`; its results begin with what is implausible about the beam. What a library finds wrong with
+/// the experiment becomes an InputError of its file, if there is one.
 experiments::Results blame_config(const BeamSource& source,
                                   const std::function<experiments::Results()>& find);
 

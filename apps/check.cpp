@@ -8,6 +8,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/model_check/observed_modes.hpp"
 #include "experiments/model_check/report.hpp"
+#include "experiments/plausibility.hpp"
 #include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 
@@ -139,6 +140,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     for (const Request& request : requests) structures.push_back(structure_of(request, modal, used));
     try {
       Results results = report(check_model(std::move(structures), settings));
+      for (const Request& request : requests) warn(results, request.experiment);
       for (const UsedRecord& one : used) tell_cost(results, one.name, one.prepared, *one.format);
       return results;
     } catch (const std::invalid_argument& error) {

@@ -13,6 +13,7 @@
 #include "experiments/input/read_frame.hpp"
 #include "experiments/joint_model.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/plausibility.hpp"
 #include "experiments/preparation/prepared_record.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
@@ -99,8 +100,9 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   }
 
   const fem::Beam& beam = experiment.beam;
+  std::cout << clean_text(file.string()) << ": valid\n";
+  for (const std::string& sentence : implausible(experiment)) std::cout << "  " << sentence << "\n";
   std::cout
-      << clean_text(file.string()) << ": valid\n"
       << fmt::format(
              "  beam     {:g} m, EI = {} N m2, {:.6g} kg with {:.6g} kg at its tip; first mode predicted at "
              "{:.4f} Hz\n",

@@ -129,8 +129,11 @@ Modes modes(const StructuralSystem& system, Index count) {
     appraise(result, i, few);
     if (few && !(result.residual[i] < largest_residual)) {  // what Lanczos calls converged need not be a mode
       std::ostringstream message;
-      message << "modes: mode " << i + 1 << " has a relative residual of " << result.residual[i]
-              << "; masses or stiffnesses are too far apart for double precision";
+      const bool compressed = system.stiffness.rigidity.diagonal().minCoeff() < 0.0;
+      message << "modes: mode " << i + 1 << " has a relative residual of " << result.residual[i] << "; "
+              << (compressed ? "the axial load is too close to a buckling load"
+                             : "masses or stiffnesses are too far apart")
+              << " for double precision";
       throw std::runtime_error(message.str());
     }
   }

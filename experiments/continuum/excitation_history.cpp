@@ -35,7 +35,11 @@ VectorXd shape(const Case& c) {
     try {
       return fem::static_shape(c.system, c.input, c.input);
     } catch (const std::runtime_error& error) {  // nothing holds the beam
-      throw InputError(c.excitation.place, std::string("no static shape to start from: ") + error.what());
+      const std::string reason =
+          std::string("no static shape to be released from: ") + error.what() +
+          "; expected a beam that is held, or another kind of excitation, as 'impulse' or 'free' with a mode";
+      if (c.excitation.place.file.empty()) throw std::invalid_argument(reason);
+      throw InputError(c.excitation.place, reason);
     }
   }
   const Index mode = *c.excitation.mode;

@@ -1,5 +1,7 @@
 #include "experiments/input/read_beam.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "experiments/input/method_choice.hpp"
@@ -7,6 +9,7 @@
 #include "experiments/input/read_segment.hpp"
 #include "experiments/input/spelling.hpp"
 #include "experiments/input/useless_keys.hpp"
+#include "fem/buckling.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -46,6 +49,20 @@ void read_tip(const TomlTable& table, fem::Beam& beam) {
   if (mass > 0.0 || inertia > 0.0 || sensor > 0.0)
     beam.bodies.push_back({beam.length(), mass, inertia, eccentricity});
   if (sensor > 0.0) beam.bodies.push_back({beam.length(), sensor, 0.0, 0.0});
+}
+
+// Closer to the buckling load than this, relative, a frequency has no digits.
+constexpr double nearest_to_buckling = 1e-7;
+
+void refuse_buckled(const TomlTable& table, const fem::Beam& beam) {
+  if (!(beam.axial_load > 0.0)) return;
+  const auto most = fem::buckling_load(beam);
+  if (most && beam.axial_load > (1.0 - nearest_to_buckling) * *most)
+    throw InputError(
+        table.value_place("axial_load_n"),
+        fmt::format("axial_load_n is {:.10g}; the beam buckles at {:.6g} N of compression, expected "
+                    "less than that",
+                    beam.axial_load, *most));
 }
 
 }  // namespace
@@ -88,6 +105,7 @@ fem::Beam read_beam(const TomlTable& table) {
   beam.mass_model = mass_model == "lumped" ? fem::MassModel::lumped : fem::MassModel::consistent;
   read_attachments(table, beam);
   at_place(table.place(), [&] { fem::validate(beam); });
+  refuse_buckled(table, beam);
   return beam;
 }
 

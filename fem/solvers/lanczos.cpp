@@ -65,7 +65,8 @@ Found find_lowest(const StructuralSystem& system, const StiffnessSolver& solver,
               theta.tail(count).reverse()};
   }
   throw std::runtime_error("modes: " + std::to_string(count) + " modes have not converged within " +
-                           std::to_string(basis.steps()) + " Lanczos steps");
+                           std::to_string(basis.steps()) +
+                           " Lanczos steps; masses or stiffnesses are too far apart for double precision");
 }
 
 // What has a larger theta than the last one found and was not seen; no columns when there is nothing.

@@ -10,7 +10,7 @@
 namespace beamid::apps {
 namespace {
 
-using nlohmann::json, std::numbers::pi, testing::HasSubstr, testing::IsEmpty;
+using nlohmann::json, std::numbers::pi, testing::HasSubstr, testing::IsEmpty, testing::StartsWith;
 
 json json_of(const Outcome& outcome) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -212,9 +212,31 @@ TEST(BeamOptions, AreRefusedWhenTheyMakeNoSense) {
 }
 
 TEST(Modes, OfABuckledBeamAreNone) {
+  // Oracle: pi^2 EI / (4 L^2) = 466.889385 N.
   const Outcome outcome = Workplace().run("modes --axial-load 1e4");
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("buckling"));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(
+      outcome.first_error_line(),
+      "--axial-load: axial_load_n is 10000; the beam buckles at 466.889 N of compression, expected less than "
+      "that");
+  EXPECT_EQ(Workplace().run("modes --axial-load 466.88938").code, 2);
+  EXPECT_EQ(Workplace().run("modes --axial-load 466.8889").code, 0);
+}
+
+TEST(Modes, SayWhereTheBeamBuckles) {
+  Workplace place;
+  place.write("beam.toml",
+              "[beam]\nlength_m = 1\nbending_stiffness_n_m2 = 100\nmass_per_length_kg_per_m = 1\n"
+              "support = \"pinned-pinned\"\naxial_load_n = 990\n");
+  const Outcome outcome = place.run("modes --config beam.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, StartsWith("beam.toml:6:16: axial_load_n is 990; the beam buckles at 986.96 N"));
+}
+
+TEST(Modes, AreAsManyAsTheMeshHas) {
+  const Outcome outcome = Workplace().run("modes --elements 3 --modes 50");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("50 modes asked for; the mesh of 3 elements has 6 coordinates"));
 }
 
 }  // namespace
