@@ -8,6 +8,8 @@
 #include "apps/deliver.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/input/read_experiment.hpp"
+#include "experiments/plausibility.hpp"
+#include "experiments/sweep/journal.hpp"
 #include "experiments/sweep/perform.hpp"
 #include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/repeats.hpp"
@@ -96,14 +98,6 @@ fs::path journal_of(const fs::path& out) {
   return plain.string() + ".partial";
 }
 
-void remove_journal(const fs::path& folder) {
-  std::error_code ignored;
-  if (!fs::exists(folder / "manifest.json")) return;
-  read_manifest(folder / "manifest.json");  // no folder of someone else's
-  for (const char* name : {"cases.csv", "manifest.json"}) fs::remove(folder / name, ignored);
-  fs::remove(folder, ignored);
-}
-
 int merge_folders(const options::variables_map& values) {
   for (const char* other :
        {"config", "truth", "vary", "random", "seeds", "seed", "once", "threads", "resume", "shard"})
@@ -165,10 +159,16 @@ int run(const Command& command, const Words& arguments) {
       settings.done = out / "cases.csv";
       values.insert({"force", options::variable_value(true, false)});
     }
-    if (values.count("force") && !settings.resume) remove_journal(*settings.journal);
+    if (values.count("force") && !settings.resume && !discard_journal(*settings.journal))
+      throw UsageError("sweep: another beamid sweep is running on '" + out.string() +
+                       "'; expected another --out");
   }
-  deliver(values, [&] { return report(manifest, plan, perform(source, plan, settings, show_progress())); });
-  if (settings.journal) remove_journal(*settings.journal);
+  deliver(values, [&] {
+    Results results = report(manifest, plan, perform(source, plan, settings, show_progress()));
+    warn(results, experiment);
+    return results;
+  });
+  if (settings.journal) discard_journal(*settings.journal);
   return 0;
 }
 

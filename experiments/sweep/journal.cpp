@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -31,6 +32,38 @@ void write_whole(const fs::path& file, const std::string& text) {
   const fs::path beside = file.string() + ".new";
   write_file(beside, text);
   fs::rename(beside, file);
+}
+
+constexpr int in_use = -2;
+
+/// The file, created if need be, opened and locked by this process alone until it is closed; -1: errno says
+/// why not.
+int locked_or_in_use(const fs::path& file) {
+  for (;;) {
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (descriptor < 0) return -1;
+    struct stat own {
+    }, there{};
+    const bool locks = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+    if (locks && fstat(descriptor, &own) == 0 && stat(file.c_str(), &there) == 0 &&
+        own.st_ino == there.st_ino && own.st_dev == there.st_dev)
+      return descriptor;
+    const int reason = errno;
+    ::close(descriptor);
+    if (!locks && reason == EWOULDBLOCK) return in_use;
+    if (!locks) {
+      errno = reason;
+      return -1;
+    }  // else another process has removed the file in between
+  }
+}
+
+/// @throws std::invalid_argument when another process works on the folder
+int locked(const fs::path& file) {
+  const int descriptor = locked_or_in_use(file);
+  if (descriptor != in_use) return descriptor;
+  throw std::invalid_argument(
+      fmt::format("'{}' is in use by another beamid sweep, which is running", file.parent_path().string()));
 }
 
 }  // namespace
@@ -64,32 +97,32 @@ KeptCases read_cases(const fs::path& file, const SweepPlan& plan) {
   return kept;
 }
 
+// The lock is asked for before anything is said or changed: of a sweep that is running nothing is to be told
+// but that.
 Journal::Journal(const fs::path& folder, const nlohmann::ordered_json& manifest, const SweepPlan& plan,
                  bool resume)
     : folder_(folder), file_(folder / "cases.csv") {
   const fs::path described = folder / "manifest.json";
-  if (fs::exists(described)) {
-    if (!resume)
-      throw std::invalid_argument(fmt::format(
-          "'{}' holds an interrupted sweep; --resume continues it, --force begins anew", folder.string()));
-    const nlohmann::ordered_json found = read_manifest(described);
-    if (found["hash"] != manifest["hash"] || found["shard"] != manifest["shard"])
-      throw std::invalid_argument(fmt::format(
-          "'{}' holds another sweep (plan {}, shard {}); expected plan {}, shard {}, with the same "
-          "files, options and version",
-          folder.string(), found["hash"].get<std::string>(), found["shard"].dump(),
-          manifest["hash"].get<std::string>(), manifest["shard"].dump()));
-  } else {
-    std::error_code ignored;
-    fs::create_directories(folder, ignored);  // what is wrong shows when the file is written
-    write_whole(described,
-                manifest.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-  }
-  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  std::error_code ignored;
+  fs::create_directories(folder, ignored);  // what is wrong shows when the file is opened
+  descriptor_ = locked(file_);
   if (descriptor_ < 0) fail();
   try {
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
-      throw std::invalid_argument(fmt::format("'{}' is in use by another beamid sweep", folder.string()));
+    if (fs::exists(described)) {
+      if (!resume)
+        throw std::invalid_argument(fmt::format(
+            "'{}' holds an interrupted sweep; --resume continues it, --force begins anew", folder.string()));
+      const nlohmann::ordered_json found = read_manifest(described);
+      if (found["hash"] != manifest["hash"] || found["shard"] != manifest["shard"])
+        throw std::invalid_argument(fmt::format(
+            "'{}' holds another sweep (plan {}, shard {}); expected plan {}, shard {}, with the same "
+            "files, options and version",
+            folder.string(), found["hash"].get<std::string>(), found["shard"].dump(),
+            manifest["hash"].get<std::string>(), manifest["shard"].dump()));
+    } else {
+      write_whole(described,
+                  manifest.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    }
     kept_ = read_cases(file_, plan);
     if (::ftruncate(descriptor_, static_cast<off_t>(kept_.size)) != 0) fail();
     if (kept_.size == 0) write(header_line(plan));
@@ -131,11 +164,17 @@ void Journal::fail() const {
                   file_.string(), std::strerror(errno)));
 }
 
-void Journal::remove() {
+bool discard_journal(const fs::path& folder) {
+  if (!fs::exists(folder / "manifest.json")) return true;
+  read_manifest(folder / "manifest.json");  // no folder of someone else's
+  const int descriptor = locked_or_in_use(folder / "cases.csv");
+  if (descriptor == in_use) return false;
   std::error_code ignored;
   for (const char* name : {"cases.csv", "manifest.json", "manifest.json.new"})
-    fs::remove(folder_ / name, ignored);
-  fs::remove(folder_, ignored);
+    fs::remove(folder / name, ignored);
+  fs::remove(folder, ignored);
+  if (descriptor >= 0) ::close(descriptor);
+  return true;
 }
 
 }  // namespace beamid::experiments

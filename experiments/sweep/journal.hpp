@@ -23,7 +23,7 @@ KeptCases read_cases(const std::filesystem::path& file, const SweepPlan& plan);
 class Journal {
  public:
   /// @param resume go on with what the folder holds; without it the folder must not be there.
-  /// @throws std::invalid_argument when it is there, or is that of another sweep or in use.
+  /// @throws std::invalid_argument when it is in use, else when it is there, or is that of another sweep.
   /// @throws std::runtime_error when it cannot be written.
   Journal(const std::filesystem::path& folder, const nlohmann::ordered_json& manifest, const SweepPlan& plan,
           bool resume);
@@ -37,9 +37,6 @@ class Journal {
   /// @throws std::runtime_error when the disk is full; what was kept before stays whole.
   void append(const std::vector<SweepRow>& rows);
 
-  /// Removes the folder: its cases are in the results.
-  void remove();
-
  private:
   std::filesystem::path folder_, file_;
   KeptCases kept_;
@@ -48,5 +45,9 @@ class Journal {
   void write(const std::string& text);
   [[noreturn]] void fail() const;
 };
+
+/// Removes a journal, if there is one; false, and nothing is removed, where another process works on it.
+/// @throws InputError when the folder holds something else
+bool discard_journal(const std::filesystem::path& folder);
 
 }  // namespace beamid::experiments

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <exception>
+#include <optional>
 #include <thread>
 #include <tuple>
 
@@ -15,6 +17,57 @@ namespace {
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+/// Threads beside this one. Where the system refuses one, half of those that it allowed go at once, and all
+/// that have no core of their own: the work needs the memory that they would take. None works before that is
+/// decided.
+class Helpers {
+ public:
+  Helpers(std::size_t wanted, const std::function<void()>& work) {
+    threads_.reserve(wanted);
+    std::size_t needed = wanted;
+    try {
+      while (threads_.size() < wanted)
+        threads_.emplace_back([this, work, number = threads_.size()] {
+          if (is_needed(number)) work();
+        });
+    } catch (const std::exception&) {  // no thread, or no memory for one
+      const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+      needed = std::min(threads_.size() / 2, cores - 1);
+    }
+    decide(needed);
+    for (; threads_.size() > needed; threads_.pop_back()) threads_.back().join();
+    decide(needed, true);
+  }
+  ~Helpers() { join(); }
+  Helpers(const Helpers&) = delete;
+  Helpers& operator=(const Helpers&) = delete;
+
+  void join() {
+    for (std::thread& thread : threads_) thread.join();
+    threads_.clear();
+  }
+
+ private:
+  void decide(std::size_t needed, bool go = false) {
+    const std::lock_guard lock(mutex_);
+    needed_ = needed;
+    go_ = go;
+    decided_.notify_all();
+  }
+
+  bool is_needed(std::size_t number) {
+    std::unique_lock lock(mutex_);
+    decided_.wait(lock, [&] { return go_ || (needed_ && number >= *needed_); });
+    return number < *needed_;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable decided_;
+  std::optional<std::size_t> needed_;
+  bool go_ = false;
+  std::vector<std::thread> threads_;
+};
 
 }  // namespace
 
@@ -40,6 +93,10 @@ bool CaseQueue::next(CaseBlock& block) {
 void CaseQueue::stop() {
   const std::lock_guard lock(mutex_);
   given_ = blocks_.size();
+}
+
+std::size_t CaseQueue::blocks() const {
+  return blocks_.size();
 }
 
 std::size_t CaseQueue::cases() const {
@@ -86,10 +143,10 @@ void run_cases(CaseQueue& queue, int threads, const CaseRunner& run, const CaseS
       if (!trouble) trouble = std::current_exception();
     }
   };
-  std::vector<std::thread> others;
-  for (int i = 1; i < threads; ++i) others.emplace_back(work);
+  const std::size_t most = std::max<std::size_t>(queue.blocks(), 1);
+  Helpers helpers(std::min(static_cast<std::size_t>(threads), most) - 1, work);
   work();
-  for (std::thread& other : others) other.join();
+  helpers.join();
   if (trouble) std::rethrow_exception(trouble);
 }
 

@@ -25,7 +25,8 @@ class CaseQueue {
   explicit CaseQueue(std::vector<CaseBlock> blocks) : blocks_(std::move(blocks)) {}
   /// False when there is none any more. @param block the next one
   bool next(CaseBlock& block);
-  void stop();                ///< hands out no more
+  void stop();  ///< hands out no more
+  std::size_t blocks() const;
   std::size_t cases() const;  ///< of all blocks
 
  private:
@@ -49,7 +50,8 @@ class CaseProgress {
 using CaseRunner = std::function<std::vector<SweepRow>(const CaseBlock& block)>;
 using CaseSink = std::function<void(std::vector<SweepRow> rows)>;
 
-/// Runs what the queue hands out on so many threads. The sink gets every block when it is finished, in
+/// Runs what the queue hands out on so many threads, or on fewer where there are not as many blocks or the
+/// system does not allow them. The sink gets every block when it is finished, in
 /// whatever order, from one thread at a time. The first exception of runner or sink stops the rest and is
 /// thrown when all threads have ended.
 void run_cases(CaseQueue& queue, int threads, const CaseRunner& run, const CaseSink& sink);

@@ -1,5 +1,8 @@
 // Oracle: the same sweep in one piece, on one thread, without interruption.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <map>
 
@@ -84,6 +87,35 @@ TEST_F(Sweep, GoesOnWhereItWasKilled) {
   expect_success(sweep("--seeds 60 --out broken --resume"));
   expect_same(place_, "whole", "broken");
   EXPECT_FALSE(fs::exists(place_.folder() / "broken.partial"));
+}
+
+// flock holds the journal as a sweep that is running would.
+TEST_F(Sweep, LeavesASweepThatIsRunningAlone) {
+  fs::create_directory(place_.folder() / "out.partial");
+  expect_success(sweep("--seeds 2 --out once"));
+  for (const char* name : {"manifest.json", "cases.csv"})
+    fs::copy(place_.folder() / "once" / name, place_.folder() / "out.partial");
+  const std::string before = contents(place_.folder() / "out.partial/cases.csv");
+  const int running = open((place_.folder() / "out.partial/cases.csv").c_str(), O_RDWR);
+  ASSERT_EQ(flock(running, LOCK_EX | LOCK_NB), 0);
+  for (const char* words :
+       {"--seeds 2 --out out", "--seeds 2 --out out --force", "--seeds 2 --out out --resume"}) {
+    const Outcome outcome = sweep(words);
+    EXPECT_EQ(outcome.code, 2) << words;
+    EXPECT_THAT(outcome.first_error_line(), HasSubstr("running")) << words;
+  }
+  EXPECT_EQ(contents(place_.folder() / "out.partial/cases.csv"), before);
+  close(running);
+  expect_success(sweep("--seeds 2 --out out --force"));
+}
+
+// Oracle: one thread. So little memory has no room for the stacks of 200 threads.
+TEST_F(Sweep, TakesFewerThreadsWhereTheSystemRefusesThem) {
+  expect_success(sweep("--seeds 120 --threads 1 --out one"));
+  const Outcome outcome =
+      place_.run("sweep --config rig.toml --seeds 120 --threads 200 --out many", "ulimit -v 1200000;");
+  expect_success(outcome);
+  expect_same(place_, "one", "many");
 }
 
 // A limit on the size of files stands for a full disk: the write fails halfway.

@@ -262,6 +262,21 @@ TEST_F(JournalTest, RefusesWhatNoInterruptionLeaves) {
               ThrowsMessage<InputError>(HasSubstr("cases.csv:5:1: no row")));
 }
 
+TEST_F(JournalTest, OfASweepThatIsRunningIsNeitherOfferedNorDiscarded) {
+  keep_two();
+  {
+    const Journal running(folder_, manifest_, plan_, true);
+    for (const bool resume : {false, true})
+      EXPECT_THAT([&] { Journal(folder_, manifest_, plan_, resume); },
+                  ThrowsMessage<std::invalid_argument>(HasSubstr("in use by another beamid sweep")));
+    EXPECT_FALSE(discard_journal(folder_));
+  }
+  EXPECT_THAT(resumed(), ElementsAre(0u, 1u, 1u));
+  EXPECT_TRUE(discard_journal(folder_));
+  EXPECT_FALSE(fs::exists(folder_));
+  EXPECT_TRUE(discard_journal(folder_));
+}
+
 TEST(RunCases, EndsAllThreadsWithTheFirstTrouble) {
   std::vector<std::size_t> all(1000);
   std::iota(all.begin(), all.end(), std::size_t{0});
