@@ -30,6 +30,11 @@ const char* to_string(InputPath path) {
 
 RecordInputs take_inputs(const MatrixXd& samples, std::optional<InputPath> stated,
                          filters::Measurements& to) {
+  if (const Index missing = samples.size() - samples.array().isFinite().count(); missing > 0)
+    throw std::invalid_argument(
+        fmt::format("{} readings of measured forces are missing or not finite; expected all of them, for the "
+                    "motion depends on every one",
+                    missing));
   RecordInputs result{stated.value_or(InputPath::linear), stated.has_value(), to.size() - 1, 0};
   if (stated == InputPath::held) {
     to.inputs = samples;

@@ -24,7 +24,8 @@ const char* to_string(InputPath path);
 /// Takes the inputs' samples (m x N) into `to`, whose stamps are set: band-limited where at least half of the
 /// stamps are even, else straight, unless the path is stated. Intervals count as even within 1 % of their
 /// mean and what the stamps are printed to.
-/// @throws std::invalid_argument when a band-limited path is stated and no stamps are even.
+/// @throws std::invalid_argument when a band-limited path is stated and no stamps are even, or a reading is
+/// not finite.
 RecordInputs take_inputs(const Eigen::MatrixXd& samples, std::optional<InputPath> stated,
                          filters::Measurements& to);
 

@@ -196,6 +196,12 @@ TEST(RecordInputs, AreThoseOfEveryPartOfTheRecord) {
   EXPECT_EQ(chosen.record.warnings, given.warnings);
 }
 
+TEST(RecordInputs, MustAllBeThere) {
+  Record given = record(Truth(0.01), {frequency}, 20, 10);
+  given.samples(1, 7) = std::nan("");
+  EXPECT_THROW(measurements(given), std::invalid_argument);
+}
+
 TEST(RecordInputs, OfFreeMotionAreNone) {
   Record given = record(Truth(0.01), {frequency}, 20, 10);
   given.channels[1].quantity = Quantity::velocity;
