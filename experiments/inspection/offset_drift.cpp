@@ -12,7 +12,7 @@ using Eigen::Index, Eigen::VectorXd;
 
 std::optional<OffsetDrift> offset_drift(const VectorXd& signal, double period, double noise) {
   constexpr Index most_parts = 20, fewest_parts = 5, fewest_samples = 16;
-  constexpr double share = 0.1, times_noise = 10;
+  constexpr double share = 0.25, times_noise = 10;
   // Whole periods, so that the part of one that is left over shifts no mean.
   const double periods =
       period > 0 ? std::max(2.0, std::floor(static_cast<double>(signal.size()) / most_parts / period)) : 0;

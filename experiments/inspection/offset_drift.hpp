@@ -13,7 +13,7 @@ struct OffsetDrift {
 };
 
 /// Means of up to twenty parts of the signal, whole periods and two at least, between which the offset goes
-/// by more than a tenth of the signal's largest deviation and ten times what noise does to such a mean.
+/// by more than a quarter of the signal's largest deviation and ten times what noise does to such a mean.
 /// Nothing where five parts do not fit.
 /// @param period of the vibration [samples]; 0: none. @param noise standard deviation
 std::optional<OffsetDrift> offset_drift(const Eigen::VectorXd& signal, double period, double noise);

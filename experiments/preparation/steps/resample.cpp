@@ -86,7 +86,7 @@ class Resample final : public PreparationStep {
   static std::vector<filters::OptionSpec> options() {
     return {{"rate_hz", 0.0, "Hz", "of the even grid; 0: one sample per median interval"},
             {"method", std::string("band_limited"), "",
-             "band_limited: exact below 0.4 of the rate; spline: cubic"},
+             "band_limited: exact below 0.4 over the widest interval; spline: cubic"},
             {"largest_gap", 0.0, "",
              "times the median interval, wider ones stay missing; 0: 2.5, or 4 for the spline"}};
   }
