@@ -213,10 +213,11 @@ TEST(ReadRecord, RefusesIrregularTimes) {
   RecordFormat rate = two_columns();
   rate.sampling_rate = 10;
   expect_refused(
-      rate, {{"0,1\n0.103,1\n0.206,1\n0.369,1\n",
-              "bad.txt:4:1: time 0.369 s of sample 4, which 10 Hz, as stated, puts at 0.3 s: the stamps run at "
-              "8.1300813 Hz in the mean; expected them within half an interval. Without a stated rate the stamps "
-              "are taken as they are"}});
+      rate,
+      {{"0,1\n0.103,1\n0.206,1\n0.369,1\n",
+        "bad.txt:4:1: time 0.369 s of sample 4, which 10 Hz, as stated, puts at 0.3 s: the stamps run at "
+        "8.1300813 Hz in the mean; expected them within half an interval. Without a stated rate the stamps "
+        "are taken as they are"}});
 }
 
 std::string many_rows(int rows) {
