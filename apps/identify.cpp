@@ -2,11 +2,13 @@
 #include <filesystem>
 
 #include "apps/deliver.hpp"
+#include "apps/identify_family.hpp"
 #include "apps/identify_request.hpp"
 #include "experiments/damping_law/compared_laws.hpp"
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/failure_response.hpp"
 #include "experiments/model_setting.hpp"
+#include "experiments/plausibility.hpp"
 #include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 #include "experiments/record_comparison/comparison.hpp"
@@ -168,14 +170,27 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   if (!parse(command, arguments, described, {"record..."}, values)) return 0;
   if (!values.count("config")) throw UsageError("identify: --config FILE is missing");
 
-  const fs::path config = values["config"].as<std::string>();
+  const auto& configs = values["config"].as<std::vector<std::string>>();
+  if (configs.size() > 1) {
+    deliver(values, [&] {
+      try {
+        return identify_family(values, {configs.begin(), configs.end()});
+      } catch (const std::invalid_argument& error) {
+        throw InputError({configs[0]}, error.what());
+      }
+    });
+    return 0;
+  }
+  const fs::path config = configs[0];
   const std::string law = damping_law(values);
   const std::vector<IdentifyRequest> requests = identify_requests(values, config);
   if (requests.size() > 1) refuse_what_needs_one_record(values, requests);
   deliver(values, [&] {
     try {
-      return requests.size() > 1 ? identify_together(requests, law, config.parent_path())
-                                 : identify_one(requests[0], law, config.parent_path());
+      Results results = requests.size() > 1 ? identify_together(requests, law, config.parent_path())
+                                            : identify_one(requests[0], law, config.parent_path());
+      warn(results, requests[0].experiment);
+      return results;
     } catch (const std::invalid_argument& error) {
       throw InputError({config.string()}, error.what());
     }
@@ -192,6 +207,7 @@ Command identify_command() {
           "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
           "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"
           "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
+          "  beamid identify l30.csv l40.csv --config l30.toml --config l40.toml\n"
           "  beamid identify --config cantilever.toml --estimator both\n"
           "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
           "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
