@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "experiments/diagnostics_report.hpp"
 #include "experiments/failure_response.hpp"
 #include "experiments/input/json_file.hpp"
 #include "experiments/input/method_choice.hpp"
@@ -14,8 +14,10 @@
 #include "experiments/input/spelling.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/output/file.hpp"
+#include "experiments/plausibility.hpp"
 #include "experiments/preparation/prepared_record.hpp"
 #include "experiments/streaming/sample_line.hpp"
+#include "experiments/streaming/sample_source.hpp"
 #include "experiments/streaming/streamed_identification.hpp"
 
 namespace beamid::apps {
@@ -74,22 +76,35 @@ void save(const StreamedIdentification& stream, const fs::path& file) {
   fs::rename(part, file);
 }
 
-void follow(StreamedIdentification& stream) {
+void tell(const std::vector<std::string>& news) {
+  for (const std::string& sentence : news) std::cerr << sentence << "\n";
+}
+
+/// Until the samples end, the filter fails or nobody reads what is written; whether the filter failed.
+bool follow(StreamedIdentification& stream, SampleSource& source) {
   std::cout << stream_header() << std::flush;
   std::string line;
-  std::size_t told = 0;
-  for (std::size_t number = 1; std::getline(std::cin, line); ++number) {
-    const bool heading = number == 1 && line.starts_with("time");
+  while (source.next(line) && std::cout) {
+    const bool heading = source.number() == 1 && line.starts_with("time");
     if (heading || line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const Place place{"standard input", number, 1};
+    const Place place{"standard input", source.number(), 1};
     const filters::Sample sample = read_sample(line, stream.outputs(), place);
     const bool goes_on = at_place(place, [&] { return stream.take_in(sample); });
-    const auto& events = stream.running().events();
-    for (; told < events.size(); ++told) std::cerr << words({events[told]}) << "\n";
-    if (!goes_on) return;
-    std::cout << stream_row(sample.time, stream.found()) << std::flush;
-    if (!std::cout) return;
+    tell(stream.news());
+    if (!goes_on) return true;
+    std::cout << stream_row(sample.time, stream) << std::flush;
   }
+  return false;
+}
+
+/// What a reader of the last line has to know.
+void tell_end(const StreamedIdentification& stream, bool failed) {
+  const Eigen::Index left_out = stream.watch().left_out();
+  if (left_out > 0) std::cerr << fmt::format("Outliers left out: {}.\n", left_out);
+  if (failed)
+    std::cerr << "The filter failed and the stream ended there; --on-failure inflate goes on.\n";
+  else if (!stream.watch().settled() && stream.watch().starts() > 0)
+    std::cerr << "The estimates had not settled at the end: they are not to be used.\n";
 }
 
 int run(const Command& command, const std::vector<std::string>& arguments) {
@@ -101,9 +116,10 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
        "an earlier record of the rig, which tells noise, amplitude and sampling interval; default: that of "
        "the experiment file")  //
       ("on-failure", options::value<std::string>()->value_name("WHAT"),
-       "when the filter fails: stop (default), inflate its covariance and go on, report and go on")    //
-      ("resume", options::value<std::string>()->value_name("STATE"), "go on from a saved state")       //
-      ("save-state", options::value<std::string>()->value_name("STATE"), "save the state at the end")  //
+       "when the filter fails: stop (default), inflate its covariance and go on, report and go on")  //
+      ("resume", options::value<std::string>()->value_name("STATE"), "go on from a saved state")     //
+      ("save-state", options::value<std::string>()->value_name("STATE"),
+       "save the state at the end, whatever ends the stream: the input, a signal, a failure, a bad line")  //
       ("help", "show this help");
   options::variables_map values;
   if (!parse(command, arguments, described, {}, values)) return 0;
@@ -123,33 +139,56 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
                      "beamid stream follows model sdof without [[parameters]] in a free decay");
   StreamedIdentification stream =
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
+  tell(implausible(experiment));
   tell_preparation(experiment, earlier);
-  if (values.count("save-state")) require_replaceable(values["save-state"].as<std::string>());
+  if (values.count("save-state")) {
+    at_place(experiment.filter.place, [&] { stream.check_can_be_saved(); });
+    require_replaceable(values["save-state"].as<std::string>());
+  }
   if (values.count("resume")) resume(stream, values["resume"].as<std::string>());
-  follow(stream);
-  if (!values.count("save-state")) return 0;
-  if (stream.running().failure())
-    std::cerr << "The filter failed, and no state was saved.\n";
-  else
-    save(stream, values["save-state"].as<std::string>());
-  return 0;
+  const auto keep = [&] {
+    if (values.count("save-state")) save(stream, values["save-state"].as<std::string>());
+  };
+  int signal = 0;
+  bool failed = false;
+  {
+    SampleSource source(STDIN_FILENO);
+    try {
+      failed = follow(stream, source);
+    } catch (...) {
+      if (stream.running().step() > 0) keep();
+      throw;
+    }
+    signal = source.signal();
+    if (!(failed || signal != 0) || stream.running().step() > 0) keep();
+  }
+  tell_end(stream, failed);
+  if (signal != 0) {
+    std::cout << std::flush;
+    std::raise(signal);
+  }
+  return failed ? 1 : 0;
 }
 
 }  // namespace
 
 Command stream_command() {
-  return {"stream", "--config FILE [--like RECORD] [--resume STATE] [--save-state STATE] < SAMPLES",
-          "stiffness and damping while samples arrive on standard input",
-          "  beamid stream --config cantilever.toml < tip_acceleration.csv\n"
-          "  logger | beamid stream --config cantilever.toml --save-state now.json\n"
-          "  logger | beamid stream --config cantilever.toml --resume now.json\n\n"
-          "A sample is a line 'time,output[,output...]', in seconds and SI units, the outputs in the order "
-          "of the\n"
-          "record's channels; an output that is empty or nan was not measured. One line of estimates and\n"
-          "standard deviations follows each, from one pass of the filter. [[record.prepare]] prepares the "
-          "earlier\n"
-          "record; samples are expected to arrive as it leaves them.\n",
-          run};
+  return {
+      "stream", "--config FILE [--like RECORD] [--resume STATE] [--save-state STATE] < SAMPLES",
+      "stiffness and damping while samples arrive on standard input",
+      "  beamid stream --config cantilever.toml < tip_acceleration.csv\n"
+      "  logger | beamid stream --config cantilever.toml --save-state now.json\n"
+      "  logger | beamid stream --config cantilever.toml --resume now.json\n\n"
+      "A sample is a line 'time,output[,output...]', in seconds and SI units, the outputs in the order "
+      "of the\n"
+      "record's channels; an output that is empty or nan was not measured. One line of estimates and\n"
+      "standard deviations follows each, from one pass of the filter. Its last fields are the mean\n"
+      "normalised square of the innovations over 50 outputs (1 where the filter is right) and the status:\n"
+      "settling, settled, left_out (an outlier) or begun_anew. Use estimates that have settled only: in the\n"
+      "first example the higher modes of the release keep the filter from it until 2.4 s.\n"
+      "[[record.prepare]] prepares the earlier record; samples are expected to arrive as it leaves them.\n"
+      "Exit code 1 when the filter failed.\n",
+      run};
 }
 
 }  // namespace beamid::apps
