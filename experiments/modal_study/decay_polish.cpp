@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "experiments/modal_study/drifting_mode.hpp"
 #include "experiments/modal_study/mode_objections.hpp"
 
 namespace beamid::experiments {
@@ -31,6 +32,22 @@ bool reject_twin(const std::vector<Pole>& poles, RecordModes& found) {
       reject(lost,
              fmt::format("one mode with {:.4g} Hz: they cannot be told apart in this record",
                          poles[kept].frequency_hz()),
+             found);
+      return true;
+    }
+  return false;
+}
+
+/// Of two fitted poles that are one drifting mode, the weaker.
+bool reject_drifting(const JointDecayFit& fit, RecordModes& found) {
+  for (std::size_t a = 0; a < found.modes.size(); ++a)
+    for (std::size_t b = a + 1; b < found.modes.size(); ++b) {
+      if (!is_one_drifting_mode(fit, a, b, found.target, found.interval)) continue;
+      const bool first = fit.shapes.col(static_cast<Eigen::Index>(a)).norm() <
+                         fit.shapes.col(static_cast<Eigen::Index>(b)).norm();
+      reject(first ? a : b,
+             fmt::format("one mode with {:.4g} Hz, whose frequency or damping follows the amplitude",
+                         fitted_pole(fit, first ? b : a).frequency_hz()),
              found);
       return true;
     }
@@ -100,7 +117,7 @@ void try_again(Modes lost, const StabilisationSettings& settings, RecordModes& f
     if (reject_twin(poles_of(tried.modes), tried)) continue;
     const auto fit = fit_or_reject(tried);
     if (!fit || reject_least_certain(*fit, settings, tried) || reject_twin(poles_of(*fit), tried) ||
-        tried.stabilisation.rejected.size() != rejected)
+        reject_drifting(*fit, tried) || tried.stabilisation.rejected.size() != rejected)
       continue;
     for (std::size_t m = 0; m < tried.modes.size(); ++m) tried.modes[m].pole = fitted_pole(*fit, m);
     found = std::move(tried);
@@ -118,7 +135,7 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
     const auto fit = fit_or_reject(found);
     if (!fit || reject_least_certain(*fit, settings, found)) continue;
     const std::vector<Pole> poles = poles_of(*fit);
-    if (reject_twin(poles, found)) continue;
+    if (reject_twin(poles, found) || reject_drifting(*fit, found)) continue;
     Modes lost;
     for (const ModeEstimate& mode : all)
       if (std::none_of(found.modes.begin(), found.modes.end(),

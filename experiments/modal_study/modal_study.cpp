@@ -106,7 +106,8 @@ void check_kind(const MatrixXd& samples, RecordModes& found) {
   const Index half = motion.cols() / 2;
   const double early = motion.leftCols(half).squaredNorm(), late = motion.rightCols(half).squaredNorm();
   const bool decays =
-      found.reproduced.size() > 0 && (found.target - found.reproduced).norm() < reproduced * motion.norm();
+      (found.polished && !found.modes.empty()) ||
+      (found.reproduced.size() > 0 && (found.target - found.reproduced).norm() < reproduced * motion.norm());
   if (found.free_decay && !decays && late > 0.7 * early)
     found.warnings.push_back(
         "The record does not decay: its second half is nearly as strong as its first, and no decaying modes "

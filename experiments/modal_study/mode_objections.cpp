@@ -33,10 +33,24 @@ double energy_of_noise(const RecordModes& found) {
   return quantile(complement(energy, by_chance / resolutions));
 }
 
+/// Whether a mode is so large a part of some channel that no noise is like it: what a damped sine takes of
+/// white noise of N samples is some 30 / N. What is left of a mode that drifts lies near it and is no noise.
+bool dominates(const JointDecayFit& fit, Index m, const RecordModes& found) {
+  const auto count = static_cast<double>(found.target.cols());
+  const double least = std::max(0.25, 60 / count);
+  Eigen::VectorXd energy = Eigen::VectorXd::Zero(found.target.rows());
+  for (Index k = 0; k < found.target.cols(); ++k) {
+    const std::complex<double> wave = std::exp(fit.rates[m] * (found.interval * static_cast<double>(k)));
+    for (Index c = 0; c < energy.size(); ++c) energy[c] += std::pow((fit.shapes(c, m) * wave).real(), 2);
+  }
+  return (energy.array() > least * found.target.rowwise().squaredNorm().array()).any();
+}
+
 /// The multiple of `base` that a mode is; 0: none.
 int multiple_of(const ModeEstimate& base, const ModeEstimate& mode) {
-  constexpr int most = 5;
-  constexpr double off = 0.005, damping_off = 0.4, largest = 0.5;
+  constexpr int most = 3;  // modes of a pinned beam are at 1, 4, 9, ...
+  // An overtone shows the mode at its larger amplitudes, where frequency and damping may be others.
+  constexpr double off = 0.012, damping_off = 0.4, largest = 0.5;
   const double f = mode.pole.frequency_hz(), f1 = base.pole.frequency_hz();
   const auto n = static_cast<int>(std::lround(f / f1));
   if (n < 2 || n > most || mode.strength > largest * base.strength) return 0;
@@ -77,11 +91,11 @@ std::string objection_to(const Pole& from, const JointDecayFit& fit, std::size_t
     return "least squares do not keep it";
   if (to.frequency_deviation_hz > settings.largest_frequency_deviation * to.frequency_hz())
     return fmt::format("too uncertain, standard deviation {:.2g} Hz", to.frequency_deviation_hz);
-  if (to.damping_ratio_deviation > to.damping_ratio())
+  if (2 * to.damping_ratio_deviation > to.damping_ratio())
     return fmt::format("too uncertain, damping ratio {:.2g} % with standard deviation {:.2g} %",
                        100 * to.damping_ratio(), 100 * to.damping_ratio_deviation);
   const double energy = energy_over_noise(fit, static_cast<Index>(m), found), noise = energy_of_noise(found);
-  if (energy < noise)
+  if (energy < noise && !dominates(fit, static_cast<Index>(m), found))
     return fmt::format("noise: energy {:.3g} times its density; less than {:.3g} is met by chance", energy,
                        noise);
   return "";
