@@ -58,16 +58,20 @@ Table parameter_table(const Comparison& comparison, const std::string& name) {
   table.column({"run", "run"})
       .column({"estimate", "estimate", "{:.6g}"})
       .column({"95 % from", "lower_95", "{:.6g}"})
-      .column({"to", "upper_95", "{:.6g}"})
-      .column({"error [%]", "error_percent", "{:+.4g}"})
-      .column({"deviation [%]", "deviation_percent", "{:.2g}"})
+      .column({"to", "upper_95", "{:.6g}"});
+  if (truth) table.column({"error [%]", "error_percent", "{:+.4g}"});
+  table.column({"deviation [%]", "deviation_percent", "{:.2g}"})
       .column({"deviation / bound", "bound_ratio", "{:.3f}"});
   for (const ComparedRun& run : comparison.runs)
     for (const ComparedParameter& p : run.parameters)
-      if (p.estimate.name == name && run.status == ComparedRun::Status::converged)
-        table.row({name_of(comparison, run), p.estimate.value, p.estimate.lower_95, p.estimate.upper_95,
-                   or_nan(p.error_percent()), 100.0 * p.estimate.deviation / std::abs(p.estimate.value),
-                   or_nan(p.bound_ratio())});
+      if (p.estimate.name == name && run.status == ComparedRun::Status::converged) {
+        std::vector<Cell> row{name_of(comparison, run), p.estimate.value, p.estimate.lower_95,
+                              p.estimate.upper_95};
+        if (truth) row.emplace_back(or_nan(p.error_percent()));
+        row.insert(row.end(),
+                   {100.0 * p.estimate.deviation / std::abs(p.estimate.value), or_nan(p.bound_ratio())});
+        table.row(row);
+      }
   return table;
 }
 

@@ -87,7 +87,9 @@ std::string difference_text(const Comparison& comparison, const ComparedRun& run
 void judge_runs(Comparison& comparison) {
   for (ComparedRun& run : comparison.runs) {
     if (run.status != ComparedRun::Status::converged) continue;
-    if (comparison.modal) {
+    // To a model that has the mode's companions, or a frequency that amplitude changes, they are no noise.
+    const bool one_mode = run.coordinates == 1 || (comparison.modal && comparison.modal->companions.empty());
+    if (comparison.modal && run.mode && one_mode) {
       widen(run, widening(comparison, run, comparison.compared.notes));
       if (const std::string text = difference_text(comparison, run); !text.empty())
         comparison.warnings.push_back(text);

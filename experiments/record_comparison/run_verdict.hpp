@@ -15,7 +15,8 @@ namespace beamid::experiments {
 ///   than three of their standard deviations together, in frequency or in damping ratio, with how much.
 /// - A warning where the innovations are not those of a consistent filter.
 ///
-/// Records driven by a measured force have no modal analysis: of the three, the last.
+/// Records driven by a measured force have no modal analysis, models that are not linear no mode: of the
+/// three, the last.
 void judge_runs(Comparison& comparison);
 
 }  // namespace beamid::experiments
