@@ -48,6 +48,7 @@ Results identify_generally(const Experiment& experiment, const Record& record, c
   judge_runs(found);
   Results results = report(experiment, found);
   results.command = "identify";
+  results.values["status"] = to_string(found.runs.at(0).status);
   results.configuration["on_failure"] = to_string(experiment.on_failure);
   for (const ComparedRun& one : found.runs) {
     if (const std::string text = words(one.run.events); !text.empty()) results.paragraph(trouble + text);
@@ -163,6 +164,11 @@ Results identify_together(const std::vector<IdentifyRequest>& requests, const st
   return results;
 }
 
+/// 3 where there is no estimate to rely on, which is no error of the command's.
+int exit_code(const Results& results) {
+  return results.values.value("status", "converged") == "converged" ? 0 : 3;
+}
+
 int run(const Command& command, const std::vector<std::string>& arguments) {
   options::options_description described = identify_options();
   described.add(output_options());
@@ -185,34 +191,38 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   const std::string law = damping_law(values);
   const std::vector<IdentifyRequest> requests = identify_requests(values, config);
   if (requests.size() > 1) refuse_what_needs_one_record(values, requests);
+  int code = 0;
   deliver(values, [&] {
     try {
       Results results = requests.size() > 1 ? identify_together(requests, law, config.parent_path())
                                             : identify_one(requests[0], law, config.parent_path());
       warn(results, requests[0].experiment);
+      code = exit_code(results);
       return results;
     } catch (const std::invalid_argument& error) {
       throw InputError({config.string()}, error.what());
     }
   });
-  return 0;
+  return code;
 }
 
 }  // namespace
 
 Command identify_command() {
-  return {"identify", "[RECORD...] --config FILE [--window FROM TO]... [--out DIR]",
-          "stiffness, damping, frequency and damping ratio from vibration records",
-          "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
-          "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
-          "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"
-          "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
-          "  beamid identify l30.csv l40.csv --config l30.toml --config l40.toml\n"
-          "  beamid identify --config cantilever.toml --estimator both\n"
-          "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
-          "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
-          "  beamid identify hard.csv soft.csv --config cantilever.toml --damping-law auto\n",
-          run};
+  return {
+      "identify", "[RECORD...] --config FILE [--window FROM TO]... [--out DIR]",
+      "stiffness, damping, frequency and damping ratio from vibration records",
+      "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
+      "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
+      "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"
+      "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
+      "  beamid identify --config cantilever.toml --estimator both\n"
+      "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
+      "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
+      "  beamid identify hard.csv soft.csv --config cantilever.toml --damping-law auto\n\n"
+      "Exit code 3, and \"status\" in results.json: the filter \"diverged\", or the modal analysis\n"
+      "\"contradicted\" it, with less than half or more than twice the damping. The first lines say why.\n",
+      run};
 }
 
 }  // namespace beamid::apps

@@ -71,8 +71,8 @@ std::optional<Errors> errors_of(const RecordIdentification& found, double freque
   const Identification& i = found.identification;
   if (i.run.failure) return {};
   return Errors{
-      (i.found.frequency_hz() - frequency) / (found.interval_factor * i.frequency_deviation_hz),
-      (i.found.damping_ratio() - damping_ratio) / (found.interval_factor * i.damping_ratio_deviation)};
+      (i.found.frequency_hz() - frequency) / (found.frequency_factor() * i.frequency_deviation_hz),
+      (i.found.damping_ratio() - damping_ratio) / (found.damping_factor() * i.damping_ratio_deviation)};
 }
 
 CoverageCase summary(NoiseColour colour, const std::vector<std::optional<Errors>>& errors) {

@@ -27,6 +27,8 @@ Linearisation linearise(const VectorXd& signal, double interval, const VectorXd&
   VectorXd row(size);
   row[size - 1] = 1;
   for (Index k = 0; k < signal.size(); ++k) {
+    at.residuals[k] = 0;
+    if (!std::isfinite(signal[k])) continue;
     const double time = interval * static_cast<double>(k);
     double model = parameters[size - 1];
     for (Index i = 0; i + 1 < size; i += 4) {
@@ -62,20 +64,24 @@ VectorXd with_best_amplitudes(const VectorXd& signal, double interval, const std
   return parameters + solve_scaled(at.normal, 0, at.gradient);
 }
 
+Index measured(const VectorXd& signal) {
+  return signal.array().isFinite().count();
+}
+
 void check(const VectorXd& signal, const std::vector<Complex>& start) {
   const std::size_t fewest = 2 * (4 * start.size() + 1);
   const bool oscillating = std::all_of(start.begin(), start.end(), [](Complex rate) {
     return rate.imag() > 0 && std::isfinite(rate.imag()) && std::isfinite(rate.real());
   });
-  if (!start.empty() && oscillating && static_cast<std::size_t>(signal.size()) >= fewest) return;
+  if (!start.empty() && oscillating && static_cast<std::size_t>(measured(signal)) >= fewest) return;
   std::ostringstream message;
-  message << "fit of " << start.size() << " damped sines to " << signal.size() << " samples";
+  message << "fit of " << start.size() << " damped sines to " << measured(signal) << " samples";
   for (const Complex& rate : start) message << ", from " << rate.real() << " + " << rate.imag() << "i rad/s";
   message << "; expected at least " << fewest << " samples and one or more positive angular frequencies";
   throw std::invalid_argument(message.str());
 }
 
-DampedSineFit result_of(const VectorXd& parameters, const Linearisation& at, int iterations) {
+DampedSineFit result_of(const VectorXd& parameters, const Linearisation& at, Index count, int iterations) {
   const Index size = parameters.size();
   DampedSineFit fit;
   for (Index i = 0; i + 1 < size; i += 4)
@@ -83,8 +89,7 @@ DampedSineFit result_of(const VectorXd& parameters, const Linearisation& at, int
   fit.offset = parameters[size - 1];
   fit.cofactors = solve_scaled(at.normal, 0, MatrixXd::Identity(size, size));
   fit.residuals = at.residuals;
-  fit.residual_standard_deviation =
-      std::sqrt(at.residuals.squaredNorm() / static_cast<double>(at.residuals.size() - size));
+  fit.residual_standard_deviation = std::sqrt(at.residuals.squaredNorm() / static_cast<double>(count - size));
   fit.iterations = iterations;
   return fit;
 }
@@ -95,7 +100,8 @@ DampedSineFit fit_damped_sines(const VectorXd& signal, double interval, const st
   check(signal, start);
   constexpr int most_iterations = 100;
   constexpr double tolerance = 1e-11;  // change of the model, relative to the signal
-  const double smallest_change = tolerance * tolerance * signal.squaredNorm();
+  const double smallest_change =
+      tolerance * tolerance * signal.array().isFinite().select(signal, 0.0).squaredNorm();
   VectorXd parameters = with_best_amplitudes(signal, interval, start);
   Linearisation at = linearise(signal, interval, parameters);
   double damping = 0;
@@ -110,7 +116,7 @@ DampedSineFit fit_damped_sines(const VectorXd& signal, double interval, const st
     } else {
       damping = std::max(1e-3, 10 * damping);
     }
-    if (converged) return result_of(parameters, at, iteration);
+    if (converged) return result_of(parameters, at, measured(signal), iteration);
   }
   std::ostringstream message;
   message << "the fit of " << start.size() << " damped sines has not converged after " << most_iterations

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "experiments/modal_analysis/damped_sine_fit.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/decimation.hpp"
+#include "experiments/signal/measured_samples.hpp"
 #include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
@@ -22,8 +24,11 @@ void check(const Eigen::VectorXd& signal, double interval, const ModalAnalysisSe
             << " for a modal analysis";
   else if (!(interval > 0))
     message << "sampling interval " << interval << " s; expected a positive value";
-  else if (!signal.allFinite())
+  else if (signal.array().isInf().any())
     message << "free decay holds a value that is not a finite number";
+  else if (const Eigen::Index measured = signal.array().isFinite().count(); measured < fewest)
+    message << "free decay of which " << measured << " samples were measured; expected at least " << fewest
+            << " for a modal analysis";
   else if (settings.expected_frequency_hz &&
            !(*settings.expected_frequency_hz > 0 && *settings.expected_frequency_hz < 0.5 / interval))
     message << "expected frequency " << *settings.expected_frequency_hz
@@ -106,16 +111,92 @@ DampedSine undo_decimation(DampedSine sine, const DecimatedSignal& coarse) {
   return sine;
 }
 
-double residual_standard_deviation(const Eigen::VectorXd& signal, double interval,
-                                   const std::vector<DampedSine>& sines, double offset) {
-  double squares = 0;
-  for (Eigen::Index k = 0; k < signal.size(); ++k) {
-    double residual = signal[k] - offset;
-    for (const DampedSine& sine : sines)
-      residual -= (sine.amplitude * std::exp(sine.rate * (interval * static_cast<double>(k)))).real();
-    squares += residual * residual;
+Eigen::VectorXd motion_of(const DampedSineFit& fit, double interval, Eigen::Index count) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Constant(count, fit.offset);
+  for (Eigen::Index k = 0; k < count; ++k)
+    for (const DampedSine& sine : fit.sines)
+      motion[k] += (sine.amplitude * std::exp(sine.rate * (interval * static_cast<double>(k)))).real();
+  return motion;
+}
+
+/// Of the samples that were measured.
+double residual_standard_deviation(const Eigen::VectorXd& signal, double interval, const DampedSineFit& fit) {
+  const Eigen::ArrayXd left = (signal - motion_of(fit, interval, signal.size())).array();
+  return std::sqrt(left.isFinite().select(left.square(), 0.0).sum() /
+                   static_cast<double>(left.isFinite().count()));
+}
+
+/// All sines, or the dominant one and as many of its companions as the least squares converge with.
+DampedSineFit polish(const DecimatedSignal& coarse, std::vector<std::complex<double>> rates) {
+  for (;; rates.pop_back()) {
+    try {
+      DampedSineFit fit = fit_damped_sines(coarse.samples, coarse.interval, rates);
+      for (DampedSine& sine : fit.sines) sine = undo_decimation(sine, coarse);
+      return fit;
+    } catch (const std::exception&) {  // no convergence, or too few samples for so many
+      if (rates.size() == 1) throw;
+    }
   }
-  return std::sqrt(squares / static_cast<double>(signal.size()));
+}
+
+/// A first fill of missing samples: one damped sine, by least squares of the samples that were measured, from
+/// the largest line of the spectrum near the expected frequency and several damping ratios. A realisation of
+/// what is bridged straight would see a clipped decay as one that does not decay.
+Eigen::VectorXd filled_by_one_sine(const Eigen::VectorXd& signal, double interval, double expected_hz,
+                                   double tolerance) {
+  const Eigen::VectorXd bridged = first_fill(signal);
+  const AmplitudeSpectrum spectrum = amplitude_spectrum(bridged, interval);
+  double frequency = expected_hz, largest = 0;
+  for (Eigen::Index k = 0; k < spectrum.amplitude.size(); ++k)
+    if (std::abs(spectrum.frequency_hz[k] / expected_hz - 1) <= tolerance && spectrum.amplitude[k] > largest)
+      largest = spectrum.amplitude[k], frequency = spectrum.frequency_hz[k];
+  const double w = 2 * std::numbers::pi * frequency;
+  DampedSineFit best;
+  for (const double ratio : {0.001, 0.003, 0.01, 0.03}) {
+    try {
+      DampedSineFit fit = fit_damped_sines(signal, interval, {{-ratio * w, w}});
+      if (best.sines.empty() || fit.residual_standard_deviation < best.residual_standard_deviation)
+        best = std::move(fit);
+    } catch (const std::runtime_error&) {  // another start may do
+    }
+  }
+  if (best.sines.empty()) return bridged;
+  return signal.array().isFinite().select(signal, motion_of(best, interval, signal.size()));
+}
+
+/// Missing samples take the values of the motion found, which is then found anew, until both stand still: at
+/// the least squares of the samples that were measured, behind the decimation's low-pass. The cofactors are
+/// those of the measured samples alone.
+void fit_measured_samples(const Eigen::VectorXd& signal, double interval, DecimatedSignal& coarse,
+                          DampedSineFit& fit) {
+  constexpr int most = 300;
+  constexpr double settled = 1e-8;  // of the signal
+  const auto measured = signal.array().isFinite();
+  const double smallest = settled * settled * measured.select(signal, 0.0).squaredNorm();
+  std::vector<std::complex<double>> rates(fit.sines.size());
+  const auto take_rates = [&] {
+    for (std::size_t m = 0; m < rates.size(); ++m) rates[m] = fit.sines[m].rate;
+  };
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(signal.size());
+  for (int i = 0; i < most; ++i) {
+    const Eigen::VectorXd filled = measured.select(signal, motion_of(fit, interval, signal.size()));
+    const bool still = (filled - before).squaredNorm() <= smallest;
+    before = filled;
+    take_rates();
+    coarse = decimate(filled, interval, coarse.factor);
+    fit = polish(coarse, rates);
+    rates.resize(fit.sines.size());
+    if (still) break;
+  }
+  take_rates();
+  // samples that were filled leave nothing of the noise
+  fit.residual_standard_deviation *=
+      std::sqrt(static_cast<double>(signal.size()) / static_cast<double>(measured.count()));
+  try {
+    fit.cofactors = coarse.factor * fit_damped_sines(signal, interval, rates).cofactors;
+  } catch (const std::runtime_error&) {  // higher modes in the way: as if samples were missing at random
+    fit.cofactors *= static_cast<double>(signal.size()) / static_cast<double>(measured.count());
+  }
 }
 
 }  // namespace
@@ -129,12 +210,15 @@ ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
                             const ModalAnalysisSettings& settings) {
   check(signal, interval, settings);
   const double expected = settings.expected_frequency_hz ? *settings.expected_frequency_hz
-                                                         : strongest_frequency(signal, interval);
+                                                         : strongest_frequency(first_fill(signal), interval);
   const int factor = decimation_factor(signal.size(), interval, expected, settings.samples_per_cycle);
-  const DecimatedSignal coarse = decimate(signal, interval, factor);
+  const bool whole = signal.allFinite();
+  DecimatedSignal coarse =
+      decimate(whole ? signal : filled_by_one_sine(signal, interval, expected, settings.frequency_tolerance),
+               interval, factor);
   const Realised realised = realise(coarse, expected, settings);
-  DampedSineFit fit = fit_damped_sines(coarse.samples, coarse.interval, realised.rates);
-  for (DampedSine& sine : fit.sines) sine = undo_decimation(sine, coarse);
+  DampedSineFit fit = polish(coarse, realised.rates);
+  if (!whole) fit_measured_samples(signal, interval, coarse, fit);
 
   const DampedSine& sine = fit.sines.front();
   const double w_d = sine.rate.imag(), d = -sine.rate.real(), w = std::abs(sine.rate);
@@ -144,7 +228,7 @@ ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
   estimate.amplitude = std::abs(sine.amplitude);
   estimate.phase = std::arg(sine.amplitude);
   estimate.offset = fit.offset;
-  estimate.residual_standard_deviation = residual_standard_deviation(signal, interval, fit.sines, fit.offset);
+  estimate.residual_standard_deviation = residual_standard_deviation(signal, interval, fit);
   estimate.noise_standard_deviation = fit.residual_standard_deviation / coarse.kernel.norm();
   estimate.realised_frequency_hz = realised.dominant.frequency_hz;
   estimate.realised_damping_ratio = realised.dominant.damping_ratio;

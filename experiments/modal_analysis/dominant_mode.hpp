@@ -59,10 +59,13 @@ struct ModalEstimate {
 /// only the kernel's half length at each end is lost; frequency and damping are those of the undecimated
 /// signal, to which amplitude and phase are returned.
 ///
+/// Samples that are NaN were not measured (a clipped sensor, a gap): the least squares are those of the
+/// others. Companions with which the least squares do not converge are left out.
+///
 /// Standard deviations are those for white noise as dense as the decimated residual. They know nothing of a
 /// damping that varies with amplitude.
 /// @throws std::invalid_argument when the signal is too short or shows no mode there (found ones are named).
-/// @throws std::runtime_error when the least squares do not converge.
+/// @throws std::runtime_error when the least squares do not converge, even of one sine.
 ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
                             const ModalAnalysisSettings& settings = {});
 

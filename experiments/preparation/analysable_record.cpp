@@ -90,6 +90,10 @@ AnalysableRecord analysable(const Record& record, const std::optional<std::pair<
   return found;
 }
 
+AnalysableRecord on_even_stamps(const Record& record) {
+  return evenly_sampled(record) ? AnalysableRecord{record} : analysable(record);
+}
+
 Record made_analysable(const Record& record) {
   AnalysableRecord made = analysable(record);
   if (!made.remark.empty()) made.record.remarks.push_back(made.remark);

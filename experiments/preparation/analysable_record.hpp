@@ -25,6 +25,9 @@ struct AnalysableRecord {
 AnalysableRecord analysable(const Record& record,
                             const std::optional<std::pair<double, double>>& within = {});
 
+/// The record itself where its stamps are even, missing samples and all; else analysable().
+AnalysableRecord on_even_stamps(const Record& record);
+
 /// Its record, the remark among the record's own.
 Record made_analysable(const Record& record);
 

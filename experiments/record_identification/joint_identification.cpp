@@ -14,9 +14,8 @@ RecordBelief belief_of(const RecordIdentification& found) {
   const filters::Gaussian& last = found.identification.run.last;
   RecordBelief belief{{last.mean.segment(first, unknowns), last.marginal(first, unknowns)},
                       found.last_start.marginal(first, unknowns)};
-  // a noise that was stated is known, unless the record shows more of it
-  const bool known = !found.noise_from_record[0] && found.interval_factor == 1.0;
-  if (known) return belief;
+  // R counts, unless the record shows more noise at the mode
+  if (found.interval_factor == 1.0) return belief;
   belief.noise_ratio = found.interval_factor / found.near_mode.student();
   belief.noise_freedom = found.near_mode.freedom;
   return belief;
@@ -25,7 +24,7 @@ RecordBelief belief_of(const RecordIdentification& found) {
 }  // namespace
 
 bool IdentifiedRecord::lost() const {
-  return experiments::lost(found.identification, found.modal.frequency_hz);
+  return found.judgement.verdict == Verdict::diverged;
 }
 
 JointIdentification joint_identification(std::vector<IdentifiedRecord> records) {
@@ -39,9 +38,7 @@ JointIdentification joint_identification(std::vector<IdentifiedRecord> records) 
       throw std::invalid_argument("joint identification: the records' beams have different masses");
     beliefs.push_back(belief_of(one.found));
   }
-  if (!kept)
-    throw std::invalid_argument(
-        "the filter lost the motion of every record; identify one of them alone to see why");
+  if (!kept) return joint;
   joint.estimate = joint_estimate(beliefs);
   filters::Gaussian belief = kept->found.identification.run.last;
   belief.mean.segment(first, unknowns) = joint.estimate.unknowns.mean;

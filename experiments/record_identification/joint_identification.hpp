@@ -21,13 +21,12 @@ struct IdentifiedRecord {
 /// What all records say together.
 struct JointIdentification {
   std::vector<IdentifiedRecord> records;
-  JointEstimate estimate;         ///< of K and C, by the records that are not lost
+  JointEstimate estimate;         ///< of K and C, by the records that are not lost; empty: all are
   Identification identification;  ///< at it, without a run; deviations of the estimate
 };
 
 /// Each record has been identified by itself: own start, noise and window; beam, model and prior are shared.
-/// @throws std::invalid_argument when the filter lost the motion of every record, or equivalent masses
-/// differ.
+/// @throws std::invalid_argument when equivalent masses differ.
 JointIdentification joint_identification(std::vector<IdentifiedRecord> records);
 
 /// Tables, figures, words and results.json keys.

@@ -95,15 +95,21 @@ Panel panel_of(const JointIdentification& joint, std::size_t which, const char* 
   return panel;
 }
 
+bool all_lost(const JointIdentification& joint) {
+  return joint.estimate.unknowns.mean.size() == 0;
+}
+
 Json values_of(const JointIdentification& joint) {
-  Json json{{"status", "converged"}};
-  for (const Parameter& p : joint_parameters(joint))
-    json[p.key] = {{"estimate", p.estimate},
-                   {"standard_deviation", p.deviation},
-                   {"lower_95", p.lower_95()},
-                   {"upper_95", p.upper_95()}};
-  json["equivalent_mass_kg"] = joint.identification.found.mass;
-  json["agreement"] = agreement_values(joint.estimate, {"stiffness", "damping"});
+  Json json{{"status", all_lost(joint) ? "diverged" : "converged"}};
+  if (!all_lost(joint)) {
+    for (const Parameter& p : joint_parameters(joint))
+      json[p.key] = {{"estimate", p.estimate},
+                     {"standard_deviation", p.deviation},
+                     {"lower_95", p.lower_95()},
+                     {"upper_95", p.upper_95()}};
+    json["equivalent_mass_kg"] = joint.identification.found.mass;
+    json["agreement"] = agreement_values(joint.estimate, {"stiffness", "damping"});
+  }
   json["records"] = Json::array();
   for (const IdentifiedRecord& one : joint.records) {
     json["records"].push_back({{"record", one.name}});
@@ -123,9 +129,17 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
   results.values = values_of(joint);
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
+  for (const IdentifiedRecord& one : joint.records) {
+    for (const std::string& text : one.record.warnings) results.paragraph(one.name + ": " + text);
+    for (const std::string& text : one.found.judgement.messages) results.paragraph(one.name + ": " + text);
+  }
   results.paragraph(fmt::format(
       "{} records of one beam, each with its own start, noise and window; {} on {}, discretisation {}.",
       joint.records.size(), experiment.filter.name, experiment.model.name, experiment.discretisation));
+  if (all_lost(joint)) {
+    results.paragraph("No joint estimate: the filter lost the motion of every record.");
+    return results;
+  }
   results.table(table_of(joint, "records", "", 0));
   results.table(constants_of(joint));
   results.paragraph(agreement_words(joint.estimate, {"K", "C"}));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/estimates.hpp"
+#include "experiments/record_identification/mode_residual.hpp"
 #include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {
@@ -80,7 +81,10 @@ NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const Mod
   const double wanted = 1 / (interval * modal.frequency_hz * samples_per_cycle),
                most = static_cast<double>(signal.size() / kernel_and_more);
   const int factor = static_cast<int>(std::max(1.0, std::min(wanted, most)));
-  const DecimatedSignal coarse = decimate(signal, interval, factor);
+  const DecimatedSignal coarse =
+      decimate(with_mode_in_gaps(signal, interval, modal.rate()), interval, factor);
+  const double measured =
+      static_cast<double>(signal.array().isFinite().count()) / static_cast<double>(signal.size());
   const Lines lines = lines_of(coarse, modal);
   const auto count = static_cast<Index>(lines.left.size());
   const Eigen::Map<const Eigen::ArrayXd> left(lines.left.data(), count), weight(lines.weight.data(), count),
@@ -89,7 +93,7 @@ NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const Mod
   Eigen::Matrix2d information;  // expected, of a and b
   information << weight.sum(), (weight * u).sum(), (weight * u).sum(), (weight * u * u).sum() + prior;
   const Eigen::Matrix2d covariance = information.inverse();
-  NoiseNearMode result{0, 2 / covariance(0, 0), 0, static_cast<int>(count)};
+  NoiseNearMode result{0, measured * 2 / covariance(0, 0), 0, static_cast<int>(count)};
   if (!(left.sum() > 0)) return result;
   Eigen::Vector2d x(std::log(left.sum() / weight.sum()), 0);
   for (int i = 0; i < most_steps; ++i) {  // Fisher's scoring
@@ -103,8 +107,8 @@ NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const Mod
   const Eigen::ArrayXd variance = covariance(0, 0) + 2 * covariance(0, 1) * u + covariance(1, 1) * u * u;
   const Eigen::Vector2d pull((weight * variance).sum(), (weight * variance * u).sum());
   const double mean = 1 - covariance.row(0).dot(pull) / 2 + covariance(0, 0) / 2;
-  result.deviation =
-      std::exp(x[0] / 2) / std::sqrt(std::max(0.5, mean)) * std::sqrt(static_cast<double>(coarse.factor));
+  result.deviation = std::exp(x[0] / 2) / std::sqrt(std::max(0.5, mean)) *
+                     std::sqrt(static_cast<double>(coarse.factor) / measured);
   result.slope = x[1];
   return result;
 }

@@ -30,7 +30,8 @@ struct NoiseNearMode {
 /// is an orthonormal basis of what the fit of amplitude, phase, frequency, damping and offset takes out of
 /// the noise, 1 - w_k the share of line k that goes with it. A companion mode is not taken out: to a filter
 /// of one mode it is noise. b^2 / 8 believes slopes beyond +-4 hardly, which few lines could not tell. The
-/// band grows upwards until the w_k sum to 2.
+/// band grows upwards until the w_k sum to 2. Samples that are NaN were not measured: the mode takes their
+/// place, and what they would have left of the noise is added in proportion.
 ///
 /// What weighs on frequency and damping is the density within a line or two of f, where light damping
 /// concentrates the response: the band's mean is another where the density falls through it.

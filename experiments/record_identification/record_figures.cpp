@@ -85,14 +85,15 @@ Panel history(const Record& record, const VectorXd& estimate, const VectorXd& de
                    CurveStyle::band,
                    estimate - 1.96 * deviation,
                    estimate + 1.96 * deviation},
-                  {"filter", record.time, estimate, CurveStyle::line, {}, {}, Colour::blue},
-                  {"modal analysis",
-                   Eigen::Vector2d(record.time[0], record.time[record.size() - 1]),
-                   Eigen::Vector2d(modal, modal),
-                   CurveStyle::dashed,
-                   {},
-                   {},
-                   Colour::black}};
+                  {"filter", record.time, estimate, CurveStyle::line, {}, {}, Colour::blue}};
+  if (std::isfinite(modal))
+    panel.curves.push_back({"modal analysis",
+                            Eigen::Vector2d(record.time[0], record.time[record.size() - 1]),
+                            Eigen::Vector2d(modal, modal),
+                            CurveStyle::dashed,
+                            {},
+                            {},
+                            Colour::black});
   // the last pass begins with a band of its own, which is to fill the panel
   const double last = estimate[estimate.size() - 1],
                half = std::min(half_range, 1.3 * 1.96 * deviation.maxCoeff());
@@ -105,20 +106,21 @@ Figure convergence(const Record& record, const RecordIdentification& found) {
   const auto& beliefs = found.identification.run.filtered;
   const auto count = static_cast<Index>(beliefs.size());
   VectorXd frequency(count), frequency_deviation(count), ratio(count), ratio_deviation(count);
+  const double frequency_factor = found.frequency_factor(), damping_factor = found.damping_factor();
   for (Index k = 0; k < count; ++k) {
     const Oscillator now{found.identification.found.mass, beliefs[k].mean[2], beliefs[k].mean[3]};
     frequency[k] = now.frequency_hz();
     frequency_deviation[k] =
-        found.interval_factor * 0.5 * frequency[k] * std::sqrt(beliefs[k].covariance(2, 2)) / now.stiffness;
+        frequency_factor * 0.5 * frequency[k] * std::sqrt(beliefs[k].covariance(2, 2)) / now.stiffness;
     ratio[k] = 100.0 * now.damping_ratio();
-    ratio_deviation[k] = found.interval_factor * 100.0 * std::sqrt(beliefs[k].covariance(3, 3)) /
+    ratio_deviation[k] = damping_factor * 100.0 * std::sqrt(beliefs[k].covariance(3, 3)) /
                          (2.0 * std::sqrt(now.stiffness * now.mass));
   }
-  const double last_ratio = ratio[count - 1];
+  const double last_ratio = ratio[count - 1], absent = found.modal_failure.empty() ? 0.0 : std::nan("");
   Figure figure{"convergence", {}, 2, 1};
-  figure.panels = {history(record, frequency, frequency_deviation, found.modal.frequency_hz, "frequency [Hz]",
-                           0.02 * frequency[count - 1]),
-                   history(record, ratio, ratio_deviation, 100.0 * found.modal.damping_ratio,
+  figure.panels = {history(record, frequency, frequency_deviation, absent + found.modal.frequency_hz,
+                           "frequency [Hz]", 0.02 * frequency[count - 1]),
+                   history(record, ratio, ratio_deviation, absent + 100.0 * found.modal.damping_ratio,
                            "damping ratio [%]", std::abs(last_ratio))};
   figure.panels.front().legend = Legend::none;
   return figure;

@@ -38,9 +38,12 @@ Table parameter_table(const RecordIdentification& found) {
   for (const Parameter& p : parameters(found)) {
     const int digits = decimals(p.shown * p.deviation);
     const auto shown = [&](double value) { return fmt::format("{:.{}f}", p.shown * value, digits); };
-    std::vector<Cell> cells{
-        p.name,         shown(p.estimate),           shown(p.lower_95()), shown(p.upper_95()),
-        shown(p.modal), percent(p.estimate, p.modal)};
+    std::vector<Cell> cells{p.name,
+                            shown(p.estimate),
+                            shown(p.lower_95()),
+                            shown(p.upper_95()),
+                            std::isfinite(p.modal) ? shown(p.modal) : "-",
+                            percent(p.estimate, p.modal)};
     if (batch) {
       const Parameter& b = together[table.rows()];
       for (const double value : {b.estimate, b.lower_95(), b.upper_95()}) cells.emplace_back(shown(value));
@@ -54,17 +57,55 @@ Table parameter_table(const RecordIdentification& found) {
   return table;
 }
 
-std::string verdict(const filters::InnovationConsistency& c) {
-  if (c.white() && c.size_is_steady()) return "white and of steady size, as they should be";
+// "the damping ratio from 1.45 to 1.28 %", or what else varies from the first to the last section.
+std::string variation_text(const AmplitudeSections& by) {
+  const auto ends = [](const SectionTrend& trend, double factor) {
+    return fmt::format("from {:.5g} to {:.5g}", factor * trend.values[0],
+                       factor * trend.values[trend.values.size() - 1]);
+  };
+  std::string text;
+  if (by.damping.varies()) text = "the damping ratio goes " + ends(by.damping, 100.0) + " %";
+  if (by.frequency.varies())
+    text += (text.empty() ? "the frequency goes " : ", the frequency ") + ends(by.frequency, 1.0) + " Hz";
+  return text;
+}
+
+// What the motion is that the model does not have, as far as a test tells.
+std::string unmodelled_text(const RecordIdentification& found) {
+  const AmplitudeSections& by = found.sections;
+  if (by.damping.varies() || by.frequency.varies())
+    return fmt::format(
+        ". With the amplitude {} (fits in {} sections): the filter's intervals are too short for that, and "
+        "are "
+        "widened to hold the values of 95 % of the decay, by {:.3g} for frequency and K, {:.3g} for damping",
+        variation_text(by), by.sections.size(), found.frequency_factor(), found.damping_factor());
+  if (!found.modal.companions.empty() && found.modal_failure.empty()) {
+    const double off = std::abs(found.identification.found.damping_ratio() - found.modal.damping_ratio) /
+                       (quantile_95 * found.damping_factor() * found.identification.damping_ratio_deviation);
+    return fmt::format(
+        ". The record holds another mode: the modal analysis, which fits both, differs by {:.2g} of the "
+        "interval "
+        "of the damping ratio",
+        off);
+  }
+  return ". The record holds motion that the model does not have; what of it lies near the mode is counted "
+         "in the "
+         "intervals";
+}
+
+std::string verdict(const RecordIdentification& found) {
+  const filters::InnovationConsistency& c = *found.consistency;
+  if (c.white() && c.size_is_steady())
+    return found.judgement.messages.empty()
+               ? "white and of steady size, as they should be"
+               : "white and of steady size, as they also are with a wrong discretisation or mass";
   if (c.windows.maxCoeff() < c.window_lower_95)
     return "smaller all along than they should be. The noise assumed is larger than the record's, and the "
            "intervals are too wide";
   const char* what = c.white()            ? "white, but their size changes along the record"
                      : c.size_is_steady() ? "of steady size, but not white"
                                           : "neither white nor of steady size";
-  return std::string(what) +
-         ". The record then holds motion that the model does not (other modes, damping that depends on "
-         "amplitude), and the intervals are a lower limit of the doubt";
+  return what + unmodelled_text(found);
 }
 
 std::string consistency_text(const RecordIdentification& found) {
@@ -75,7 +116,7 @@ std::string consistency_text(const RecordIdentification& found) {
       "windows {:.2f} to {:.2f} ({:.2f} to {:.2f}), correlation of successive ones {:+.2f}, Ljung-Box p = "
       "{:.2g}: {}.",
       c.mean_normalised_square, c.lower_95, c.upper_95, c.windows.minCoeff(), c.windows.maxCoeff(),
-      c.window_lower_95, c.window_upper_95, c.lag_one_correlation, c.whiteness_p_value, verdict(c));
+      c.window_lower_95, c.window_upper_95, c.lag_one_correlation, c.whiteness_p_value, verdict(found));
 }
 
 std::string noise_source(const RecordIdentification& found, Eigen::Index i) {
@@ -87,7 +128,8 @@ std::string noise_source(const RecordIdentification& found, Eigen::Index i) {
                ? fmt::format("the likeliest, known to {:.2g} %", 100 * found.noise_relative_deviation[i])
                : "the likeliest";
   }
-  return "all that the modal analysis leaves of the record";
+  return found.modal_failure.empty() ? "all that the modal analysis leaves of the record"
+                                     : "all that the filter's own motion leaves of the record";
 }
 
 std::string batch_text(const RecordIdentification& found) {
@@ -111,8 +153,9 @@ std::string noise_text(const Record& record, const RecordIdentification& found) 
   const double density = near.deviation / found.noise_deviation[0];
   text += fmt::format(
       " At the mode it is as dense as white noise of {:.2f} times that, by {} lines of the spectrum: "
-      "intervals are the filter's times {:.2f}.",
-      density, near.lines, found.interval_factor);
+      "intervals are the filter's{}.",
+      density, near.lines,
+      found.interval_factor > 1.0 ? fmt::format(" times {:.2f}", found.interval_factor) : "");
   constexpr double few = 10;
   if (near.freedom < few)
     text += fmt::format(
@@ -144,6 +187,8 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   const Record placed = with_places(record, experiment);
   results.values["channels"] = channel_values(placed);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
+  for (const std::string& text : record.warnings) results.paragraph(text);
+  for (const std::string& text : found.judgement.messages) results.paragraph(text);
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
@@ -152,19 +197,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
       *placed.channels[0].position != fem::natural_point(experiment.beam).position)
     results.paragraph("Stiffness, damping and mass are those of the motion at the first channel of " +
                       channels_text(placed) + ".");
-  if (const auto& failure = found.identification.run.failure) {
-    const double smallest = failure->smallest_eigenvalue;
-    results.paragraph(
-        fmt::format("Diverged at sample {}, {:.4f} s: {}{}.", failure->step, failure->time, failure->reason,
-                    std::isnan(smallest) ? "" : fmt::format(" (smallest eigenvalue {:.3g})", smallest)));
-    return results;
-  }
-  if (lost(found.identification, found.modal.frequency_hz))
-    results.paragraph(
-        fmt::format("DIVERGED: the filter has lost the motion. Its stiffness or damping is not positive, or "
-                    "its frequency is far from the {:.4f} Hz of the modal analysis. Look at the "
-                    "discretisation, [prior] and [noise] in the experiment file; below is where it ended.",
-                    found.modal.frequency_hz));
+  if (found.identification.run.failure) return results;
   results.table(parameter_table(found));
   if (found.batch) results.paragraph(batch_text(found));
   results.paragraph(consistency_text(found));

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "experiments/beam_description.hpp"
+#include "experiments/continuum/description.hpp"
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/failure_response.hpp"
 
@@ -18,15 +19,16 @@ std::vector<Parameter> parameters(const RecordIdentification& found) {
 std::vector<Parameter> parameters(const RecordIdentification& found, const Identification& i) {
   const Oscillator modal = Oscillator::from_frequency(
       i.found.mass, 2.0 * std::numbers::pi * found.modal.frequency_hz, found.modal.damping_ratio);
-  const double widen = found.interval_factor;
-  return {{"frequency [Hz]", "frequency_hz", 1.0, i.found.frequency_hz(), widen * i.frequency_deviation_hz,
-           found.modal.frequency_hz},
+  const double absent = found.modal_failure.empty() ? 0.0 : std::nan("");
+  const double of_frequency = found.frequency_factor(), of_damping = found.damping_factor();
+  return {{"frequency [Hz]", "frequency_hz", 1.0, i.found.frequency_hz(),
+           of_frequency * i.frequency_deviation_hz, absent + found.modal.frequency_hz},
           {"damping ratio [%]", "damping_ratio", 100.0, i.found.damping_ratio(),
-           widen * i.damping_ratio_deviation, found.modal.damping_ratio},
-          {"stiffness K [N/m]", "stiffness_n_per_m", 1.0, i.found.stiffness, widen * i.stiffness_deviation,
-           modal.stiffness},
-          {"damping C [N s/m]", "damping_n_s_per_m", 1.0, i.found.damping, widen * i.damping_deviation,
-           modal.damping}};
+           of_damping * i.damping_ratio_deviation, absent + found.modal.damping_ratio},
+          {"stiffness K [N/m]", "stiffness_n_per_m", 1.0, i.found.stiffness,
+           of_frequency * i.stiffness_deviation, absent + modal.stiffness},
+          {"damping C [N s/m]", "damping_n_s_per_m", 1.0, i.found.damping, of_damping * i.damping_deviation,
+           absent + modal.damping}};
 }
 
 namespace {
@@ -61,21 +63,56 @@ Json noise_values(const RecordIdentification& found, const Record& record) {
   return json;
 }
 
+Json modal_values(const RecordIdentification& found) {
+  if (!found.modal_failure.empty()) return {{"failure", found.modal_failure}};
+  const ModalEstimate& modal = found.modal;
+  Json json{{"frequency_hz", modal.frequency_hz},
+            {"damping_ratio", modal.damping_ratio},
+            {"frequency_standard_deviation_hz", modal.frequency_standard_deviation_hz},
+            {"damping_ratio_standard_deviation", modal.damping_ratio_standard_deviation},
+            {"companions", Json::array()}};
+  for (const CompanionMode& mode : modal.companions)
+    json["companions"].push_back({{"frequency_hz", mode.frequency_hz},
+                                  {"damping_ratio", mode.damping_ratio},
+                                  {"relative_amplitude", mode.amplitude / modal.amplitude}});
+  return json;
+}
+
+Json section_values(const RecordIdentification& found) {
+  const auto trend = [](const SectionTrend& of, double factor) {
+    return Json{{"varies", of.varies()}, {"probability", of.probability}, {"interval_factor", factor}};
+  };
+  Json json{{"frequency", trend(found.sections.frequency, found.frequency_factor())},
+            {"damping_ratio", trend(found.sections.damping, found.damping_factor())},
+            {"values", Json::array()}};
+  for (const DecaySection& section : found.sections.sections)
+    json["values"].push_back({{"from_s", section.from},
+                              {"to_s", section.to},
+                              {"amplitude", section.amplitude},
+                              {"frequency_hz", section.frequency_hz},
+                              {"frequency_standard_deviation_hz", section.frequency_deviation_hz},
+                              {"damping_ratio", section.damping_ratio},
+                              {"damping_ratio_standard_deviation", section.damping_ratio_deviation}});
+  return json;
+}
+
 }  // namespace
 
 Json values(const RecordIdentification& found, const Record& record) {
-  Json json{{"status", lost(found.identification, found.modal.frequency_hz) ? "diverged" : "converged"}};
+  Json json{{"status", to_string(found.judgement.verdict)}};
+  json["messages"] = found.judgement.messages;
   for (const Parameter& p : parameters(found))
     json[p.key] = {{"estimate", p.estimate},
                    {"standard_deviation", p.deviation},
                    {"lower_95", p.lower_95()},
                    {"upper_95", p.upper_95()},
-                   {"modal_analysis", p.modal}};
+                   {"modal_analysis", number_or_null(p.modal)}};
   json["equivalent_mass_kg"] = found.identification.found.mass;
   json["beam_frequency_hz"] = found.beam_frequency_hz;
   json["window_s"] = {record.time[0], record.time[record.size() - 1]};
   json["samples"] = record.size();
   json["interval_factor"] = found.interval_factor;
+  json["sections"] = section_values(found);
   json["noise_at_mode"] = {{"standard_deviation_si", found.near_mode.deviation},
                            {"freedom", found.near_mode.freedom},
                            {"slope", found.near_mode.slope},
@@ -91,23 +128,8 @@ Json values(const RecordIdentification& found, const Record& record) {
                                                            found.consistency->windows.end())},
                            {"lag_one_correlation", found.consistency->lag_one_correlation},
                            {"whiteness_p_value", found.consistency->whiteness_p_value}};
-  json["modal_analysis"] = {
-      {"frequency_hz", found.modal.frequency_hz},
-      {"damping_ratio", found.modal.damping_ratio},
-      {"frequency_standard_deviation_hz", found.modal.frequency_standard_deviation_hz},
-      {"damping_ratio_standard_deviation", found.modal.damping_ratio_standard_deviation}};
-  json["modal_analysis"]["companions"] = Json::array();
-  for (const CompanionMode& mode : found.modal.companions)
-    json["modal_analysis"]["companions"].push_back(
-        {{"frequency_hz", mode.frequency_hz},
-         {"damping_ratio", mode.damping_ratio},
-         {"relative_amplitude", mode.amplitude / found.modal.amplitude}});
-  if (found.reproduced.size() > 0) {
-    const auto there = record.samples.array().isFinite();
-    const Eigen::ArrayXXd left = record.samples - found.reproduced;
-    json["response_error_percent"] = 100.0 * std::sqrt(there.select(left, 0).square().sum() /
-                                                       there.select(record.samples, 0).squaredNorm());
-  }
+  json["modal_analysis"] = modal_values(found);
+  if (found.reproduced.size() > 0) json["response_error_percent"] = found.response_error_percent(record);
   if (found.diagnostics) json["diagnostics"] = values(*found.diagnostics, record.channel_names());
   json["events"] = values(found.identification.run.events);
   if (const auto& failure = found.identification.run.failure)

@@ -230,5 +230,25 @@ TEST_F(Tutorial, ShowsTheBiasOfForwardEuler) {
   EXPECT_NEAR(results.at("damping_n_s_per_m").at("estimate").get<double>(), predicted, 2e-3 * predicted);
 }
 
+// A script sees by the exit code alone that there is no estimate, and a reader in the first line why.
+TEST_F(Tutorial, HasAnExitCodeForADivergedFilterAndForAContradictedOne) {
+  const std::string file = contents(place_.folder() / "cantilever.toml");
+  place_.write("diverged.toml", file + "[noise]\nacceleration_m_per_s2 = 1e-12\n");
+  std::string text = file;
+  text.replace(text.find("\"exponential\""), 13, "\"forward_euler\"");
+  place_.write("euler.toml", text);
+  const Outcome diverged = place_.run("identify --config diverged.toml --json"),
+                contradicted = place_.run("identify --config euler.toml --json");
+  EXPECT_EQ(diverged.code, 3) << diverged.err;
+  EXPECT_EQ(json::parse(diverged.out).at("status"), "diverged");
+  EXPECT_THAT(json::parse(diverged.out).at("messages")[0].get<std::string>(), HasSubstr("DIVERGED: sample "));
+  EXPECT_EQ(contradicted.code, 3) << contradicted.err;
+  EXPECT_EQ(json::parse(contradicted.out).at("status"), "contradicted");
+  EXPECT_THAT(json::parse(contradicted.out).at("messages")[0].get<std::string>(),
+              HasSubstr("forward_euler at 4 ms makes C 965 % too large and K 0.102 % too small"));
+  EXPECT_EQ(place_.run("identify --config cantilever.toml --json").code, 0);
+  EXPECT_THAT(place_.run("identify --help").out, HasSubstr("Exit code 3"));
+}
+
 }  // namespace
 }  // namespace beamid::apps
