@@ -7,6 +7,7 @@
 #include "experiments/efficiency/interval_coverage.hpp"
 #include "experiments/efficiency/laboratory_records.hpp"
 #include "experiments/efficiency/report.hpp"
+#include "experiments/efficiency/seeded_decays.hpp"
 #include "experiments/input/choice_text.hpp"
 
 namespace beamid::apps {
@@ -19,10 +20,10 @@ options::options_description efficiency_options() {
   described.add_options()  //
       ("study", options::value<std::string>()->value_name("NAME")->default_value("filters"),
        "filters: against the bound; coverage: how often the intervals of identify hold the truth, with "
-       "higher modes and coloured noise (uses --runs, --seed, --noise and one --damping-ratio); records: "
-       "what "
-       "identify makes of laboratory records when given nothing but the beam (uses --runs [100], --seed and "
-       "--only)")  //
+       "higher modes and coloured noise (uses --runs, --seed, --noise and one --damping-ratio); decays: "
+       "whether identify ends well on clean decays of all lengths and dampings (uses --runs, --seed); "
+       "records: what identify makes of laboratory records when given nothing but the beam (uses --runs "
+       "[100], --seed and --only)")  //
       ("only", options::value<double>()->value_name("N"),
        "--study records: this record alone, from 0, with its files")  //
       ("filter",
@@ -92,11 +93,25 @@ CoverageSettings coverage_settings(const options::variables_map& values) {
   return settings;
 }
 
-/// --study records: a hundred of them unless --runs says another number.
-LaboratorySettings laboratory_settings(const options::variables_map& values) {
+/// Options that a study with conditions of its own has no use for.
+void refuse_conditions(const options::variables_map& values, const char* study) {
   for (const char* other : {"filter", "passes", "guess", "sampled-runs", "damping-ratio", "noise"})
     if (values.count(other) && !values[other].defaulted())
-      throw UsageError(std::string("efficiency: --study records takes no --") + other);
+      throw UsageError(std::string("efficiency: --study ") + study + " takes no --" + other);
+}
+
+/// --study decays: of all lengths and dampings, drawn.
+SeededDecays decay_settings(const options::variables_map& values) {
+  refuse_conditions(values, "decays");
+  SeededDecays settings;
+  settings.runs = static_cast<int>(whole(values, "runs", 1, 1e6));
+  settings.seed = seed_of(values);
+  return settings;
+}
+
+/// --study records: a hundred of them unless --runs says another number.
+LaboratorySettings laboratory_settings(const options::variables_map& values) {
+  refuse_conditions(values, "records");
   LaboratorySettings settings;
   if (!values["runs"].defaulted()) settings.records = static_cast<int>(whole(values, "runs", 1, 1e5));
   settings.seed = seed_of(values);
@@ -140,6 +155,11 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     deliver(values, [&] { return report(interval_coverage(settings, show_progress())); });
     return 0;
   }
+  if (study == "decays") {
+    const SeededDecays settings = decay_settings(values);
+    deliver(values, [&] { return report(seeded_decays(settings, show_progress())); });
+    return 0;
+  }
   if (study == "records") {
     const LaboratorySettings settings = laboratory_settings(values);
     const bool one = values.count("only") > 0;
@@ -150,7 +170,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     return 0;
   }
   if (study != "filters")
-    throw UsageError("efficiency: --study is '" + study + "'; expected filters, coverage or records");
+    throw UsageError("efficiency: --study is '" + study + "'; expected filters, coverage, decays or records");
   if (values.count("only")) throw UsageError("efficiency: --only goes with --study records");
   const EfficiencySettings settings = settings_of(values);
   deliver(values, [&] { return report(find_efficiency(settings, show_progress())); });
@@ -169,6 +189,7 @@ Command efficiency_command() {
       "  beamid efficiency --filter ekf --guess ends --noise 0.002 --passes single\n"
       "  beamid efficiency --runs 4000 --out results\n"
       "  beamid efficiency --study coverage --runs 2000 --out intervals\n"
+      "  beamid efficiency --study decays --runs 2000 --out decays\n"
       "  beamid efficiency --study records --out records\n"
       "  beamid efficiency --study records --only 7 --out record_7\n",
       run};

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -162,6 +164,7 @@ void lead_with(Results& results, const std::string& record_name, const Record& r
   auto place = results.report.begin() + (titled ? 1 : 0) + static_cast<std::ptrdiff_t>(told.size());
   for (const std::string& warning : record.warnings) {
     const std::string text = record_name.empty() ? warning : record_name + ": " + warning;
+    if (std::find(told.begin(), told.end(), text) != told.end()) continue;
     place = results.report.insert(place, Paragraph{"WARNING. " + text}) + 1;
     told.push_back(text);
   }

@@ -130,7 +130,6 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
   for (const IdentifiedRecord& one : joint.records) {
-    for (const std::string& text : one.record.warnings) results.paragraph(one.name + ": " + text);
     for (const std::string& text : one.found.judgement.messages) results.paragraph(one.name + ": " + text);
   }
   results.paragraph(fmt::format(

@@ -187,7 +187,6 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   const Record placed = with_places(record, experiment);
   results.values["channels"] = channel_values(placed);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
-  for (const std::string& text : record.warnings) results.paragraph(text);
   for (const std::string& text : found.judgement.messages) results.paragraph(text);
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",

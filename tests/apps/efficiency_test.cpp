@@ -67,11 +67,17 @@ TEST(Efficiency, HandsOverALaboratoryRecordToRepeat) {
   EXPECT_EQ(study["damping_ratio"]["estimate"], alone["damping_ratio"]["estimate"]);
 }
 
+TEST(Efficiency, CountsCleanDecaysThatFail) {
+  const Outcome outcome = Workplace().run("efficiency --study decays --runs 5 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out)["failed"], 0);
+}
+
 TEST(Efficiency, NamesWhatItRefuses) {
   const std::pair<const char*, const char*> refused[] = {
       {"--runs 1", "--runs is 1; expected a whole number from 2 to 1e+06"},
       {"--damping-ratio 1", "--damping-ratio is 1; expected a number between 0 and 1"},
-      {"--study all", "--study is 'all'; expected filters, coverage or records"},
+      {"--study all", "--study is 'all'; expected filters, coverage, decays or records"},
       {"--study records --noise 0.1", "--study records takes no --noise"},
       {"--study records --runs 5 --only 5", "--only is 5; expected a whole number from 0 to 4"},
       {"--only 3", "--only goes with --study records"},
