@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "experiments/inspection/value_steps.hpp"
 #include "experiments/signal/median.hpp"
@@ -66,15 +67,29 @@ bool held_by_hand(const std::vector<double>& signal, const Run& run, double midd
   return length > longest * after || before > 0.5 * length + slower * after + few;
 }
 
+/// Whether a run lasts longer than the peak of a sine of this height, rounded to steps, can stay on its
+/// highest value: 2 acos((c - s/2) / (c + s/2)) of the pi of half a period, c from the middle, s the step.
+bool beyond_a_rounded_peak(const std::vector<double>& signal, const Run& run, double step, double middle) {
+  constexpr double clearly = 1.3, few = 2;
+  const double height = std::abs(run.value - middle), length = static_cast<double>(run.length),
+               half_period = way_to(signal, run.first, -1, middle) - 1 +
+                             way_to(signal, run.first + run.length - 1, 1, middle) - 1 + length;
+  const double share = 2 / std::numbers::pi * std::acos((height - step / 2) / (height + step / 2));
+  return height > step && length - few > clearly * share * half_period;
+}
+
 /// Whether a value, the highest or the lowest, is a limit.
 bool is_limit(const std::vector<double>& signal, const std::vector<Run>& runs, const ValueSteps& steps,
               double value, double middle) {
   constexpr std::size_t held = 3, met = 3, times_as_often = 3;
   const double least = jump * steps.near(value);
-  std::size_t meetings = 0, samples = 0;
+  std::size_t meetings = 0, samples = 0, stays = 0;
   for (const Run& run : runs) {
     if (run.value != value) continue;
     samples += run.length;
+    if (!held_by_hand(signal, run, middle) && beyond_a_rounded_peak(signal, run, steps.near(value), middle) &&
+        ++stays >= met)
+      return true;
     const Ends ends = jumps(signal, run, least);
     if (!ends.before || !ends.after || held_by_hand(signal, run, middle)) continue;
     if (run.length >= held) return true;

@@ -60,6 +60,17 @@ TEST(Defects, FindEveryClippedSample) {
     }
 }
 
+// A limit behind a coarse converter comes and goes by small steps, but holds for longer than a sine does.
+TEST(Defects, FindClippingBehindACoarseConverter) {
+  for (const double period : {29.0, 151.0})
+    for (const double step : {0.05, 0.1}) {
+      Signal clipped = decay(static_cast<std::size_t>(40 * period), period, 0.005);
+      for (double& sample : clipped) sample = step * std::round(std::clamp(sample, -2.5, 2.5) / step);
+      const Defects found = find_defects(clipped, SignalKind::motion);
+      EXPECT_GE(samples_in(found.clipped), beyond(clipped, 2.49)) << period << ", " << step;
+    }
+}
+
 void expect_healthy(const Signal& signal, const std::string& what) {
   const Defects found = find_defects(signal, SignalKind::motion);
   EXPECT_FALSE(found.dead) << what;
