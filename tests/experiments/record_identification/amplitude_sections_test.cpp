@@ -56,7 +56,7 @@ Varying varying(const Law& law, double periods, double noise, std::uint64_t seed
 }
 
 // The rig's kind: from 0.7 down to 0.2 %, or less, with a frequency that falls by up to 0.5 %. Of all
-// instants of all decays 93 to 97 % lie in the interval of their decay.
+// instants of all decays 93 to 97 % should lie in the interval of their decay.
 TEST(AmplitudeSections, MakeIntervalsThatHoldWhatTheDampingIsAlongTheDecay) {
   constexpr int decays = 60;
   std::mt19937_64 generator(11);
