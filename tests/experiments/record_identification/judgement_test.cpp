@@ -104,7 +104,9 @@ TEST(Judgement, NamesAnotherMode) {
   const RecordIdentification r = identified(simulated.experiment(), record);
   ASSERT_EQ(r.modal.companions.size(), 1u);
   EXPECT_NEAR(r.modal.damping_ratio, simulated.damping_ratio, 0.05 * simulated.damping_ratio);
-  if (!r.judgement.messages.empty()) EXPECT_THAT(r.judgement.messages[0], HasSubstr("another mode at"));
+  if (!r.judgement.messages.empty()) {
+    EXPECT_THAT(r.judgement.messages[0], HasSubstr("another mode at"));
+  }
 }
 
 TEST(Report, BeginsWithTheWarningsOfTheRecord) {
