@@ -32,8 +32,6 @@ constexpr double last_doubt = 30;  // deviations of K and C told, with which the
 // make P0 and R differ by more digits than double precision has.
 constexpr double smallest_noise = 1e-6;
 
-}
-
 double expected_frequency_hz(const Experiment& experiment, const RecordIdentification& known) {
   if (!experiment.prior.stiffness) return known.beam_frequency_hz;
   return Oscillator{known.model.equivalent_mass, *experiment.prior.stiffness}.frequency_hz();
