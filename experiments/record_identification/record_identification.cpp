@@ -200,7 +200,10 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
   };
   const bool analysed = result.modal_failure.empty();
   // a filter of one mode that starts where the modal analysis has separated two follows the beat
-  const bool alone = analysed && result.modal.companions.empty();
+  constexpr double absurd =
+      1e-3;  // a stated noise so far below the record's would make of any start a certainty
+  const bool alone = analysed && result.modal.companions.empty() &&
+                     result.noise_deviation[0] > absurd * result.near_mode.deviation;
   if (alone) start_from_mode(experiment.prior, record.interval(), result);
   if (result.noise_method == "before_event") take_quiet_noise(quiet_noise, record, result);
   filter();

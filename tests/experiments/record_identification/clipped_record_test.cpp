@@ -44,7 +44,7 @@ TEST_P(ClippedRecord, IsIdentifiedByWhatWasMeasured) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Levels, ClippedRecord, testing::Values(0.9, 0.8));
+INSTANTIATE_TEST_SUITE_P(Levels, ClippedRecord, testing::Values(0.9, 0.8, 0.5, 0.2));
 
 // The same readings left in: what they are cut by is no motion of the mode, and whatever of it is at the
 // mode's frequency, no interval is shorter than the filter's.

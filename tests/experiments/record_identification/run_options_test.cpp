@@ -33,12 +33,12 @@ TEST(Diagnostics, ComeWithEveryIdentification) {
   EXPECT_EQ(counted, static_cast<double>(record.size()));
 }
 
-// Oracle: a noise said to be 1e-12 m where it is 1e-4 m ends the run that stops; the others reach the end and
+// Oracle: a noise said to be 1e-14 m where it is 1e-4 m ends the run that stops; the others reach the end and
 // tell what they met.
 TEST(OnFailure, GoesOnWhereItIsAskedTo) {
   const Record record = simulated.record({Quantity::displacement}, 0.01, 9);
   Experiment experiment = simulated.experiment();
-  experiment.noise = {{Quantity::displacement, 1e-12}};
+  experiment.noise = {{Quantity::displacement, 1e-14}};
   ASSERT_TRUE(identify_record(experiment, record).identification.run.failure);
   experiment.on_failure = filters::OnFailure::inflate;
   const RecordIdentification found = identify_record(experiment, record);
