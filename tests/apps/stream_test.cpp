@@ -132,16 +132,17 @@ class StreamInterrupted : public Stream, public testing::WithParamInterface<cons
 
 TEST_P(StreamInterrupted, KeepsItsStateAndEndsByTheSignal) {
   place_.write("samples", part(0, 20));
-  place_.write("end.sh",
-               std::string("mkfifo pipe\n"
-                           "\"$1\" stream --config cantilever.toml --save-state now.json <pipe >rows & "
-                           "started=$!\n"
-                           "exec 3>pipe\ncat samples >&3\n"
-                           "while kill -0 $started && [ \"$(wc -l <rows)\" -lt 21 ]; do sleep 0.01; done\n"
-                           "kill -") +
-                   GetParam() + " $started\nwait $started\necho $?\n");
-  // bash, since a shell that runs a command in the background without job control ignores SIGINT for it
-  const Outcome outcome = place_.run("--version >version; bash -m end.sh '" BEAMID_COMMAND "'");
+  // A shell without job control ignores SIGINT for what it runs in the background: env takes that back.
+  place_.write(
+      "end.sh",
+      "mkfifo pipe\n: >rows\n"
+      "env --default-signal=INT \"$1\" stream --config cantilever.toml --save-state now.json <pipe >rows & "
+      "started=$!\n"
+      "exec 3>pipe\ncat samples >&3\n"
+      "while kill -0 $started && [ \"$(wc -l <rows)\" -lt 21 ]; do sleep 0.01; done\n"
+      "kill -$2 $started\nwait $started\necho $?\n");
+  const Outcome outcome =
+      place_.run("--version >version; timeout 20 sh end.sh '" BEAMID_COMMAND "' " + std::string(GetParam()));
   EXPECT_THAT(outcome.out, HasSubstr(std::string(GetParam()) == "INT"    ? "130\n"
                                      : std::string(GetParam()) == "TERM" ? "143\n"
                                                                          : "129\n"));
