@@ -26,6 +26,7 @@ std::vector<std::string> parts_of(const Acquisition& a) {
     parts.push_back(
         fmt::format("{} gap{} of {:g} to {:g} s", a.gaps, a.gaps == 1 ? "" : "s", a.gap.first, a.gap.second));
   if (a.repeated > 0) parts.push_back(fmt::format("{:g} % of the samples repeated", 100 * a.repeated));
+  if (!a.force) parts.emplace_back("the force not measured");
   return parts;
 }
 
@@ -71,6 +72,7 @@ void describe(const Acquisition& a, Json& configuration) {
   if (a.jitter > 0) json.update({{"jitter", a.jitter}, {"median_shortfall", a.median_shortfall}});
   if (a.gaps > 0) json.update({{"gaps", a.gaps}, {"gap_s", {a.gap.first, a.gap.second}}});
   if (a.repeated > 0) json["repeated"] = a.repeated;
+  if (!a.force) json["force"] = false;
   for (std::size_t i = 0; i < a.sensors.size(); ++i)
     if (const Json sensor = values_of(a.sensors[i]); !sensor.is_null())
       json["sensors"][std::to_string(i + 1)] = sensor;

@@ -239,7 +239,8 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
     test.record.warnings.push_back(
         "The base moves, which the record does not hold: an identification takes this motion for a free "
         "decay.");
-  else if (history.loading.inputs.size() > 0)
+  else if (acquisition.force && test.excitation.kind != Excitation::Kind::release &&
+           history.loading.inputs.size() > 0)
     add_force(test, clock, history.loading.inputs.row(input), steps, experiment.beam.length());
   lose_samples(acquisition, test.record, settings.seed);
   return test;

@@ -121,7 +121,7 @@ void spoil_sensor(const std::vector<Kind>& kinds, Draw& draw, Lines& sensor) {
 
 std::string logger(const std::vector<Kind>& kinds, double pretrigger, Draw& draw) {
   const auto has = [&](Kind kind) { return std::find(kinds.begin(), kinds.end(), kind) != kinds.end(); };
-  Lines lines{"[acquisition]\n"};
+  Lines lines{"[acquisition]\nforce = false\n"};
   if (pretrigger > 0) lines.add("pretrigger_s", pretrigger);
   if (has(Kind::jitter)) {
     lines.add("jitter", 0.3);

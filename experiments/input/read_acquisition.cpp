@@ -43,6 +43,7 @@ Acquisition read_acquisition(const TomlTable& root) {
   acquisition.gap = table->find_interval("gap_s").value_or(acquisition.gap);
   if (!(acquisition.gap.first > 0)) table->refuse("gap_s", "a shortest gap above 0");
   acquisition.repeated = share(*table, "repeated", most_repeated);
+  acquisition.force = table->find_truth("force").value_or(true);
   return acquisition;
 }
 

@@ -92,7 +92,7 @@ const std::vector<TableVocabulary>& vocabulary() {
        {"name", "position_m", "quantity", "distance_m", "noise_m", "noise_m_per_s", "noise_m_per_s2",
         "noise_m_per_m", "clipping", "resolution", "offset", "drift", "startup", "startup_s", "rattle",
         "rattle_above", "dead"}},
-      {"acquisition", {"pretrigger_s", "jitter", "median_shortfall", "gaps", "gap_s", "repeated"}},
+      {"acquisition", {"pretrigger_s", "jitter", "median_shortfall", "gaps", "gap_s", "repeated", "force"}},
       {"simulation",
        {"duration_s", "sampling_rate_hz", "steps_per_sample", "method", "frames", "seed"},
        true},

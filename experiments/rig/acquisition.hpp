@@ -32,6 +32,7 @@ struct Acquisition {
   int gaps = 0;                   ///< how often samples are missing
   std::pair<double, double> gap{0.01, 0.3};  ///< shortest and longest gap [s]
   double repeated = 0.0;                     ///< share of samples that show the reading before once more
+  bool force = true;                         ///< the exciting force is measured, but for a release
   std::vector<SensorDefects> sensors = {};   ///< in the order of the sensors; missing ones have no defect
 
   bool even() const { return !(jitter > 0) && gaps == 0; }  ///< samples at equal intervals throughout
