@@ -180,6 +180,20 @@ std::string difference_text(const RecordIdentification& found, bool frequency, b
   return text + ", by more than their intervals";
 }
 
+// Of an interval that is no narrower than half of its estimate to either side.
+std::string undetermined_text(const RecordIdentification& found) {
+  constexpr double wide = 0.5;
+  const Identification& filter = found.identification;
+  const double ratio = filter.found.damping_ratio(),
+               half = quantile_95 * found.damping_factor() * filter.damping_ratio_deviation;
+  if (!(half > wide * std::abs(ratio))) return {};
+  std::string text = fmt::format("The record hardly determines the damping ratio, {:.2g} +- {:.2g} %",
+                                 100.0 * ratio, 100.0 * half);
+  for (const std::string& cause : {by_unsteady_noise(found), by_companion(found), by_amplitude(found)})
+    if (!cause.empty()) return text + ": " + cause + ".";
+  return text + ": noise, or too short a decay.";
+}
+
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -228,6 +242,7 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   const bool damping =
       exclude_each_other(ratio, found.damping_factor() * identification.damping_ratio_deviation, modal_ratio,
                          found.modal.damping_ratio_standard_deviation, rounding_of_damping);
+  if (const std::string wide = undetermined_text(found); !wide.empty()) judgement.messages.push_back(wide);
   if (!frequency && !damping) return judgement;
   std::string text = difference_text(found, frequency, damping);
   const std::string cause = cause_of(experiment, record, found);

@@ -198,16 +198,15 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
       return 0;
     });
   };
-  const bool analysed = result.modal_failure.empty();
-  // a filter of one mode that starts where the modal analysis has separated two follows the beat
-  constexpr double absurd =
-      1e-3;  // a stated noise so far below the record's would make of any start a certainty
-  const bool alone = analysed && result.modal.companions.empty() &&
-                     result.noise_deviation[0] > absurd * result.near_mode.deviation;
-  if (alone) start_from_mode(experiment.prior, record.interval(), result);
+  const bool analysed = result.modal_failure.empty(), beside_others = !result.modal.companions.empty();
+  // Noise stated so far below the record's would make of any start a certainty. A filter of one mode that
+  // starts where the modal analysis has separated two follows the beat.
+  constexpr double absurd = 1e-3;
+  const bool stated_well = result.noise_deviation[0] > absurd * result.near_mode.deviation;
+  if (analysed && !beside_others && stated_well) start_from_mode(experiment.prior, record.interval(), result);
   if (result.noise_method == "before_event") take_quiet_noise(quiet_noise, record, result);
   filter();
-  if (analysed && !alone && lost(result.identification, result.modal.frequency_hz)) {
+  if (analysed && beside_others && stated_well && lost(result.identification, result.modal.frequency_hz)) {
     start_from_mode(experiment.prior, record.interval(), result);
     filter();
   }

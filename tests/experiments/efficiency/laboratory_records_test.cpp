@@ -91,5 +91,16 @@ TEST(LaboratoryRecords, RefuseNone) {
   EXPECT_THROW(examine({12, 1}, 12), std::invalid_argument);
 }
 
+// Every kind twice. Oracle: the beams that were simulated.
+TEST(LaboratoryRecords, AreRightOrRefusedForTheirCause) {
+  const LaboratoryRecords all = laboratory_records({2 * laboratory_kinds, 1}, [](const std::string&) {});
+  for (const IdentifiedTest& one : all.tests) {
+    const bool dead = one.test.kinds.front() == LaboratoryKind::dead;
+    EXPECT_EQ(one.outcome,
+              dead || one.test.number == 9 ? LaboratoryOutcome::refused : LaboratoryOutcome::right)
+        << one.test.number << ": " << one.said;
+  }
+}
+
 }  // namespace
 }  // namespace beamid::experiments

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "experiments/discretisation_bias.hpp"
+#include "experiments/preparation/preparation_report.hpp"
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
 namespace beamid::experiments {
@@ -39,6 +40,14 @@ TEST(Judgement, HasNothingToSayOfAGoodRecord) {
     EXPECT_EQ(r.judgement.verdict, Verdict::converged);
     EXPECT_THAT(r.judgement.messages, IsEmpty()) << seed;
   }
+}
+
+// Cramer-Rao: 2 s behind the release, with noise of 0.4 of the amplitude, know the damping to about 100 %.
+TEST(Judgement, SaysWhereTheDampingIsHardlyDetermined) {
+  const Record record = simulated.record({Quantity::acceleration}, 0.4, 3).window(0, 2);
+  const RecordIdentification r = identified(simulated.experiment(), record);
+  ASSERT_FALSE(r.judgement.messages.empty());
+  EXPECT_THAT(r.judgement.messages[0], HasSubstr("The record hardly determines the damping ratio"));
 }
 
 // C_f / C - 1 by the closed form, with the sampling interval of 5 ms: 1200 %.
@@ -112,7 +121,12 @@ TEST(Judgement, NamesAnotherMode) {
 TEST(Report, BeginsWithTheWarningsOfTheRecord) {
   Record record = simulated.record({Quantity::acceleration}, 0.01, 1);
   record.warnings = {"Channel tip is clipped."};
-  const std::string text = printed(simulated.experiment(), record);
+  const Experiment experiment = simulated.experiment();
+  Results results = report(experiment, record, "record.csv", identify_record(experiment, record));
+  lead_with(results, "", record);
+  std::ostringstream shown;
+  print(shown, results);
+  const std::string text = shown.str();
   ASSERT_NE(text.find("Channel tip is clipped."), std::string::npos);
   EXPECT_LT(text.find("Channel tip is clipped."), text.find("samples from"));
 }
