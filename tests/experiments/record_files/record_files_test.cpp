@@ -505,8 +505,8 @@ TEST(DelimitedTextReader, TakesADecimalCommaWhereRowsShowIt) {
 TEST(DelimitedTextReader, CountsAndLocatesTheLinesItIsToldToSkip) {
   const TemporaryFile file(
       "bad.txt",
-      "C:\\data\\run 5.txt\nRate - 10\na\tb\tt\ng\tg\ts\n0.0 0.0\t\t1\n1\t2\t0\n2\t3\t0.1\n3\tx\t0.2\n"
-      "4\t5\t0.3\n5\t6\n6\t7\t0.4\n");
+      "C:\\data\\run 5.txt\nRate - 10\na\tb\tt\ng\tg\ts\n0.0 0.0\t\t1\n1\t2\t0.00\n2\t3\t0.10\n3\tx\t0.20\n"
+      "4\t5\t0.30\n5\t6\n6\t7\t0.40\n");
   EXPECT_NE(input_error_of(file, [&] { read_record(file.path()); }), "no error");
   RecordFormat format;
   format.skip_malformed = true, format.irregular = true;
