@@ -98,8 +98,7 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
   return results;
 }
 
-void refuse_what_needs_one_record(const options::variables_map& values,
-                                  const std::vector<IdentifyRequest>& requests) {
+void refuse_what_needs_one_record(const std::vector<IdentifyRequest>& requests) {
   const Experiment& experiment = requests[0].experiment;
   if (!experiment.smoother.empty()) throw UsageError("identify: a smoother takes one RECORD");
   if (experiment.estimator != "filter")
@@ -190,7 +189,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   const fs::path config = configs[0];
   const std::string law = damping_law(values);
   const std::vector<IdentifyRequest> requests = identify_requests(values, config);
-  if (requests.size() > 1) refuse_what_needs_one_record(values, requests);
+  if (requests.size() > 1) refuse_what_needs_one_record(requests);
   int code = 0;
   deliver(values, [&] {
     try {

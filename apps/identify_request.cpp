@@ -62,12 +62,11 @@ void take_window(const options::variables_map& values, std::size_t which, std::s
 options::options_description identify_options() {
   options::options_description described("Options");
   described.add_options()  //
-      (
-          "config", options::value<std::vector<std::string>>()->value_name("FILE"),
-          "experiment file: beam, columns, units, window, filter (docs/configuration.md); repeated, one for "
-          "each "
-          "record: beams that share the [[parameters]] of one name, as lengths of one strip share its "
-          "stiffness")  //
+      ("config", options::value<std::vector<std::string>>()->value_name("FILE"),
+       "experiment file: beam, columns, units, window, filter (docs/configuration.md); repeated, one for "
+       "each "
+       "record: beams that share the [[parameters]] of one name, as lengths of one strip share its "
+       "stiffness")  //
       ("window", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
        "part of the record to use [s], instead of the experiment file's; after RECORD; of several records, "
        "once for all or once for each; without any, the decay behind the last hit or release")  //

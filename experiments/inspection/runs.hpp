@@ -19,9 +19,9 @@ std::size_t samples_in(const std::vector<Run>& runs);
 /// next to it, and is both reached and left by a jump of at least four of the smallest steps between values
 /// near it. A resolved peak stays on its highest value too, when the converter's steps are coarse, but comes
 /// and goes by small steps: a sine that is within half a step for three samples is within two a sample later.
-/// Where a limit hides among such steps, three runs show it that stay longer than a rounded sine can, clearly.
-/// What is held before a release is reached slowly, or held for fifteen times as long as the signal then
-/// takes to its median.
+/// Where a limit hides among such steps, three runs show it that stay longer than a rounded sine can,
+/// clearly. What is held before a release is reached slowly, or held for fifteen times as long as the signal
+/// then takes to its median.
 std::vector<Run> clipped_runs(const std::vector<double>& signal);
 
 /// Drop-outs: samples that are not finite, and runs of one value three times as long as the signal's own

@@ -103,13 +103,13 @@ void StreamedIdentification::list_failures() {
 }
 
 void StreamedIdentification::heed(const filters::Gaussian& predicted) {
-  using Verdict = InnovationWatch::Verdict;
+  using Watched = InnovationWatch::Verdict;
   const filters::Correction& correction = running_->correction();
   const Index outputs = correction.innovation.size();
   const bool before = watch_.settled();
-  const Verdict verdict = watch_.judge(correction.normalised_square, outputs);
+  const Watched verdict = watch_.judge(correction.normalised_square, outputs);
   status_ = watch_.settled() ? Status::settled : Status::settling;
-  if (verdict == Verdict::leave_out) {
+  if (verdict == Watched::leave_out) {
     filter_->reset(predicted);
     status_ = Status::left_out;
     if (watch_.left_out() <= outliers_told)
@@ -118,7 +118,7 @@ void StreamedIdentification::heed(const filters::Gaussian& predicted) {
                       "; expected {}.{}",
                       running_->step(), running_->time(), correction.normalised_square, outputs,
                       watch_.left_out() < outliers_told ? "" : " Others are counted only."));
-  } else if (verdict != Verdict::keep) {
+  } else if (verdict != Watched::keep) {
     begin_anew(verdict);
   } else if (watch_.settled() && outputs > 0) {
     if (!before && watch_.starts() > 0)
@@ -132,14 +132,14 @@ void StreamedIdentification::heed(const filters::Gaussian& predicted) {
 }
 
 void StreamedIdentification::begin_anew(InnovationWatch::Verdict why) {
-  using Verdict = InnovationWatch::Verdict;
+  using Watched = InnovationWatch::Verdict;
   status_ = Status::begun_anew;
   std::string said;
   const double time = running_->time(), square = watch_.square_at_verdict();
-  if (why == Verdict::jumped)
+  if (why == Watched::jumped)
     said = fmt::format("{} samples in a row up to {:.6g} s do not continue the motion: a hit or a release.",
                        InnovationWatch::several, time);
-  else if (why == Verdict::returned)
+  else if (why == Watched::returned)
     said = fmt::format(
         "At {:.6g} s the innovations agree with the filter; what it learned before is dropped.", time);
   else
@@ -150,7 +150,7 @@ void StreamedIdentification::begin_anew(InnovationWatch::Verdict why) {
         "or "
         "another structure.",
         time, InnovationWatch::window, square);
-  if (why == Verdict::left) newer_ = older_;
+  if (why == Watched::left) newer_ = older_;
   Known start = at_first();
   if (newer_ && watch_.unsettled() <= forget_after) {
     start = *newer_;
@@ -158,7 +158,7 @@ void StreamedIdentification::begin_anew(InnovationWatch::Verdict why) {
   } else {
     const Known now = newer_.value_or(known_now());
     const VectorXd far = (now.mean - start.mean).cwiseAbs2() - 9.0 * start.covariance.diagonal();
-    if (why != Verdict::gave_up && (far.array() <= 0.0).all()) start.mean = now.mean;
+    if (why != Watched::gave_up && (far.array() <= 0.0).all()) start.mean = now.mean;
     newer_.reset();
     older_.reset();
     said += " The filter begins anew, K and C as uncertain as at first.";

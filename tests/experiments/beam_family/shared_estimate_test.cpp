@@ -32,9 +32,9 @@ struct Linear {
 // Each record has one measurement of a combination of a and b, which by itself tells neither; c is the
 // second's.
 TEST(SharedEstimate, IsThatOfAllMeasurementsAtOnce) {
-  const Linear first{(MatrixXd(1, 2) << 3.0, 1.0).finished(), VectorXd::Constant(1, 5.1)},
-      second{(MatrixXd(2, 3) << 2.0, -1.0, 0.5, 0.0, 0.0, 4.0).finished(), Eigen::Vector2d(0.4, 8.2)},
-      third{(MatrixXd(1, 2) << 1.0, 1.0).finished(), VectorXd::Constant(1, 3.0)};
+  const Linear first{MatrixXd{{3.0, 1.0}}, VectorXd::Constant(1, 5.1)},
+      second{MatrixXd{{2.0, -1.0, 0.5}, {0.0, 0.0, 4.0}}, Eigen::Vector2d(0.4, 8.2)},
+      third{MatrixXd{{1.0, 1.0}}, VectorXd::Constant(1, 3.0)};
   const SharedEstimate joint =
       shared_estimate({first.belief({"a", "b"}), second.belief({"a", "b", "c"}), third.belief({"b", "a"})});
   EXPECT_EQ(joint.names, (std::vector<std::string>{"a", "b", "c"}));

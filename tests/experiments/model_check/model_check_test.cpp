@@ -175,7 +175,7 @@ TEST(ModelCheck, NamesTheRecordThatContradictsTheOthers) {
   const ModelCheck check = check_model({beam}, {});
   ASSERT_EQ(check.contradictions.size(), 1u);
   EXPECT_THAT(check.contradictions[0], HasSubstr("c.csv contradicts a.csv, b.csv: mode 1"));
-  EXPECT_TRUE(check.strays.empty());  // not a neighbour as well
+  EXPECT_TRUE(check.strays.empty());           // not a neighbour as well
   beam.modes[1].records = {"a.csv", "c.csv"};  // beside mode 1 in one record: another motion
   EXPECT_TRUE(check_model({beam}, {}).contradictions.empty());
 }
