@@ -37,7 +37,7 @@ struct AmplitudeSections {
 /// Three to ten sections of three periods or more, each fitted by itself (fit_damped_sines) behind the
 /// decimation of the modal analysis; then lines v = a + b u through their values, with u = A, log A or 1/A of
 /// the section's amplitude A (friction that grows with velocity, any, Coulomb's), the best of the three. The
-/// quantity varies where b is not zero, or the sections scatter about the line, with a probability below 0.3
+/// quantity varies where b is not zero, or the sections scatter about the line, with a probability below 1
 /// %. Sections whose amplitude has fallen to three deviations of the noise are left out; none are made beside
 /// a companion mode, whose beat is not a matter of amplitude.
 AmplitudeSections amplitude_sections(const Eigen::VectorXd& signal, double interval,

@@ -56,7 +56,7 @@ Varying varying(const Law& law, double periods, double noise, std::uint64_t seed
 }
 
 // The rig's kind: from 0.7 down to 0.2 %, or less, with a frequency that falls by up to 0.5 %. Of all
-// instants of all decays 93 to 97 % should lie in the interval of their decay.
+// instants of all decays whose variation is found, 93 to 97 % lie in the interval of their decay.
 TEST(AmplitudeSections, MakeIntervalsThatHoldWhatTheDampingIsAlongTheDecay) {
   constexpr int decays = 60;
   std::mt19937_64 generator(11);
@@ -64,6 +64,7 @@ TEST(AmplitudeSections, MakeIntervalsThatHoldWhatTheDampingIsAlongTheDecay) {
     return from + (to - from) * static_cast<double>(generator() >> 11) * 0x1p-53;
   };
   double damping = 0, frequency = 0;
+  int of_damping = 0, of_frequency = 0;
   for (int i = 0; i < decays; ++i) {
     const Law law{between(0.002, 0.004), between(0.0005, 0.005), between(0.5, 2.0), between(0.0, 0.005)};
     const Varying decay =
@@ -76,15 +77,19 @@ TEST(AmplitudeSections, MakeIntervalsThatHoldWhatTheDampingIsAlongTheDecay) {
       return static_cast<double>(((values.array() - estimate).abs() < half).count()) /
              static_cast<double>(values.size());
     };
-    damping += inside(decay.damping_ratio, found.found.damping_ratio(), half_ratio) / decays;
-    frequency += inside(decay.frequency_hz, found.found.frequency_hz(), half_frequency) / decays;
+    if (r.sections.damping.varies()) {
+      damping += inside(decay.damping_ratio, found.found.damping_ratio(), half_ratio);
+      ++of_damping;
+    }
+    if (r.sections.frequency.varies()) {
+      frequency += inside(decay.frequency_hz, found.found.frequency_hz(), half_frequency);
+      ++of_frequency;
+    }
   }
-  RecordProperty("damping_ratio", std::to_string(damping));
-  RecordProperty("frequency", std::to_string(frequency));
-  EXPECT_GT(damping, 0.85);
-  EXPECT_LT(damping, 0.98);
-  EXPECT_GT(frequency, 0.85);
-  EXPECT_LT(frequency, 0.98);
+  EXPECT_GE(of_damping, 54);  // of the others noise hides the variation
+  EXPECT_GE(of_frequency, 48);
+  EXPECT_NEAR(damping / of_damping, 0.95, 0.02);
+  EXPECT_NEAR(frequency / of_frequency, 0.95, 0.02);
 }
 
 TEST(AmplitudeSections, SayWhatVariesAndByHowMuch) {
