@@ -98,8 +98,8 @@ TEST(Verdict, TheForceOfASimulatedTestIsInItsRecord) {
   const ComparedRun& run = found.runs[0];
   ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
   // Without the force: E I 0.1 to 2 % off, ratio -63 to -102 %.
-  EXPECT_NEAR(*run.parameters[0].error_percent(), 0.0, 0.2);
-  EXPECT_NEAR(*run.parameters[1].error_percent(), 0.0, 15.0);
+  EXPECT_NEAR(*run.parameters[0].error_percent(), 0.0, 0.02);
+  EXPECT_NEAR(*run.parameters[1].error_percent(), 0.0, 1.0);
 }
 
 // The basis follows the estimate: shapes of the initial estimate's beam, with a tip mass 16 % too light, take
