@@ -180,6 +180,27 @@ std::string difference_text(const RecordIdentification& found, bool frequency, b
   return text + ", by more than their intervals";
 }
 
+// A line at a multiple of the mode's frequency: readings cut off that no test of runs has found, or a
+// stiffness that is not linear. It belongs to the motion that is identified, so that no fit of two modes
+// helps.
+std::string overtone_text(const RecordIdentification& found) {
+  constexpr double least_share = 0.1, near = 0.02, hardly_white = 1e-6;
+  if (!found.consistency || found.consistency->whiteness_p_value > hardly_white) return {};
+  for (const CompanionMode& other : found.modal.companions) {
+    const double times = other.frequency_hz / found.modal.frequency_hz,
+                 share = other.amplitude / found.modal.amplitude;
+    const double whole = std::round(times);
+    if (whole < 2 || std::abs(times - whole) > near || share < least_share) continue;
+    return fmt::format(
+        "An overtone at {:.4g} Hz, {:.0f} times the frequency, has {:.0f} % of the amplitude: clipped "
+        "readings or a "
+        "stiffness that is not linear. The damping ratio may be wrong by more than its interval; try a later "
+        "window.",
+        other.frequency_hz, whole, 100.0 * share);
+  }
+  return {};
+}
+
 // Of an interval that is no narrower than half of its estimate to either side.
 std::string undetermined_text(const RecordIdentification& found) {
   constexpr double wide = 0.5;
@@ -242,7 +263,8 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   const bool damping =
       exclude_each_other(ratio, found.damping_factor() * identification.damping_ratio_deviation, modal_ratio,
                          found.modal.damping_ratio_standard_deviation, rounding_of_damping);
-  if (const std::string wide = undetermined_text(found); !wide.empty()) judgement.messages.push_back(wide);
+  for (const std::string& text : {undetermined_text(found), overtone_text(found)})
+    if (!text.empty()) judgement.messages.push_back(text);
   if (!frequency && !damping) return judgement;
   std::string text = difference_text(found, frequency, damping);
   const std::string cause = cause_of(experiment, record, found);

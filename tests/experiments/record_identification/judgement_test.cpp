@@ -118,6 +118,23 @@ TEST(Judgement, NamesAnotherMode) {
   }
 }
 
+// A line at 2 f of 0.3 of the amplitude that decays with the mode, as a clipped or quadratic reading has it.
+TEST(Judgement, NamesAnOvertone) {
+  Record record = simulated.record({Quantity::acceleration}, 0.002, 1);
+  const double w = simulated.mode.angular_frequency(), part = 0.3 * record.samples.cwiseAbs().maxCoeff();
+  for (Index k = 0; k < record.size(); ++k)
+    record.samples(0, k) +=
+        part * std::exp(-simulated.damping_ratio * w * record.time[k]) * std::cos(2.0 * w * record.time[k]);
+  const auto slow =
+      Eigen::seqN(Index{0}, record.size() / 6, Index{6});  // 33 Hz: no decimation takes 2 f away
+  record.time = record.time(slow).eval();
+  record.samples = record.samples(Eigen::all, slow).eval();
+  const RecordIdentification r = identified(simulated.experiment(), record);
+  ASSERT_FALSE(r.judgement.messages.empty());
+  EXPECT_THAT(r.judgement.messages.back(),
+              HasSubstr("An overtone at 6.911 Hz, 2 times the frequency, has 30 %"));
+}
+
 TEST(Report, BeginsWithTheWarningsOfTheRecord) {
   Record record = simulated.record({Quantity::acceleration}, 0.01, 1);
   record.warnings = {"Channel tip is clipped."};
