@@ -10,7 +10,7 @@
 #include "experiments/modal_analysis/damped_sine_fit.hpp"
 #include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/decimation.hpp"
-#include "experiments/signal/measured_samples.hpp"
+#include "experiments/signal/missing_samples.hpp"
 #include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
@@ -144,7 +144,7 @@ DampedSineFit polish(const DecimatedSignal& coarse, std::vector<std::complex<dou
 /// what is bridged straight would see a clipped decay as one that does not decay.
 Eigen::VectorXd filled_by_one_sine(const Eigen::VectorXd& signal, double interval, double expected_hz,
                                    double tolerance) {
-  const Eigen::VectorXd bridged = first_fill(signal);
+  const Eigen::VectorXd bridged = bridged_straight(signal);
   const AmplitudeSpectrum spectrum = amplitude_spectrum(bridged, interval);
   double frequency = expected_hz, largest = 0;
   for (Eigen::Index k = 0; k < spectrum.amplitude.size(); ++k)
@@ -209,8 +209,9 @@ std::complex<double> ModalEstimate::rate() const {
 ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
                             const ModalAnalysisSettings& settings) {
   check(signal, interval, settings);
-  const double expected = settings.expected_frequency_hz ? *settings.expected_frequency_hz
-                                                         : strongest_frequency(first_fill(signal), interval);
+  const double expected = settings.expected_frequency_hz
+                              ? *settings.expected_frequency_hz
+                              : strongest_frequency(bridged_straight(signal), interval);
   const int factor = decimation_factor(signal.size(), interval, expected, settings.samples_per_cycle);
   const bool whole = signal.allFinite();
   DecimatedSignal coarse =

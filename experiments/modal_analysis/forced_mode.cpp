@@ -10,7 +10,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "experiments/signal/measured_samples.hpp"
+#include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -63,13 +63,14 @@ ForcedMode forced_mode(const VectorXd& output, const MatrixXd& inputs, double in
         std::max<Index>(0, count), lowest * expected_hz, highest * expected_hz, unknowns));
   VectorXcd s(count);  // over the expected angular frequency
   for (Index k = 0; k < count; ++k) s[k] = Complex(0, static_cast<double>(first + k) * line / expected_hz);
-  const VectorXcd y = lines_of(first_fill(output).head(length), first, count);
+  const VectorXcd y = lines_of(bridged_straight(output).head(length), first, count);
   MatrixXcd rows(count, unknowns);
   rows.col(0) = -s.cwiseProduct(y);
   rows.col(1) = -y;
   for (Index j = 0; j <= inputs.rows(); ++j) {
     VectorXcd input = VectorXcd::Ones(count);
-    if (j < inputs.rows()) input = lines_of(first_fill(inputs.row(j).transpose()).head(length), first, count);
+    if (j < inputs.rows())
+      input = lines_of(bridged_straight(inputs.row(j).transpose()).head(length), first, count);
     input /= std::max(1e-300, input.norm());
     for (Index power = 0; power < powers; ++power, input = s.cwiseProduct(input).eval())
       rows.col(2 + powers * j + power) = input * y.norm();

@@ -12,7 +12,7 @@
 #include "experiments/estimates.hpp"
 #include "experiments/modal_analysis/damped_sine_fit.hpp"
 #include "experiments/signal/decimation.hpp"
-#include "experiments/signal/measured_samples.hpp"
+#include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -146,8 +146,8 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
     return result;
   const double wanted = 1 / (interval * modal.frequency_hz * samples_per_cycle),
                possible = static_cast<double>(signal.size() / kernel_and_more);
-  const DecimatedSignal coarse =
-      decimate(first_fill(signal), interval, static_cast<int>(std::max(1.0, std::min(wanted, possible))));
+  const DecimatedSignal coarse = decimate(bridged_straight(signal), interval,
+                                          static_cast<int>(std::max(1.0, std::min(wanted, possible))));
   const double periods = coarse.interval * static_cast<double>(coarse.samples.size()) * modal.frequency_hz;
   if (periods < fewest * fewest_periods) return result;
   const int count = std::clamp(static_cast<int>(periods / wished_periods), fewest, most);

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "experiments/discretisation_bias.hpp"
-#include "experiments/signal/measured_samples.hpp"
+#include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -15,7 +15,7 @@
 #include "experiments/record_identification/first_belief.hpp"
 #include "experiments/record_identification/mode_residual.hpp"
 #include "experiments/record_identification/noise_source.hpp"
-#include "experiments/signal/measured_samples.hpp"
+#include "experiments/signal/missing_samples.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "filters/smoother.hpp"

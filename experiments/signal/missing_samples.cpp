@@ -96,6 +96,10 @@ VectorXd bridged_straight(const VectorXd& signal) {
   return result;
 }
 
+double largest_measured(const Eigen::MatrixXd& samples) {
+  return samples.array().isFinite().select(samples.array().abs(), 0.0).maxCoeff();
+}
+
 VectorXd filled(const VectorXd& signal, double period) {
   constexpr std::size_t most_lines = 4;
   constexpr double above_median = 6;

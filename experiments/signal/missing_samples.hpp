@@ -14,6 +14,9 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> gaps_in(const Eigen::VectorXd
 /// @throws std::invalid_argument when no sample is finite.
 Eigen::VectorXd bridged_straight(const Eigen::VectorXd& signal);
 
+/// Largest magnitude of the samples that are finite; 0 where none is.
+double largest_measured(const Eigen::MatrixXd& samples);
+
 /// A signal (N) of a few lines, the strongest of `period` samples, whose missing samples are filled in:
 /// around each, over four periods of the strongest line, least squares of the finite samples give
 ///
