@@ -17,6 +17,7 @@
 #include "experiments/sweep/statistics.hpp"
 #include "experiments/sweep/sweep.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
+#include "tests/experiments/sweep/exact_rig.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -293,38 +294,13 @@ TEST(RunCases, EndsAllThreadsWithTheFirstTrouble) {
   EXPECT_EQ(duration_text(70.2), "1 min 10 s");
 }
 
-// One mode below half the sampling rate, and the noise known: the model is exact.
-constexpr const char* exact_rig = R"([beam]
-length_m = 1.10
-width_m = 0.060
-height_m = 0.006
-youngs_modulus_pa = 2.12e11
-mass_kg = 3.055
-tip_mass_kg = 0.36
-elements = 8
-[damping]
-ratio = 0.01
-[[sensors]]
-name = "tip"
-quantity = "displacement"
-noise_m = 0.0003
-[simulation]
-duration_s = 4
-sampling_rate_hz = 40
-[reduction]
-method = "modal_truncation"
-[noise]
-displacement_m = 0.0003
-[compare]
-passes = 1
-)";
-
 // Oracle: the filter's own promise. 200 runs of 95 % lie between 90.5 % and 99 % in 99 % of such tests.
 TEST(Sweep, FindsTheExactFilterConsistentAndEfficient) {
   const SweepPlan plan = plan_with({}, 1, 200);
   SweepSettings settings;
   settings.threads = 2;
-  const auto rows = perform({{"rig.toml", exact_rig}, {}, {}}, plan, settings, [](const std::string&) {});
+  const auto rows =
+      perform({{"rig.toml", test::exact_rig}, {}, {}}, plan, settings, [](const std::string&) {});
   const auto all = statistics(plan, rows);
   ASSERT_EQ(all.size(), 2u);
   for (const PointStatistics& one : all) {
@@ -361,7 +337,7 @@ TEST(Blocks, HoldNeighboursOfOneSampleWhereThePlanIdentifiesOnce) {
 
 // Oracle: every case by itself.
 TEST(Repeats, AreTheSameBytesInWhateverBlock) {
-  const SweepSource source{{"rig.toml", exact_rig}, {}, {}};
+  const SweepSource source{{"rig.toml", test::exact_rig}, {}, {}};
   const SweepPlan plan = once(plan_with({"sensors[1].noise_m=0.0003,0.01"}, 1, 7));
   Repeats together(source, plan), apart(source, plan);
   for (const CaseBlock& block : {CaseBlock{0, 1, 2, 3, 4, 5, 6}, CaseBlock{7, 8, 10, 13}}) {
@@ -376,7 +352,7 @@ TEST(Repeats, GiveWhatTheFilterGivesEachRecord) {
   const SweepPlan plan = once(plan_with({}, 1, 6));
   const CaseBlock block{0, 1, 2, 3, 4, 5};
   for (const std::string scheme : {"exponential", "forward_euler"}) {
-    const std::string chosen = exact_rig + ("[filter]\ndiscretisation = \"" + scheme + "\"\n");
+    const std::string chosen = test::exact_rig + ("[filter]\ndiscretisation = \"" + scheme + "\"\n");
     const SweepSource source{{"rig.toml", chosen}, {}, {}},
         registered{{"rig.toml", chosen + "on_failure = \"report\"\n"}, {}, {}};
     const auto lanes = Repeats(source, plan).run(block), alone = Repeats(registered, plan).run(block);
@@ -396,7 +372,7 @@ TEST(Repeats, GiveWhatTheFilterGivesEachRecord) {
 // near enough for a single pass.
 TEST(Repeats, AreAsNearToTheTruthAsTheBoundSays) {
   const std::string doubt = "[[parameters]]\nquantity = \"stiffness\"\nrelative_deviation = 0.05\n";
-  const SweepSource source{{"rig.toml", exact_rig + doubt}, {}, {}};
+  const SweepSource source{{"rig.toml", test::exact_rig + doubt}, {}, {}};
   const auto rows = perform(source, once(plan_with({}, 1, 200)), {}, [](const std::string&) {});
   for (const PointStatistics& one : statistics(plan_with({}, 1, 200), rows)) {
     EXPECT_EQ(one.converged, 200) << one.parameter;
@@ -407,7 +383,7 @@ TEST(Repeats, AreAsNearToTheTruthAsTheBoundSays) {
 
 // Oracle: the finding. Explicit Euler steps turn C into C + K dt, to first order in the damping; K is kept.
 TEST(Repeats, ByForwardEulerMissTheDampingAsTheClosedFormSays) {
-  std::string rig = exact_rig;
+  std::string rig = test::exact_rig;
   const std::string slow = "duration_s = 4\nsampling_rate_hz = 40\n";
   rig.replace(rig.find(slow), slow.size(), "duration_s = 10\nsampling_rate_hz = 1000\nmodes = 1\n");
   rig += "[filter]\ndiscretisation = \"forward_euler\"\n";
@@ -421,7 +397,7 @@ TEST(Repeats, ByForwardEulerMissTheDampingAsTheClosedFormSays) {
 }
 
 TEST(Repeats, SayWhatTheyCannotTake) {
-  const std::string modal = std::string(exact_rig) + "[model]\nname = \"modal\"\n";
+  const std::string modal = std::string(test::exact_rig) + "[model]\nname = \"modal\"\n";
   const auto rows = Repeats({{"rig.toml", modal}, {}, {}}, once(plan_with({}))).run({0});
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].status, "failed");
@@ -431,7 +407,7 @@ TEST(Repeats, SayWhatTheyCannotTake) {
 TEST(Sweep, ReachesTablesWithinTablesAndTheTruthAlone) {
   const SweepPlan plan =
       plan_with({"sensors[1].noise_m=0.001,0.002", "truth.beam.tip_mass_kg=0.4", "beam.elements=12"});
-  const SweepSource source{{"rig.toml", exact_rig}, {}, {}};
+  const SweepSource source{{"rig.toml", test::exact_rig}, {}, {}};
   const Experiment believed = experiment_of(source, plan, 1), truth = experiment_of(source, plan, 1, true);
   EXPECT_EQ(believed.sensors[0].noise, 0.002);
   EXPECT_EQ(believed.elements, 12);

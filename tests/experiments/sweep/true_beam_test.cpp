@@ -13,35 +13,10 @@
 #include "experiments/sweep/sweep.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
+#include "tests/experiments/sweep/exact_rig.hpp"
 
 namespace beamid::experiments {
 namespace {
-
-// One mode below half the sampling rate.
-constexpr const char* rig = R"([beam]
-length_m = 1.10
-width_m = 0.060
-height_m = 0.006
-youngs_modulus_pa = 2.12e11
-mass_kg = 3.055
-tip_mass_kg = 0.36
-elements = 8
-[damping]
-ratio = 0.01
-[[sensors]]
-name = "tip"
-quantity = "displacement"
-noise_m = 0.0003
-[simulation]
-duration_s = 4
-sampling_rate_hz = 40
-[reduction]
-method = "modal_truncation"
-[noise]
-displacement_m = 0.0003
-[compare]
-passes = 1
-)";
 
 SweepPlan plan_with(const std::vector<std::string>& vary, int seeds, bool once) {
   SweepPlan plan;
@@ -53,7 +28,7 @@ SweepPlan plan_with(const std::vector<std::string>& vary, int seeds, bool once) 
 }
 
 std::vector<SweepRow> swept(const SweepPlan& plan) {
-  return perform({{"rig.toml", rig}, {}, {}}, plan, {}, [](const std::string&) {});
+  return perform({{"rig.toml", test::exact_rig}, {}, {}}, plan, {}, [](const std::string&) {});
 }
 
 struct Mode {
@@ -61,8 +36,8 @@ struct Mode {
 };
 
 Mode first_mode(double tip_mass) {
-  const Experiment experiment =
-      read_experiment(TomlTable::parse(rig, "rig.toml", {{"beam", "tip_mass_kg", tip_mass, "the test"}}));
+  const Experiment experiment = read_experiment(
+      TomlTable::parse(test::exact_rig, "rig.toml", {{"beam", "tip_mass_kg", tip_mass, "the test"}}));
   const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
   const fem::Modes modes = fem::modes(system, 1);
   const double tip = (system.outputs * modes.shape.col(0))[0];
@@ -116,7 +91,8 @@ TEST(SweepReport, PrintsNoErrorBelowTheBoundWithoutASentence) {
       rows.push_back(row);
     }
     std::string text;
-    for (const auto& part : report(manifest_of({{"rig.toml", rig}, {}, {}}, plan, {}), plan, rows).report)
+    for (const auto& part :
+         report(manifest_of({{"rig.toml", test::exact_rig}, {}, {}}, plan, {}), plan, rows).report)
       if (const auto* paragraph = std::get_if<Paragraph>(&part)) text += paragraph->text + "\n";
     return text;
   };
