@@ -11,7 +11,7 @@ namespace {
 using Eigen::MatrixXd;
 
 // Variances of modes that have died out reach the numbers next to zero, which have no digits.
-constexpr double nothing = 1e-280;
+constexpr double no_innovation = 1e-280;
 
 double smallest_eigenvalue(const MatrixXd& matrix) {
   if (!matrix.allFinite()) return std::numeric_limits<double>::quiet_NaN();
@@ -39,7 +39,7 @@ MatrixXd square_root(const MatrixXd& covariance, Eigen::LLT<MatrixXd>& factor) {
   if (factor.info() == Eigen::Success) return factor.matrixL();
   if (!covariance.allFinite())
     throw FilterFailure("the covariance is not finite", std::numeric_limits<double>::quiet_NaN());
-  if (covariance.diagonal().minCoeff() < -nothing)
+  if (covariance.diagonal().minCoeff() < -no_innovation)
     throw FilterFailure("a variance is negative", smallest_eigenvalue(covariance));
   // Semidefinite to rounding: clip. Correlation form, since the units of the states may differ widely.
   const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -63,7 +63,7 @@ void symmetrise(MatrixXd& covariance) {
 void check_finite(const Eigen::VectorXd& mean, const MatrixXd& covariance) {
   if (!mean.allFinite()) throw FilterFailure("the mean is not finite", smallest_eigenvalue(covariance));
   const auto variances = covariance.diagonal().array();
-  if (!(variances >= -nothing).all() || !variances.allFinite())
+  if (!(variances >= -no_innovation).all() || !variances.allFinite())
     throw FilterFailure("a variance is negative or not finite", smallest_eigenvalue(covariance));
 }
 

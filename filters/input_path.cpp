@@ -21,7 +21,7 @@ namespace {
 
 constexpr int degree = StepInput::highest_degree;
 constexpr Index reach = 16, fewest = 8;  // samples to each side; even intervals of a run
-constexpr double rounding = 1e-9;        // eps, of C's diagonal
+constexpr double path_rounding = 1e-9;   // eps, of C's diagonal
 
 // The covariance of the signal whose power is 1, 250 and 1e5 per unit of band below 0.85, 0.4 and 0.1 of the
 // Nyquist frequency, at a distance in samples.
@@ -48,7 +48,7 @@ MatrixXd weights(Index before, Index behind) {
   }
   for (int i = 0; i <= degree; ++i)
     for (int j = 0; j <= degree; ++j) powers(i, j) = std::pow(points[i], j);
-  among.diagonal() *= 1.0 + rounding;
+  among.diagonal() *= 1.0 + path_rounding;
   MatrixXd values = among.ldlt().solve(towards);
   for (const auto& [point, sample] : {std::pair{Index{0}, before - 1}, {Index{degree}, before}}) {
     values.col(point).setZero();

@@ -11,7 +11,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-void require_square(const MatrixXd& matrix, Index size, const char* name) {
+void require_square_level(const MatrixXd& matrix, Index size, const char* name) {
   if (matrix.rows() != size || matrix.cols() != size || !matrix.allFinite())
     throw std::invalid_argument(std::string(name) + " is " + std::to_string(matrix.rows()) + " x " +
                                 std::to_string(matrix.cols()) + "; expected finite numbers, " +
@@ -52,9 +52,9 @@ NoiseLevels::NoiseLevels(const NoisyFilterFactory& make_filter, const Gaussian& 
       outputs_(settings.output_groups) {
   const Index outputs = measurements.outputs.rows(), states = initial.mean.size();
   check_measurements(measurements, outputs);
-  require_square(settings.guess.output, outputs, "the guess of the output noise");
+  require_square_level(settings.guess.output, outputs, "the guess of the output noise");
   if (settings.guess.process.size() > 0 || !settings.process_groups.empty())
-    require_square(settings.guess.process, states, "the guess of the process noise");
+    require_square_level(settings.guess.process, states, "the guess of the process noise");
   if (outputs_.empty())
     for (Index i = 0; i < outputs; ++i) outputs_.push_back({i});
   check_groups(outputs_, settings.guess.output, measurements.output_deviations.size() > 0, "output");

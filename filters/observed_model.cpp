@@ -10,7 +10,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-void require_square(const std::optional<MatrixXd>& matrix, Index size, const char* name) {
+void require_square_if_any(const std::optional<MatrixXd>& matrix, Index size, const char* name) {
   if (!matrix || (matrix->rows() == size && matrix->cols() == size)) return;
   throw std::invalid_argument(std::string(name) + " is " + std::to_string(matrix->rows()) + " x " +
                               std::to_string(matrix->cols()) + "; expected " + std::to_string(size) + " x " +
@@ -37,13 +37,13 @@ void ObservedModel::observe_all() {
 }
 
 void ObservedModel::set_output_noise(std::optional<MatrixXd> noise) {
-  require_square(noise, all_, "output noise");
+  require_square_if_any(noise, all_, "output noise");
   output_noise_ = std::move(noise);
   if (partial()) some_noise_ = whole_noise()(observed_, observed_);
 }
 
 void ObservedModel::set_process_noise(std::optional<MatrixXd> noise) {
-  require_square(noise, static_cast<Index>(state_labels().size()), "process noise");
+  require_square_if_any(noise, static_cast<Index>(state_labels().size()), "process noise");
   process_noise_ = std::move(noise);
   ++process_noise_changes_;
 }

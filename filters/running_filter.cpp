@@ -35,7 +35,7 @@ Gaussian inflated(const Gaussian& belief) {
   return result;
 }
 
-double smallest_eigenvalue(const MatrixXd& covariance) {
+double smallest_covariance_eigenvalue(const MatrixXd& covariance) {
   if (covariance.size() == 0 || !covariance.allFinite()) return unknown;
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
@@ -143,7 +143,7 @@ void RunningFilter::reset(const Gaussian& belief) {
   try {
     filter_.reset(belief);
   } catch (const std::invalid_argument& refusal) {
-    throw FilterFailure(refusal.what(), smallest_eigenvalue(belief.covariance));
+    throw FilterFailure(refusal.what(), smallest_covariance_eigenvalue(belief.covariance));
   }
 }
 
@@ -166,8 +166,8 @@ void RunningFilter::heed_divergence() {
   reason.precision(3);
   reason << "the innovations diverge: their mean normalised square over the last " << DivergenceAlarm::window
          << " outputs is " << alarm_.mean() << "; expected 1";
-  events_.push_back(
-      {step_, clock_.time(), reason.str(), smallest_eigenvalue(correction_.innovation_covariance)});
+  events_.push_back({step_, clock_.time(), reason.str(),
+                     smallest_covariance_eigenvalue(correction_.innovation_covariance)});
   if (on_failure_ != OnFailure::inflate) return;
   alarm_.clear();
   if (const auto trouble = attempt([&] { reset(inflated(filter_.belief())); })) end(*trouble);

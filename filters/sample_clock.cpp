@@ -10,7 +10,7 @@ namespace beamid::filters {
 namespace {
 
 template <class... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
+[[noreturn]] void refuse_sample_clock(const Parts&... parts) {
   std::ostringstream message;
   message.precision(15);
   (message << ... << parts);
@@ -21,21 +21,22 @@ template <class... Parts>
 
 SampleClock::SampleClock(double regular, double resolution) : regular_(regular), resolution_(resolution) {
   if (!(regular > 0.0 && std::isfinite(regular)))
-    refuse("the regular interval is ", regular, " s; expected more than 0");
+    refuse_sample_clock("the regular interval is ", regular, " s; expected more than 0");
   if (!(resolution >= 0.0 && resolution < 0.5 * regular))
-    refuse("the time resolution is ", resolution, " s; expected from 0 to half of the interval ", regular,
-           " s");
+    refuse_sample_clock("the time resolution is ", resolution, " s; expected from 0 to half of the interval ",
+                        regular, " s");
 }
 
 void SampleClock::start(double time) {
-  if (!std::isfinite(time)) refuse("the time stamp is ", time, " s; expected a number");
+  if (!std::isfinite(time)) refuse_sample_clock("the time stamp is ", time, " s; expected a number");
   anchor_ = stamp_ = time;
   count_ = 0;
 }
 
 double SampleClock::advance(double time) {
-  if (!std::isfinite(time)) refuse("the time stamp is ", time, " s; expected a number");
-  if (!(time > stamp_)) refuse("the time stamp is ", time, " s; expected more than the one before, ", stamp_);
+  if (!std::isfinite(time)) refuse_sample_clock("the time stamp is ", time, " s; expected a number");
+  if (!(time > stamp_))
+    refuse_sample_clock("the time stamp is ", time, " s; expected more than the one before, ", stamp_);
   const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(time), 1e-9);
   if (std::abs(time - (instant() + regular_)) <= resolution_ + rounding + 1e-9 * regular_) {
     ++count_;

@@ -12,9 +12,9 @@
 namespace beamid::experiments {
 namespace {
 
-constexpr double finest = 1e-3, per_decade = 20.0;  // steps of the map [rad]
-constexpr int measured_every = 10;                  // of them
-constexpr double most_samples = 20000, fewest_samples = 400;
+constexpr double finest_atlas_step = 1e-3, per_decade = 20.0;  // steps of the map [rad]
+constexpr int measured_every = 10;                             // of them
+constexpr double most_atlas_samples = 20000, fewest_atlas_samples = 400;
 constexpr double decayed = 9.0;  // e-folds of amplitude: what is left is below the noise assumed
 
 Bias bias_of(const Oscillator& found, const Oscillator& truth) {
@@ -44,7 +44,8 @@ std::optional<Bias> predicted_bias(const std::string& scheme, const Oscillator& 
 
 std::optional<Bias> measured_bias(const std::string& scheme, const Oscillator& truth, double dt) {
   const double w = truth.angular_frequency();
-  const double samples = std::clamp(decayed / (truth.damping_ratio() * w * dt), fewest_samples, most_samples);
+  const double samples =
+      std::clamp(decayed / (truth.damping_ratio() * w * dt), fewest_atlas_samples, most_atlas_samples);
   paper::ValidationSettings settings = paper::bias_settings();
   settings.truth = truth;
   settings.interval = dt;
@@ -96,9 +97,10 @@ Atlas make_atlas(const AtlasSettings& settings, const Progress& progress) {
     progress(scheme);
     atlas.own.push_back(point(scheme, beam, settings.interval, true));
     for (const double ratio : settings.damping_ratios) {
-      const int last = static_cast<int>(per_decade * std::log10(2.0 / finest));
+      const int last = static_cast<int>(per_decade * std::log10(2.0 / finest_atlas_step));
       for (int k = 0; k <= last; ++k)
-        atlas.map.push_back(point(scheme, unit_oscillator(ratio), finest * std::pow(10.0, k / per_decade),
+        atlas.map.push_back(point(scheme, unit_oscillator(ratio),
+                                  finest_atlas_step * std::pow(10.0, k / per_decade),
                                   k >= 2 * measured_every && k % measured_every == 0));
     }
   }

@@ -15,10 +15,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-double stiffness(const std::optional<Bias>& bias) {
+double stiffness_bias(const std::optional<Bias>& bias) {
   return bias ? bias->stiffness_percent : none;
 }
-double damping(const std::optional<Bias>& bias) {
+double damping_bias(const std::optional<Bias>& bias) {
   return bias ? bias->damping_percent : none;
 }
 
@@ -30,8 +30,8 @@ Table own_table(const Atlas& atlas) {
       .column({"C, closed form [%]", "predicted_damping_error_percent", "{:+.5g}"})
       .column({"C, EKF [%]", "damping_error_percent", "{:+.5g}"});
   for (const AtlasPoint& p : atlas.own)
-    table.row(
-        {p.scheme, stiffness(p.predicted), stiffness(p.measured), damping(p.predicted), damping(p.measured)});
+    table.row({p.scheme, stiffness_bias(p.predicted), stiffness_bias(p.measured), damping_bias(p.predicted),
+               damping_bias(p.measured)});
   return table;
 }
 
@@ -63,8 +63,8 @@ Table map_table(const Atlas& atlas) {
       .column({"K, EKF [%]", "stiffness_error_percent"})
       .column({"C, EKF [%]", "damping_error_percent"});
   for (const AtlasPoint& p : atlas.map)
-    table.row({p.scheme, p.damping_ratio, p.step, stiffness(p.predicted), damping(p.predicted),
-               stiffness(p.measured), damping(p.measured)});
+    table.row({p.scheme, p.damping_ratio, p.step, stiffness_bias(p.predicted), damping_bias(p.predicted),
+               stiffness_bias(p.measured), damping_bias(p.measured)});
   return table;
 }
 
@@ -79,7 +79,7 @@ Panel panel_of(const Atlas& atlas, const std::string& scheme, bool of_damping) {
     for (const AtlasPoint& p : atlas.map) {
       if (p.scheme != scheme || p.damping_ratio != ratio) continue;
       const auto value = [&](const std::optional<Bias>& bias) {
-        return std::abs(of_damping ? damping(bias) : stiffness(bias));
+        return std::abs(of_damping ? damping_bias(bias) : stiffness_bias(bias));
       };
       x.push_back(p.step);
       y.push_back(value(p.predicted) > 1e-9 ? value(p.predicted) : none);
@@ -111,7 +111,7 @@ std::string times(double percent) {
   return factor > 1.5 ? fmt::format("{:.3g} times too large", factor) : fmt::format("{:+.3g} % off", percent);
 }
 
-std::string words(const Atlas& atlas) {
+std::string atlas_words(const Atlas& atlas) {
   const Oscillator& beam = atlas.settings.beam;
   std::string text = fmt::format(
       "A mode at {:.5g} Hz with a damping ratio of {:.4g} %, sampled every {:.4g} s ({:.4g} samples per "
@@ -127,12 +127,12 @@ std::string words(const Atlas& atlas) {
   return text + "\nThe exact discretisation (exponential) has no such error at any step.";
 }
 
-Json values_of(const AtlasPoint& p) {
+Json atlas_values_of(const AtlasPoint& p) {
   Json json{{"discretisation", p.scheme}};
-  json["predicted_stiffness_error_percent"] = stiffness(p.predicted);
-  json["stiffness_error_percent"] = stiffness(p.measured);
-  json["predicted_damping_error_percent"] = damping(p.predicted);
-  json["damping_error_percent"] = damping(p.measured);
+  json["predicted_stiffness_error_percent"] = stiffness_bias(p.predicted);
+  json["stiffness_error_percent"] = stiffness_bias(p.measured);
+  json["predicted_damping_error_percent"] = damping_bias(p.predicted);
+  json["damping_error_percent"] = damping_bias(p.measured);
   return json;
 }
 
@@ -147,9 +147,9 @@ Results report(const Atlas& atlas) {
                            {"interval_s", atlas.settings.interval},
                            {"damping_ratios", atlas.settings.damping_ratios}};
   results.values["schemes"] = Json::array();
-  for (const AtlasPoint& p : atlas.own) results.values["schemes"].push_back(values_of(p));
+  for (const AtlasPoint& p : atlas.own) results.values["schemes"].push_back(atlas_values_of(p));
   results.heading("What a discretisation does to identified stiffness and damping");
-  results.paragraph(words(atlas));
+  results.paragraph(atlas_words(atlas));
   results.table(own_table(atlas));
   results.table(harmless_table(atlas, "harmless_rate_1_percent", 1.0));
   results.table(harmless_table(atlas, "harmless_rate_0_1_percent", 0.1));

@@ -15,7 +15,7 @@ constexpr double weak_prior = 1e-4;      // of its information
 constexpr double disagree_below = 0.05;  // probability
 constexpr double told = 1.0;             // an eigenvalue of P0^1/2 I_r P0^1/2 above this is a thing told
 
-struct Part {
+struct EstimatePart {
   std::vector<Index> places;  // in the union
   MatrixXd information;       // I_r
 };
@@ -39,11 +39,11 @@ MatrixXd information_of(const RecordBelief& belief, Index& rank) {
 SharedEstimate shared_estimate(const std::vector<NamedBelief>& records) {
   if (records.empty()) throw std::invalid_argument("shared estimate: no record; expected one at least");
   SharedEstimate result;
-  std::vector<Part> parts;
+  std::vector<EstimatePart> parts;
   std::vector<double> prior_mean, prior_information;
   Index told_in_all = 0;
   for (const NamedBelief& record : records) {
-    Part part;
+    EstimatePart part;
     Index rank = 0;
     part.information = information_of(record.belief, rank);
     told_in_all += rank;

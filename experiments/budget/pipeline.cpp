@@ -23,7 +23,7 @@ namespace {
 using Eigen::Index, Eigen::VectorXd;
 
 constexpr double processed_variance = 1e-5;  // R of displacement [m2] and velocity [m2/s2], as the paper
-constexpr double settled = 1e-5;             // of the high-pass's transient, where it is left out
+constexpr double settled_transient = 1e-5;   // of the high-pass's transient, where it is left out
 constexpr int clean_passes = 3;
 
 // x'' of x'' + 2 xi w x' + q |x'| x' + w^2 x = 0 from rest at a, by the classical Runge-Kutta step, of which
@@ -138,7 +138,7 @@ ParameterErrors Pipeline::errors(const Causes& on) const {
     observed = {Quantity::displacement, Quantity::velocity};
     ProcessingSettings processing;
     processing.high_pass_hz = settings_.high_pass_hz;
-    processing.transient_tolerance = settled;
+    processing.transient_tolerance = settled_transient;
     const ProcessedMotion motion = process_acceleration(measured, dt, processing);
     const Index first = has(Cause::high_pass) ? 0 : motion.settled_begin, count = time.size() - first;
     if (count < 16)

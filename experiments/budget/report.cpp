@@ -9,9 +9,9 @@ namespace beamid::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Parameter = double ParameterErrors::*;
+using BudgetParameter = double ParameterErrors::*;
 
-Table budget_table(const Budget& budget, std::size_t number, Parameter parameter, const char* symbol,
+Table budget_table(const Budget& budget, std::size_t number, BudgetParameter parameter, const char* symbol,
                    const char* key) {
   Table table{fmt::format("{}_budget_{}", key, number + 1),
               fmt::format("{}: the error of {}, cause by cause [% of {}]", budget.name, symbol, symbol)};
@@ -62,7 +62,7 @@ Table check_table(const std::vector<Budget>& budgets) {
   return table;
 }
 
-Panel waterfall(const Budget& budget, Parameter parameter, const char* symbol) {
+Panel waterfall(const Budget& budget, BudgetParameter parameter, const char* symbol) {
   std::string axis;
   for (std::size_t i = 0; i < cause_count; ++i) axis += fmt::format("{} {}   ", i + 1, causes[i].label);
   Panel panel{fmt::format("{}: error of {}", budget.name, symbol),
@@ -100,7 +100,7 @@ Panel waterfall(const Budget& budget, Parameter parameter, const char* symbol) {
   return panel;
 }
 
-std::string words(const Budget& budget, Parameter parameter, const char* symbol) {
+std::string budget_words(const Budget& budget, BudgetParameter parameter, const char* symbol) {
   const std::size_t first = largest(budget.contributions, &Contribution::average, parameter);
   std::vector<Contribution> others = budget.contributions;
   others[first].average = {};
@@ -117,7 +117,7 @@ Json json_of(const ParameterErrors& errors) {
   return {{"stiffness_percent", errors.stiffness}, {"damping_percent", errors.damping}};
 }
 
-Json values_of(const Budget& budget) {
+Json budget_values_of(const Budget& budget) {
   Json json{{"name", budget.name},
             {"frequency_hz", budget.pipeline.truth().frequency_hz()},
             {"damping_ratio", budget.pipeline.truth().damping_ratio()},
@@ -128,7 +128,7 @@ Json values_of(const Budget& budget) {
             {"clean", json_of(budget.clean)},
             {"interaction", json_of(budget.interaction)},
             {"filter_runs", budget.runs}};
-  for (const Parameter parameter : {&ParameterErrors::stiffness, &ParameterErrors::damping})
+  for (const BudgetParameter parameter : {&ParameterErrors::stiffness, &ParameterErrors::damping})
     json[parameter == &ParameterErrors::stiffness ? "largest_stiffness_cause" : "largest_damping_cause"] =
         causes[largest(budget.contributions, &Contribution::average, parameter)].name;
   for (std::size_t i = 0; i < cause_count; ++i) {
@@ -184,15 +184,15 @@ Results report(const std::vector<Budget>& budgets, int orders) {
   for (std::size_t b = 0; b < budgets.size(); ++b) {
     const Budget& budget = budgets[b];
     results.heading(budget.name);
-    results.paragraph(words(budget, &ParameterErrors::stiffness, "K"));
-    results.paragraph(words(budget, &ParameterErrors::damping, "C"));
+    results.paragraph(budget_words(budget, &ParameterErrors::stiffness, "K"));
+    results.paragraph(budget_words(budget, &ParameterErrors::damping, "C"));
     results.table(budget_table(budget, b, &ParameterErrors::stiffness, "K", "stiffness"));
     results.table(budget_table(budget, b, &ParameterErrors::damping, "C", "damping"));
     Figure figure{fmt::format("waterfall_{}", b + 1), {}, 2, 1, 1200, 900};
     figure.panels = {waterfall(budget, &ParameterErrors::stiffness, "K"),
                      waterfall(budget, &ParameterErrors::damping, "C")};
     results.figures.push_back(std::move(figure));
-    results.values["beams"].push_back(values_of(budget));
+    results.values["beams"].push_back(budget_values_of(budget));
   }
   results.heading("Against closed forms");
   results.table(check_table(budgets));

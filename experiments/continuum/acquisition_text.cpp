@@ -43,7 +43,7 @@ std::vector<std::string> parts_of(const SensorDefects& s) {
   return parts;
 }
 
-Json values_of(const SensorDefects& s) {
+Json acquisition_values_of(const SensorDefects& s) {
   Json json;
   if (s.dead) json["dead"] = true;
   if (s.clipping > 0) json["clipping"] = s.clipping;
@@ -74,7 +74,7 @@ void describe(const Acquisition& a, Json& configuration) {
   if (a.repeated > 0) json["repeated"] = a.repeated;
   if (!a.force) json["force"] = false;
   for (std::size_t i = 0; i < a.sensors.size(); ++i)
-    if (const Json sensor = values_of(a.sensors[i]); !sensor.is_null())
+    if (const Json sensor = acquisition_values_of(a.sensors[i]); !sensor.is_null())
       json["sensors"][std::to_string(i + 1)] = sensor;
   if (!json.is_null()) configuration["acquisition"] = json;
 }

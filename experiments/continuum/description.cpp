@@ -39,7 +39,7 @@ std::string count(std::size_t number, const char* one, const char* many) {
   return number == 0 ? "" : fmt::format("; {} {}", number, number == 1 ? one : many);
 }
 
-Json describe(const std::vector<fem::DampingAnchor>& anchors) {
+Json anchors_json(const std::vector<fem::DampingAnchor>& anchors) {
   Json json = Json::array();
   for (const fem::DampingAnchor& anchor : anchors)
     json.push_back({{"frequency_hz", anchor.frequency_hz}, {"ratio", anchor.ratio}});
@@ -94,9 +94,9 @@ Json describe(const fem::DampingLaw& law) {
   Json json{{"law", fem::name(law)}};
   if (const auto* modal = std::get_if<fem::ModalDamping>(&law)) json["ratios"] = modal->ratios;
   if (const auto* rayleigh = std::get_if<fem::RayleighDamping>(&law))
-    json["anchors"] = describe(std::vector{rayleigh->first, rayleigh->second});
+    json["anchors"] = anchors_json(std::vector{rayleigh->first, rayleigh->second});
   if (const auto* caughey = std::get_if<fem::CaugheyDamping>(&law))
-    json["anchors"] = describe(caughey->anchors);
+    json["anchors"] = anchors_json(caughey->anchors);
   if (const auto* structural = std::get_if<fem::StructuralDamping>(&law))
     json["loss_factor"] = structural->loss_factor;
   return json;

@@ -56,7 +56,7 @@ Table mode_table(const FrameModes& found) {
   return table;
 }
 
-Json values(const FrameModes& found) {
+Json frame_modes_values(const FrameModes& found) {
   Json json{{"elements", found.system.mesh.elements.size()},
             {"degrees_of_freedom", found.system.size()},
             {"total_mass_kg", found.total_mass},
@@ -78,22 +78,23 @@ Json values(const FrameModes& found) {
 }
 
 /// What the pictures show; it outlives the report.
-struct Drawing {
+struct FrameDrawing {
   fem::StructuralSystem system;
   Eigen::MatrixXd shapes;
   VectorXd frequencies_hz;
 };
 
 // A picture of a million elements shows no more than one of two thousand, and takes a minute.
-std::shared_ptr<const Drawing> drawing(const FrameExperiment& experiment, const FrameModes& found) {
+std::shared_ptr<const FrameDrawing> drawing(const FrameExperiment& experiment, const FrameModes& found) {
   const auto members = static_cast<int>(experiment.frame.members.size());
   const int drawn = std::max(1, most_drawn_elements / members);
   if (experiment.elements_per_member <= drawn)
-    return std::make_shared<Drawing>(Drawing{found.system, found.modes.shape, found.modes.frequency_hz()});
+    return std::make_shared<FrameDrawing>(
+        FrameDrawing{found.system, found.modes.shape, found.modes.frequency_hz()});
   fem::StructuralSystem system = fem::assemble(experiment.frame, drawn);
   const Eigen::MatrixXd shapes = fem::modes(system, std::min(found.modes.size(), system.size())).shape;
   const VectorXd frequencies = found.modes.frequency_hz().head(shapes.cols());
-  return std::make_shared<Drawing>(Drawing{std::move(system), shapes, frequencies});
+  return std::make_shared<FrameDrawing>(FrameDrawing{std::move(system), shapes, frequencies});
 }
 
 }  // namespace
@@ -123,12 +124,12 @@ Results report(const FrameExperiment& experiment, const FrameModes& found) {
   results.command = "frame";
   results.configuration = describe(experiment);
   results.configuration["modes"] = found.modes.size();
-  results.values = values(found);
+  results.values = frame_modes_values(found);
   results.heading(experiment.title.empty() ? "Natural frequencies" : experiment.title);
   results.paragraph(frame_text(experiment, found.system.size()));
   results.table(mode_table(found));
   std::vector<std::string> notes = found.notes;
-  const std::shared_ptr<const Drawing> drawn = drawing(experiment, found);
+  const std::shared_ptr<const FrameDrawing> drawn = drawing(experiment, found);
   if (drawn->system.size() != found.system.size())
     notes.push_back(
         fmt::format("Pictures show the same frame with {} elements.", drawn->system.mesh.elements.size()));

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
-constexpr double degrees = 180.0 / std::numbers::pi;
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 Table resonance_table(const Experiment& experiment, const FrequencyResponses& found) {
   const auto kind = experiment.frequency_response.kind;
@@ -29,7 +29,7 @@ Table resonance_table(const Experiment& experiment, const FrequencyResponses& fo
       const bool finite = std::isfinite(std::abs(extremum.response));
       table.row({pair.name, to_string(extremum.kind), extremum.frequency_hz,
                  finite ? std::abs(extremum.response) : std::nan(""),
-                 finite ? degrees * std::arg(extremum.response) : std::nan("")});
+                 finite ? degrees_per_radian * std::arg(extremum.response) : std::nan("")});
     }
   return table;
 }
@@ -50,9 +50,9 @@ std::string column_name(const std::string& pair) {
 Table response_table(const Experiment& experiment, const FrequencyResponses& found) {
   const std::string unit = suffix_of(experiment.frequency_response.kind);
   Table table{"frf", ""};
-  const auto add = [&](const std::string& key, const VectorXd& values) {
+  const auto add = [&](const std::string& key, const VectorXd& frequency_response_values) {
     Column column{key, key};
-    column.cells.assign(values.begin(), values.end());
+    column.cells.assign(frequency_response_values.begin(), frequency_response_values.end());
     table.column(std::move(column));
   };
   add("frequency_hz", found.frequency_hz);
@@ -82,12 +82,13 @@ Figure response_figure(const Experiment& experiment, const FrequencyResponses& f
               found.pairs.size() > 1 ? Legend::below : Legend::none};
   for (const PairResponse& pair : found.pairs) {
     magnitude.curves.push_back({pair.name, found.frequency_hz, pair.response.cwiseAbs()});
-    phase.curves.push_back({pair.name, found.frequency_hz, degrees * pair.response.cwiseArg().real()});
+    phase.curves.push_back(
+        {pair.name, found.frequency_hz, degrees_per_radian * pair.response.cwiseArg().real()});
   }
   return {"frf_plot", {magnitude, phase}, 2, 1};
 }
 
-Json values(const Experiment& experiment, const FrequencyResponses& found) {
+Json frequency_response_values(const Experiment& experiment, const FrequencyResponses& found) {
   const std::string unit = std::string("_") + suffix_of(experiment.frequency_response.kind);
   Json json{{"kind", to_string(experiment.frequency_response.kind)},
             {"method", found.method.name},
@@ -133,7 +134,7 @@ Results report(const Experiment& experiment, const FrequencyResponses& found) {
                                                  {"method", found.method.name},
                                                  {"modes", found.method.modes},
                                                  {"residual_modes", found.method.residual_modes}};
-  results.values = values(experiment, found);
+  results.values = frequency_response_values(experiment, found);
   results.heading(experiment.title.empty() ? "Frequency response" : experiment.title);
   results.paragraph(
       beam_text(experiment.beam, static_cast<int>(found.system.mesh.elements.size()), found.system.size()));

@@ -13,7 +13,7 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXcd, Eigen::VectorXd;
-using Kind = FrequencyResponseSettings::Kind;
+using ResponseKind = FrequencyResponseSettings::Kind;
 
 // Laws of ratios have no sparse matrix, and no direct form.
 std::string method_for(const fem::DampingLaw& law) {
@@ -57,8 +57,8 @@ class Solver {
                               const std::vector<fem::InputOutput>& pairs) const {
     Eigen::MatrixXcd all = fem::receptances(system_, damping_, frequency_hz, pairs, method_);
     for (Index i = 0; i < all.cols(); ++i) {
-      if (kind_ == Kind::mobility) all.col(i) = fem::mobility(frequency_hz, all.col(i)).eval();
-      if (kind_ == Kind::accelerance) all.col(i) = fem::accelerance(frequency_hz, all.col(i)).eval();
+      if (kind_ == ResponseKind::mobility) all.col(i) = fem::mobility(frequency_hz, all.col(i)).eval();
+      if (kind_ == ResponseKind::accelerance) all.col(i) = fem::accelerance(frequency_hz, all.col(i)).eval();
     }
     return all;
   }
@@ -85,14 +85,14 @@ class Solver {
   /// Displacement per force, of any kind of response.
   std::complex<double> receptance(double frequency_hz, std::complex<double> response) const {
     const std::complex<double> rate(0.0, 2.0 * std::numbers::pi * frequency_hz);
-    return kind_ == Kind::receptance ? response
-           : kind_ == Kind::mobility ? response / rate
-                                     : response / (rate * rate);
+    return kind_ == ResponseKind::receptance ? response
+           : kind_ == ResponseKind::mobility ? response / rate
+                                             : response / (rate * rate);
   }
 
  private:
   const fem::DampingLaw& damping_;
-  Kind kind_;
+  ResponseKind kind_;
   const fem::StructuralSystem& system_;
   const fem::FrequencyResponseMethod& method_;
 };

@@ -73,7 +73,7 @@ Table complex_table(const fem::ComplexModes& modes) {
   return table;
 }
 
-Json values(const ModalSummary& s) {
+Json modal_values(const ModalSummary& s) {
   Json json{{"elements", s.elements},
             {"degrees_of_freedom", s.degrees_of_freedom},
             {"total_mass_kg", s.total_mass},
@@ -113,7 +113,7 @@ Json values(const ModalSummary& s) {
 }
 
 /// What the pictures show; it outlives the summary.
-struct Drawing {
+struct ModeDrawing {
   fem::Beam beam;
   fem::StructuralSystem system;
   Eigen::MatrixXd shapes;
@@ -121,13 +121,14 @@ struct Drawing {
 };
 
 // A picture of a million elements shows no more than one of two thousand, and takes a minute.
-std::shared_ptr<const Drawing> drawing(const Experiment& experiment, const ModalSummary& s) {
+std::shared_ptr<const ModeDrawing> drawing(const Experiment& experiment, const ModalSummary& s) {
   if (experiment.elements <= most_drawn_elements)
-    return std::make_shared<Drawing>(Drawing{experiment.beam, s.system, s.modes.shape, s.frequency_hz()});
+    return std::make_shared<ModeDrawing>(
+        ModeDrawing{experiment.beam, s.system, s.modes.shape, s.frequency_hz()});
   fem::StructuralSystem system = fem::assemble(experiment.beam, most_drawn_elements, {s.observed});
   const Eigen::MatrixXd shapes = fem::modes(system, std::min(s.modes.size(), system.size())).shape;
   const VectorXd frequencies = s.frequency_hz().head(shapes.cols());
-  return std::make_shared<Drawing>(Drawing{experiment.beam, std::move(system), shapes, frequencies});
+  return std::make_shared<ModeDrawing>(ModeDrawing{experiment.beam, std::move(system), shapes, frequencies});
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ Results report(const Experiment& experiment, const ModalSummary& summary, bool s
   results.command = "modes";
   results.configuration = describe(experiment);
   results.configuration["modes"] = summary.modes.size();
-  results.values = values(summary);
+  results.values = modal_values(summary);
   results.heading(experiment.title.empty() ? "Natural frequencies" : experiment.title);
   results.paragraph(
       beam_text(experiment.beam, static_cast<int>(summary.elements), summary.degrees_of_freedom));
@@ -148,7 +149,7 @@ Results report(const Experiment& experiment, const ModalSummary& summary, bool s
     notes.push_back(fmt::format("Pictures show the same beam with {} elements.", most_drawn_elements));
   add_notes(results, notes);
 
-  const std::shared_ptr<const Drawing> drawn = drawing(experiment, summary);
+  const std::shared_ptr<const ModeDrawing> drawn = drawing(experiment, summary);
   results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
   results.attachments.push_back(
       {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {

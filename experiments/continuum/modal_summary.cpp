@@ -19,10 +19,10 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_value = std::numeric_limits<double>::quiet_NaN();
 
 VectorXd unknowns(Index count) {
-  return VectorXd::Constant(count, unknown);
+  return VectorXd::Constant(count, unknown_value);
 }
 
 // From meshes with every element cut in two and in four. What is too large for that is told from half the
@@ -59,7 +59,7 @@ void compare_with_exact(const fem::Beam& beam, ModalSummary& summary) {
   }
 }
 
-void release(ModalSummary& summary) {
+void release_shape(ModalSummary& summary) {
   if (summary.modes.rigid > 0) return;  // a force has no static shape
   const fem::StiffnessSolver solver(summary.system.stiffness);
   const VectorXd deflected = solver.solve(VectorXd(summary.system.inputs.col(0)));
@@ -107,7 +107,7 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
   const VectorXd base = summary.system.inputs.col(summary.system.inputs.cols() - 1);
   summary.effective_mass = (summary.modes.shape.transpose() * base).cwiseAbs2();
   summary.damping_ratio = fem::damping_ratios(experiment.damping, summary.modes.angular_frequency);
-  release(summary);
+  release_shape(summary);
   progress("exact modes");
   compare_with_exact(experiment.beam, summary);
   if (summary.system.damping.nonZeros() > 0 && summary.modes.rigid == 0) {

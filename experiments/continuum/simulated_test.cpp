@@ -116,15 +116,15 @@ int affordable_frames(int frames, Index coordinates, std::vector<std::string>& n
 }
 
 /// When the logger samples: `count` samples during the motion, and those before it.
-struct Clock {
+struct SampleClock {
   VectorXd time;       ///< (N) [s], from 0
   double event = 0.0;  ///< the motion's t = 0 on this clock [s]
   Index before = 0;    ///< samples before it
   bool even = true;
 };
 
-Clock clock_of(const Acquisition& acquisition, const Simulation& settings, Index count) {
-  Clock clock;
+SampleClock clock_of(const Acquisition& acquisition, const Simulation& settings, Index count) {
+  SampleClock clock;
   clock.before = static_cast<Index>(std::llround(acquisition.pretrigger * settings.sampling_rate));
   clock.event = static_cast<double>(clock.before) / settings.sampling_rate;
   clock.time = sample_instants(acquisition, clock.before + count, settings.sampling_rate, settings.seed);
@@ -134,7 +134,7 @@ Clock clock_of(const Acquisition& acquisition, const Simulation& settings, Index
 
 /// True readings (N) at the clock's instants from those at the steps of the integration. Before the motion
 /// the beam is held where it starts: only displacements and strains show that.
-VectorXd readings_at(const Clock& clock, const VectorXd& step_time, const VectorXd& values, Index steps,
+VectorXd readings_at(const SampleClock& clock, const VectorXd& step_time, const VectorXd& values, Index steps,
                      Quantity quantity) {
   const bool held = quantity == Quantity::displacement || quantity == Quantity::strain;
   VectorXd readings = VectorXd::Constant(clock.time.size(), held ? values[0] : 0.0);
@@ -152,7 +152,8 @@ VectorXd readings_at(const Clock& clock, const VectorXd& step_time, const Vector
 
 /// The force at the samples as one more channel of the record: a measured test has its force, too. Without it
 /// a forced motion would be taken for a free decay.
-void add_force(SimulatedTest& test, const Clock& clock, const VectorXd& force, Index steps, double length) {
+void add_force(SimulatedTest& test, const SampleClock& clock, const VectorXd& force, Index steps,
+               double length) {
   constexpr double visible = 1e-3;  // of the force's root mean square
   const Index samples = clock.time.size() - clock.before;
   const VectorXd sampled = force(Eigen::seqN(Index{0}, samples, steps));
@@ -220,7 +221,7 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   test.response = fem::respond(test.system, experiment.damping, history.loading, grid, test.method);
   for (const std::string& remark : test.response.remarks) test.notes.push_back(remark);
 
-  const Clock clock = clock_of(acquisition, settings, samples);
+  const SampleClock clock = clock_of(acquisition, settings, samples);
   test.record.time = clock.time;
   test.record.samples.resize(static_cast<Index>(test.sensors.size()), clock.time.size());
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {

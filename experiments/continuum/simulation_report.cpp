@@ -24,15 +24,15 @@ using Eigen::Index, Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
 
 /// What one channel of the record shows.
-struct Peak {
+struct HistoryPeak {
   double value = 0.0, time = 0.0, root_mean_square = 0.0, frequency_hz = std::nan("");
 };
 
-Peak peak_of(const SimulatedTest& test, Index channel) {
+HistoryPeak peak_of(const SimulatedTest& test, Index channel) {
   const Record& record = test.record;
   const VectorXd signal = record.samples.row(channel);
   Index at = 0;
-  Peak peak;
+  HistoryPeak peak;
   peak.value = signal.cwiseAbs().maxCoeff(&at);
   peak.time = record.time[at];
   peak.root_mean_square = std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
@@ -54,7 +54,7 @@ Table sensor_table(const SimulatedTest& test) {
       .column({"noise", "noise", "{:g}"});
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
     const Sensor& sensor = test.sensors[i];
-    const Peak peak = peak_of(test, static_cast<Index>(i));
+    const HistoryPeak peak = peak_of(test, static_cast<Index>(i));
     table.row({sensor.name, to_string(sensor.quantity), *sensor.position, si_unit(sensor.quantity),
                peak.value, peak.time, peak.root_mean_square, peak.frequency_hz, sensor.noise});
   }
@@ -91,7 +91,7 @@ std::string excitation_text(const SimulatedTest& test) {
                 : fmt::format("The base accelerated by {:g} m/s2 at {:g} Hz.", e.amplitude, e.frequency_hz);
 }
 
-Json describe(const Excitation& e) {
+Json describe_excitation(const Excitation& e) {
   using Kind = Excitation::Kind;
   Json json{{"kind", to_string(e.kind)}};
   if (e.kind != Kind::base) json["position_m"] = *e.position;
@@ -112,7 +112,7 @@ Json describe(const Excitation& e) {
   return json;
 }
 
-Json values(const Experiment& experiment, const SimulatedTest& test) {
+Json simulation_values(const Experiment& experiment, const SimulatedTest& test) {
   const Simulation& settings = experiment.simulation;
   Json json{{"samples", test.record.size()},
             {"sampling_rate_hz", settings.sampling_rate},
@@ -129,7 +129,7 @@ Json values(const Experiment& experiment, const SimulatedTest& test) {
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
     const Sensor& sensor = test.sensors[i];
     const std::string unit = "_" + units(sensor.quantity).front().suffix;
-    const Peak peak = peak_of(test, static_cast<Index>(i));
+    const HistoryPeak peak = peak_of(test, static_cast<Index>(i));
     json["sensors"].push_back({{"name", sensor.name},
                                {"column", columns[i + 1]},
                                {"quantity", to_string(sensor.quantity)},
@@ -176,7 +176,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   results.command = "simulate";
   results.seed = settings.seed;
   results.configuration = describe(experiment);
-  results.configuration["excitation"] = describe(test->excitation);
+  results.configuration["excitation"] = describe_excitation(test->excitation);
   results.configuration["simulation"] = {{"method", settings.method.name},
                                          {"duration_s", settings.duration},
                                          {"sampling_rate_hz", settings.sampling_rate},
@@ -184,7 +184,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   for (const auto& [option, value] : test->method.options)
     results.configuration["simulation"][option] = value;
   describe(test->acquisition, results.configuration);
-  results.values = values(experiment, *test);
+  results.values = simulation_values(experiment, *test);
   results.heading(experiment.title.empty() ? "Simulated response" : experiment.title);
   results.paragraph(
       beam_text(experiment.beam, static_cast<int>(test->system.mesh.elements.size()), test->system.size()));

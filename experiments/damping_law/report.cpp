@@ -203,7 +203,7 @@ Figure figure(const Record& record, const DampingLawStudy& study) {
   return {"damping_law", {ratios, left}, 2, 1};
 }
 
-Json values(const FittedLaw& law) {
+Json damping_law_values(const FittedLaw& law) {
   Json json{{"law", law.name},
             {"possible", law.possible},
             {"remark", law.reason},
@@ -252,7 +252,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
                       {"chi_square", study.misfit.chi_square},
                       {"largest_relative_damping_ratio", study.misfit.largest}}},
                     {"laws", Json::array()}};
-  for (const FittedLaw& law : study.laws) results.values["laws"].push_back(values(law));
+  for (const FittedLaw& law : study.laws) results.values["laws"].push_back(damping_law_values(law));
   results.heading(experiment.title.empty() ? record_name : experiment.title);
   for (const std::string& warning : study.warnings) results.paragraph(warning);
   results.paragraph(fmt::format(

@@ -15,8 +15,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-constexpr double samples_per_period = 8.0, steps_per_period = 48.0;
-constexpr Index fewest = 64;  // samples that must be left
+constexpr double slow_samples_per_period = 8.0, steps_per_period = 48.0;
+constexpr Index fewest_slow_samples = 64;  // samples that must be left
 
 }  // namespace
 
@@ -30,8 +30,9 @@ SlowRecord slow_record(const filters::Measurements& record, Index inputs, double
   const Index all = record.size();
   const double dt = record.interval();
   SlowRecord slow;
-  const auto most = static_cast<int>(all / (fewest + 10));
-  slow.factor = std::max(1, std::min(most, static_cast<int>(1.0 / (samples_per_period * frequency_hz * dt))));
+  const auto most = static_cast<int>(all / (fewest_slow_samples + 10));
+  slow.factor =
+      std::max(1, std::min(most, static_cast<int>(1.0 / (slow_samples_per_period * frequency_hz * dt))));
   slow.interval = slow.factor * dt;
   slow.samples = decimate_channels(record.outputs, slow.factor);
   const double start = slow.factor == 1 ? 0.0 : 5 * slow.interval;

@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 2> names{"frequency", "damping ratio"}, keys{"frequency", "damping_ratio"};
 
-Json configuration(const CoverageSettings& settings) {
+Json coverage_configuration(const CoverageSettings& settings) {
   Json json;
   for (const NoiseColour colour : settings.colours) json["noise"].push_back(to_string(colour));
   json["runs"] = settings.runs;
@@ -21,7 +21,7 @@ Json configuration(const CoverageSettings& settings) {
   return json;
 }
 
-Json values_of(const CoverageCase& one) {
+Json coverage_values_of(const CoverageCase& one) {
   Json json{{"noise", to_string(one.colour)}, {"runs", one.runs}, {"failed", one.failed}};
   for (std::size_t q = 0; q < keys.size(); ++q) {
     const filters::Proportion inside = filters::proportion(one.inside[q], one.runs);
@@ -64,9 +64,10 @@ Results report(const Coverage& coverage) {
   Results results;
   results.command = "efficiency";
   results.seed = settings.seed;
-  results.configuration = configuration(settings);
+  results.configuration = coverage_configuration(settings);
   results.values["coverage"] = Json::array();
-  for (const CoverageCase& one : coverage.cases) results.values["coverage"].push_back(values_of(one));
+  for (const CoverageCase& one : coverage.cases)
+    results.values["coverage"].push_back(coverage_values_of(one));
   results.heading("The intervals of `beamid identify`");
   results.paragraph(fmt::format(
       "{} simulated records of each kind of noise: acceleration at the tip of a cantilever over {:g} cycles, "

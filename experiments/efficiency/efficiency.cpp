@@ -60,7 +60,7 @@ EfficiencyCase measure(const EfficiencySettings& settings, const Choice& filter,
   return one;
 }
 
-void check(const EfficiencySettings& settings) {
+void check_efficiency(const EfficiencySettings& settings) {
   if (settings.filters.empty() || settings.damping_ratios.empty() || settings.passes.empty())
     throw std::invalid_argument("efficiency: found no filter, no damping ratio or no way to pass");
   if (settings.runs < 2 || settings.sampled_runs < 2)
@@ -87,7 +87,7 @@ std::vector<Choice> applicable_filters() {
 }
 
 Efficiency find_efficiency(const EfficiencySettings& settings, const Progress& progress) {
-  check(settings);
+  check_efficiency(settings);
   Efficiency all{settings, {}};
   for (const double damping_ratio : settings.damping_ratios) {
     DecaySettings decay = settings.decay;

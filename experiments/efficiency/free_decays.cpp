@@ -19,7 +19,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr std::uint64_t noise_stream = 0, guess_stream = 1;
 
-void check(const DecaySettings& settings) {
+void check_free_decays(const DecaySettings& settings) {
   if (!(settings.damping_ratio > 0.0 && settings.damping_ratio < 1.0))
     throw std::invalid_argument("damping ratio: " + std::to_string(settings.damping_ratio) +
                                 "; expected a number between 0 and 1");
@@ -40,7 +40,7 @@ double cycles_seen(const DecaySettings& settings) {
 }  // namespace
 
 FreeDecays::FreeDecays(const DecaySettings& settings) : settings_(settings) {
-  check(settings);
+  check_free_decays(settings);
   truth_ = Oscillator::from_frequency(settings.mass, 2.0 * std::numbers::pi * settings.frequency_hz,
                                       settings.damping_ratio);
   interval_ = 1.0 / (settings.frequency_hz * settings.samples_per_cycle);

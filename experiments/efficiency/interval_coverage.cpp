@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr double samples_per_cycle = 60, corner = 1.5;
+constexpr double coverage_samples_per_cycle = 60, corner = 1.5;
 
 /// A steel cantilever of 0.6 m, 30 mm x 4 mm, with 0.2 kg at its tip.
 Experiment covered_experiment() {
@@ -102,12 +102,12 @@ const char* to_string(NoiseColour colour) {
 }
 
 Record covered_record(const CoverageSettings& settings, NoiseColour colour, std::uint64_t seed) {
-  const double frequency = covered_frequency(), dt = 1 / (samples_per_cycle * frequency);
-  const auto count = static_cast<Index>(std::lround(settings.cycles * samples_per_cycle));
+  const double frequency = covered_frequency(), dt = 1 / (coverage_samples_per_cycle * frequency);
+  const auto count = static_cast<Index>(std::lround(settings.cycles * coverage_samples_per_cycle));
   Record record;
   record.channels = {{Quantity::acceleration, "tip"}};
   record.time = VectorXd::LinSpaced(count, 0.0, dt * static_cast<double>(count - 1));
-  record.samples = settings.noise * noise_of(colour, count, 1 / samples_per_cycle, seed).transpose();
+  record.samples = settings.noise * noise_of(colour, count, 1 / coverage_samples_per_cycle, seed).transpose();
   const std::array<double, 3> amplitudes{1, settings.higher[0], settings.higher[1]}, multiples{1, 8.3, 24.1};
   for (std::size_t m = 0; m < 3; ++m) {
     const double ratio = m == 0 ? settings.damping_ratio : settings.damping_ratio / 2,

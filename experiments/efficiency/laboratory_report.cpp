@@ -63,7 +63,7 @@ double or_nan(const IdentifiedTest& one, double value) {
   return one.identified ? value : std::nan("");
 }
 
-std::string beginning(const std::string& text, std::size_t most) {
+std::string sentence_beginning(const std::string& text, std::size_t most) {
   return text.size() <= most ? text : fmt::format("{:.{}}...", text, most);
 }
 
@@ -88,7 +88,8 @@ Table record_table(const LaboratoryRecords& all, bool every) {
                or_nan(one, percent_off(one.frequency.estimate, f)),
                or_nan(one, 100 * one.frequency.half_width / f), or_nan(one, 100 * one.least_damping),
                or_nan(one, 100 * one.greatest_damping), or_nan(one, 100 * one.ratio.estimate),
-               or_nan(one, 100 * one.ratio.half_width), every ? one.said : beginning(one.said, most)});
+               or_nan(one, 100 * one.ratio.half_width),
+               every ? one.said : sentence_beginning(one.said, most)});
   }
   return table;
 }

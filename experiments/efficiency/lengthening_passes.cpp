@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-void check(const LengtheningSettings& settings) {
+void check_lengthening_passes(const LengtheningSettings& settings) {
   const auto require = [](bool good, const std::string& what) {
     if (!good) throw std::invalid_argument("lengthening passes: " + what);
   };
@@ -24,7 +24,7 @@ void check(const LengtheningSettings& settings) {
           "widening is " + std::to_string(settings.widening) + "; expected a number above 1");
 }
 
-filters::Measurements beginning(const filters::Measurements& record, Index samples) {
+filters::Measurements first_samples(const filters::Measurements& record, Index samples) {
   filters::Measurements part = record;
   part.time = record.time.head(samples);
   part.outputs = record.outputs.leftCols(samples);
@@ -54,12 +54,12 @@ std::optional<filters::Gaussian> lengthening_passes(filters::Filter& filter, con
                                                     const filters::Measurements& record,
                                                     const std::vector<Index>& constants,
                                                     const LengtheningSettings& settings) {
-  check(settings);
+  check_lengthening_passes(settings);
   filters::Gaussian start = initial;
   for (Index samples = std::min(settings.first_samples, record.size());;
        samples = std::min(2 * samples, record.size())) {
     const bool whole = samples == record.size();
-    const filters::Measurements part = beginning(record, samples);
+    const filters::Measurements part = first_samples(record, samples);
     for (int pass = 1; pass <= (whole ? settings.last_passes : settings.passes); ++pass) {
       filters::FilterRun run = filters::run(filter, start, part);
       if (run.failure) return std::nullopt;

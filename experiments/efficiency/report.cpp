@@ -56,7 +56,7 @@ nlohmann::ordered_json interval(const filters::Proportion& share) {
           {"upper_95", share.upper_95}};
 }
 
-nlohmann::ordered_json values_of(const EfficiencyCase& one) {
+nlohmann::ordered_json efficiency_values_of(const EfficiencyCase& one) {
   const filters::MonteCarloResult& result = one.result;
   nlohmann::ordered_json json{{"filter", label_of(one.filter)},     {"passes", to_string(one.passes)},
                               {"damping_ratio", one.damping_ratio}, {"runs", result.runs},
@@ -85,7 +85,7 @@ nlohmann::ordered_json values_of(const EfficiencyCase& one) {
   return json;
 }
 
-nlohmann::ordered_json configuration(const EfficiencySettings& settings) {
+nlohmann::ordered_json efficiency_configuration(const EfficiencySettings& settings) {
   const DecaySettings& decay = settings.decay;
   nlohmann::ordered_json json;
   for (const Choice& filter : settings.filters) json["filters"].push_back(label_of(filter));
@@ -119,9 +119,9 @@ Results report(const Efficiency& all) {
   Results results;
   results.command = "efficiency";
   results.seed = all.settings.seed;
-  results.configuration = configuration(all.settings);
+  results.configuration = efficiency_configuration(all.settings);
   results.values["cases"] = nlohmann::ordered_json::array();
-  for (const EfficiencyCase& one : all.cases) results.values["cases"].push_back(values_of(one));
+  for (const EfficiencyCase& one : all.cases) results.values["cases"].push_back(efficiency_values_of(one));
   results.heading("Filters against the Cramer-Rao bound");
   results.paragraph(fmt::format(
       "Free decays of an oscillator of {:g} Hz, displacement read {:g} times a cycle over {:g} cycles or "

@@ -17,29 +17,29 @@
 namespace beamid::experiments {
 namespace {
 
-using Kind = LaboratoryKind;
+using RecordKind = LaboratoryKind;
 using std::numbers::pi;
 
 struct KindDescription {
-  Kind kind;
+  RecordKind kind;
   const char* name;
   std::vector<std::string> words;
 };
 
-const KindDescription& described(Kind kind) {
+const KindDescription& described(RecordKind kind) {
   static const std::array<KindDescription, laboratory_kinds> all{
-      {{Kind::plain, "plain", {"noise", "window"}},
-       {Kind::jitter, "uneven stamps", {"stamps", "uneven", "interval", "resampl"}},
-       {Kind::gaps, "gaps", {"gap", "missing"}},
-       {Kind::repeated, "repeated samples", {"repeat"}},
-       {Kind::clipping, "clipping", {"clip", "saturat", "limit of"}},
-       {Kind::coarse, "coarse steps", {"coarse", "resol", "quanti"}},
-       {Kind::dead, "dead channel", {"dead", "constant", "does not move"}},
-       {Kind::drift, "drifting offset", {"drift", "offset"}},
-       {Kind::startup, "start-up", {"start-up", "start up", "settl"}},
-       {Kind::rattle, "rattle", {"rattl", "contact"}},
-       {Kind::amplitude, "amplitude", {"amplitude"}},
-       {Kind::by_hand, "by hand", {"release", "let go", "by hand"}}}};
+      {{RecordKind::plain, "plain", {"noise", "window"}},
+       {RecordKind::jitter, "uneven stamps", {"stamps", "uneven", "interval", "resampl"}},
+       {RecordKind::gaps, "gaps", {"gap", "missing"}},
+       {RecordKind::repeated, "repeated samples", {"repeat"}},
+       {RecordKind::clipping, "clipping", {"clip", "saturat", "limit of"}},
+       {RecordKind::coarse, "coarse steps", {"coarse", "resol", "quanti"}},
+       {RecordKind::dead, "dead channel", {"dead", "constant", "does not move"}},
+       {RecordKind::drift, "drifting offset", {"drift", "offset"}},
+       {RecordKind::startup, "start-up", {"start-up", "start up", "settl"}},
+       {RecordKind::rattle, "rattle", {"rattl", "contact"}},
+       {RecordKind::amplitude, "amplitude", {"amplitude"}},
+       {RecordKind::by_hand, "by hand", {"release", "let go", "by hand"}}}};
   return all[static_cast<std::size_t>(kind)];
 }
 
@@ -81,11 +81,11 @@ Cantilever drawn_beam(Draw& draw) {
 
 /// Of the first mode, at the tip: frequencies [Hz], and the modal mass [kg] and the share of a static
 /// deflection that the first mode takes.
-struct FirstMode {
+struct CantileverMode {
   double frequency_hz, second_hz, mass, share;
 };
 
-FirstMode first_mode(const std::string& beam, int elements) {
+CantileverMode first_mode(const std::string& beam, int elements) {
   const Experiment experiment = read_experiment(TomlTable::parse(beam, "the beam"));
   const fem::StructuralSystem system = fem::assemble(experiment.beam, elements);
   const fem::Modes modes = fem::modes(system, 2);
@@ -95,71 +95,79 @@ FirstMode first_mode(const std::string& beam, int elements) {
 }
 
 /// The lines of one [[sensors]] or [acquisition] table.
-struct Lines {
+struct RecordLines {
   std::string text;
 
   void add(const char* key, double value) { text += fmt::format("{} = {:.4g}\n", key, value); }
 };
 
-void spoil_sensor(const std::vector<Kind>& kinds, Draw& draw, Lines& sensor) {
-  const auto has = [&](Kind kind) { return std::find(kinds.begin(), kinds.end(), kind) != kinds.end(); };
-  if (has(Kind::clipping)) sensor.add("clipping", draw.even(0.35, 0.8));
-  if (has(Kind::coarse)) sensor.add("resolution", draw.logarithmic(0.004, 0.04));
-  if (has(Kind::drift)) {
+void spoil_sensor(const std::vector<RecordKind>& kinds, Draw& draw, RecordLines& sensor) {
+  const auto has = [&](RecordKind kind) {
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  };
+  if (has(RecordKind::clipping)) sensor.add("clipping", draw.even(0.35, 0.8));
+  if (has(RecordKind::coarse)) sensor.add("resolution", draw.logarithmic(0.004, 0.04));
+  if (has(RecordKind::drift)) {
     sensor.add("offset", draw.even(-1, 1));
     sensor.add("drift", draw.either_sign(draw.even(0.1, 0.4)));
   }
-  if (has(Kind::startup)) {
+  if (has(RecordKind::startup)) {
     sensor.add("startup", draw.either_sign(draw.logarithmic(0.5, 3)));
     sensor.add("startup_s", draw.logarithmic(0.05, 0.4));
   }
-  if (has(Kind::rattle)) {
+  if (has(RecordKind::rattle)) {
     sensor.add("rattle", draw.logarithmic(0.05, 0.3));
     sensor.add("rattle_above", draw.even(0.3, 0.6));
   }
 }
 
-std::string logger(const std::vector<Kind>& kinds, double pretrigger, Draw& draw) {
-  const auto has = [&](Kind kind) { return std::find(kinds.begin(), kinds.end(), kind) != kinds.end(); };
-  Lines lines{"[acquisition]\nforce = false\n"};
+std::string logger(const std::vector<RecordKind>& kinds, double pretrigger, Draw& draw) {
+  const auto has = [&](RecordKind kind) {
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  };
+  RecordLines lines{"[acquisition]\nforce = false\n"};
   if (pretrigger > 0) lines.add("pretrigger_s", pretrigger);
-  if (has(Kind::jitter)) {
+  if (has(RecordKind::jitter)) {
     lines.add("jitter", 0.3);
     lines.add("median_shortfall", draw.even(0.015, 0.12));
   }
-  if (has(Kind::gaps)) lines.add("gaps", draw.whole(1, 4));
-  if (has(Kind::repeated)) lines.add("repeated", 0.04);
+  if (has(RecordKind::gaps)) lines.add("gaps", draw.whole(1, 4));
+  if (has(RecordKind::repeated)) lines.add("repeated", 0.04);
   return lines.text;
 }
 
-std::vector<Kind> drawn_kinds(int number, Draw& draw) {
+std::vector<RecordKind> drawn_kinds(int number, Draw& draw) {
   constexpr double joins = 0.125;
-  std::vector<Kind> kinds{static_cast<Kind>(number % laboratory_kinds)};
+  std::vector<RecordKind> kinds{static_cast<RecordKind>(number % laboratory_kinds)};
   for (int other = 1; other < laboratory_kinds; ++other) {
-    const auto kind = static_cast<Kind>(other);
+    const auto kind = static_cast<RecordKind>(other);
     const bool joined = draw.chance(joins);
-    if (kinds[0] != Kind::plain && kind != kinds[0] && kind != Kind::dead && joined) kinds.push_back(kind);
+    if (kinds[0] != RecordKind::plain && kind != kinds[0] && kind != RecordKind::dead && joined)
+      kinds.push_back(kind);
   }
   return kinds;
 }
 
 /// How the beam is set in motion, and how large its tip's motion becomes [m].
-struct Start {
+struct MotionStart {
   std::string toml;
   double amplitude;
 };
 
-Start drawn_start(const std::vector<Kind>& kinds, const Cantilever& beam, const FirstMode& mode, Draw& draw) {
-  const auto has = [&](Kind kind) { return std::find(kinds.begin(), kinds.end(), kind) != kinds.end(); };
+MotionStart drawn_start(const std::vector<RecordKind>& kinds, const Cantilever& beam,
+                        const CantileverMode& mode, Draw& draw) {
+  const auto has = [&](RecordKind kind) {
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  };
   const double deflection = beam.length * draw.logarithmic(0.002, 0.01), period = 1 / mode.frequency_hz;
   const double duration = draw.even(0.3, 1.1) * period, pulse = draw.even(0.05, 0.2) * period;
   const bool hit = draw.chance(0.35);
-  if (has(Kind::by_hand)) {
+  if (has(RecordKind::by_hand)) {
     const double turn = 2 * duration / period;
     return {fmt::format("[excitation]\ndeflection_m = {:.4g}\nduration_s = {:.4g}\n", deflection, duration),
             deflection * std::abs(std::cos(pi * turn / 2) / (1 - turn * turn))};
   }
-  if (hit && !has(Kind::amplitude)) {
+  if (hit && !has(RecordKind::amplitude)) {
     const double momentum = deflection * mode.mass * 2 * pi * mode.frequency_hz;
     return {fmt::format("[excitation]\nkind = \"impulse\"\nmomentum_n_s = {:.4g}\nduration_s = {:.4g}\n",
                         momentum, pulse),
@@ -185,26 +193,26 @@ LaboratoryTest laboratory_test(std::uint64_t seed, int number) {
   LaboratoryTest test;
   test.number = number;
   test.kinds = drawn_kinds(number, draw);
-  const auto has = [&](Kind kind) {
+  const auto has = [&](RecordKind kind) {
     return std::find(test.kinds.begin(), test.kinds.end(), kind) != test.kinds.end();
   };
   const Cantilever beam = drawn_beam(draw);
   const double modulus = beam.modulus * draw.even(0.88, 1.12);  // clamps and catalogues are never exact
   const std::string true_beam = beam.toml(modulus) + fmt::format("elements = {}\n", elements);
-  const FirstMode mode = first_mode(true_beam, elements);
+  const CantileverMode mode = first_mode(true_beam, elements);
   const double f = mode.frequency_hz, w = 2 * pi * f;
   const double rate = std::clamp(draw.logarithmic(50, 2000), 12 * f, 2000.0);
-  const bool falling = has(Kind::amplitude);
+  const bool falling = has(RecordKind::amplitude);
   const double drawn_ratio = draw.logarithmic(0.002, 0.02), small_ratio = draw.even(0.002, 0.003),
                more = draw.even(0.004, 0.006);
   test.least_damping = falling ? small_ratio : drawn_ratio;
-  const Start start = drawn_start(test.kinds, beam, mode, draw);
+  const MotionStart start = drawn_start(test.kinds, beam, mode, draw);
   test.damping_per_metre = falling ? more / start.amplitude : 0;
   const double constants = draw.even(1.5, 4), noise_share = draw.logarithmic(0.0005, 0.02);
   const double motion =
       std::min({std::max(constants / (test.least_damping * w), 20 / f), longest, most_samples / rate});
   const double wait = draw.even(0.2, 1.5);
-  const bool waits = draw.chance(0.75) || has(Kind::startup);
+  const bool waits = draw.chance(0.75) || has(RecordKind::startup);
 
   std::string rig = fmt::format("title = \"laboratory record {} of seed {}\"\n", number, seed) + true_beam;
   double steps = 8;  // enough for pulses, and for stamps between samples
@@ -225,11 +233,11 @@ LaboratoryTest laboratory_test(std::uint64_t seed, int number) {
   rig += start.toml;
   const std::string place = "[[sensors]]\nname = \"tip\"\nquantity = \"acceleration\"\n" +
                             fmt::format("position_m = {:.4g}\n", beam.length);
-  Lines sensor{place};
+  RecordLines sensor{place};
   sensor.add("noise_m_per_s2", noise_share * start.amplitude * w * w);
   spoil_sensor(test.kinds, draw, sensor);
   std::string sensors = sensor.text;
-  if (has(Kind::dead)) {
+  if (has(RecordKind::dead)) {
     const std::string dead = "[[sensors]]\nname = \"cable\"\noffset = 1.5\ndead = true\n";
     sensors = draw.chance(0.5) ? dead + sensors : sensors + dead;
   }

@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN(), two_sided_95 = 1.96;
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN(), two_sided_95 = 1.96;
 
 double at(const Eigen::VectorXd& values, Index i) {
-  return values.size() > 0 ? values[i] : nothing;
+  return values.size() > 0 ? values[i] : no_value;
 }
 
 std::vector<Cell> start_of_row(const EfficiencyCase& one) {
@@ -69,9 +69,9 @@ Table consistency_table(const Efficiency& all) {
     const bool any = !result.coverage.empty();
     std::vector<Cell> row = start_of_row(one);
     row.insert(row.end(),
-               {any ? result.nees : nothing, any ? result.nees_lower_999 : nothing,
-                any ? result.nees_upper_999 : nothing, any ? 100.0 * result.coverage[0].value() : nothing,
-                any ? 100.0 * result.coverage[1].value() : nothing,
+               {any ? result.nees : no_value, any ? result.nees_lower_999 : no_value,
+                any ? result.nees_upper_999 : no_value, any ? 100.0 * result.coverage[0].value() : no_value,
+                any ? 100.0 * result.coverage[1].value() : no_value,
                 static_cast<double>(result.diverged.count), static_cast<double>(result.runs),
                 100.0 * result.diverged.lower_95, 100.0 * result.diverged.upper_95});
     table.row(std::move(row));

@@ -50,7 +50,7 @@ NoiseStatistics statistics_of(const std::vector<FirstMode>& found) {
   return s;
 }
 
-void check(const NoiseSettings& s) {
+void check_noise_study(const NoiseSettings& s) {
   require_positive(s.noise, "noise");
   require_positive(s.deflection, "deflection");
   require_positive(s.blow, "blow");
@@ -115,7 +115,7 @@ NoiseCase examine(const NoiseSettings& settings, std::size_t beam, Blow blow, Qu
 }
 
 NoiseStudy study_higher_modes(const NoiseSettings& settings, const Progress& progress) {
-  check(settings);
+  check_noise_study(settings);
   NoiseStudy study{settings, {}, {}};
   constexpr Quantity sensors[] = {Quantity::displacement, Quantity::velocity, Quantity::acceleration};
   for (std::size_t beam = 0; beam < settings.beams.size(); ++beam) {

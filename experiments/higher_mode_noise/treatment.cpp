@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr int passes = 2;
+constexpr int treatment_passes = 2;
 constexpr double stopped = 1e-6;        // of the power of a stopped mode is left: 60 dB
 constexpr double guessed_ratio = 0.01;  // damping ratio of a higher mode, before the record is seen
 
@@ -91,7 +91,7 @@ FirstMode identify_first_mode(const ModalRecord& record, const ModalMotion& moti
   filters::Gaussian belief = start_of(members, motion);
   const Index places = 2 * static_cast<Index>(members.size()), unknown = belief.mean.size() - places;
   filters::FilterRun run;
-  for (int pass = 0; pass < passes; ++pass) {
+  for (int pass = 0; pass < treatment_passes; ++pass) {
     run = filters::run(*filter, belief, measured);
     if (run.failure) break;
     belief.mean.tail(unknown) = run.last.mean.tail(unknown);

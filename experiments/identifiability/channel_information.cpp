@@ -15,9 +15,9 @@ using filters::InformationFactor;
 
 /// The information of all channels, every `stride`-th sample read. A channel's own offsets stand in its first
 /// columns.
-class Reader {
+class ChannelReader {
  public:
-  Reader(const JointModel& model, Index channels, Index columns, double duration, Index stride)
+  ChannelReader(const JointModel& model, Index channels, Index columns, double duration, Index stride)
       : stride_(stride), duration_(duration), drifts_(static_cast<std::size_t>(channels)) {
     for (const JointModel::Offset& offset : model.offsets)
       drifts_[static_cast<std::size_t>(offset.channel)].push_back(offset.drift);
@@ -56,7 +56,7 @@ class Reader {
   std::vector<InformationFactor> factors_;
 };
 
-Index longest(const ObservedMotion& motion, const std::vector<Reading>& readings) {
+Index longest_memory(const ObservedMotion& motion, const std::vector<Reading>& readings) {
   Index samples = 0;
   for (const Reading& reading : readings) {
     if (reading.samples < 1 || reading.stride < 1)
@@ -75,7 +75,7 @@ Index longest(const ObservedMotion& motion, const std::vector<Reading>& readings
 std::vector<ChannelInformation> channel_information(const ObservedMotion& motion,
                                                     const std::vector<Reading>& readings) {
   const JointModel& model = motion.model;
-  const Index samples = longest(motion, readings), start = 2 * model.mode_shapes.cols();
+  const Index samples = longest_memory(motion, readings), start = 2 * model.mode_shapes.cols();
   const auto channels = static_cast<Index>(model.motion->output_labels().size());
   const auto discrete = filters::discretise(model.motion, motion.interval, motion.discretisation,
                                             {{}, MatrixXd::Identity(channels, channels)});
@@ -83,10 +83,10 @@ std::vector<ChannelInformation> channel_information(const ObservedMotion& motion
   MatrixXd moved(motion.initial_state.size(), start + motion.directions.unknowns.cols());
   moved << motion.directions.motion.leftCols(start), motion.directions.unknowns;
   const double duration = static_cast<double>(samples) * motion.interval;
-  std::vector<Reader> readers;
+  std::vector<ChannelReader> readers;
   for (const Reading& reading : readings)
     if (std::none_of(readers.begin(), readers.end(),
-                     [&](const Reader& reader) { return reader.stride() == reading.stride; }))
+                     [&](const ChannelReader& reader) { return reader.stride() == reading.stride; }))
       readers.emplace_back(model, channels, moved.cols(), duration, reading.stride);
 
   std::vector<ChannelInformation> result(readings.size());
@@ -99,10 +99,10 @@ std::vector<ChannelInformation> channel_information(const ObservedMotion& motion
     rows.noalias() = sensor * moved;
     if (!rows.allFinite())
       throw std::runtime_error(fmt::format("the motion grows beyond all bounds at {:g} s", time));
-    for (Reader& reader : readers) reader.add(step, time, rows);
+    for (ChannelReader& reader : readers) reader.add(step, time, rows);
     for (std::size_t i = 0; i < readings.size(); ++i)
       if (readings[i].samples == step + 1)
-        for (const Reader& reader : readers)
+        for (const ChannelReader& reader : readers)
           if (reader.stride() == readings[i].stride) result[i] = reader.so_far(start);
     if (step + 1 == samples) break;
     discrete->move(state, input, next, moved);

@@ -17,17 +17,17 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double usual_ratio = 0.005;  // of every mode, where no damping is described
-constexpr Index fewest_samples = 16;   // of a record
-constexpr double usual_noise = 0.01;   // of the root mean square of what a sensor shows
+constexpr double usual_test_ratio = 0.005;  // of every mode, where no damping is described
+constexpr Index fewest_test_samples = 16;   // of a record
+constexpr double usual_noise = 0.01;        // of the root mean square of what a sensor shows
 
 /// The experiment with all that it leaves open.
 Experiment completed(const Experiment& experiment, std::vector<std::string>& notes) {
   Experiment complete = experiment;
   if (std::holds_alternative<fem::Undamped>(complete.damping)) {
-    complete.damping = fem::ModalDamping{{usual_ratio}};
+    complete.damping = fem::ModalDamping{{usual_test_ratio}};
     notes.push_back(
-        fmt::format("No [damping] is described: every mode has the ratio {:g} %.", 100.0 * usual_ratio));
+        fmt::format("No [damping] is described: every mode has the ratio {:g} %.", 100.0 * usual_test_ratio));
   }
   if (complete.sensors.empty()) {
     complete.sensors = {Sensor{}};
@@ -85,7 +85,7 @@ void describe_test(const Experiment& complete, const DescribedMotion& test, Inde
   result.begin = test.begin;
   result.sampling_rate = rate;
   const Index left = samples - static_cast<Index>(std::llround(test.begin * rate));
-  if (left < fewest_samples)
+  if (left < fewest_test_samples)
     throw InputError(complete.excitation.place,
                      "the force acts until the record ends; a record without it has nothing to show");
   result.duration = static_cast<double>(left - 1) / rate;

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr Index most_coordinates = 100;  // of a model that a longer record than described is worth
+constexpr Index most_sweep_coordinates = 100;  // of a model that a longer record than described is worth
 
 Index samples_of(const Identifiability& result) {
   return static_cast<Index>(std::llround(result.duration * result.sampling_rate)) + 1;
@@ -42,9 +42,10 @@ void sweep_in_time(const ObservedMotion& motion, const std::vector<NoisyChannel>
   const Index samples = samples_of(result);
   const double rate = 1.0 / motion.interval;
   const double per_period = rate / result.frequencies_hz.front();
-  const Index most = motion.inputs.size() > 0                        ? motion.inputs.cols()
-                     : motion.model.motion_size() > most_coordinates ? samples
-                                                                     : longest_record * (samples - 1) + 1;
+  const Index most = motion.inputs.size() > 0 ? motion.inputs.cols()
+                     : motion.model.motion_size() > most_sweep_coordinates
+                         ? samples
+                         : longest_record * (samples - 1) + 1;
   const std::vector<Index> lengths = record_lengths(per_period, samples, most);
   const std::vector<Index> every = strides(per_period, samples);
   std::vector<Reading> readings;

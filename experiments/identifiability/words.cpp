@@ -9,7 +9,7 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index;
-using Verdict = ParameterBound::Verdict;
+using BoundVerdict = ParameterBound::Verdict;
 
 // "a", "a and b", "a, b and c"
 std::string list_of(const std::vector<std::string>& parts) {
@@ -19,14 +19,14 @@ std::string list_of(const std::vector<std::string>& parts) {
   return text;
 }
 
-std::vector<std::string> named(const Identifiability& found, Verdict verdict) {
+std::vector<std::string> named(const Identifiability& found, BoundVerdict verdict) {
   std::vector<std::string> names;
   for (const ParameterBound& p : found.parameters)
     if (p.verdict == verdict && !p.nuisance) names.push_back(p.name);
   return names;
 }
 
-std::string percent(const ParameterBound& p, double value) {
+std::string identifiability_percent(const ParameterBound& p, double value) {
   return fmt::format("{:.2g} %{}", value, p.of_value ? "" : " of its deviation beforehand");
 }
 
@@ -34,10 +34,10 @@ std::string determined_text(const Identifiability& found) {
   std::vector<std::string> determined, poor;
   for (const ParameterBound& p : found.parameters) {
     if (p.nuisance) continue;
-    if (p.verdict == Verdict::determined)
-      determined.push_back(fmt::format("{} to {}", p.name, percent(p, p.bound_percent())));
-    if (p.verdict == Verdict::poor)
-      poor.push_back(fmt::format("{} (bound {})", p.name, percent(p, p.bound_percent())));
+    if (p.verdict == BoundVerdict::determined)
+      determined.push_back(fmt::format("{} to {}", p.name, identifiability_percent(p, p.bound_percent())));
+    if (p.verdict == BoundVerdict::poor)
+      poor.push_back(fmt::format("{} (bound {})", p.name, identifiability_percent(p, p.bound_percent())));
   }
   std::string text = determined.empty() ? "No parameter is determined by itself."
                                         : "Determined: " + list_of(determined) + ".";
@@ -47,7 +47,7 @@ std::string determined_text(const Identifiability& found) {
 
 std::string silent_text(const Identifiability& found) {
   std::string text;
-  if (const auto names = named(found, Verdict::nothing); !names.empty())
+  if (const auto names = named(found, BoundVerdict::nothing); !names.empty())
     text += "Not at all: no sensor shows anything of " + list_of(names) + ".";
   const Eigen::MatrixXd silent = silent_combinations(found.report);
   for (Index k = 0; k < silent.cols(); ++k) {
@@ -90,15 +90,15 @@ std::string correlation_text(const Identifiability& found) {
 }
 
 /// How the bounds change from one entry of a sweep to another.
-struct Change {
+struct SettingChange {
   std::vector<std::string> parts;       ///< "tip_mass from 0.1 to 0.05 %"
   bool all = true;                      ///< every bound changes by more than a little
   double least = INFINITY, most = 0.0;  ///< factor
 };
 
-Change change(const Identifiability& found, const BoundSweep& sweep, Index from, Index to) {
+SettingChange change(const Identifiability& found, const BoundSweep& sweep, Index from, Index to) {
   constexpr double little = 0.05;
-  Change result;
+  SettingChange result;
   for (std::size_t j = 0; j < found.parameters.size(); ++j) {
     const double before = sweep.percent(from, static_cast<Index>(j)),
                  after = sweep.percent(to, static_cast<Index>(j));
@@ -119,7 +119,7 @@ std::string length_text(const Identifiability& found) {
   std::string text;
   const Index last = found.lengths.at.size() - 1;
   if (last > found.described_length) {
-    const Change longer = change(found, found.lengths, found.described_length, last);
+    const SettingChange longer = change(found, found.lengths, found.described_length, last);
     const std::string would =
         fmt::format("A record of {:.4g} s instead of {:.4g} s would", found.lengths.at[last], found.duration);
     if (!longer.parts.empty())
@@ -139,7 +139,7 @@ std::string length_text(const Identifiability& found) {
 
 std::string rate_text(const Identifiability& found) {
   if (found.rates.at.size() < 2) return {};
-  const Change slower = change(found, found.rates, 0, 1);
+  const SettingChange slower = change(found, found.rates, 0, 1);
   if (slower.parts.empty()) return {};
   constexpr double alike = 1.03;
   std::string text = fmt::format("Sampled at {:g} instead of {:g} Hz with the same noise in every sample, ",

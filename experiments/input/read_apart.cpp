@@ -24,7 +24,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 /// How the child ended its work; the first byte it sends.
-enum class Outcome : char { found = 'f', refused = 'r', no_memory = 'm' };
+enum class ApartOutcome : char { found = 'f', refused = 'r', no_memory = 'm' };
 
 std::size_t memory_now() {
   std::ifstream stream("/proc/self/statm");
@@ -57,7 +57,7 @@ void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
   try {
     CollectedSignals signals(file, limits.numbers);
     read(signals);
-    out.number(Outcome::found);
+    out.number(ApartOutcome::found);
     out.number(signals.interval());
     out.text(signals.interval_name());
     out.number(signals.signals().size());
@@ -69,9 +69,9 @@ void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
       out.bytes(signal.values.data(), signal.values.size() * sizeof(double));
     }
   } catch (const std::bad_alloc&) {
-    out.number(Outcome::no_memory);
+    out.number(ApartOutcome::no_memory);
   } catch (const std::exception& error) {
-    out.number(Outcome::refused);
+    out.number(ApartOutcome::refused);
     out.text(error.what());
   }
   _exit(0);
@@ -141,11 +141,12 @@ CollectedSignals read_apart(const std::string& file, const std::string& library,
     throw std::runtime_error("no process that reads '" + file + "' can be started: " + std::strerror(reason));
 
   CollectedSignals signals(file, limits.numbers);
-  Outcome outcome{};
+  ApartOutcome outcome{};
   std::string message;
-  const bool whole = in.number(outcome) && (outcome == Outcome::found     ? receive(in, limits, signals)
-                                            : outcome == Outcome::refused ? in.text(message)
-                                                                          : outcome == Outcome::no_memory);
+  const bool whole =
+      in.number(outcome) && (outcome == ApartOutcome::found     ? receive(in, limits, signals)
+                             : outcome == ApartOutcome::refused ? in.text(message)
+                                                                : outcome == ApartOutcome::no_memory);
   if (!whole) kill(child, SIGKILL);
   const int status = wait_for(child);
   constexpr const char* expected = "expected an undamaged file";
@@ -158,11 +159,11 @@ CollectedSignals read_apart(const std::string& file, const std::string& library,
         {file},
         fmt::format("{} crashes on it ({} {}); {}", library, WIFSIGNALED(status) ? "signal" : "exit code",
                     WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), expected));
-  if (outcome == Outcome::no_memory)
+  if (outcome == ApartOutcome::no_memory)
     throw InputError(
         {file}, fmt::format("{} needs more than {} MB of memory for it; {}, or one that holds less", library,
                             limits.bytes >> 20, expected));
-  if (outcome == Outcome::refused) throw refusal(file, message);
+  if (outcome == ApartOutcome::refused) throw refusal(file, message);
   return signals;
 }
 

@@ -18,12 +18,13 @@ void require_one(const TomlTable& table, const std::vector<std::string>& keys) {
                                                 joined(keys)));
 }
 
-struct Stretch {
+struct LoadedStretch {
   double from, to;
 };
 
-Stretch stretch(const TomlTable& table, double length) {
-  const Stretch read{position_on_beam(table, "from_m", length), position_on_beam(table, "to_m", length)};
+LoadedStretch stretch(const TomlTable& table, double length) {
+  const LoadedStretch read{position_on_beam(table, "from_m", length),
+                           position_on_beam(table, "to_m", length)};
   if (read.from >= read.to) table.refuse("to_m", fmt::format("a number above from_m, {}", read.from));
   return read;
 }
@@ -78,14 +79,14 @@ void read_attachments(const TomlTable& table, fem::Beam& beam) {
     beam.absorbers.push_back({position_on_beam(absorber, "position_m", length), mass, stiffness, damping});
   }
   for (const TomlTable& damage : table.find_tables("damages")) {
-    const Stretch where = stretch(damage, length);
+    const LoadedStretch where = stretch(damage, length);
     const auto loss = damage.find_number("loss", Sign::not_negative);
     if (!loss) damage.miss("loss", "a number from 0 to below 1");
     if (*loss >= 1.0) damage.refuse("loss", "a number from 0 to below 1");
     beam.damages.push_back({where.from, where.to, *loss});
   }
   for (const TomlTable& added : table.find_tables("added_masses")) {
-    const Stretch where = stretch(added, length);
+    const LoadedStretch where = stretch(added, length);
     beam.added_masses.push_back(
         {where.from, where.to, added.number("mass_per_length_kg_per_m", Sign::not_negative)});
   }

@@ -17,7 +17,7 @@ namespace {
 
 using fem::Frame;
 
-double value(const TomlTable& table, const std::string& key) {
+double frame_value(const TomlTable& table, const std::string& key) {
   return table.find_number(key, Sign::not_negative).value_or(0.0);
 }
 
@@ -29,7 +29,7 @@ int joint(const TomlTable& table, const std::string& key, const Frame& frame) {
   return *number - 1;
 }
 
-void require_one(const TomlTable& table, const std::vector<std::string>& keys) {
+void require_one_of(const TomlTable& table, const std::vector<std::string>& keys) {
   if (given_keys(table, keys).empty())
     throw InputError(table.place(), fmt::format("{} has no effect; expected at least one of {}", table.name(),
                                                 joined(keys)));
@@ -87,7 +87,7 @@ void read_members(const TomlTable& table, Frame& frame) {
       throw InputError(joints[i].place(), joints[i].name() + " ends no member; expected one at least");
 }
 
-void read_attachments(const TomlTable& table, Frame& frame) {
+void read_frame_attachments(const TomlTable& table, Frame& frame) {
   std::vector<std::string> kinds;
   for (const auto& kind : frame_support_kinds()) kinds.push_back(kind.first);
   for (const TomlTable& one : table.find_tables("supports")) {
@@ -100,14 +100,15 @@ void read_attachments(const TomlTable& table, Frame& frame) {
   }
   for (const TomlTable& one : table.find_tables("bodies")) {
     const int where = joint(one, "joint", frame);
-    frame.bodies.push_back({where, value(one, "mass_kg"), value(one, "rotary_inertia_kg_m2")});
-    require_one(one, {"mass_kg", "rotary_inertia_kg_m2"});
+    frame.bodies.push_back({where, frame_value(one, "mass_kg"), frame_value(one, "rotary_inertia_kg_m2")});
+    require_one_of(one, {"mass_kg", "rotary_inertia_kg_m2"});
   }
   for (const TomlTable& one : table.find_tables("springs")) {
     const int where = joint(one, "joint", frame);
-    frame.springs.push_back({where, value(one, "translational_x_n_per_m"),
-                             value(one, "translational_y_n_per_m"), value(one, "rotational_n_m_per_rad")});
-    require_one(one, {"translational_x_n_per_m", "translational_y_n_per_m", "rotational_n_m_per_rad"});
+    frame.springs.push_back({where, frame_value(one, "translational_x_n_per_m"),
+                             frame_value(one, "translational_y_n_per_m"),
+                             frame_value(one, "rotational_n_m_per_rad")});
+    require_one_of(one, {"translational_x_n_per_m", "translational_y_n_per_m", "rotational_n_m_per_rad"});
   }
 }
 
@@ -142,7 +143,7 @@ FrameExperiment read_frame(const TomlTable& root) {
   const int most = std::max(1, most_elements / static_cast<int>(frame.members.size()));
   experiment.elements_per_member =
       table.find_whole_number("elements_per_member", 1, most).value_or(experiment.elements_per_member);
-  read_attachments(table, frame);
+  read_frame_attachments(table, frame);
   at_place(table.place(), [&] { fem::validate(frame); });
   return experiment;
 }

@@ -11,8 +11,8 @@
 namespace beamid::experiments {
 namespace {
 
-constexpr int most_modes = 1000;
-const std::vector<std::string> numbers{"guess", "deviation", "lower", "upper"};
+constexpr int most_parameter_modes = 1000;
+const std::vector<std::string> number_keys{"guess", "deviation", "lower", "upper"};
 
 std::string with_suffix(const std::string& number, const std::string& suffix) {
   return suffix.empty() ? number : number + "_" + suffix;
@@ -56,7 +56,7 @@ ParameterChoice read_parameter(const TomlTable& table, double length) {
     if (from >= to) table.refuse("to_m", fmt::format("a number above from_m, {}", from));
     choice.region = std::pair{from, to};
   }
-  choice.mode = table.find_whole_number("mode", 1, most_modes);
+  choice.mode = table.find_whole_number("mode", 1, most_parameter_modes);
   choice.guess = read_number(table, "guess", quantity);
   choice.deviation = read_number(table, "deviation", quantity);
   choice.lower = read_number(table, "lower", quantity);
@@ -82,7 +82,7 @@ std::vector<ParameterChoice> read_parameters(const TomlTable& root, double lengt
 std::vector<std::string> parameter_keys() {
   std::vector<std::string> keys{"quantity", "name", "from_m", "to_m",
                                 "mode",     "form", "known",  "relative_deviation"};
-  for (const std::string& number : numbers)
+  for (const std::string& number : number_keys)
     for (const ParameterQuantity& quantity : parameter_quantities())
       if (const std::string key = with_suffix(number, quantity.suffix);
           std::find(keys.begin(), keys.end(), key) == keys.end())

@@ -16,10 +16,10 @@ using fem::Variation;
 constexpr const char* youngs = "youngs_modulus_pa";
 constexpr const char* density = "density_kg_per_m3";
 
-class Reader {
+class SegmentReader {
  public:
   /// @param length absent: the table's own.
-  explicit Reader(const TomlTable& table, std::optional<double> length = {})
+  explicit SegmentReader(const TomlTable& table, std::optional<double> length = {})
       : table_(table), dimensions_(table), length_(length) {
     check_types();
   }
@@ -188,11 +188,11 @@ const std::vector<std::string>& segment_keys() {
 }
 
 fem::Segment read_segment(const TomlTable& table) {
-  return Reader(table).read();
+  return SegmentReader(table).read();
 }
 
 fem::Section read_section(const TomlTable& table, double length) {
-  return Reader(table, length).read().section;
+  return SegmentReader(table, length).read().section;
 }
 
 }  // namespace beamid::experiments

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* in_configuration = "record.channels in the configuration";
 
-std::string name_of(const RecordTable& table, std::size_t index) {
+std::string column_name_of(const RecordTable& table, std::size_t index) {
   return index < table.names.size() ? table.names[index] : "";
 }
 
@@ -30,7 +30,7 @@ RecordColumn find_column(const RecordTable& table, const ColumnDescription& want
                       wanted.name.empty() ? std::to_string(wanted.number) : "'" + wanted.name + "'"));
     column.channel.quantity = *meaning->quantity, column.factor = meaning->factor;
   }
-  if (column.channel.name.empty()) column.channel.name = name_of(table, column.index);
+  if (column.channel.name.empty()) column.channel.name = column_name_of(table, column.index);
   if (column.channel.name.empty()) column.channel.name = to_string(column.channel.quantity);
   return column;
 }
@@ -80,11 +80,11 @@ RecordColumns columns_of_header(RecordTable& table) {
 
 std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index) {
   if (table.time == index) return ColumnMeaning{std::nullopt, "", 1};
-  const auto meaning = parse_column_name(name_of(table, index));
+  const auto meaning = parse_column_name(column_name_of(table, index));
   if (index >= table.units.size()) return meaning;
   const auto unit = stated_unit(table.units[index]);
   if (!unit) return meaning;
-  if (!meaning) return ColumnMeaning{unit->quantity, name_of(table, index), unit->factor};
+  if (!meaning) return ColumnMeaning{unit->quantity, column_name_of(table, index), unit->factor};
   if (unit->quantity != meaning->quantity || unit->factor != meaning->factor)
     throw InputError({table.file, table.header_line},
                      fmt::format("'{}' has the unit '{}'; expected the one of its name", table.names[index],

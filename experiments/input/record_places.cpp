@@ -9,7 +9,7 @@
 namespace beamid::experiments {
 namespace {
 
-constexpr const char* words[] = {"band_limited", "linear", "held"};
+constexpr const char* path_names[] = {"band_limited", "linear", "held"};
 
 }  // namespace
 
@@ -36,10 +36,10 @@ void take_places(const std::filesystem::path& file, const std::vector<std::strin
     }
   }
   if (record.input_path) return;
-  if (const auto word = section->find_text("input", {words[0], words[1], words[2]}))
-    record.input_path = *word == words[0]   ? InputPath::band_limited
-                        : *word == words[1] ? InputPath::linear
-                                            : InputPath::held;
+  if (const auto word = section->find_text("input", {path_names[0], path_names[1], path_names[2]}))
+    record.input_path = *word == path_names[0]   ? InputPath::band_limited
+                        : *word == path_names[1] ? InputPath::linear
+                                                 : InputPath::held;
 }
 
 std::string places_text(const Record& record, const std::string& file_name) {
@@ -48,7 +48,8 @@ std::string places_text(const Record& record, const std::string& file_name) {
       "the\n"
       "# record read this file with it; it may also stand in an experiment file.\n\n[record]\nfile = \"" +
       file_name + "\"\n";
-  if (record.input_path) text += fmt::format("input = \"{}\"\n", words[static_cast<int>(*record.input_path)]);
+  if (record.input_path)
+    text += fmt::format("input = \"{}\"\n", path_names[static_cast<int>(*record.input_path)]);
   const std::vector<std::string> columns = column_names(record);
   for (std::size_t i = 0; i < record.channels.size(); ++i) {
     const Channel& channel = record.channels[i];

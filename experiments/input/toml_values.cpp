@@ -23,14 +23,15 @@ const char* expected_number(Sign sign) {
 }
 
 /// No laboratory has numbers beyond these in SI units; squares and products of others leave double precision.
-constexpr double largest = 1e30, smallest = 1e-100;
+constexpr double largest_number = 1e30, smallest_number = 1e-100;
 
 bool is_out_of_proportion(double value) {
-  return std::abs(value) > largest || (value != 0 && std::abs(value) < smallest);
+  return std::abs(value) > largest_number || (value != 0 && std::abs(value) < smallest_number);
 }
 
 std::string expected_size(Sign sign) {
-  return fmt::format("{} of a size from {:g} to {:g}", expected_number(sign), smallest, largest);
+  return fmt::format("{} of a size from {:g} to {:g}", expected_number(sign), smallest_number,
+                     largest_number);
 }
 
 /// Texts reach terminals, pages and the scripts of figures.

@@ -147,7 +147,7 @@ bool rests(const InspectedChannel& channel) {
   return static_cast<double>(resting) > most_of_it * static_cast<double>(distance.size()) && longest > 2;
 }
 
-void analyse(const Inspection& found, InspectedChannel& channel) {
+void inspect_channels(const Inspection& found, InspectedChannel& channel) {
   constexpr Index fewest = 64;
   std::vector<double> finite;
   for (const double value : channel.samples)
@@ -270,7 +270,7 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
     throw InputError({table.file}, "no column but time; expected a measured quantity");
   if (format.window) cut(found, format);
   found.sampling = check_sampling(found.time, found.resolution);
-  for (InspectedChannel& channel : found.channels) analyse(found, channel);
+  for (InspectedChannel& channel : found.channels) inspect_channels(found, channel);
   found.remarks = table.remarks;
   found.remarks.insert(found.remarks.end(), table.warnings.begin(), table.warnings.end());
   return found;

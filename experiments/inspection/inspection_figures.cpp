@@ -11,12 +11,12 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-VectorXd vector_of(const std::vector<double>& values) {
+VectorXd figure_vector(const std::vector<double>& values) {
   return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
 void add_panels(const Inspection& found, const InspectedChannel& channel, Figure& figure) {
-  const VectorXd time = vector_of(found.time), samples = vector_of(channel.samples);
+  const VectorXd time = figure_vector(found.time), samples = figure_vector(channel.samples);
   const std::string unit = channel.unit.empty() ? "" : " [" + channel.unit + "]";
   Panel history{title(channel), {found.has_time ? "time [s]" : "sample"}, {title(channel) + unit}, {}};
   history.title = "";

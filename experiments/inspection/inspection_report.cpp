@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const Inspection& found, const InspectedChannel& c) {
+Json inspection_to_json(const Inspection& found, const InspectedChannel& c) {
   Json json{{"column", c.column},
             {"name", c.name},
             {"unit", c.unit},
@@ -75,7 +75,7 @@ Results report(const Inspection& found) {
                     {"skipped_lines", found.skipped_lines}};
   results.values["channels"] = Json::array();
   for (const InspectedChannel& channel : found.channels)
-    results.values["channels"].push_back(to_json(found, channel));
+    results.values["channels"].push_back(inspection_to_json(found, channel));
   const std::vector<std::string> doubts = doubts_of(found);
   results.values["doubts"] = doubts;
 

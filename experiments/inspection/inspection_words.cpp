@@ -10,12 +10,12 @@
 namespace beamid::experiments {
 namespace {
 
-std::string number(double value) {
+std::string number_text(double value) {
   return fmt::format("{:.4g}", value);
 }
 
 std::string size_of(const InspectedChannel& channel, double value) {
-  return number(value) + (channel.unit.empty() ? "" : " " + channel.unit);
+  return number_text(value) + (channel.unit.empty() ? "" : " " + channel.unit);
 }
 
 std::string located(const Inspection& found, const std::vector<std::size_t>& samples) {

@@ -39,8 +39,8 @@ Ends jumps(const std::vector<double>& signal, const Run& run, double least) {
 }
 
 /// Of the finite values, one at least.
-struct Spread {
-  explicit Spread(std::vector<double> values) {
+struct RunSpread {
+  explicit RunSpread(std::vector<double> values) {
     std::erase_if(values, [](double value) { return !std::isfinite(value); });
     lowest = *std::min_element(values.begin(), values.end());
     highest = *std::max_element(values.begin(), values.end());
@@ -112,7 +112,7 @@ std::vector<Run> clipped_runs(const std::vector<double>& signal) {
   const ValueSteps steps(signal);
   if (steps.distinct() < 2) return clipped;
   const std::vector<Run> runs = runs_of(signal);
-  const auto [lowest, highest, middle] = Spread(signal);
+  const auto [lowest, highest, middle] = RunSpread(signal);
   const bool low = is_limit(signal, runs, steps, lowest, middle),
              high = is_limit(signal, runs, steps, highest, middle);
   for (const Run& run : runs)
@@ -134,7 +134,7 @@ std::vector<Run> dropped_runs(const std::vector<double>& signal) {
   const double share = std::clamp(repeated / std::max(samples, 1.0), 1e-6, 0.95);
   const double chance = std::log(static_cast<double>(signal.size())) / std::log(1 / share);
   const ValueSteps steps(signal);
-  const auto [lowest, highest, middle] = Spread(signal);
+  const auto [lowest, highest, middle] = RunSpread(signal);
   const auto moved_before = [&](const Run& run, double least) {
     double low = run.value, high = run.value;
     for (std::size_t k = run.first - std::min(run.first, looked_back); k < run.first; ++k)

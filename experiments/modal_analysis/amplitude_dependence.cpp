@@ -15,7 +15,7 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::VectorXd, Eigen::VectorXcd;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 VectorXd kaiser(Index half) {
   constexpr double beta = 5.65;  // 60 dB

@@ -15,15 +15,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Parameters w, d (damping rate), a, b of each sine e^(-d t) (a cos w t - b sin w t), then the offset.
-struct Linearisation {
+struct SineLinearisation {
   MatrixXd normal;     ///< J^T J
   VectorXd gradient;   ///< J^T r
   VectorXd residuals;  ///< r = y - model
 };
 
-Linearisation linearise(const VectorXd& signal, double interval, const VectorXd& parameters) {
+SineLinearisation linearise(const VectorXd& signal, double interval, const VectorXd& parameters) {
   const Index size = parameters.size();
-  Linearisation at{MatrixXd::Zero(size, size), VectorXd::Zero(size), VectorXd(signal.size())};
+  SineLinearisation at{MatrixXd::Zero(size, size), VectorXd::Zero(size), VectorXd(signal.size())};
   VectorXd row(size);
   row[size - 1] = 1;
   for (Index k = 0; k < signal.size(); ++k) {
@@ -59,7 +59,7 @@ VectorXd with_best_amplitudes(const VectorXd& signal, double interval, const std
   VectorXd parameters = VectorXd::Zero(4 * static_cast<Index>(rates.size()) + 1);
   for (Index i = 0; i + 1 < parameters.size(); i += 4)
     parameters.segment<2>(i) << rates[i / 4].imag(), -rates[i / 4].real();
-  Linearisation at = linearise(signal, interval, parameters);
+  SineLinearisation at = linearise(signal, interval, parameters);
   for (Index i = 0; i + 1 < parameters.size(); i += 4) at.normal.diagonal().segment<2>(i).setOnes();
   return parameters + solve_scaled(at.normal, 0, at.gradient);
 }
@@ -68,7 +68,7 @@ Index measured(const VectorXd& signal) {
   return signal.array().isFinite().count();
 }
 
-void check(const VectorXd& signal, const std::vector<Complex>& start) {
+void check_damped_sine_fit(const VectorXd& signal, const std::vector<Complex>& start) {
   const std::size_t fewest = 2 * (4 * start.size() + 1);
   const bool oscillating = std::all_of(start.begin(), start.end(), [](Complex rate) {
     return rate.imag() > 0 && std::isfinite(rate.imag()) && std::isfinite(rate.real());
@@ -81,7 +81,8 @@ void check(const VectorXd& signal, const std::vector<Complex>& start) {
   throw std::invalid_argument(message.str());
 }
 
-DampedSineFit result_of(const VectorXd& parameters, const Linearisation& at, Index count, int iterations) {
+DampedSineFit result_of(const VectorXd& parameters, const SineLinearisation& at, Index count,
+                        int iterations) {
   const Index size = parameters.size();
   DampedSineFit fit;
   for (Index i = 0; i + 1 < size; i += 4)
@@ -97,18 +98,18 @@ DampedSineFit result_of(const VectorXd& parameters, const Linearisation& at, Ind
 }  // namespace
 
 DampedSineFit fit_damped_sines(const VectorXd& signal, double interval, const std::vector<Complex>& start) {
-  check(signal, start);
+  check_damped_sine_fit(signal, start);
   constexpr int most_iterations = 100;
   constexpr double tolerance = 1e-11;  // change of the model, relative to the signal
   const double smallest_change =
       tolerance * tolerance * signal.array().isFinite().select(signal, 0.0).squaredNorm();
   VectorXd parameters = with_best_amplitudes(signal, interval, start);
-  Linearisation at = linearise(signal, interval, parameters);
+  SineLinearisation at = linearise(signal, interval, parameters);
   double damping = 0;
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     const VectorXd step = solve_scaled(at.normal, damping, at.gradient);
     const bool converged = step.dot(at.normal * step) <= smallest_change;
-    const Linearisation next = linearise(signal, interval, parameters + step);
+    const SineLinearisation next = linearise(signal, interval, parameters + step);
     if (next.residuals.squaredNorm() <= at.residuals.squaredNorm()) {
       parameters += step;
       at = next;

@@ -16,7 +16,8 @@
 namespace beamid::experiments {
 namespace {
 
-void check(const Eigen::VectorXd& signal, double interval, const ModalAnalysisSettings& settings) {
+void check_dominant_mode(const Eigen::VectorXd& signal, double interval,
+                         const ModalAnalysisSettings& settings) {
   constexpr Eigen::Index fewest = 32;
   std::ostringstream message;
   if (signal.size() < fewest)
@@ -111,7 +112,7 @@ DampedSine undo_decimation(DampedSine sine, const DecimatedSignal& coarse) {
   return sine;
 }
 
-Eigen::VectorXd motion_of(const DampedSineFit& fit, double interval, Eigen::Index count) {
+Eigen::VectorXd dominant_mode_motion_of(const DampedSineFit& fit, double interval, Eigen::Index count) {
   Eigen::VectorXd motion = Eigen::VectorXd::Constant(count, fit.offset);
   for (Eigen::Index k = 0; k < count; ++k)
     for (const DampedSine& sine : fit.sines)
@@ -121,13 +122,13 @@ Eigen::VectorXd motion_of(const DampedSineFit& fit, double interval, Eigen::Inde
 
 /// Of the samples that were measured.
 double residual_standard_deviation(const Eigen::VectorXd& signal, double interval, const DampedSineFit& fit) {
-  const Eigen::ArrayXd left = (signal - motion_of(fit, interval, signal.size())).array();
+  const Eigen::ArrayXd left = (signal - dominant_mode_motion_of(fit, interval, signal.size())).array();
   return std::sqrt(left.isFinite().select(left.square(), 0.0).sum() /
                    static_cast<double>(left.isFinite().count()));
 }
 
 /// All sines, or the dominant one and as many of its companions as the least squares converge with.
-DampedSineFit polish(const DecimatedSignal& coarse, std::vector<std::complex<double>> rates) {
+DampedSineFit polish_dominant_mode(const DecimatedSignal& coarse, std::vector<std::complex<double>> rates) {
   for (;; rates.pop_back()) {
     try {
       DampedSineFit fit = fit_damped_sines(coarse.samples, coarse.interval, rates);
@@ -161,7 +162,7 @@ Eigen::VectorXd filled_by_one_sine(const Eigen::VectorXd& signal, double interva
     }
   }
   if (best.sines.empty()) return bridged;
-  return signal.array().isFinite().select(signal, motion_of(best, interval, signal.size()));
+  return signal.array().isFinite().select(signal, dominant_mode_motion_of(best, interval, signal.size()));
 }
 
 /// Missing samples take the values of the motion found, which is then found anew, until both stand still: at
@@ -179,12 +180,13 @@ void fit_measured_samples(const Eigen::VectorXd& signal, double interval, Decima
   };
   Eigen::VectorXd before = Eigen::VectorXd::Zero(signal.size());
   for (int i = 0; i < most; ++i) {
-    const Eigen::VectorXd filled = measured.select(signal, motion_of(fit, interval, signal.size()));
+    const Eigen::VectorXd filled =
+        measured.select(signal, dominant_mode_motion_of(fit, interval, signal.size()));
     const bool still = (filled - before).squaredNorm() <= smallest;
     before = filled;
     take_rates();
     coarse = decimate(filled, interval, coarse.factor);
-    fit = polish(coarse, rates);
+    fit = polish_dominant_mode(coarse, rates);
     rates.resize(fit.sines.size());
     if (still) break;
   }
@@ -208,7 +210,7 @@ std::complex<double> ModalEstimate::rate() const {
 
 ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
                             const ModalAnalysisSettings& settings) {
-  check(signal, interval, settings);
+  check_dominant_mode(signal, interval, settings);
   const double expected = settings.expected_frequency_hz
                               ? *settings.expected_frequency_hz
                               : strongest_frequency(bridged_straight(signal), interval);
@@ -218,7 +220,7 @@ ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
       decimate(whole ? signal : filled_by_one_sine(signal, interval, expected, settings.frequency_tolerance),
                interval, factor);
   const Realised realised = realise(coarse, expected, settings);
-  DampedSineFit fit = polish(coarse, realised.rates);
+  DampedSineFit fit = polish_dominant_mode(coarse, realised.rates);
   if (!whole) fit_measured_samples(signal, interval, coarse, fit);
 
   const DampedSine& sine = fit.sines.front();

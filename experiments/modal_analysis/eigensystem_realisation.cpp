@@ -17,10 +17,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Complex = std::complex<double>;
 
-constexpr double gram_floor = 1e-7;  // of the largest singular value: what squaring them leaves
-constexpr double vanishing = 1e-6;   // poles z that are over within a sample
+constexpr double gram_floor = 1e-7;      // of the largest singular value: what squaring them leaves
+constexpr double vanishing_pole = 1e-6;  // poles z that are over within a sample
 
-void check(const MatrixXd& outputs, double interval, const EigensystemSettings& settings, Index rows) {
+void check_realisation(const MatrixXd& outputs, double interval, const EigensystemSettings& settings,
+                       Index rows) {
   const Index p = outputs.rows(), count = outputs.cols();
   std::ostringstream message;
   if (!(interval > 0))
@@ -88,7 +89,7 @@ std::vector<Complex> discrete_poles(const Decomposition& cut, int n) {
   const Eigen::VectorXcd eigenvalues = transition.eigenvalues();
   std::vector<Complex> poles;
   for (const Complex& z : eigenvalues)
-    if (z.imag() >= 0 && std::abs(z) > vanishing) poles.push_back(z);
+    if (z.imag() >= 0 && std::abs(z) > vanishing_pole) poles.push_back(z);
   return poles;
 }
 
@@ -151,7 +152,7 @@ EigensystemRealisation realise(const MatrixXd& outputs, double interval, const D
 EigensystemRealisation eigensystem_realisation(const MatrixXd& outputs, double interval,
                                                const EigensystemSettings& settings) {
   const Index rows = block_rows(outputs, settings);
-  check(outputs, interval, settings, rows);
+  check_realisation(outputs, interval, settings, rows);
   const Decomposition cut = decompose(hankel_gram(outputs, rows + 1), outputs.rows());
   const int order = settings.order > 0 ? settings.order : order_above_noise(cut.singular_values, settings);
   return realise(outputs, interval, cut, order, settings);
@@ -163,7 +164,7 @@ std::vector<EigensystemRealisation> eigensystem_realisations(const MatrixXd& out
   const Index rows = block_rows(outputs, settings);
   EigensystemSettings any_order = settings;
   any_order.order = 0;
-  check(outputs, interval, any_order, rows);
+  check_realisation(outputs, interval, any_order, rows);
   const Decomposition cut = decompose(hankel_gram(outputs, rows + 1), outputs.rows());
   std::vector<EigensystemRealisation> found;
   for (int order = 2; order <= std::min<Index>(largest_order, rows * outputs.rows()); order += 2) {

@@ -18,8 +18,8 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
 
-constexpr double lowest = 0.7, highest = 1.4;  // of the expected frequency
-constexpr Index powers = 3;                    // of s, in every numerator
+constexpr double lowest_ratio = 0.7, highest_ratio = 1.4;  // of the expected frequency
+constexpr Index powers = 3;                                // of s, in every numerator
 
 /// Longest length, at most so many samples, that transforms fast: no prime factor above 7.
 Index fast_length(Index samples) {
@@ -54,13 +54,13 @@ ForcedMode forced_mode(const VectorXd& output, const MatrixXd& inputs, double in
   constexpr double largest_ratio = 0.3, explained = 0.5;
   const Index length = fast_length(output.size());
   const double line = 1 / (interval * static_cast<double>(length));  // [Hz]
-  const auto first = static_cast<Index>(std::ceil(lowest * expected_hz / line)),
-             last = std::min(length / 2 - 1, static_cast<Index>(highest * expected_hz / line));
+  const auto first = static_cast<Index>(std::ceil(lowest_ratio * expected_hz / line)),
+             last = std::min(length / 2 - 1, static_cast<Index>(highest_ratio * expected_hz / line));
   const Index count = last - first + 1, unknowns = 2 + powers * (inputs.rows() + 1);
   if (first < 1 || count < unknowns)
     throw std::invalid_argument(fmt::format(
         "{} lines of the spectrum lie between {:.4g} and {:.4g} Hz; expected at least {} for a forced mode",
-        std::max<Index>(0, count), lowest * expected_hz, highest * expected_hz, unknowns));
+        std::max<Index>(0, count), lowest_ratio * expected_hz, highest_ratio * expected_hz, unknowns));
   VectorXcd s(count);  // over the expected angular frequency
   for (Index k = 0; k < count; ++k) s[k] = Complex(0, static_cast<double>(first + k) * line / expected_hz);
   const VectorXcd y = lines_of(bridged_straight(output).head(length), first, count);
@@ -91,10 +91,10 @@ ForcedMode forced_mode(const VectorXd& output, const MatrixXd& inputs, double in
     weight = factor.cwiseAbs().cwiseInverse();
   }
   const double w = std::sqrt(found[1]), ratio = found[0] / (2 * w);
-  if (!(w > lowest && w < highest && std::abs(ratio) < largest_ratio && left * left < explained))
+  if (!(w > lowest_ratio && w < highest_ratio && std::abs(ratio) < largest_ratio && left * left < explained))
     throw std::invalid_argument(
         fmt::format("no mode between {:.4g} and {:.4g} Hz explains the response to the measured inputs",
-                    lowest * expected_hz, highest * expected_hz));
+                    lowest_ratio * expected_hz, highest_ratio * expected_hz));
   return {w * expected_hz, ratio};
 }
 

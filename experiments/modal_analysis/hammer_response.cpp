@@ -42,7 +42,7 @@ void require_all_readings(const Record& record) {
 /// What precedes a hit belongs to its block: a sampled pulse rings ahead of itself.
 constexpr Index lead = 8;
 
-struct Block {
+struct ForceBlock {
   const Record* record;
   const VectorXd* force;
   Index begin, length;
@@ -100,7 +100,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
         fmt::format("window_end is {:g}; expected more than 0 and at most 1", window_end));
   HammerResponses found;
   std::vector<std::vector<Hit>> hits;
-  std::vector<Block> blocks;
+  std::vector<ForceBlock> blocks;
   const double interval = records.front().interval();
   for (const Record& record : records) {
     require_all_readings(record);
@@ -127,7 +127,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
             "hammer touches in between is no free structure. No mass from this hit is to be trusted.",
             hit.largest, hit.pulses_s.size(), 1000 * (hit.pulses_s.back() - hit.pulses_s.front())));
   int moving = 0;
-  for (const Block& block : blocks) {
+  for (const ForceBlock& block : blocks) {
     const Index part = std::min(block.begin, block.length / 10);
     for (Index row = 0; part >= 16 && row < block.record->samples.rows(); ++row)
       if (row != force_row(*block.record) &&
@@ -143,14 +143,14 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
         "are off by as much.",
         moving, blocks.size()));
   const std::size_t all = blocks.size();
-  std::erase_if(blocks, [&](const Block& block) { return 3 * block.length < longest; });
+  std::erase_if(blocks, [&](const ForceBlock& block) { return 3 * block.length < longest; });
   if (blocks.size() < all)
     found.remarks.push_back(
         fmt::format("{} hits with less than a third of the longest one's record were left "
                     "out.",
                     all - blocks.size()));
   Index length = longest;
-  for (const Block& block : blocks) length = std::min(length, block.length);
+  for (const ForceBlock& block : blocks) length = std::min(length, block.length);
   if (length < 64)
     throw std::invalid_argument(fmt::format("{} samples behind a hit; expected 64 at least", length));
 
@@ -166,7 +166,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
   VectorXd ff = VectorXd::Zero(lines);
   MatrixXd yy = MatrixXd::Zero(outputs, lines);
   MatrixXcd yf = MatrixXcd::Zero(outputs, lines);
-  for (const Block& block : blocks) {
+  for (const ForceBlock& block : blocks) {
     const VectorXcd f = spectrum(window.cwiseProduct(block.force->segment(block.begin, length)));
     ff += f.head(lines).cwiseAbs2();
     const Index force = force_row(*block.record);

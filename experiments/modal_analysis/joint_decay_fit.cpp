@@ -14,7 +14,7 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-void check(const MatrixXd& outputs, double interval, const std::vector<Complex>& start) {
+void check_joint_decay_fit(const MatrixXd& outputs, double interval, const std::vector<Complex>& start) {
   const std::size_t fewest = 2 * (4 * start.size() + 1);
   const bool oscillating = std::all_of(start.begin(), start.end(), [](Complex rate) {
     return rate.imag() > 0 && std::isfinite(rate.imag()) && std::isfinite(rate.real());
@@ -30,7 +30,7 @@ void check(const MatrixXd& outputs, double interval, const std::vector<Complex>&
 }
 
 /// The problem at given rates, with the best amplitudes.
-struct Linearisation {
+struct JointLinearisation {
   MatrixXd parts;                ///< (2K+1 x p) amplitudes (Re, Im) and offset
   MatrixXd residuals;            ///< (N x p)
   std::vector<MatrixXd> slopes;  ///< (N x 2K) of each channel, without what amplitudes can follow
@@ -38,7 +38,7 @@ struct Linearisation {
   double misfit = 0;             ///< minus twice the logarithm of the likelihood, and a constant
 };
 
-Linearisation linearise(const MatrixXd& y, double interval, const VectorXd& rates, bool with_slopes) {
+JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd& rates, bool with_slopes) {
   const Index count = y.rows(), modes = rates.size() / 2;
   Eigen::MatrixXcd waves(count, modes);
   MatrixXd basis(count, 2 * modes + 1);
@@ -52,7 +52,7 @@ Linearisation linearise(const MatrixXd& y, double interval, const VectorXd& rate
   const Eigen::HouseholderQR<MatrixXd> qr(basis);
   const MatrixXd range = qr.householderQ() * MatrixXd::Identity(count, basis.cols());
   const MatrixXd projected = range.transpose() * y;
-  Linearisation at;
+  JointLinearisation at;
   at.parts = qr.matrixQR().topRows(basis.cols()).triangularView<Eigen::Upper>().solve(projected);
   at.residuals = y - range * projected;
   const VectorXd floor = 1e-26 * y.colwise().squaredNorm().transpose().cwiseMax(1e-280);
@@ -97,7 +97,7 @@ double local_variance(const VectorXd& residual, double interval, double w) {
 }
 
 /// (p x K)
-MatrixXd noise_near_modes(const Linearisation& at, double interval, const VectorXd& rates) {
+MatrixXd noise_near_modes(const JointLinearisation& at, double interval, const VectorXd& rates) {
   const Index modes = rates.size() / 2, count = at.residuals.rows();
   const double freedom = static_cast<double>(count) / static_cast<double>(count - 4 * modes - 1);
   MatrixXd variance(at.residuals.cols(), modes);
@@ -107,7 +107,7 @@ MatrixXd noise_near_modes(const Linearisation& at, double interval, const Vector
   return variance;
 }
 
-MatrixXd covariance_of(const Linearisation& at, const MatrixXd& normal, const MatrixXd& noise_variance) {
+MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& normal, const MatrixXd& noise_variance) {
   const Index modes = noise_variance.cols();
   MatrixXd middle = MatrixXd::Zero(2 * modes, 2 * modes);
   for (Index c = 0; c < at.residuals.cols(); ++c) {
@@ -124,13 +124,13 @@ MatrixXd covariance_of(const Linearisation& at, const MatrixXd& normal, const Ma
 
 JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
                                  const std::vector<Complex>& start) {
-  check(outputs, interval, start);
+  check_joint_decay_fit(outputs, interval, start);
   const Index modes = static_cast<Index>(start.size());
   const MatrixXd y = outputs.transpose();
   VectorXd rates(2 * modes);
   for (Index m = 0; m < modes; ++m) rates.segment<2>(2 * m) << start[m].imag(), -start[m].real();
   constexpr int most_iterations = 100;
-  Linearisation at = linearise(y, interval, rates, true);
+  JointLinearisation at = linearise(y, interval, rates, true);
   double damping = 0;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     MatrixXd normal = MatrixXd::Zero(2 * modes, 2 * modes);
@@ -143,7 +143,7 @@ JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
         (normal + damping * MatrixXd(normal.diagonal().asDiagonal())).ldlt().solve(gradient);
     // A step that gains less than 1e-9 of a standard deviation, or moves the rates by rounding only, ends it.
     const bool settled = step.dot(normal * step) < 1e-18 || step.norm() < 1e-13 * rates.norm();
-    const Linearisation next = linearise(y, interval, rates + step, true);
+    const JointLinearisation next = linearise(y, interval, rates + step, true);
     if (settled || next.misfit < at.misfit) {
       if (next.misfit <= at.misfit) {
         rates += step;

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-struct Peak {
+struct DecrementPeak {
   double time = 0;  ///< in samples
   double value = 0;
 };
@@ -40,7 +40,7 @@ std::vector<Lobe> lobes_of(const Eigen::ArrayXd& centred) {
 }
 
 /// Vertex of the least-squares parabola around the lobe's extreme sample.
-Peak peak_of(const Eigen::ArrayXd& signal, const Eigen::ArrayXd& centred, const Lobe& lobe) {
+DecrementPeak peak_of(const Eigen::ArrayXd& signal, const Eigen::ArrayXd& centred, const Lobe& lobe) {
   Index extreme = 0;
   centred.segment(lobe.begin, lobe.length()).abs().maxCoeff(&extreme);
   const Index reach = std::max<Index>(1, lobe.length() / 6);
@@ -58,11 +58,11 @@ Peak peak_of(const Eigen::ArrayXd& signal, const Eigen::ArrayXd& centred, const 
   return {static_cast<double>(centre) + shift, c0 + shift * (c1 + shift * c2)};
 }
 
-struct Line {
+struct DecrementLine {
   double slope = 0, slope_standard_deviation = 0;
 };
 
-Line regression(const Eigen::ArrayXd& values) {
+DecrementLine regression(const Eigen::ArrayXd& values) {
   const auto count = static_cast<double>(values.size());
   const Eigen::ArrayXd k = Eigen::ArrayXd::LinSpaced(values.size(), -0.5 * (count - 1), 0.5 * (count - 1));
   const double slope = (k * values).sum() / k.square().sum();
@@ -77,7 +77,7 @@ DecrementEstimate logarithmic_decrement(const Eigen::VectorXd& signal, double in
   const Eigen::ArrayXd values = signal.array(), centred = values - (signal.size() > 0 ? values.mean() : 0);
   std::vector<double> times, swings;
   double largest = 0;
-  std::vector<Peak> peaks;
+  std::vector<DecrementPeak> peaks;
   for (const Lobe& lobe : lobes_of(centred)) {
     peaks.push_back(peak_of(values, centred, lobe));
     if (peaks.size() < 2) continue;
@@ -94,11 +94,11 @@ DecrementEstimate logarithmic_decrement(const Eigen::VectorXd& signal, double in
     throw std::invalid_argument("logarithmic decrement of " + std::to_string(signal.size()) +
                                 " samples: found " + std::to_string(peaks.size()) +
                                 " peaks; expected at least " + std::to_string(fewest));
-  for (const Peak& peak : peaks) times.push_back(peak.time);
+  for (const DecrementPeak& peak : peaks) times.push_back(peak.time);
   const auto as_array = [](const std::vector<double>& data) {
     return Eigen::ArrayXd(Eigen::Map<const Eigen::ArrayXd>(data.data(), static_cast<Index>(data.size())));
   };
-  const Line shrinking = regression(as_array(swings)), timing = regression(as_array(times));
+  const DecrementLine shrinking = regression(as_array(swings)), timing = regression(as_array(times));
   DecrementEstimate estimate;
   const double turn = 2 * std::numbers::pi;
   estimate.decrement = -2 * shrinking.slope;

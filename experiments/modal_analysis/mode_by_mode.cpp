@@ -32,7 +32,7 @@ Pole pole_of(const ModeAnswer& answer, Index outputs) {
   return pole;
 }
 
-std::string objection_to(const Pole& pole) {
+std::string mode_by_mode_objection_to(const Pole& pole) {
   const double ratio = pole.damping_ratio(), deviation = pole.damping_ratio_deviation;
   const double room = deviation > 0 ? 2 * deviation : 0;
   if (!(ratio + room > 0)) return fmt::format("does not decay, damping ratio {:.3g} %", 100 * ratio);
@@ -57,7 +57,7 @@ PoleSearch ModeByModeMethod::search(const MatrixXd& outputs, double interval, in
       const ModeAnswer answer =
           estimate(isolated(outputs, interval, peak.imag() / (2 * std::numbers::pi), all));
       pole = pole_of(answer, outputs.rows());
-      objection = objection_to(pole);
+      objection = mode_by_mode_objection_to(pole);
       remark = answer.remark;
     } catch (const std::invalid_argument& error) {
       objection = error.what();

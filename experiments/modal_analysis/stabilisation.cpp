@@ -29,7 +29,8 @@ Stability stability_of(const Pole& pole, const std::vector<Pole>& before,
 }
 
 /// The one value behind several: (value, deviation).
-std::pair<double, double> merged(const std::vector<double>& values, const std::vector<double>& deviations) {
+std::pair<double, double> merged_value(const std::vector<double>& values,
+                                       const std::vector<double>& deviations) {
   double weight = 0, sum = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!(deviations[i] > 0)) return {median(values), Pole::unknown};
@@ -64,8 +65,8 @@ Pole merged_pole(const std::vector<const DiagramPole*>& members) {
     damping.push_back(member->pole.damping_ratio());
     damping_deviation.push_back(member->pole.damping_ratio_deviation);
   }
-  const auto [f, f_deviation] = merged(frequency, frequency_deviation);
-  const auto [ratio, ratio_deviation] = merged(damping, damping_deviation);
+  const auto [f, f_deviation] = merged_value(frequency, frequency_deviation);
+  const auto [ratio, ratio_deviation] = merged_value(damping, damping_deviation);
   const DiagramPole* nearest =
       *std::min_element(members.begin(), members.end(), [f = f](const auto* a, const auto* b) {
         return std::abs(a->pole.frequency_hz() - f) < std::abs(b->pole.frequency_hz() - f);
@@ -78,8 +79,8 @@ Pole merged_pole(const std::vector<const DiagramPole*>& members) {
   return pole;
 }
 
-std::string objection_to(const Pole& pole, std::size_t stable, std::size_t orders,
-                         const StabilisationSettings& settings) {
+std::string stabilisation_objection_to(const Pole& pole, std::size_t stable, std::size_t orders,
+                                       const StabilisationSettings& settings) {
   const double needed = std::max(3.0, std::ceil(settings.fewest_orders * static_cast<double>(orders)));
   if (pole.damping_ratio() <= 0) return fmt::format("negative damping ratio, {:.3g}", pole.damping_ratio());
   if (pole.damping_ratio() > settings.largest_damping_ratio)
@@ -112,7 +113,7 @@ Stabilisation stabilise(const std::vector<OrderPoles>& orders, const Stabilisati
                  [](const DiagramPole* one) { return one->stability == Stability::full; });
     PoleCluster cluster{merged_pole(stable.empty() ? all : stable), {}, ""};
     for (const DiagramPole* one : stable) cluster.orders.push_back(one->order);
-    cluster.objection = objection_to(cluster.pole, stable.size(), orders.size(), settings);
+    cluster.objection = stabilisation_objection_to(cluster.pole, stable.size(), orders.size(), settings);
     if (cluster.objection.empty())
       result.modes.push_back(std::move(cluster));
     else if (all.size() >= 3)

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-void check(const MatrixXd& y, double interval, Index rows, Index segments) {
+void check_stochastic_subspace(const MatrixXd& y, double interval, Index rows, Index segments) {
   std::ostringstream message;
   if (!(interval > 0))
     message << "sampling interval " << interval << " s; expected a positive value";
@@ -61,7 +61,7 @@ StochasticSubspace stochastic_subspace(const MatrixXd& outputs, double interval,
   const Index rows = settings.rows > 0 ? settings.rows
                                        : std::min(most_rows / std::max<Index>(p, 1),
                                                   count / (2 * std::max<Index>(segments, 1)));
-  check(outputs, interval, rows, segments);
+  check_stochastic_subspace(outputs, interval, rows, segments);
   const MatrixXd y = outputs.colwise() - outputs.rowwise().mean();
   std::vector<MatrixXd> parts;
   MatrixXd mean = MatrixXd::Zero(p, 2 * rows * p);

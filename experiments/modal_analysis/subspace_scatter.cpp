@@ -11,7 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXd, Eigen::MatrixXcd, Eigen::VectorXd, Eigen::VectorXcd;
 
-constexpr double vanishing = 1e-6;  // poles z that are over within a sample
+constexpr double vanishing_pole_scatter = 1e-6;  // poles z that are over within a sample
 
 /// W of dU_n = U_rest W.
 MatrixXd turned(const ScatteredHankel& hankel, const MatrixXd& change, Index n) {
@@ -55,20 +55,20 @@ Realisation realise(const ScatteredHankel& hankel, Index n) {
   return r;
 }
 
-struct Change {
+struct SubspaceChange {
   Complex pole;
   VectorXcd shape;
 };
 
 /// First-order change of pole i and its shape when U_n moves by U_rest turn.
-Change change_of(const Realisation& r, Index i, const MatrixXd& turn) {
+SubspaceChange change_of(const Realisation& r, Index i, const MatrixXd& turn) {
   const VectorXcd vector = r.vectors.col(i);
   const VectorXcd moved = r.rest * (turn * vector);  // dU_n phi
   const VectorXcd left = r.rest.topRows(r.shift).transpose() * (r.remainder * vector);
   const VectorXcd transition = r.inverse * (moved.tail(r.shift) - r.poles[i] * moved.head(r.shift)) +
                                r.gram_inverse * (turn.transpose() * left);  // dA phi
   const VectorXcd parts = r.inverse_vectors * transition;
-  Change change{parts[i], moved.head(r.p)};
+  SubspaceChange change{parts[i], moved.head(r.p)};
   for (Index m = 0; m < r.n; ++m)
     if (m != i) change.shape += r.shapes.col(m) * (parts[m] / (r.poles[i] - r.poles[m]));
   return change;
@@ -83,7 +83,7 @@ std::vector<Pole> scattered_poles(const ScatteredHankel& hankel, int order, doub
   std::vector<Pole> found;
   for (Index i = 0; i < r.n; ++i) {
     const Complex z = r.poles[i];
-    if (!(z.imag() > 0 && std::abs(z) > vanishing)) continue;
+    if (!(z.imag() > 0 && std::abs(z) > vanishing_pole_scatter)) continue;
     Pole pole{std::log(z) / interval, r.shapes.col(i)};
     Index largest = 0;
     pole.shape.cwiseAbs().maxCoeff(&largest);
@@ -91,7 +91,7 @@ std::vector<Pole> scattered_poles(const ScatteredHankel& hankel, int order, doub
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
     VectorXd shape_variance = VectorXd::Zero(r.p);
     for (const MatrixXd& turn : turns) {
-      const Change change = change_of(r, i, turn);
+      const SubspaceChange change = change_of(r, i, turn);
       const Complex rate = change.pole / (z * interval);
       const Eigen::Vector2d both(rate.imag(), -rate.real());
       covariance += both * both.transpose();

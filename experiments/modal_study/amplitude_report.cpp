@@ -156,8 +156,8 @@ Figure figure_of(const std::vector<Dependence>& all, const std::vector<RecordMod
   return figure;
 }
 
-nlohmann::ordered_json values_of(const std::vector<Dependence>& all,
-                                 const std::vector<RecordModes>& records) {
+nlohmann::ordered_json amplitude_values_of(const std::vector<Dependence>& all,
+                                           const std::vector<RecordModes>& records) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const Dependence& one : all) {
     const Channel& channel = records[one.record].record.channels[one.channel];
@@ -195,7 +195,7 @@ void tell_amplitude(const std::vector<RecordModes>& records, const std::vector<M
       all.back().record = r;
       all.back().mode = m;
     }
-  results.values["amplitude_dependence"] = values_of(all, records);
+  results.values["amplitude_dependence"] = amplitude_values_of(all, records);
   results.heading("Amplitude");
   Table table = table_of(all, records);
   if (table.rows() > 0) {

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr Index fewest = 64;
+constexpr Index fewest_decay_samples = 64;
 
 Record part_of(const Record& record, Index begin, Index count) {
   Record part = record;
@@ -47,11 +47,12 @@ Record complete_part(const Record& record, std::vector<std::string>& remarks) {
     missing += !complete;
     if (run > longest) longest = run, begin = k + 1 - run;
   }
-  if (longest < fewest)
-    throw std::invalid_argument(fmt::format(
-        "{} of {} readings are missing or clipped, and the longest part without one, from {:.6g} "
-        "s, has {} samples; modal analysis expects {} at least",
-        missing, record.size(), record.time[std::min(begin, record.size() - 1)], longest, fewest));
+  if (longest < fewest_decay_samples)
+    throw std::invalid_argument(
+        fmt::format("{} of {} readings are missing or clipped, and the longest part without one, from {:.6g} "
+                    "s, has {} samples; modal analysis expects {} at least",
+                    missing, record.size(), record.time[std::min(begin, record.size() - 1)], longest,
+                    fewest_decay_samples));
   remarks.push_back(fmt::format(
       "{} of {} readings are missing or clipped: the longest part without one is taken, {:.4g} to {:.4g} s.",
       missing, record.size(), record.time[begin], record.time[begin + longest - 1]));
@@ -62,7 +63,7 @@ Record from_release(const Record& record, std::vector<std::string>& remarks) {
   const VectorXd size = record.samples.rowwise().norm().cwiseMax(1e-300);
   Index channel = 0, begin = 0;
   (size.cwiseInverse().asDiagonal() * record.samples).cwiseAbs().maxCoeff(&channel, &begin);
-  if (begin == 0 || record.size() - begin < fewest) return record;
+  if (begin == 0 || record.size() - begin < fewest_decay_samples) return record;
   remarks.push_back(fmt::format(
       "No window was given: the decay is taken from the largest reading on, {:.4g} s.", record.time[begin]));
   return part_of(record, begin, record.size() - begin);

@@ -71,7 +71,7 @@ Figure diagram(const RecordModes& found, const std::string& suffix) {
   return {"stabilisation" + suffix, {panel}, 1, 1, 800, 520};
 }
 
-std::string unit_of(const RecordModes& found, Index channel) {
+std::string modal_study_unit_of(const RecordModes& found, Index channel) {
   const std::string unit = si_unit(found.record.channels[channel].quantity);
   return found.free_decay ? unit : "(" + unit + ")^{2}";
 }
@@ -90,14 +90,14 @@ Figure reproduction(const RecordModes& found, const std::string& suffix) {
     const VectorXd measured = found.target.row(i), again = found.reproduced.row(i);
     Panel motion{channel.name,
                  {found.free_decay ? "time [s]" : "lag [s]"},
-                 {what + " [" + unit_of(found, i) + "]"},
+                 {what + " [" + modal_study_unit_of(found, i) + "]"},
                  {}};
     motion.curves = {{"measured", time, measured, CurveStyle::line, {}, {}, Colour::grey},
                      {"reproduced by the modes", time, again, CurveStyle::dashed, {}, {}, Colour::blue}};
     motion.x_axis.range = {time[0], time[count - 1]};
     const AmplitudeSpectrum a = amplitude_spectrum(measured, found.interval),
                             b = amplitude_spectrum(again, found.interval);
-    Panel spectrum{"", {"frequency [Hz]"}, {"amplitude [" + unit_of(found, i) + "]", true}, {}};
+    Panel spectrum{"", {"frequency [Hz]"}, {"amplitude [" + modal_study_unit_of(found, i) + "]", true}, {}};
     const double peak = a.amplitude.maxCoeff();
     spectrum.curves = {{"measured",
                         a.frequency_hz,

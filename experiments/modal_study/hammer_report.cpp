@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index, Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
 
-Json known(double value) {
+Json known_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
@@ -58,7 +58,7 @@ Table mode_table(const HammerStudy& study) {
   return table;
 }
 
-Json values(const HammerStudy& study) {
+Json hammer_values(const HammerStudy& study) {
   Json json{{"records", study.names},
             {"hits", study.responses.averages},
             {"block_s", study.responses.duration},
@@ -68,15 +68,15 @@ Json values(const HammerStudy& study) {
   json["modes"] = Json::array();
   for (const HammerMode& mode : study.modes) {
     Json one{{"frequency_hz", mode.pole.frequency_hz()},
-             {"frequency_standard_deviation_hz", known(mode.pole.frequency_deviation_hz)},
+             {"frequency_standard_deviation_hz", known_or_null(mode.pole.frequency_deviation_hz)},
              {"damping_ratio", mode.pole.damping_ratio()},
-             {"damping_ratio_standard_deviation", known(mode.pole.damping_ratio_deviation)},
+             {"damping_ratio_standard_deviation", known_or_null(mode.pole.damping_ratio_deviation)},
              {"stable_orders", mode.orders}};
     one["channels"] = Json::array();
     for (std::size_t o = 0; o < mode.mass.size(); ++o)
       one["channels"].push_back({{"channel", study.channels[o].name},
                                  {"modal_mass_kg", mode.mass[o]},
-                                 {"modal_mass_standard_deviation_kg", known(mode.deviation[o])},
+                                 {"modal_mass_standard_deviation_kg", known_or_null(mode.deviation[o])},
                                  {"residue_phase_rad", mode.phase[o]}});
     json["modes"].push_back(std::move(one));
   }
@@ -91,7 +91,7 @@ Json values(const HammerStudy& study) {
   return json;
 }
 
-std::vector<Figure> figures(const HammerStudy& study) {
+std::vector<Figure> hammer_figures(const HammerStudy& study) {
   const VectorXd f = study.responses.frequency_hz.segment(study.first, study.lines);
   const Index shown = std::min<Index>(static_cast<Index>(study.channels.size()), 3);
   const bool averaged = study.responses.averages > 1;
@@ -166,7 +166,7 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   results.command = "modal";
   results.configuration = configuration(settings, {});
   results.configuration["records"] = study.names;
-  results.values = values(study);
+  results.values = hammer_values(study);
   std::string names;
   for (const std::string& name : study.names) names += (names.empty() ? "" : ", ") + name;
   results.heading(names);
@@ -201,7 +201,7 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   else
     results.table(mode_table(study));
   for (const std::string& warning : study.warnings) results.paragraph(warning);
-  for (Figure& figure : figures(study)) results.figures.push_back(std::move(figure));
+  for (Figure& figure : hammer_figures(study)) results.figures.push_back(std::move(figure));
   return results;
 }
 

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 
 /// A value with two digits of its deviation; "-" for what is unknown.
-std::string with_deviation(double value, double deviation, double shown = 1) {
+std::string with_scaled_deviation(double value, double deviation, double shown = 1) {
   const bool known = deviation > 0 && std::isfinite(deviation);
   const int digits =
       known ? std::clamp(1 - static_cast<int>(std::floor(std::log10(shown * deviation))), 0, 9) : 4;
@@ -64,9 +64,9 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
     const ModeEstimate& mode = found.modes[m];
     const Pole& pole = mode.pole;
     std::vector<Cell> row{static_cast<double>(m + 1),
-                          with_deviation(pole.frequency_hz(), pole.frequency_deviation_hz),
+                          with_scaled_deviation(pole.frequency_hz(), pole.frequency_deviation_hz),
                           deviation_text(pole.frequency_deviation_hz),
-                          with_deviation(pole.damping_ratio(), pole.damping_ratio_deviation, 100),
+                          with_scaled_deviation(pole.damping_ratio(), pole.damping_ratio_deviation, 100),
                           deviation_text(pole.damping_ratio_deviation, 100)};
     if (!found.mode_by_mode)
       row.emplace_back(fmt::format("{} of {}", mode.orders.size(), found.search.orders.size()));
@@ -111,9 +111,9 @@ Table merged_table(const std::vector<MergedMode>& merged, std::size_t records) {
       .column({"records", "records"});
   for (std::size_t m = 0; m < merged.size(); ++m) {
     const MergedValue &f = merged[m].frequency_hz, &ratio = merged[m].damping_ratio;
-    table.row({static_cast<double>(m + 1), with_deviation(f.mean, std::fmax(f.deviation, f.scatter)),
+    table.row({static_cast<double>(m + 1), with_scaled_deviation(f.mean, std::fmax(f.deviation, f.scatter)),
                deviation_text(f.deviation), deviation_text(f.scatter),
-               with_deviation(ratio.mean, std::fmax(ratio.deviation, ratio.scatter), 100),
+               with_scaled_deviation(ratio.mean, std::fmax(ratio.deviation, ratio.scatter), 100),
                deviation_text(ratio.deviation, 100), deviation_text(ratio.scatter, 100),
                fmt::format("{} of {}", merged[m].records(), records)});
   }

@@ -11,7 +11,7 @@ Json known(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json describe(const ModeEstimate& mode, const Record& record) {
+Json describe_mode(const ModeEstimate& mode, const Record& record) {
   Json json{{"frequency_hz", mode.pole.frequency_hz()},
             {"frequency_standard_deviation_hz", known(mode.pole.frequency_deviation_hz)},
             {"damping_ratio", mode.pole.damping_ratio()},
@@ -30,7 +30,7 @@ Json describe(const ModeEstimate& mode, const Record& record) {
   return json;
 }
 
-Json describe(const MergedValue& value) {
+Json describe_mode(const MergedValue& value) {
   return {{"mean", value.mean},
           {"standard_deviation", known(value.deviation)},
           {"standard_deviation_between_records", known(value.scatter)},
@@ -51,7 +51,7 @@ Json values(const std::vector<RecordModes>& records, const std::vector<MergedMod
              {"free_decay", found.free_decay},
              {"polished", found.polished}};
     one["modes"] = Json::array();
-    for (const ModeEstimate& mode : found.modes) one["modes"].push_back(describe(mode, found.record));
+    for (const ModeEstimate& mode : found.modes) one["modes"].push_back(describe_mode(mode, found.record));
     one["rejected"] = Json::array();
     for (const PoleCluster& cluster : found.stabilisation.rejected)
       one["rejected"].push_back({{"frequency_hz", cluster.pole.frequency_hz()},
@@ -68,8 +68,8 @@ Json values(const std::vector<RecordModes>& records, const std::vector<MergedMod
   if (records.size() < 2) return json;
   json["merged_modes"] = Json::array();
   for (const MergedMode& mode : merged)
-    json["merged_modes"].push_back({{"frequency_hz", describe(mode.frequency_hz)},
-                                    {"damping_ratio", describe(mode.damping_ratio)},
+    json["merged_modes"].push_back({{"frequency_hz", describe_mode(mode.frequency_hz)},
+                                    {"damping_ratio", describe_mode(mode.damping_ratio)},
                                     {"records", mode.records()}});
   return json;
 }

@@ -10,7 +10,7 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-using Verdict = Explanation::Verdict;
+using ExplanationVerdict = Explanation::Verdict;
 
 constexpr int most_steps = 30;
 constexpr double smallest_step = 1e-6;  // of a candidate's scale
@@ -67,7 +67,7 @@ VectorXd solve(const Problem& problem, std::vector<bool>& held) {
   return u;
 }
 
-void judge(const ModelCheck& check, Explanation& e) {
+void judge_explanation(const ModelCheck& check, Explanation& e) {
   bool known = true;
   for (std::size_t i = 0; i < e.candidates.size(); ++i) {
     const Candidate& c = check.candidates[e.candidates[i]];
@@ -77,10 +77,10 @@ void judge(const ModelCheck& check, Explanation& e) {
   // A change held at its limit fits nothing.
   const Index freedom = e.freedom + std::count(e.at_limit.begin(), e.at_limit.end(), true);
   e.verdict = freedom > 0 && e.chi_square > chi_square_limit(static_cast<double>(freedom))
-                  ? Verdict::leaves_much
-              : !known      ? Verdict::undetermined
-              : e.plausible ? Verdict::explains
-                            : Verdict::implausible;
+                  ? ExplanationVerdict::leaves_much
+              : !known      ? ExplanationVerdict::undetermined
+              : e.plausible ? ExplanationVerdict::explains
+                            : ExplanationVerdict::implausible;
 }
 
 }  // namespace
@@ -125,17 +125,17 @@ Explanation explain(const ModelCheck& check, const ChangedFrequencies& frequenci
                          : 1;
   result.deviation = widened * covariance.diagonal().cwiseSqrt().cwiseProduct(problem.scale);
   if (q == 2) result.correlation = covariance(0, 1) / std::sqrt(covariance(0, 0) * covariance(1, 1));
-  judge(check, result);
+  judge_explanation(check, result);
   return result;
 }
 
-const char* to_string(Verdict verdict) {
+const char* to_string(ExplanationVerdict verdict) {
   switch (verdict) {
-    case Verdict::explains:
+    case ExplanationVerdict::explains:
       return "explains";
-    case Verdict::implausible:
+    case ExplanationVerdict::implausible:
       return "explains, but implausible";
-    case Verdict::undetermined:
+    case ExplanationVerdict::undetermined:
       return "cannot be told";
     default:
       return "does not explain";

@@ -21,7 +21,7 @@ using Eigen::Index, Eigen::VectorXd;
 constexpr double most_apart = 0.3;               // of identified and predicted frequency, relative
 constexpr double farthest = 0.6931471805599453;  // of the lowest mode, where nothing is nearer: a factor of 2
 constexpr double least_alike = 0.5;              // MAC
-constexpr Index most_modes = 15;
+constexpr Index most_checked_modes = 15;
 
 bool has_shapes(const CheckedStructure& structure) {
   const auto& channels = structure.channels;
@@ -40,7 +40,7 @@ void match(const CheckedStructure& structure, std::size_t number, ModelCheck& ch
   else
     points.push_back(natural);
   const fem::StructuralSystem system = fem::assemble(structure.beam, structure.elements, points);
-  const fem::Modes modes = fem::modes(system, std::min(system.size(), most_modes));
+  const fem::Modes modes = fem::modes(system, std::min(system.size(), most_checked_modes));
   const VectorXd predicted = modes.frequency_hz();
   const VectorXd damping = std::holds_alternative<fem::Undamped>(structure.damping)
                                ? VectorXd::Constant(predicted.size(), CheckedMode::unknown)

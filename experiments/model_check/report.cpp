@@ -190,7 +190,7 @@ Figure figure_of(const ModelCheck& check) {
   return {"model_check", {panel}};
 }
 
-Json values_of(const ModelCheck& check, const Explanation& e) {
+Json model_check_values_of(const ModelCheck& check, const Explanation& e) {
   Json json = Json::object();
   for (std::size_t i = 0; i < e.candidates.size(); ++i) {
     const Candidate& c = check.candidates[e.candidates[i]];
@@ -234,8 +234,8 @@ void fill(const ModelCheck& check, Results& results) {
                    {"plausible", {c.plausible_lower, c.plausible_upper}}};
     json["candidates"].push_back(candidate);
   }
-  for (const Explanation& e : check.single) json["single_changes"].push_back(values_of(check, e));
-  for (const Explanation& e : check.pairs) json["pairs"].push_back(values_of(check, e));
+  for (const Explanation& e : check.single) json["single_changes"].push_back(model_check_values_of(check, e));
+  for (const Explanation& e : check.pairs) json["pairs"].push_back(model_check_values_of(check, e));
   json["contradictions"] = check.contradictions;
   json["conclusions"] = conclusions(check);
   for (const CheckedStructure& structure : check.structures)

@@ -12,7 +12,7 @@
 namespace beamid::experiments {
 namespace {
 
-using Verdict = Explanation::Verdict;
+using ExplanationVerdict = Explanation::Verdict;
 
 std::string readable(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -32,7 +32,7 @@ std::string change_text(const ModelCheck& check, const Explanation& e) {
   return text;
 }
 
-std::vector<const Explanation*> with(const std::vector<Explanation>& all, Verdict verdict) {
+std::vector<const Explanation*> with(const std::vector<Explanation>& all, ExplanationVerdict verdict) {
   std::vector<const Explanation*> found;
   for (const Explanation& one : all)
     if (one.verdict == verdict) found.push_back(&one);
@@ -50,9 +50,10 @@ std::string names_of(const ModelCheck& check, const std::vector<const Explanatio
 }
 
 /// What explains among one kind, single or pairs; whether anything plausible does.
-bool tell(const ModelCheck& check, const std::vector<Explanation>& all, const char* kind,
-          std::vector<std::string>& sentences) {
-  const auto explains = with(all, Verdict::explains), implausible = with(all, Verdict::implausible);
+bool add_conclusions(const ModelCheck& check, const std::vector<Explanation>& all, const char* kind,
+                     std::vector<std::string>& sentences) {
+  const auto explains = with(all, ExplanationVerdict::explains),
+             implausible = with(all, ExplanationVerdict::implausible);
   if (explains.size() == 1)
     sentences.push_back(
         fmt::format("One {} explains the difference: {}.", kind, change_text(check, *explains[0])));
@@ -70,7 +71,7 @@ bool tell(const ModelCheck& check, const std::vector<Explanation>& all, const ch
     if (explains.empty())
       sentences.push_back(fmt::format("Nearest of them: {}.", change_text(check, *implausible[0])));
   }
-  if (const auto open = with(all, Verdict::undetermined); !open.empty() && explains.empty())
+  if (const auto open = with(all, ExplanationVerdict::undetermined); !open.empty() && explains.empty())
     sentences.push_back(fmt::format(
         "Within what these data can tell, {} would do too, with intervals wider than what is plausible: {}.",
         open.size() == 1 ? "this one" : "these", names_of(check, open)));
@@ -82,7 +83,7 @@ void tell_best(const ModelCheck& check, const std::vector<Explanation>& all, con
                std::vector<std::string>& sentences) {
   const Explanation *best = nullptr, *plausible = nullptr;
   for (const Explanation& one : all) {
-    if (one.verdict != Verdict::leaves_much) continue;
+    if (one.verdict != ExplanationVerdict::leaves_much) continue;
     if (!best || one.chi_square < best->chi_square) best = &one;
     if (one.plausible && (!plausible || one.chi_square < plausible->chi_square)) plausible = &one;
   }
@@ -98,8 +99,8 @@ void tell_best(const ModelCheck& check, const std::vector<Explanation>& all, con
 /// What may be another one altogether and would then explain, "tip mass 0.27 instead of 0.71 kg"; whether
 /// there is such a thing. A weight is exchanged more easily than a length.
 bool tell_exchanged(const ModelCheck& check, std::vector<std::string>& sentences) {
-  if (!with(check.single, Verdict::explains).empty()) return false;
-  auto some = with(check.single, Verdict::implausible);
+  if (!with(check.single, ExplanationVerdict::explains).empty()) return false;
+  auto some = with(check.single, ExplanationVerdict::implausible);
   const auto candidate = [&](const Explanation* e) -> const Candidate& {
     return check.candidates[e->candidates[0]];
   };
@@ -170,9 +171,9 @@ std::vector<std::string> conclusions(const ModelCheck& check) {
         fmt::format("The beam as described does not agree with what was identified: {}.", size));
     tell_outlier(check, sentences);
     const bool exchanged = tell_exchanged(check, sentences);
-    if (!tell(check, check.single, "single change", sentences)) {
+    if (!add_conclusions(check, check.single, "single change", sentences)) {
       if (!exchanged) tell_best(check, check.single, "single change", sentences);
-      if (!check.pairs.empty() && !tell(check, check.pairs, "pair of changes", sentences))
+      if (!check.pairs.empty() && !add_conclusions(check, check.pairs, "pair of changes", sentences))
         tell_best(check, check.pairs, "pair", sentences);
     }
   }

@@ -93,7 +93,7 @@ FollowingMotion::Equations equations_at(const ModelSetting& setting, const std::
   };
 }
 
-std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters::Options& options) {
   MotionDescription description = describe_sensors("beam", setting, options);
   const std::vector<ParameterChoice> choices = choices_of(setting);
   if (!setting.continuum) beam_equations(setting, {});  // says what is missing
@@ -161,7 +161,7 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
   return model;
 }
 
-std::vector<filters::OptionSpec> options() {
+std::vector<filters::OptionSpec> beam_model_options() {
   std::vector<filters::OptionSpec> specs = sensor_options();
   specs.push_back(
       {"coordinates", std::string("modes"), "",
@@ -171,13 +171,14 @@ std::vector<filters::OptionSpec> options() {
   return specs;
 }
 
-const bool registered = model_registry().add({"beam",
-                                              "the finite-element beam: stiffness, masses, root, axial load "
-                                              "and damping unknown, as [[parameters]] asks",
-                                              "[rayleigh1877]",
-                                              options(),
-                                              {},
-                                              make});
+const bool beam_registered =
+    model_registry().add({"beam",
+                          "the finite-element beam: stiffness, masses, root, axial load "
+                          "and damping unknown, as [[parameters]] asks",
+                          "[rayleigh1877]",
+                          beam_model_options(),
+                          {},
+                          make_beam});
 
 }  // namespace
 }  // namespace beamid::experiments

@@ -39,7 +39,7 @@ class BoucWen final : public OscillatorLaw {
   double n_, length_;
 };
 
-std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+std::unique_ptr<JointModel> make_bouc_wen(const ModelSetting& setting, const filters::Options& options) {
   constexpr double stiffness_doubt = 0.3, half = 0.5;
   const double exponent = options.number("exponent"), length = options.number("reference_length_m");
   if (!(exponent >= 1.0 && length > 0.0))
@@ -57,7 +57,7 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
       options.flag("sensor_bias"));
 }
 
-const bool registered = model_registry().add(
+const bool bouc_wen_registered = model_registry().add(
     {"bouc_wen",
      "one degree of freedom with hysteresis: K, C, alpha, beta and gamma unknown, the exponent known",
      "[wen1976]",
@@ -68,7 +68,7 @@ const bool registered = model_registry().add(
       {"hysteresis_beta_per_m", 0.0, "1/m", "beta, likewise"},
       {"hysteresis_gamma_per_m", 0.0, "1/m", "gamma, likewise"}},
      {},
-     make});
+     make_bouc_wen});
 
 }  // namespace
 }  // namespace beamid::experiments

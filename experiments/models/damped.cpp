@@ -33,7 +33,7 @@ class Damped final : public OscillatorLaw {
   double v0_;  // [m/s]
 };
 
-std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+std::unique_ptr<JointModel> make_damped(const ModelSetting& setting, const filters::Options& options) {
   constexpr double stiffness_doubt = 0.3, small_ratio = 0.001, doubt = 10.0;
   const double v0 = options.number("friction_velocity_m_per_s");
   if (!(v0 > 0.0))
@@ -57,7 +57,7 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
       options.flag("sensor_bias"));
 }
 
-const bool registered = model_registry().add(
+const bool damped_registered = model_registry().add(
     {"damped",
      "one degree of freedom with viscous, Coulomb and quadratic damping, and a cubic spring where asked",
      "[jacobsen1930]",
@@ -67,7 +67,7 @@ const bool registered = model_registry().add(
       {"quadratic_damping_n_s2_per_m2", 0.0, "N s2/m2", "likewise"},
       {"cubic_stiffness_n_per_m3", 0.0, "N/m3", "likewise"}},
      {},
-     make});
+     make_damped});
 
 }  // namespace
 }  // namespace beamid::experiments

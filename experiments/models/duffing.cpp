@@ -20,7 +20,7 @@ class Duffing final : public OscillatorLaw {
   }
 };
 
-std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+std::unique_ptr<JointModel> make_duffing(const ModelSetting& setting, const filters::Options& options) {
   constexpr double stiffness_doubt = 0.3;
   const ExpectedOscillator beam = expected_oscillator("duffing", setting);
   // One per cent of K at the usual amplitude, and a hundred times as much in doubt: of either sign.
@@ -33,14 +33,14 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
       options.flag("sensor_bias"));
 }
 
-const bool registered = model_registry().add(
+const bool duffing_registered = model_registry().add(
     {"duffing",
      "one degree of freedom with a cubic spring: K, C and K3 unknown, mass too where a force was measured",
      "[kovacic2011]",
      {{"sensor_bias", true, "", "estimate the constant offset of every accelerometer too"},
       {"cubic_stiffness_n_per_m3", 0.0, "N/m3", "where [[parameters]] do not ask about it"}},
      {},
-     make});
+     make_duffing});
 
 }  // namespace
 }  // namespace beamid::experiments

@@ -20,8 +20,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using std::numbers::pi;
 
 constexpr double frequency_doubt = 0.15;  // as much as 30 % of the stiffness
-constexpr double damping_doubt = 1.0, usual_ratio = 0.01;
-constexpr Index most_modes = 100;
+constexpr double modal_damping_doubt = 1.0, usual_modal_ratio = 0.01;
+constexpr Index most_modal_modes = 100;
 
 // What drives omega and xi of every mode: an unknown, or -1 and a value.
 struct ModeBelief {
@@ -29,9 +29,9 @@ struct ModeBelief {
   std::vector<Index> frequency_unknown, ratio_unknown;
 };
 
-class ModalMotion final : public SecondOrderMotion {
+class ModalModelMotion final : public SecondOrderMotion {
  public:
-  ModalMotion(ModeBelief belief, MatrixXd inputs, MotionDescription description, MatrixXd rows)
+  ModalModelMotion(ModeBelief belief, MatrixXd inputs, MotionDescription description, MatrixXd rows)
       : SecondOrderMotion(std::move(description), std::move(rows), "mode"),
         belief_(std::move(belief)),
         inputs_(std::move(inputs)) {}
@@ -84,7 +84,7 @@ class ModalMotion final : public SecondOrderMotion {
   MatrixXd inputs_;  // phi_i^T E / m_i (r x m)
 
   std::shared_ptr<const SecondOrderMotion> copy() const override {
-    return std::make_shared<ModalMotion>(*this);
+    return std::make_shared<ModalModelMotion>(*this);
   }
 };
 
@@ -112,7 +112,7 @@ std::vector<ParameterChoice> choices_of(const ModelSetting& setting, Index modes
 VectorXd ratios_of(const ModelSetting& setting, const fem::StructuralSystem& system,
                    const fem::Modes& modes) {
   VectorXd ratios = std::holds_alternative<fem::Undamped>(setting.damping)
-                        ? VectorXd::Constant(modes.size(), usual_ratio)
+                        ? VectorXd::Constant(modes.size(), usual_modal_ratio)
                         : fem::damping_ratios(setting.damping, modes.angular_frequency);
   for (Index i = 0; i < modes.size(); ++i)
     ratios[i] +=
@@ -120,16 +120,16 @@ VectorXd ratios_of(const ModelSetting& setting, const fem::StructuralSystem& sys
   return ratios;
 }
 
-std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+std::unique_ptr<JointModel> make_modal(const ModelSetting& setting, const filters::Options& options) {
   MotionDescription description = describe_sensors("modal", setting, options);
   const reduction::ReducedModel small = reduced(setting);
   const double wanted = options.number("modes");
   const Index all = small.system.size();
   const Index count = wanted > 0.0 ? static_cast<Index>(wanted) : all;
-  if (!(wanted >= 0.0 && wanted == std::floor(wanted)) || count > std::min(all, most_modes))
+  if (!(wanted >= 0.0 && wanted == std::floor(wanted)) || count > std::min(all, most_modal_modes))
     throw std::invalid_argument(
         fmt::format("model 'modal': {:g} modes of {} coordinates; expected 1 to {}, or fewer coordinates",
-                    wanted, all, std::min(all, most_modes)));
+                    wanted, all, std::min(all, most_modal_modes)));
   fem::Modes modes = fem::modes(small.system, count);
   if (modes.rigid > 0)
     throw std::invalid_argument(
@@ -143,7 +143,7 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
     const Index mode = choice.mode.value_or(1) - 1;
     defaults.push_back(choice.quantity == "frequency"
                            ? ParameterDefault{0.5 * belief.frequencies[mode] / pi, frequency_doubt}
-                           : ParameterDefault{belief.ratios[mode], damping_doubt});
+                           : ParameterDefault{belief.ratios[mode], modal_damping_doubt});
   }
   description.unknowns = unknowns_of(choices, defaults);
   for (std::size_t j = 0; j < choices.size(); ++j)
@@ -170,23 +170,23 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
   for (Index j = 0; j < static_cast<Index>(model->unknowns.size()); ++j)
     model->unknown_places.push_back(places.unknowns + j);
   model->offsets = places.offsets;
-  model->motion = std::make_shared<ModalMotion>(std::move(belief), inputs, std::move(description), rows);
+  model->motion = std::make_shared<ModalModelMotion>(std::move(belief), inputs, std::move(description), rows);
   return model;
 }
 
-std::vector<filters::OptionSpec> options() {
+std::vector<filters::OptionSpec> modal_options() {
   std::vector<filters::OptionSpec> specs = sensor_options();
   specs.push_back({"modes", 0.0, "", "the lowest so many modes of the reduced model; 0: all"});
   return specs;
 }
 
-const bool registered =
+const bool modal_registered =
     model_registry().add({"modal",
                           "modes with unknown frequency and damping ratio each, participation from the model",
                           "[rayleigh1877]",
-                          options(),
+                          modal_options(),
                           {},
-                          make});
+                          make_modal});
 
 }  // namespace
 }  // namespace beamid::experiments

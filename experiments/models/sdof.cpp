@@ -23,7 +23,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 // One observed channel.
-struct ObservedChannel {
+struct SdofChannel {
   Quantity quantity = Quantity::acceleration;
   double reading = 1.0;  // r
 };
@@ -38,7 +38,7 @@ struct Known {
 
 class SingleDegreeOfFreedom final : public filters::LinearMotion {
  public:
-  SingleDegreeOfFreedom(Known known, std::vector<ObservedChannel> observed, bool sensor_bias)
+  SingleDegreeOfFreedom(Known known, std::vector<SdofChannel> observed, bool sensor_bias)
       : known_(std::move(known)),
         observed_(std::move(observed)),
         bias_(sensor_bias ? (known_.mass_unknown ? 5 : 4) : 0),
@@ -54,7 +54,7 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
   }
   std::vector<filters::Label> output_labels() const override {
     std::vector<filters::Label> labels;
-    for (const ObservedChannel& one : observed_)
+    for (const SdofChannel& one : observed_)
       labels.push_back({to_string(one.quantity), si_unit(one.quantity)});
     return labels;
   }
@@ -116,7 +116,7 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
 
  private:
   Known known_;
-  std::vector<ObservedChannel> observed_;
+  std::vector<SdofChannel> observed_;
   Index bias_;  // its place in the state; 0: none
   Index parameters_;
 
@@ -173,12 +173,12 @@ VectorXd readings(const ModelSetting& setting) {
   return seen / seen[0];
 }
 
-std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
+std::unique_ptr<JointModel> make_sdof(const ModelSetting& setting, const filters::Options& options) {
   const fem::StructuralSystem system = reduced(setting).system;
   if (system.size() != 1)
     throw std::invalid_argument("model 'sdof' needs a reduction to one coordinate; this one keeps " +
                                 std::to_string(system.size()));
-  std::vector<ObservedChannel> observed;
+  std::vector<SdofChannel> observed;
   std::vector<Index> accelerometers;
   auto model = std::make_unique<JointModel>();
   for (const Observation& observation : setting.observations) {
@@ -219,14 +219,14 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
   return model;
 }
 
-const bool registered = model_registry().add(
+const bool sdof_registered = model_registry().add(
     {"sdof",
      "one degree of freedom: stiffness K and damping C unknown, mass too where a force was measured",
      "[inverse2009]",
      {{"sensor_bias", true, "",
        "estimate the accelerometer's constant offset too, where acceleration is observed"}},
      {},
-     make});
+     make_sdof});
 
 }  // namespace
 }  // namespace beamid::experiments

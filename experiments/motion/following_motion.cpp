@@ -9,7 +9,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double grid = 0.01;  // of the guesses: half of it, to the third power, is what the maps err by
+constexpr double guess_spacing =
+    0.01;  // of the guesses: half of it, to the third power, is what the maps err by
 
 // A guess of zero (an inertia, a load) is stepped by its doubt.
 VectorXd spacing_of(const MotionDescription& description) {
@@ -17,7 +18,7 @@ VectorXd spacing_of(const MotionDescription& description) {
   for (std::size_t j = 0; j < description.unknowns.size(); ++j)
     if (const Drive& drive = description.drives[j]; drive.kind == Drive::Kind::property) {
       const double guess = std::abs(description.reference[drive.index]);
-      spacing[drive.index] = grid * (guess > 0.0 ? guess : description.unknowns[j].deviation);
+      spacing[drive.index] = guess_spacing * (guess > 0.0 ? guess : description.unknowns[j].deviation);
     }
   return spacing;
 }

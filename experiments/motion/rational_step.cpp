@@ -16,7 +16,7 @@ struct Degree {
   std::vector<double> coefficients;  // b_0 .. b_m
 };
 
-const std::vector<Degree>& degrees() {
+const std::vector<Degree>& pade_degrees() {
   static const std::vector<Degree> known{
       {1.495585217958292e-2, {120, 60, 12, 1}},
       {2.539398330063230e-1, {30240, 15120, 3360, 420, 30, 1}},
@@ -66,14 +66,14 @@ void RationalStep::choose_degree(double norm) {
     coefficients_ = {12, 6, 1};
     return;
   }
-  for (const Degree& degree : degrees())
+  for (const Degree& degree : pade_degrees())
     if (norm <= degree.largest_norm) {
       coefficients_ = degree.coefficients;
       return;
     }
   constexpr int most_squarings = 12;
-  coefficients_ = degrees().back().coefficients;
-  const double halvings = std::ceil(std::log2(norm / degrees().back().largest_norm));
+  coefficients_ = pade_degrees().back().coefficients;
+  const double halvings = std::ceil(std::log2(norm / pade_degrees().back().largest_norm));
   if (halvings > most_squarings)
     throw std::runtime_error("the fastest motion turns too far within one interval for its exponential");
   squarings_ = static_cast<int>(halvings);

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 using fem::Mesh;
 
-constexpr std::size_t most_drawn_elements = 20'000;
+constexpr std::size_t most_grid_elements = 20'000;
 constexpr double steel_density = 7850.0;  // [kg/m3]
 constexpr int sides = 24;                 // of an ellipse
 
@@ -25,7 +25,7 @@ bool continues(const Mesh::Element& before, const Mesh::Element& next) {
 
 std::vector<Stretch> stretches(const Picture& picture) {
   const std::vector<Mesh::Element>& elements = picture.system.mesh.elements;
-  const std::size_t most = elements.size() / (most_drawn_elements + 1) + 1;
+  const std::size_t most = elements.size() / (most_grid_elements + 1) + 1;
   std::vector<Stretch> result;
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const bool joins = e > 0 && continues(elements[e - 1], elements[e]) && e - result.back().first < most;

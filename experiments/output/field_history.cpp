@@ -15,7 +15,7 @@ std::string frame_file(Eigen::Index frame) {
   return fmt::format("frame_{:04d}.vtu", frame);
 }
 
-void check(const fem::StructuralSystem& system, const fem::Response& response) {
+void check_field_history(const fem::StructuralSystem& system, const fem::Response& response) {
   const auto frames = static_cast<Eigen::Index>(response.frames.size());
   if (frames == 0) throw std::invalid_argument("the response stores no frames; expected one at least");
   const auto check_field = [&](const char* name, const Eigen::MatrixXd& field) {
@@ -43,7 +43,7 @@ std::vector<std::string> field_history_files(Eigen::Index frames) {
 void write_field_history(const std::filesystem::path& folder, const Picture& picture,
                          const fem::Response& response) {
   const fem::StructuralSystem& system = picture.system;
-  check(system, response);
+  check_field_history(system, response);
   const BeamGrid grid = beam_grid(picture);
   std::vector<std::pair<double, std::string>> series;
   for (Eigen::Index frame = 0; frame < response.field_displacement.cols(); ++frame) {

@@ -21,21 +21,21 @@ using Fields = std::vector<std::string>;  // of a column: header, then values
 
 void check_curve(const std::string& place, const Curve& curve) {
   const bool band = curve.style == CurveStyle::band;
-  const auto check = [&](const char* what, const Eigen::VectorXd& values, bool optional) {
+  const auto check_figure = [&](const char* what, const Eigen::VectorXd& values, bool optional) {
     if (values.size() != curve.x.size() && !(optional && values.size() == 0))
       throw std::invalid_argument(fmt::format("{}, curve '{}': {} has {} values; expected {} as in x", place,
                                               curve.label, what, values.size(), curve.x.size()));
   };
-  check("y", curve.y, band);
-  check("lower", curve.lower, !band);
-  check("upper", curve.upper, !band);
+  check_figure("y", curve.y, band);
+  check_figure("lower", curve.lower, !band);
+  check_figure("upper", curve.upper, !band);
   if (curve.lower.size() != curve.upper.size())
     throw std::invalid_argument(
         fmt::format("{}, curve '{}': lower has {} values and upper {}; expected as many", place, curve.label,
                     curve.lower.size(), curve.upper.size()));
 }
 
-void check(const Figure& figure) {
+void check_figure(const Figure& figure) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-' || c == '.';
@@ -133,7 +133,7 @@ void write(const Figure& figure, const std::filesystem::path& folder) {
 }
 
 void write_data(const Figure& figure, const std::filesystem::path& folder) {
-  check(figure);
+  check_figure(figure);
   write_file(folder / (figure.name + ".csv"), data_of(figure));
   write_file(folder / (figure.name + ".gp"), gnuplot_script(figure));
 }

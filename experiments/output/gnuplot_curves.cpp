@@ -11,7 +11,8 @@
 namespace beamid::experiments {
 namespace {
 
-constexpr std::array colours{"", "blue", "vermillion", "green", "purple", "orange", "sky", "black", "grey"};
+constexpr std::array colour_names{"",       "blue", "vermillion", "green", "purple",
+                                  "orange", "sky",  "black",      "grey"};
 // Circle, square, triangle, diamond and triangle down, filled and open.
 constexpr std::array filled_marks{7, 5, 9, 13, 11};
 constexpr std::array open_marks{6, 4, 8, 12, 10};
@@ -23,14 +24,14 @@ std::vector<std::string> colours_of(const Panel& panel) {
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     const Curve& curve = panel.curves[i];
     if (curve.colour != Colour::automatic) {
-      names.emplace_back(colours[static_cast<std::size_t>(curve.colour)]);
+      names.emplace_back(colour_names[static_cast<std::size_t>(curve.colour)]);
       continue;
     }
     const bool band = curve.style == CurveStyle::band && i + 1 < panel.curves.size();
     if (band && panel.curves[i + 1].colour != Colour::automatic)
-      names.emplace_back(colours[static_cast<std::size_t>(panel.curves[i + 1].colour)]);
+      names.emplace_back(colour_names[static_cast<std::size_t>(panel.curves[i + 1].colour)]);
     else
-      names.emplace_back(colours[1 + next % 6]);
+      names.emplace_back(colour_names[1 + next % 6]);
     if (!band) ++next;
   }
   return names;

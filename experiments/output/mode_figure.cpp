@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-struct Line {
+struct ModeLine {
   std::vector<double> x, y;
 
   void add(const Vector2d& point) {
@@ -61,7 +61,7 @@ class ElementPath {
 };
 
 struct Shape {
-  Line undeformed, deformed;
+  ModeLine undeformed, deformed;
 };
 
 Shape shape_of(const fem::Mesh& mesh, const Eigen::Matrix3Xd& places, const NodalMotion& motion,
@@ -96,7 +96,7 @@ bool is_frame(const fem::StructuralSystem& system) {
       [](const fem::Coordinate& coordinate) { return coordinate.kind == fem::Coordinate::Kind::axial; });
 }
 
-std::string title(Eigen::Index mode, double frequency_hz) {
+std::string mode_figure_title(Eigen::Index mode, double frequency_hz) {
   if (frequency_hz == 0.0) return fmt::format("mode {}, rigid body", mode + 1);
   const int decimals = std::clamp(4 - static_cast<int>(std::floor(std::log10(frequency_hz))), 0, 9);
   return fmt::format("mode {}, {:.{}f} Hz", mode + 1, frequency_hz, decimals);
@@ -116,8 +116,8 @@ std::pair<Axis, Axis> frame_axes(const Eigen::Matrix3Xd& places, double size, do
   return {{"x [m]", false, range(x_middle, width)}, {"y [m]", false, range(z_middle, height)}};
 }
 
-void check(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
-           const Eigen::VectorXd& frequencies_hz) {
+void check_mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
+                       const Eigen::VectorXd& frequencies_hz) {
   if (shapes.rows() != system.size() || shapes.cols() != frequencies_hz.size() || shapes.cols() == 0)
     throw std::invalid_argument(
         fmt::format("mode shapes are {} x {}; expected {} x {}, a column for each frequency, one at least",
@@ -128,7 +128,7 @@ void check(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
 
 Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
                    const Eigen::VectorXd& frequencies_hz) {
-  check(system, shapes, frequencies_hz);
+  check_mode_figure(system, shapes, frequencies_hz);
   const Eigen::Matrix3Xd places = nodal_places(system);
   const bool frame = is_frame(system);
   const auto modes = static_cast<int>(std::min(shapes.cols(), most_drawn_modes));
@@ -149,7 +149,7 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
     const NodalMotion motion = scaled_mode(system, shapes.col(mode));
     Shape shape = shape_of(system.mesh, places, motion, frame ? size / 8 : 1.0);
     if (!frame) scale(shape.deformed.y);
-    figure.panels.push_back({title(mode, frequencies_hz[mode]),
+    figure.panels.push_back({mode_figure_title(mode, frequencies_hz[mode]),
                              axes.first,
                              axes.second,
                              {shape.undeformed.curve(Colour::grey), shape.deformed.curve(Colour::blue)},

@@ -19,20 +19,20 @@ namespace beamid::experiments {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 /// Whether something can be read before the deadline.
-bool wait_for(int descriptor, const std::optional<Clock::time_point>& deadline) {
+bool wait_for(int descriptor, const std::optional<SteadyClock::time_point>& deadline) {
   for (;;) {
     int left = -1;  // [ms]
     if (deadline) {
-      const auto span = std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now()).count();
+      const auto span = std::chrono::ceil<std::chrono::milliseconds>(*deadline - SteadyClock::now()).count();
       left = static_cast<int>(std::clamp<decltype(span)>(span, 0, 3'600'000));
     }
     pollfd watched{descriptor, POLLIN, 0};
     const int ready = poll(&watched, 1, left);
     if (ready > 0) return true;
-    if (ready == 0 && Clock::now() >= *deadline) return false;
+    if (ready == 0 && SteadyClock::now() >= *deadline) return false;
     if (ready < 0 && errno != EINTR) return true;  // read() says what is wrong
   }
 }
@@ -41,10 +41,10 @@ bool wait_for(int descriptor, const std::optional<Clock::time_point>& deadline) 
 
 ProcessResult run_process(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           double longest) {
-  std::optional<Clock::time_point> deadline;
+  std::optional<SteadyClock::time_point> deadline;
   if (longest > 0.0)
-    deadline =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(longest));
+    deadline = SteadyClock::now() +
+               std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double>(longest));
   const std::string& program = arguments.at(0);
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));

@@ -15,12 +15,12 @@ using Json = nlohmann::ordered_json;
 /// "filter.method" -> "ekf", in the file's order.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
-constexpr std::size_t longest = 60;  // characters of a cell
+constexpr std::size_t longest_cell = 60;  // characters of a cell
 
-std::string text_of(const Json& json) {
+std::string cell_text_of(const Json& json) {
   const std::string text = json.is_string() ? json.get<std::string>() : json.dump();
-  if (text.size() <= longest) return text;
-  std::size_t end = longest;
+  if (text.size() <= longest_cell) return text;
+  std::size_t end = longest_cell;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // whole letters of UTF-8
   return text.substr(0, end) + "...";
 }
@@ -35,7 +35,7 @@ void collect(const Json& json, const std::string& place, Settings& settings) {
     for (std::size_t i = 0; i < json.size(); ++i)
       collect(json[i], fmt::format("{}[{}]", place, i + 1), settings);
   } else {
-    settings.emplace_back(place, text_of(json));
+    settings.emplace_back(place, cell_text_of(json));
   }
 }
 
@@ -89,7 +89,7 @@ Table run_versions(const std::vector<NamedResults>& results) {
                  [](const auto& one) { return names_a_method(one.first); });
     settings[i].emplace_back("beamid", results[i].json.value("version", "-"));
     for (const auto& [library, version] : results[i].made_with.items())
-      if (library != "beamid") settings[i].emplace_back(library, text_of(version));
+      if (library != "beamid") settings[i].emplace_back(library, cell_text_of(version));
   }
   return beside_each_other({"run_versions", "Commands, methods and versions"}, results, settings, true);
 }

@@ -39,7 +39,7 @@ std::string text_of(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-std::vector<std::string> files_of(const Results& results) {
+std::vector<std::string> result_files_of(const Results& results) {
   std::vector<std::string> files{"report.html", "results.json", "timing.json"};
   for (const auto& part : results.report)
     if (const auto* table = std::get_if<Table>(&part)) files.push_back(table->name + ".csv");
@@ -99,7 +99,7 @@ Json to_json(const Results& results) {
   Json warnings = Json::array();
   make_finite(json, "", warnings);
   if (!warnings.empty()) json["warnings"] = warnings;
-  json["files"] = files_of(results);
+  json["files"] = result_files_of(results);
   return json;
 }
 

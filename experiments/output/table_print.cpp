@@ -12,10 +12,10 @@ namespace beamid::experiments {
 namespace {
 
 using Lines = std::vector<std::string>;
-constexpr std::size_t gap = 2;               // between columns
+constexpr std::size_t column_gap = 2;        // between columns
 constexpr std::size_t narrowest_texts = 20;  // a column of texts is not broken to less
 
-std::size_t width_of(const Lines& lines) {
+std::size_t column_width_of(const Lines& lines) {
   std::size_t width = 0;
   for (const std::string& line : lines) width = std::max(width, experiments::width_of(line));
   return width;
@@ -38,8 +38,8 @@ struct Strip {
     }
     heading = wrapped(bound, limit);
     for (std::string& line : heading) std::replace(line.begin(), line.end(), '\1', ' ');
-    width = width_of(heading);
-    for (const Lines& cell : cells) width = std::max(width, width_of(cell));
+    width = column_width_of(heading);
+    for (const Lines& cell : cells) width = std::max(width, column_width_of(cell));
   }
 };
 
@@ -48,15 +48,15 @@ Strip strip_of(const Column& column) {
   for (const Cell& cell : column.cells) {
     strip.right |= std::holds_alternative<double>(cell);
     strip.cells.push_back({cell_text(column, cell)});
-    strip.width = std::max(strip.width, width_of(strip.cells.back()));
+    strip.width = std::max(strip.width, column_width_of(strip.cells.back()));
   }
   return strip;
 }
 
 std::size_t total(const std::vector<Strip>& strips) {
   return std::accumulate(strips.begin(), strips.end(), std::size_t{0},
-                         [](std::size_t sum, const Strip& s) { return sum + s.width + gap; }) -
-         gap;
+                         [](std::size_t sum, const Strip& s) { return sum + s.width + column_gap; }) -
+         column_gap;
 }
 
 // Widens broken headings again as far as there is room, the tallest first.
@@ -100,12 +100,14 @@ void break_texts(std::vector<Strip>& strips) {
 std::vector<std::vector<Strip>> folded(const std::vector<Strip>& strips) {
   std::vector<Strip> leading;
   for (const Strip& strip : strips) {
-    if (!leading.empty() && (strip.right || total(leading) + gap + strip.width > page_width / 2)) break;
+    if (!leading.empty() && (strip.right || total(leading) + column_gap + strip.width > page_width / 2))
+      break;
     leading.push_back(strip);
   }
   std::vector<std::vector<Strip>> blocks{leading};
   for (std::size_t i = leading.size(); i < strips.size(); ++i) {
-    if (blocks.back().size() > leading.size() && total(blocks.back()) + gap + strips[i].width > page_width)
+    if (blocks.back().size() > leading.size() &&
+        total(blocks.back()) + column_gap + strips[i].width > page_width)
       blocks.push_back(leading);
     blocks.back().push_back(strips[i]);
   }
@@ -122,7 +124,7 @@ void print_line(std::ostream& stream, const std::vector<Strip>& strips,
       const std::size_t skip = bottom ? height - cells[i]->size() : 0;
       const std::string text = line >= skip && line - skip < cells[i]->size() ? (*cells[i])[line - skip] : "";
       const std::string blanks(strips[i].width - experiments::width_of(text), ' ');
-      out += std::string(i == 0 ? 0 : gap, ' ') + (strips[i].right ? blanks + text : text + blanks);
+      out += std::string(i == 0 ? 0 : column_gap, ' ') + (strips[i].right ? blanks + text : text + blanks);
     }
     stream << out.substr(0, out.find_last_not_of(' ') + 1) << '\n';
   }
@@ -133,7 +135,7 @@ void print_block(std::ostream& stream, const std::vector<Strip>& strips, std::si
   for (const Strip& strip : strips) cells.push_back(&strip.heading);
   print_line(stream, strips, cells, true);
   for (std::size_t i = 0; i < strips.size(); ++i)
-    stream << std::string(i == 0 ? 0 : gap, ' ') << std::string(strips[i].width, '-');
+    stream << std::string(i == 0 ? 0 : column_gap, ' ') << std::string(strips[i].width, '-');
   stream << '\n';
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 0; i < strips.size(); ++i) cells[i] = &strips[i].cells[row];

@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-struct FirstGuess {
+struct DrawnGuess {
   double stiffness, damping;
 };
-constexpr FirstGuess first_guesses[] = {{300, 2}, {300, 20}, {700, 2}, {700, 20}};
+constexpr DrawnGuess first_guesses[] = {{300, 2}, {300, 20}, {700, 2}, {700, 20}};
 
 // How one parameter (state `index`) converges from four first guesses, seen by one scheme.
 Panel convergence(const Outcome& outcome, const char* scheme, const char* title, Index index) {
@@ -63,7 +63,7 @@ Figure convergence_figure(const Outcome& outcome, const char* name, Index index)
 }
 
 // Displacement that an identified oscillator makes from the record's first displacement and velocity [mm].
-VectorXd reproduce(const Oscillator& found, const filters::Measurements& motion) {
+VectorXd reproduce_paper(const Oscillator& found, const filters::Measurements& motion) {
   const std::complex<double> lambda = found.eigenvalue();
   const double x = motion.outputs(0, 0), v = motion.outputs(1, 0);
   const std::complex<double> amplitude(x, (x * lambda.real() - v) / lambda.imag());
@@ -86,14 +86,14 @@ Figure reproduction_figure(const BeamOutcome& o, const char* name) {
     panel.curves = {{"measured", time, measured, CurveStyle::line, {}, {}, Colour::grey},
                     {"reproduced, EKF with exact discretisation",
                      time,
-                     reproduce(o.identified[1].found, o.motion),
+                     reproduce_paper(o.identified[1].found, o.motion),
                      CurveStyle::dashed,
                      {},
                      {},
                      Colour::blue},
                     {"reproduced, EKF with forward Euler",
                      time,
-                     reproduce(o.identified[0].found, o.motion),
+                     reproduce_paper(o.identified[0].found, o.motion),
                      CurveStyle::line,
                      {},
                      {},

@@ -9,7 +9,7 @@
 namespace beamid::experiments::paper {
 namespace {
 
-filters::Measurements simulate(const ValidationSettings& settings) {
+filters::Measurements simulate_oscillator(const ValidationSettings& settings) {
   const Oscillator& truth = settings.truth;
   const auto samples = static_cast<Eigen::Index>(std::lround(settings.duration / settings.interval));
   const auto one = [](double value) { return Eigen::VectorXd::Constant(1, value); };
@@ -58,7 +58,7 @@ Identification validate(const std::string& filter, const std::string& scheme,
   identification.output_noise = settings.noise_variance * Eigen::MatrixXd::Identity(outputs, outputs);
   identification.start = filters::Start::one_interval_before;
   identification.passes = settings.passes;
-  return identify(*model, simulate(settings), identification, keep);
+  return identify(*model, simulate_oscillator(settings), identification, keep);
 }
 
 }  // namespace beamid::experiments::paper

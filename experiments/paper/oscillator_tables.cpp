@@ -7,7 +7,7 @@
 namespace beamid::experiments::paper {
 namespace {
 
-constexpr double not_applicable = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_entry = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -22,8 +22,8 @@ Table table_2(const Outcome& outcome) {
       .column({"UKF C [%]", "ukf_damping_error_percent", "{:+.5g}"});
   for (const SchemeOutcome& o : outcome.schemes) {
     const bool published = o.scheme == "forward_euler";
-    table.row({o.scheme, published ? published_stiffness_error_percent : not_applicable,
-               published ? published_damping_error_percent : not_applicable,
+    table.row({o.scheme, published ? published_stiffness_error_percent : no_entry,
+               published ? published_damping_error_percent : no_entry,
                stiffness_error(o.ekf.found, outcome.truth), damping_error(o.ekf.found, outcome.truth),
                stiffness_error(o.ukf.found, outcome.truth), damping_error(o.ukf.found, outcome.truth)});
   }

@@ -5,7 +5,7 @@
 namespace beamid::experiments::paper {
 namespace {
 
-SchemeOutcome examine(const std::string& scheme, const Oscillator& truth) {
+SchemeOutcome examine_case(const std::string& scheme, const Oscillator& truth) {
   SchemeOutcome outcome;
   outcome.scheme = scheme;
   outcome.predicted = seen_through(scheme, truth, validation_interval);
@@ -15,7 +15,7 @@ SchemeOutcome examine(const std::string& scheme, const Oscillator& truth) {
   return outcome;
 }
 
-BeamOutcome examine(const TestBeam& test, int number, std::uint64_t seed, int trials) {
+BeamOutcome examine_case(const TestBeam& test, int number, std::uint64_t seed, int trials) {
   BeamOutcome outcome;
   outcome.beam = prepare(test);
   const BeamCase& beam = outcome.beam;
@@ -47,7 +47,7 @@ Outcome investigate(std::uint64_t seed, int trials, const Progress& progress) {
   outcome.truth = validation_truth();
   progress("simulated oscillator");
   for (const std::string& scheme : compared_schemes())
-    outcome.schemes.push_back(examine(scheme, outcome.truth));
+    outcome.schemes.push_back(examine_case(scheme, outcome.truth));
   ValidationSettings literal;
   literal.initial_variance.tail<2>().setConstant(1e-5);
   outcome.literal_variance_large = validate("ekf", "forward_euler", literal);
@@ -55,7 +55,7 @@ Outcome investigate(std::uint64_t seed, int trials, const Progress& progress) {
   outcome.literal_variance = validate("ekf", "forward_euler", literal);
   for (std::size_t i = 0; i < test_beams.size(); ++i) {
     progress(std::string("beam ") + test_beams[i].name + ", " + std::to_string(trials) + " trials");
-    outcome.beams.push_back(examine(test_beams[i], static_cast<int>(i), seed, trials));
+    outcome.beams.push_back(examine_case(test_beams[i], static_cast<int>(i), seed, trials));
   }
   return outcome;
 }

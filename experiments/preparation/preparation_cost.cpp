@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 using Steps = std::vector<std::unique_ptr<PreparationStep>>;
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_cost_value = std::numeric_limits<double>::quiet_NaN();
 
 /// The mode, and when it starts [s].
 struct Decay {
@@ -32,8 +32,8 @@ struct Decay {
 /// Between two instants, what a fit finds of the decay.
 struct Found {
   ModalChange change;
-  Complex factor{nothing, nothing};
-  double decrement_damping = nothing;
+  Complex factor{no_cost_value, no_cost_value};
+  double decrement_damping = no_cost_value;
 };
 
 Found fitted(const Record& record, Eigen::Index row, double from, double to, const Decay& decay) {
@@ -94,14 +94,14 @@ Course run(const Steps& steps, const Record& record) {
 }
 
 /// The step on a clean record; a cut is the one made in the record.
-void apply(const PreparationStep& step, bool cuts, const Record& after, Record& clean) {
+void apply_step(const PreparationStep& step, bool cuts, const Record& after, Record& clean) {
   if (cuts)
     clean = clean.window(after.time[0], after.time[after.size() - 1]);
   else
     apply(step, clean);
 }
 
-std::string name_of(const Channel& channel) {
+std::string step_name_of(const Channel& channel) {
   return to_string(channel.quantity) + (channel.name.empty() ? "" : " " + channel.name);
 }
 
@@ -150,7 +150,7 @@ PreparationCost preparation_cost(const std::vector<Choice>& choices, const Recor
     step.transient_end = transient.end;
     step.exact = steps[i]->exact();
     try {
-      apply(*steps[i], course.cuts[i], after, one);
+      apply_step(*steps[i], course.cuts[i], after, one);
       steps[i]->follow(alone, decay.rate, interval);
       step.factor = alone.back().factor;
       fit(step, one, one.samples.rows() - 1, std::max(own.onset, one.time[0]) + transient.begin,
@@ -160,7 +160,7 @@ PreparationCost preparation_cost(const std::vector<Choice>& choices, const Recor
     }
     cost.steps.push_back(step);
     try {
-      apply(*steps[i], course.cuts[i], after, chain);
+      apply_step(*steps[i], course.cuts[i], after, chain);
     } catch (const std::invalid_argument&) {
       continue;
     }
@@ -172,7 +172,7 @@ PreparationCost preparation_cost(const std::vector<Choice>& choices, const Recor
   if (window) chain = chain.window(window->first, window->second);
   for (std::size_t row = 0; row < followed.size(); ++row) {
     StepCost together;
-    together.step = name_of(followed[row].channel);
+    together.step = step_name_of(followed[row].channel);
     together.exact = exact;
     together.factor = followed[row].factor;
     together.transient_begin = std::max(0.0, settled_from - std::max(decay.onset, chain.time[0]));

@@ -17,9 +17,9 @@ namespace beamid::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_reported_value = std::numeric_limits<double>::quiet_NaN();
 
-double degrees(double angle) {
+double in_degrees(double angle) {
   return angle * 180 / std::numbers::pi;
 }
 
@@ -32,7 +32,7 @@ Json values(const StepCost& cost, const PreparationCost& all) {
             {"damping_ratio_percent", 100 * found.damping_ratio}};
   };
   Json json{{"gain", cost.gain()},
-            {"phase_deg", degrees(cost.phase())},
+            {"phase_deg", in_degrees(cost.phase())},
             {"delay_s", -cost.phase() / damped},
             {"exact_when_settled", cost.exact},
             {"transient_begin_s", cost.transient_begin},
@@ -107,13 +107,13 @@ Table cost_table(const PreparationCost& cost) {
       .column({"damping [%]", "damping_ratio_change_percent", "{:+.3f}"})
       .column({"decrement [%]", "decrement_damping_ratio_change_percent", "{:+.3f}"});
   const auto add = [&](const StepCost& c, const std::string& name) {
-    const double known = c.acts ? 1 : nothing;
+    const double known = c.acts ? 1 : no_reported_value;
     // What would print as -0.0000 is no change.
     const auto percent = [&](double x, double least) { return known * (std::abs(x) < least ? 0 : 100 * x); };
     const std::string ends = c.transient_end > 0
                                  ? fmt::format("{:.3g}, {:.3g}", c.transient_begin, c.transient_end)
                                  : fmt::format("{:.3g}", c.transient_begin);
-    table.row({name, known * c.gain(), known * degrees(c.phase()), c.acts ? ends : "-",
+    table.row({name, known * c.gain(), known * in_degrees(c.phase()), c.acts ? ends : "-",
                percent(c.settled.frequency, 5e-7), percent(c.settled.damping_ratio, 5e-6),
                percent(c.whole.frequency, 5e-7), percent(c.whole.damping_ratio, 5e-6),
                percent(c.decrement_damping, 5e-6)});

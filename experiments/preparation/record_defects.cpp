@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-std::string title(const Channel& channel) {
+std::string record_defects_title(const Channel& channel) {
   const std::string quantity = to_string(channel.quantity);
   return channel.name.empty() || channel.name == quantity ? quantity
                                                           : fmt::format("{} ({})", channel.name, quantity);
@@ -38,12 +38,12 @@ struct ChannelDefects {
     RecordDefect defect;
     defect.channel = row;
     for (const Run& run : runs) defect.spans.emplace_back(time(run.first), time(run.first + run.length - 1));
-    defect.text =
-        fmt::format("{}: {}, {} of {} samples ({:.2g} %), {} {:.6g} s{}", title(channel()), what, samples,
-                    record->size(), 100 * static_cast<double>(samples) / static_cast<double>(record->size()),
-                    samples > 1 ? "from" : "at", defect.spans.front().first,
-                    samples > 1 ? fmt::format(" to {:.6g} s", defect.spans.back().second) : "") +
-        consequence;
+    defect.text = fmt::format("{}: {}, {} of {} samples ({:.2g} %), {} {:.6g} s{}",
+                              record_defects_title(channel()), what, samples, record->size(),
+                              100 * static_cast<double>(samples) / static_cast<double>(record->size()),
+                              samples > 1 ? "from" : "at", defect.spans.front().first,
+                              samples > 1 ? fmt::format(" to {:.6g} s", defect.spans.back().second) : "") +
+                  consequence;
     all->push_back(std::move(defect));
   }
 
@@ -98,8 +98,8 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
           {file.string()},
           fmt::format("{} is dead: {:.4g} to {:.4g} {} over {} samples{}; expected a channel that moves. "
                       "--column or [[record.channels]] names the others",
-                      title(channel.channel()), signal.minCoeff(), signal.maxCoeff(), channel.unit(),
-                      signal.size(), found.spikes.empty() ? "" : " but for spikes"));
+                      record_defects_title(channel.channel()), signal.minCoeff(), signal.maxCoeff(),
+                      channel.unit(), signal.size(), found.spikes.empty() ? "" : " but for spikes"));
     if (force) {
       channel.add("clipped at " + channel.levels(found.clipped), found.clipped,
                   ": the force was larger, and what is computed from it is wrong by that.");
@@ -150,8 +150,8 @@ void refuse_mostly_missing(const Record& record, const std::vector<RecordDefect>
         fmt::format("{}: {:.0f} % of the samples from {:.4g} to {:.4g} s are of no use; expected at "
                     "most half. {} A --window where it is sound, other channels (--column, "
                     "[[record.channels]]) or a sensor of larger range help",
-                    title(record.channels[static_cast<std::size_t>(row)]), 100 * share, record.time[0],
-                    record.time[record.size() - 1], why));
+                    record_defects_title(record.channels[static_cast<std::size_t>(row)]), 100 * share,
+                    record.time[0], record.time[record.size() - 1], why));
   }
 }
 

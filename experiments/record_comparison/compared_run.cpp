@@ -27,13 +27,13 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
-constexpr double settled = 1.0;          // move of a last pass, in standard deviations
-constexpr double smallest_noise = 1e-6;  // a record without noise would make P0 / R overflow digits
+constexpr double settled_move = 1.0;         // move of a last pass, in standard deviations
+constexpr double smallest_run_noise = 1e-6;  // a record without noise would make P0 / R overflow digits
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+double seconds_since(SteadyClock::time_point start) {
+  return std::chrono::duration<double>(SteadyClock::now() - start).count();
 }
 
 VectorXd root_mean_squares(const MatrixXd& samples) {
@@ -48,7 +48,7 @@ struct KnownNoise {
 
 KnownNoise known_noise(const RunContext& context, const MatrixXd& outputs) {
   const std::vector<Index> channels = output_channels(context.compared.record);
-  KnownNoise known{VectorXd::Zero(outputs.rows()), smallest_noise * root_mean_squares(outputs)};
+  KnownNoise known{VectorXd::Zero(outputs.rows()), smallest_run_noise * root_mean_squares(outputs)};
   for (Index i = 0; i < outputs.rows(); ++i) {
     const auto given = context.experiment.noise.find(context.compared.record.channels[channels[i]].quantity);
     if (given != context.experiment.noise.end()) known.configured[i] = given->second;
@@ -185,7 +185,8 @@ void add_deviations(const filters::LinearMotion& motion, const VectorXd& state,
   found.damping_ratio_deviation = std::sqrt(variance[1]);
 }
 
-void judge(ComparedRun& run, const RunContext& context, const JointModel& model, double interval) {
+void judge_compared_run(ComparedRun& run, const RunContext& context, const JointModel& model,
+                        double interval) {
   const std::optional<double> expected =
       context.modal ? std::optional(context.modal->frequency_hz) : std::nullopt;
   const VectorXd& state = run.run.last.mean;
@@ -287,13 +288,13 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
     result.noise_left = motion.residual_deviation;
   };
   try {
-    Clock::time_point start = Clock::now();
+    SteadyClock::time_point start = SteadyClock::now();
     begin_at(started.guess.mean);
     result.response_seconds = seconds_since(start);
     for (int pass = 1; pass <= settings.passes; ++pass) {
       result.noise = assumed(known, result.noise_left);
       identification.output_noise = result.noise.cwiseAbs2().asDiagonal();
-      start = Clock::now();
+      start = SteadyClock::now();
       result.run = filter_record(model, record, identification);
       result.seconds += seconds_since(start);
       result.remarks = result.run.remarks;
@@ -304,14 +305,14 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
       identification.initial.mean(model.unknown_places) = before;
       result.unknown_state = of_unknowns(model, result.run.last);
       result.unknown_start = of_unknowns(model, identification.initial);
-      start = Clock::now();
+      start = SteadyClock::now();
       begin_at(next_start(model, identification.initial, result.run.last).mean);
       result.response_seconds += seconds_since(start);
     }
     if (!result.run.failure) {
       result.unknowns = model.unknowns;
-      if (last_move > settled) result.remarks.push_back(unsettled_text(last_move));
-      start = Clock::now();
+      if (last_move > settled_move) result.remarks.push_back(unsettled_text(last_move));
+      start = SteadyClock::now();
       const MatrixXd noise = noise_of_bound(context, known, result).cwiseAbs2().asDiagonal();
       const auto discrete = finest(model, dt, noise);
       score(result, context, model, settings.true_mass, motion,
@@ -330,7 +331,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
     result.status = ComparedRun::Status::diverged;
     result.reason = failure_text(*result.run.failure);
   }
-  if (result.status == ComparedRun::Status::converged) judge(result, context, model, dt);
+  if (result.status == ComparedRun::Status::converged) judge_compared_run(result, context, model, dt);
   blame_step(result, context, model, settings.discretisation, dt);
   return result;
 }

@@ -88,7 +88,7 @@ Json optional_number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
-Json values(const ComparedRun& run, const std::vector<std::string>& outputs) {
+Json comparison_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
   Json json{{"reduction", run.reduction},
             {"filter", run.filter},
             {"discretisation", run.discretisation},
@@ -143,7 +143,8 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
     for (const std::string& warning : *list) results.values["record_warnings"].push_back(warning);
   std::vector<std::string> outputs;
   for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
-  for (const ComparedRun& run : comparison.runs) results.values["runs"].push_back(values(run, outputs));
+  for (const ComparedRun& run : comparison.runs)
+    results.values["runs"].push_back(comparison_values(run, outputs));
 
   results.heading(experiment.title.empty() ? "Reduced against continuum" : experiment.title);
   for (const std::string& warning : record.warnings) results.paragraph(warning);

@@ -15,15 +15,15 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double samples_per_period = 8.0;
-constexpr Index fewest = 64;         // samples that are worth a first guess
-constexpr double doubt = 0.3;        // noise of it, of a channel's root mean square: neighbours leak in
-constexpr Index longest = 1024;      // samples at the full rate, which filters take up well
-constexpr double level_ratio = 3.0;  // of the rates of successive levels
-constexpr double widening = 30.0;    // of the deviations found
+constexpr double guess_samples_per_period = 8.0;
+constexpr Index fewest_guess_samples = 64;  // samples that are worth a first guess
+constexpr double guess_noise = 0.3;      // noise of it, of a channel's root mean square: neighbours leak in
+constexpr Index longest_guess = 1024;    // samples at the full rate, which filters take up well
+constexpr double level_ratio = 3.0;      // of the rates of successive levels
+constexpr double guess_widening = 30.0;  // of the deviations found
 
 // Covariance of the unknowns alone.
-MatrixXd of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
+MatrixXd covariance_of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
   if (belief.covariance.size() > 0) return belief.covariance(model.unknown_places, model.unknown_places);
   const MatrixXd rows = belief.factor(model.unknown_places, Eigen::all);
   return rows * rows.transpose();
@@ -33,7 +33,7 @@ MatrixXd of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
 filters::Measurements decimated(const filters::Measurements& record, Index inputs, double interval,
                                 int factor) {
   filters::Measurements coarse;
-  if (record.time.size() < (fewest + 10) * factor) return coarse;
+  if (record.time.size() < (fewest_guess_samples + 10) * factor) return coarse;
   coarse.outputs = decimate_channels(record.outputs, factor);
   coarse.time =
       interval * factor *
@@ -45,9 +45,9 @@ filters::Measurements decimated(const filters::Measurements& record, Index input
 // The guess after a record that holds the low modes only.
 FirstGuess hear(const JointModel& model, const std::vector<Observation>& observations, const LowRecord& low,
                 const FirstGuess& guess) {
-  const FirstGuess found = fit_low_modes(model, observations, low, guess, doubt);
+  const FirstGuess found = fit_low_modes(model, observations, low, guess, guess_noise);
   const MatrixXd& p = guess.unknowns;
-  const MatrixXd wide = widening * widening * found.unknowns;
+  const MatrixXd wide = guess_widening * guess_widening * found.unknowns;
   // The product of both densities, P (P + F)^-1 F.
   return {found.mean, p * (p + wide).ldlt().solve(wide)};
 }
@@ -71,14 +71,16 @@ FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& 
   const double dt = record.interval();
   const filters::Gaussian believed = start_belief(
       model, start_directions(model, observations, start_scale(model, observations, record.outputs, 1.0)));
-  FirstGuess guess{believed.mean, of_unknowns(model, believed)};
-  for (double factor = 1.0 / (samples_per_period * frequency_hz * dt); factor >= 2.0; factor /= level_ratio) {
+  FirstGuess guess{believed.mean, covariance_of_unknowns(model, believed)};
+  for (double factor = 1.0 / (guess_samples_per_period * frequency_hz * dt); factor >= 2.0;
+       factor /= level_ratio) {
     const int whole = static_cast<int>(factor);
     const filters::Measurements coarse = decimated(record, model.motion->input_size(), dt, whole);
     if (coarse.size() > 0) guess = hear(model, observations, {coarse, 0.5 / (whole * dt)}, guess);
   }
-  if (record.size() >= fewest)
-    guess = hear(model, observations, {beginning(record, std::min(longest, record.size())), 0.5 / dt}, guess);
+  if (record.size() >= fewest_guess_samples)
+    guess = hear(model, observations, {beginning(record, std::min(longest_guess, record.size())), 0.5 / dt},
+                 guess);
   return guess;
 }
 

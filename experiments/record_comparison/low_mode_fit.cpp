@@ -18,14 +18,14 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr Index fewest = 64;           // samples that are worth a fit
-constexpr double first_periods = 3.0;  // of the fastest mode heard, that are taken up first
+constexpr Index fewest_fit_samples = 64;  // samples that are worth a fit
+constexpr double first_periods = 3.0;     // of the fastest mode heard, that are taken up first
 constexpr int iterations = 12;
 constexpr double close_enough = 0.02;  // length of the next step, in deviations of what is sought
 constexpr double largest_damping = 1e6;
 
 /// J near some c: 1/2 |R d - q|^2 + 1/2 remainder^2 + 1/2 |c + d|^2.
-struct Linearisation {
+struct LowModeLinearisation {
   double cost = std::numeric_limits<double>::infinity();  // infinite where there is no motion
   VectorXd state;                                         // the best start (n)
   MatrixXd root;                                          // R (q x q)
@@ -57,8 +57,8 @@ class LowModeFit {
     return model;
   }
 
-  Linearisation at(const VectorXd& c, const filters::Measurements& heard) const {
-    Linearisation result;
+  LowModeLinearisation at(const VectorXd& c, const filters::Measurements& heard) const {
+    LowModeLinearisation result;
     const Index samples = heard.size(), q = unknowns();
     VectorXd state = guess_.mean;
     state(model_.unknown_places) += unknowns_ * c;
@@ -104,7 +104,7 @@ class LowModeFit {
 };
 
 // Rows of the least squares problem in d: the record, what is believed, and the damping.
-VectorXd step(const Linearisation& now, const VectorXd& c, double damping) {
+VectorXd step(const LowModeLinearisation& now, const VectorXd& c, double damping) {
   const Index q = c.size();
   MatrixXd rows(3 * q, q);
   rows << now.root, MatrixXd::Identity(q, q), std::sqrt(damping) * MatrixXd::Identity(q, q);
@@ -114,12 +114,12 @@ VectorXd step(const Linearisation& now, const VectorXd& c, double damping) {
 }
 
 // Levenberg-Marquardt from c, which it moves; what holds there.
-Linearisation descend(const LowModeFit& fit, const filters::Measurements& heard, VectorXd& c) {
-  Linearisation now = fit.at(c, heard);
+LowModeLinearisation descend(const LowModeFit& fit, const filters::Measurements& heard, VectorXd& c) {
+  LowModeLinearisation now = fit.at(c, heard);
   double damping = 0.0;
   for (int i = 0; i < iterations && std::isfinite(now.cost); ++i) {
     const VectorXd d = step(now, c, damping);
-    Linearisation next = fit.at(c + d, heard);
+    LowModeLinearisation next = fit.at(c + d, heard);
     if (next.cost < now.cost) {
       const double length = std::hypot((now.root * d).norm(), d.norm());
       c += d;
@@ -156,8 +156,8 @@ FirstGuess fit_low_modes(const JointModel& model, const std::vector<Observation>
   const double period = 2.0 * std::numbers::pi / fit.low_modes(guess.mean).mode_frequencies.maxCoeff();
   const double interval = record.measurements.time[samples - 1] / static_cast<double>(samples - 1);
   VectorXd c = VectorXd::Zero(q);
-  Linearisation found;
-  Index part = std::max(fewest, static_cast<Index>(std::ceil(first_periods * period / interval)));
+  LowModeLinearisation found;
+  Index part = std::max(fewest_fit_samples, static_cast<Index>(std::ceil(first_periods * period / interval)));
   for (bool whole = false; !whole; part *= 2) {
     whole = part >= samples;
     found = descend(fit, beginning(record.measurements, std::min(part, samples)), c);

@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr Index longest = 4096;    // samples
-constexpr double doubt = 0.05;     // noise of it, of a channel's root mean square
-constexpr double widening = 30.0;  // of the deviations found
-constexpr double periods = 1.5;    // that are taken up first
+constexpr Index longest_nonlinear_guess = 4096;    // samples
+constexpr double nonlinear_guess_noise = 0.05;     // noise of it, of a channel's root mean square
+constexpr double nonlinear_guess_widening = 30.0;  // of the deviations found
+constexpr double periods = 1.5;                    // that are taken up first
 constexpr double far_frequency = 2.0;
 
 // The stiffness of the oscillator at the record's frequency, where it is asked about.
@@ -34,7 +34,7 @@ void take_frequency(const JointModel& model, double frequency_hz, VectorXd& stat
 
 FirstGuess nonlinear_guess(const JointModel& model, const std::vector<Observation>& observations,
                            const filters::Measurements& record, double frequency_hz) {
-  const filters::Measurements heard = beginning(record, std::min(longest, record.size()));
+  const filters::Measurements heard = beginning(record, std::min(longest_nonlinear_guess, record.size()));
   const Index samples = heard.size();
   const StartDirections directions = start_directions(
       model, observations, start_scale(model, observations, heard.outputs, heard.time[samples - 1]));
@@ -43,7 +43,7 @@ FirstGuess nonlinear_guess(const JointModel& model, const std::vector<Observatio
   const FirstGuess believed{state, unknowns * unknowns.transpose()};
   take_frequency(model, frequency_hz, state);
   const VectorXd size = heard.outputs.rowwise().norm() / std::sqrt(static_cast<double>(samples));
-  const MatrixXd noise = (doubt * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
+  const MatrixXd noise = (nonlinear_guess_noise * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
   const auto discrete = finest(model, heard.time[samples - 1] / static_cast<double>(samples - 1), noise);
 
   filters::BatchSettings settings;
@@ -55,7 +55,7 @@ FirstGuess nonlinear_guess(const JointModel& model, const std::vector<Observatio
   state = nearest_phase(*discrete, state, directions, heard, settings.first_samples);
   const filters::BatchEstimate found = filters::estimate_batch(*discrete, state, all, heard, settings);
   if (found.status == filters::BatchStatus::failed || found.covariance.size() == 0) return believed;
-  const MatrixXd wide = widening * widening * unknowns *
+  const MatrixXd wide = nonlinear_guess_widening * nonlinear_guess_widening * unknowns *
                         found.covariance.bottomRightCorner(unknowns.cols(), unknowns.cols()) *
                         unknowns.transpose();
   // The product of both densities, P (P + F)^-1 F.

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index most_coordinates = 12;  // a low-pass leaves fewer modes than that
+constexpr Index most_started_coordinates = 12;  // a low-pass leaves fewer modes than that
 
 // The same questions, guessed at what a state says.
 std::vector<ParameterChoice> choices_at(const JointModel& model, const Eigen::VectorXd& state) {
@@ -49,20 +49,20 @@ StartedModel started_model(const Choice& model, const ModelSetting& setting,
     return std::move(*model_registry().make(model.name, model.options, of));
   };
   JointModel first = made(setting);
-  const Index modes = std::max(most_coordinates, first.mode_shapes.cols() + 4);
+  const Index modes = std::max(most_started_coordinates, first.mode_shapes.cols() + 4);
   const bool mesh = is_whole_mesh(first);
   if (is_nonlinear(first)) {
     FirstGuess guess = nonlinear_guess(first, setting.observations, record, frequency_hz);
     return {std::move(first), std::move(guess)};
   }
-  if ((!mesh && first.motion_size() <= most_coordinates) || modes >= setting.system.size() ||
+  if ((!mesh && first.motion_size() <= most_started_coordinates) || modes >= setting.system.size() ||
       first.unknowns.front().quantity.empty()) {
     FirstGuess guess = first_guess(first, setting.observations, record, frequency_hz);
     return {std::move(first), std::move(guess)};
   }
   ModelSetting truncated = setting;
   truncated.reduction = reduction::reduction_registry().make(
-      "modal_truncation", {{"modes", static_cast<double>(mesh ? modes : most_coordinates)}});
+      "modal_truncation", {{"modes", static_cast<double>(mesh ? modes : most_started_coordinates)}});
   const JointModel small = made(truncated);
   const FirstGuess heard = first_guess(small, setting.observations, record, frequency_hz);
   if (mesh) {

@@ -49,7 +49,7 @@ class DelimitedTextReader final : public RecordReader {
   }
 };
 
-const bool registered = record_reader_registry().add(
+const bool delimited_text_registered = record_reader_registry().add(
     {"delimited_text",
      "rows of numbers in columns parted by tabs, semicolons, commas or blanks",
      "",

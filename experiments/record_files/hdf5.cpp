@@ -145,7 +145,7 @@ class Hdf5Reader final : public RecordReader {
   }
 };
 
-const bool registered = record_reader_registry().add(
+const bool hdf5_registered = record_reader_registry().add(
     {"hdf5",
      "HDF5 files: one- and two-dimensional datasets by their path, with units and sampling in attributes",
      "",

@@ -223,7 +223,7 @@ class LvmReader final : public RecordReader {
   }
 };
 
-const bool registered = record_reader_registry().add(
+const bool lvm_registered = record_reader_registry().add(
     {"lvm",
      "LabVIEW measurement files: channels, units and sampling from their headers",
      "",

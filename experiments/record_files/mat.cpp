@@ -170,7 +170,7 @@ class MatReader final : public RecordReader {
   }
 };
 
-const bool registered = record_reader_registry().add(
+const bool mat_registered = record_reader_registry().add(
     {"mat",
      "MATLAB files of level 5 and 7.3: vectors, columns of matrices, fields of structs of any depth, cells",
      "",

@@ -20,7 +20,7 @@ namespace {
 using std::string_view;
 
 /// Node and direction, "12:+Z"; the identification line where there is no node.
-std::string name_of(const UniversalFunction& function) {
+std::string uff58_name_of(const UniversalFunction& function) {
   static const char* const directions[] = {"", "X", "Y", "Z", "RX", "RY", "RZ"};
   const int direction = std::abs(function.direction);
   if (function.node == 0 || direction > 6) return function.identity;
@@ -73,7 +73,7 @@ class UniversalFileReader final : public RecordReader {
         begin(table, function, format);
       }
       check_same_instants(table.file, *first, function);
-      const std::string name = name_of(function);
+      const std::string name = uff58_name_of(function);
       std::string unique = name;
       for (int& copy = copies[name]; !taken.insert(unique).second;
            unique = fmt::format("{} ({})", name, copy))
@@ -97,7 +97,7 @@ class UniversalFileReader final : public RecordReader {
   static void begin(RecordTable& table, const UniversalFunction& function, const RecordFormat& format) {
     const std::string unit = stated(function.abscissa_unit);
     const std::optional<double> factor =
-        seconds_per(unit, "the abscissa of '" + name_of(function) + "'", table.file, format);
+        seconds_per(unit, "the abscissa of '" + uff58_name_of(function) + "'", table.file, format);
     if (function.even) {
       if (!(function.step > 0))
         throw InputError({table.file},
@@ -118,11 +118,11 @@ class UniversalFileReader final : public RecordReader {
         first.abscissa != other.abscissa)
       throw InputError(
           {file}, fmt::format("'{}' and '{}' are sampled at different instants; expected the same for all",
-                              name_of(first), name_of(other)));
+                              uff58_name_of(first), uff58_name_of(other)));
   }
 };
 
-const bool registered = record_reader_registry().add(
+const bool uff58_registered = record_reader_registry().add(
     {"uff58",
      "Universal File Format, dataset 58: time responses in ASCII or binary",
      "",

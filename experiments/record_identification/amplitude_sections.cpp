@@ -20,8 +20,8 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr double samples_per_cycle = 8, fewest_periods = 3, wished_periods = 4;
-constexpr int fewest = 3, most = 10;
+constexpr double section_samples_per_cycle = 8, fewest_periods = 3, wished_periods = 4;
+constexpr int fewest_sections = 3, most_sections = 10;
 constexpr double significant = 0.01;
 
 struct FittedSection {
@@ -52,17 +52,17 @@ FittedSection fit_section(const DecimatedSignal& coarse, Index begin, Index coun
 }
 
 /// Weighted line through the sections' values, a + b u.
-struct Line {
+struct SectionLine {
   double a = 0, b = 0, b_deviation = 0, u_mean = 0, squares = 0;
 };
 
-Line line_through(const VectorXd& u, const VectorXd& v, const VectorXd& deviation) {
+SectionLine section_line_through(const VectorXd& u, const VectorXd& v, const VectorXd& deviation) {
   const Eigen::ArrayXd weight = deviation.array().square().inverse();
   const double sum = weight.sum(), u_mean = (weight * u.array()).sum() / sum,
                v_mean = (weight * v.array()).sum() / sum;
   const Eigen::ArrayXd du = u.array() - u_mean, dv = v.array() - v_mean;
   const double spread = (weight * du.square()).sum();
-  Line line;
+  SectionLine line;
   line.b = (weight * du * dv).sum() / spread;
   line.a = v_mean - line.b * u_mean;
   line.u_mean = u_mean;
@@ -89,7 +89,7 @@ VectorXd log_amplitudes(const std::vector<DecaySection>& sections, double end) {
 
 /// The line at the instants u, with slopes as its own may be: z deviations off, which have a variance of one.
 /// The first value and the last are those of the line itself.
-VectorXd values_of(const Line& line, const VectorXd& u) {
+VectorXd section_values_of(const SectionLine& line, const VectorXd& u) {
   constexpr std::array<double, 6> z{0, -1.57, 1.57, -0.73, 0.73, 0};
   const Index count = u.size();
   VectorXd values(count * static_cast<Index>(z.size()));
@@ -111,13 +111,13 @@ SectionTrend trend_of(const std::vector<DecaySection>& sections, const VectorXd&
       [&](const VectorXd& x) { return VectorXd(x.array() - origin); },
       [&](const VectorXd& x) { return VectorXd((origin - x.array()).exp()); }};
   SectionTrend trend;
-  Line best;
+  SectionLine best;
   VectorXd values;
   for (const auto& shape : shapes) {
-    const Line line = line_through(shape(log_amplitude), value, deviation);
+    const SectionLine line = section_line_through(shape(log_amplitude), value, deviation);
     if (values.size() > 0 && line.squares >= best.squares) continue;
     best = line;
-    values = values_of(line, shape(log_amplitudes(sections, end)));
+    values = section_values_of(line, shape(log_amplitudes(sections, end)));
   }
   const boost::math::students_t of_slope(noise_freedom);
   const boost::math::fisher_f of_scatter(static_cast<double>(count) - 2, noise_freedom);
@@ -144,13 +144,13 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
   if (!modal.companions.empty() ||
       measured < (1 - largest_share_missing) * static_cast<double>(signal.size()))
     return result;
-  const double wanted = 1 / (interval * modal.frequency_hz * samples_per_cycle),
+  const double wanted = 1 / (interval * modal.frequency_hz * section_samples_per_cycle),
                possible = static_cast<double>(signal.size() / kernel_and_more);
   const DecimatedSignal coarse = decimate(bridged_straight(signal), interval,
                                           static_cast<int>(std::max(1.0, std::min(wanted, possible))));
   const double periods = coarse.interval * static_cast<double>(coarse.samples.size()) * modal.frequency_hz;
-  if (periods < fewest * fewest_periods) return result;
-  const int count = std::clamp(static_cast<int>(periods / wished_periods), fewest, most);
+  if (periods < fewest_sections * fewest_periods) return result;
+  const int count = std::clamp(static_cast<int>(periods / wished_periods), fewest_sections, most_sections);
   const Index length = coarse.samples.size() / count;
   std::vector<FittedSection> fitted;
   double squares = 0, freedom = 0;
@@ -165,7 +165,7 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
       break;
     }
   }
-  if (fitted.size() < static_cast<std::size_t>(fewest) || !(squares > 0)) return result;
+  if (fitted.size() < static_cast<std::size_t>(fewest_sections) || !(squares > 0)) return result;
   const double noise = std::sqrt(squares / freedom);  // as dense as this at the coarse rate
   result.noise = noise / coarse.kernel.norm();
   const auto sections = static_cast<Index>(fitted.size());

@@ -85,14 +85,14 @@ double settled_from(const LocalMotion& motion) {
   return motion.time[k];
 }
 
-struct Event {
+struct DecayEvent {
   double time = 0;  ///< [s], from the first sample
   DecayWindow::Behind kind = DecayWindow::Behind::event;
 };
 
 /// The last hit or release: the last onset, but behind a start-up only where the motion at the mode's
 /// frequency grows too. A hand that lets go slowly has no onset: the motion is then largest behind it.
-std::optional<Event> last_event(const Eigen::VectorXd& signal, double interval, double period) {
+std::optional<DecayEvent> last_event(const Eigen::VectorXd& signal, double interval, double period) {
   OnsetSettings settings;
   settings.apart = std::max(settings.apart, 2 * period);
   const Onsets onsets = find_onsets(signal, interval, settings);
@@ -101,16 +101,16 @@ std::optional<Event> last_event(const Eigen::VectorXd& signal, double interval, 
   const bool sudden = !onsets.samples.empty();
   const double onset = sudden ? interval * static_cast<double>(onsets.samples.back()) : 0.0;
   if (motion.time.size() == 0 || (sudden && beginning != Beginning::starting_up))
-    return sudden ? std::optional(Event{onset}) : std::nullopt;
+    return sudden ? std::optional(DecayEvent{onset}) : std::nullopt;
   if (beginning == Beginning::moving) return {};
   if (beginning == Beginning::at_rest) {
     Eigen::Index largest = 0;
     motion.amplitude.maxCoeff(&largest);
-    return Event{motion.time[largest]};
+    return DecayEvent{motion.time[largest]};
   }
   const std::vector<Rise> rises = rises_of(motion);
-  if (rises.empty()) return Event{settled_from(motion), DecayWindow::Behind::start_up};
-  return Event{sudden && onset >= rises.back().low - 2 * period ? onset : rises.back().peak};
+  if (rises.empty()) return DecayEvent{settled_from(motion), DecayWindow::Behind::start_up};
+  return DecayEvent{sudden && onset >= rises.back().low - 2 * period ? onset : rises.back().peak};
 }
 
 /// The mode in the beginning of the record behind an instant; nothing where none is near the expected one:
@@ -146,7 +146,7 @@ std::optional<DecayWindow> decay_window(const Experiment& experiment, const Reco
   const double period = 1 / expected_frequency_hz(experiment, record);
   auto happened = last_event(record.samples.row(0).transpose(), record.interval(), period);
   const bool begins_behind_gap = record.time[0] > whole.time[0] + record.interval();
-  if (!happened && begins_behind_gap) happened = Event{0.0, DecayWindow::Behind::gap};
+  if (!happened && begins_behind_gap) happened = DecayEvent{0.0, DecayWindow::Behind::gap};
   if (!happened) return {};
   const double event = record.time[0] + happened->time;
   std::optional<DecayWindow> window;

@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr double stiffness_doubt = 0.3;       // standard deviation of K0, relative: clamps are never ideal
-constexpr double first_damping_ratio = 0.01;  // of C0, with a standard deviation as large
+constexpr double first_stiffness_doubt = 0.3;  // standard deviation of K0, relative: clamps are never ideal
+constexpr double first_damping_ratio = 0.01;   // of C0, with a standard deviation as large
 
 // Largest displacement [m] at frequency w [rad/s] behind a channel's largest reading. A clipped one was
 // larger.
@@ -46,7 +46,7 @@ filters::Gaussian first_belief(const Experiment& experiment, const Record& recor
   const std::map<std::string, std::pair<double, double>> beliefs{
       {"displacement", {0.0, amplitude}},
       {"velocity", {0.0, amplitude * w}},
-      {"stiffness", {stiffness, prior.stiffness_deviation.value_or(stiffness_doubt * stiffness)}},
+      {"stiffness", {stiffness, prior.stiffness_deviation.value_or(first_stiffness_doubt * stiffness)}},
       {"damping", {ratio * to_damping, prior.damping_ratio_deviation.value_or(ratio) * to_damping}},
       {"sensor_bias", {0.0, 0.1 * amplitude * w * w}}};
   const auto labels = model.motion->state_labels();
@@ -82,7 +82,7 @@ void start_from_mode(const PriorBelief& prior, double interval, RecordIdentifica
   if (!std::isfinite(frequency_doubt) || !std::isfinite(ratio_doubt)) return;
   if (!prior.stiffness && !prior.stiffness_deviation)
     take(2, start.stiffness,
-         start.stiffness * std::clamp(counted_twice * 2.0 * frequency_doubt, least, stiffness_doubt));
+         start.stiffness * std::clamp(counted_twice * 2.0 * frequency_doubt, least, first_stiffness_doubt));
   if (!prior.damping_ratio && !prior.damping_ratio_deviation)
     take(3, start.damping,
          std::max(std::abs(start.damping),

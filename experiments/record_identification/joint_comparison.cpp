@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Index;
 
-RecordBelief belief_of(const ComparedRun& run) {
+RecordBelief joint_belief_of(const ComparedRun& run) {
   RecordBelief belief{run.unknown_state, run.unknown_start.covariance};
   belief.start = run.unknown_start.mean;
   for (std::size_t j = 0; j < run.unknowns.size(); ++j) {
@@ -42,7 +42,7 @@ JointComparison joint_comparison(std::vector<Comparison> records) {
           "joint estimate: " + record.compared.name +
           " has other unknowns than the records before it; expected the same channels "
           "in all records");
-    beliefs.push_back(belief_of(run));
+    beliefs.push_back(joint_belief_of(run));
   }
   if (!kept)
     throw std::invalid_argument("no record was identified; the first one: " +

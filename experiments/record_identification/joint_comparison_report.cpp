@@ -15,7 +15,7 @@ bool converged(const Comparison& one) {
   return one.runs.at(0).status == ComparedRun::Status::converged;
 }
 
-std::string shown(double value, const Estimate& by) {
+std::string shown_joint(double value, const Estimate& by) {
   constexpr double large = 1e5, small = 1e-3;
   const double half = 0.5 * (by.upper_95 - by.lower_95);
   if (std::abs(value) > large || std::abs(value) < small) return fmt::format("{:.6g}", value);
@@ -31,7 +31,8 @@ Table table_of(const JointComparison& joint, std::size_t which) {
       .column({"95 % from", "lower_95"})
       .column({"to", "upper_95"});
   const auto row = [&](const std::string& record, const std::string& window, const Estimate& e) {
-    table.row({record, window, shown(e.value, e), shown(e.lower_95, e), shown(e.upper_95, e)});
+    table.row(
+        {record, window, shown_joint(e.value, e), shown_joint(e.lower_95, e), shown_joint(e.upper_95, e)});
   };
   for (const Comparison& one : joint.records) {
     const VectorXd& time = one.compared.record.time;
@@ -77,7 +78,7 @@ Panel panel_of(const JointComparison& joint, std::size_t which) {
   return panel;
 }
 
-Json values_of(const JointComparison& joint, const std::vector<std::string>& names) {
+Json joint_comparison_values_of(const JointComparison& joint, const std::vector<std::string>& names) {
   const auto values = [](const Estimate& e) {
     return Json{{"unit", e.unit},
                 {"estimate", e.value},
@@ -107,7 +108,7 @@ Results report(const Experiment& experiment, const JointComparison& joint) {
   results.command = "identify";
   results.configuration = report(experiment, joint.records[0]).configuration;
   for (const Comparison& one : joint.records) results.configuration["records"].push_back(one.compared.name);
-  results.values = values_of(joint, names);
+  results.values = joint_comparison_values_of(joint, names);
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
   results.paragraph(fmt::format(

@@ -28,8 +28,8 @@ MatrixXd prior_of_nuisance(const RecordBelief& record) {
 }
 
 /// Whether the records agree, and by how much they scatter where they do not.
-void judge(const std::vector<RecordBelief>& records, const std::vector<MatrixXd>& information,
-           JointEstimate& joint) {
+void judge_joint_estimate(const std::vector<RecordBelief>& records, const std::vector<MatrixXd>& information,
+                          JointEstimate& joint) {
   constexpr double disagree_below = 0.05;
   const std::vector<Index> asked = asked_of(records[0]);
   const double others = static_cast<double>(records.size()) - 1;
@@ -77,7 +77,7 @@ JointEstimate joint_estimate(const std::vector<RecordBelief>& records) {
   joint.scatter = VectorXd::Ones(q);
   joint.unknowns.mean = scale.cwiseProduct(factor.solve(scale.cwiseProduct(weighted)));
   joint.unknowns.covariance = (records[0].prior.inverse() + sum).inverse();
-  judge(records, information, joint);
+  judge_joint_estimate(records, information, joint);
 
   VectorXd uncertainty = VectorXd::Zero(q);  // 1 / Welch's degrees of freedom
   for (std::size_t r = 0; r < records.size(); ++r)

@@ -8,12 +8,12 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index first = 2, unknowns = 2;  // K and C in [x, v, K, C, ...]
+constexpr Index first = 2, joint_unknowns = 2;  // K and C in [x, v, K, C, ...]
 
 RecordBelief belief_of(const RecordIdentification& found) {
   const filters::Gaussian& last = found.identification.run.last;
-  RecordBelief belief{{last.mean.segment(first, unknowns), last.marginal(first, unknowns)},
-                      found.last_start.marginal(first, unknowns)};
+  RecordBelief belief{{last.mean.segment(first, joint_unknowns), last.marginal(first, joint_unknowns)},
+                      found.last_start.marginal(first, joint_unknowns)};
   // R counts, unless the record shows more noise at the mode
   if (found.interval_factor == 1.0) return belief;
   belief.noise_ratio = found.interval_factor / found.near_mode.student();
@@ -41,9 +41,9 @@ JointIdentification joint_identification(std::vector<IdentifiedRecord> records) 
   if (!kept) return joint;
   joint.estimate = joint_estimate(beliefs);
   filters::Gaussian belief = kept->found.identification.run.last;
-  belief.mean.segment(first, unknowns) = joint.estimate.unknowns.mean;
+  belief.mean.segment(first, joint_unknowns) = joint.estimate.unknowns.mean;
   belief.covariance = Eigen::MatrixXd::Zero(belief.mean.size(), belief.mean.size());
-  belief.covariance.block(first, first, unknowns, unknowns) = joint.estimate.unknowns.covariance;
+  belief.covariance.block(first, first, joint_unknowns, joint_unknowns) = joint.estimate.unknowns.covariance;
   joint.identification = identification_at(kept->found.model, belief);
   return joint;
 }

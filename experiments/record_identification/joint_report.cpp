@@ -99,7 +99,7 @@ bool all_lost(const JointIdentification& joint) {
   return joint.estimate.unknowns.mean.size() == 0;
 }
 
-Json values_of(const JointIdentification& joint) {
+Json joint_values_of(const JointIdentification& joint) {
   Json json{{"status", all_lost(joint) ? "diverged" : "converged"}};
   if (!all_lost(joint)) {
     for (const Parameter& p : joint_parameters(joint))
@@ -126,7 +126,7 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
   results.configuration["records"] = Json::array();
   for (const IdentifiedRecord& one : joint.records)
     results.configuration["records"].push_back(configuration(experiment, one.record, one.found, one.name));
-  results.values = values_of(joint);
+  results.values = joint_values_of(joint);
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
   for (const IdentifiedRecord& one : joint.records) {

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using Complex = std::complex<double>;
 
-constexpr double samples_per_cycle = 8, band = 1.6, slope_deviation = 2, least_weight = 2;
+constexpr double line_samples_per_cycle = 8, line_band = 1.6, slope_deviation = 2, least_weight = 2;
 constexpr Index kernel_and_more = 50;  // samples that must be left of the signal
 
 /// Orthonormal basis of what the fit can follow (n x 5): e^(s t), t e^(s t) and 1.
@@ -45,18 +45,18 @@ VectorXd periodogram(const MatrixXd& x, Index k) {
 
 /// Of the lines around the mode: what is left (P), the share of it that the fit does not take (w), and
 /// log(f_k / f).
-struct Lines {
+struct SpectralLines {
   std::vector<double> left, weight, log_frequency;
 };
 
-Lines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal) {
+SpectralLines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal) {
   const MatrixXd space = fitted_space(coarse, modal);
   MatrixXd columns(space.rows(), space.cols() + 1);
   columns << coarse.samples - space * (space.transpose() * coarse.samples), space;
   const double line = 1 / (static_cast<double>(space.rows()) * coarse.interval);  // [Hz]
-  const auto first = std::max<Index>(1, static_cast<Index>(std::ceil(modal.frequency_hz / band / line))),
-             last = static_cast<Index>(modal.frequency_hz * band / line);
-  Lines lines;
+  const auto first = std::max<Index>(1, static_cast<Index>(std::ceil(modal.frequency_hz / line_band / line))),
+             last = static_cast<Index>(modal.frequency_hz * line_band / line);
+  SpectralLines lines;
   double sum = 0;
   for (Index k = first; (k <= last || sum < least_weight) && 2 * k < space.rows(); ++k) {
     const VectorXd power = periodogram(columns, k);
@@ -78,14 +78,14 @@ double student_factor(double freedom) {
 NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const ModalEstimate& modal) {
   constexpr int most_steps = 100;
   constexpr double settled = 1e-10, prior = 1 / (slope_deviation * slope_deviation);
-  const double wanted = 1 / (interval * modal.frequency_hz * samples_per_cycle),
+  const double wanted = 1 / (interval * modal.frequency_hz * line_samples_per_cycle),
                most = static_cast<double>(signal.size() / kernel_and_more);
   const int factor = static_cast<int>(std::max(1.0, std::min(wanted, most)));
   const DecimatedSignal coarse =
       decimate(with_mode_in_gaps(signal, interval, modal.rate()), interval, factor);
   const double measured =
       static_cast<double>(signal.array().isFinite().count()) / static_cast<double>(signal.size());
-  const Lines lines = lines_of(coarse, modal);
+  const SpectralLines lines = lines_of(coarse, modal);
   const auto count = static_cast<Index>(lines.left.size());
   const Eigen::Map<const Eigen::ArrayXd> left(lines.left.data(), count), weight(lines.weight.data(), count),
       u(lines.log_frequency.data(), count);

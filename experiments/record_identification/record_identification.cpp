@@ -26,11 +26,11 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr int passes = 2;          // the first estimate may be 20 % off; another one follows
-constexpr double last_doubt = 30;  // deviations of K and C told, with which the last pass begins
+constexpr int identification_passes = 2;  // the first estimate may be 20 % off; another one follows
+constexpr double last_doubt = 30;         // deviations of K and C told, with which the last pass begins
 // Smallest noise taken from a record, relative to its largest reading. One simulated without noise would else
 // make P0 and R differ by more digits than double precision has.
-constexpr double smallest_noise = 1e-6;
+constexpr double smallest_record_noise = 1e-6;
 
 double expected_frequency_hz(const Experiment& experiment, const RecordIdentification& known) {
   if (!experiment.prior.stiffness) return known.beam_frequency_hz;
@@ -39,7 +39,7 @@ double expected_frequency_hz(const Experiment& experiment, const RecordIdentific
 
 // The mode near the frequency that the beam, or the stiffness believed beforehand, leads to expect. Where the
 // least squares do not converge that expectation takes its place.
-void analyse(const Experiment& experiment, const Record& record, RecordIdentification& known) {
+void analyse_decay(const Experiment& experiment, const Record& record, RecordIdentification& known) {
   ModalAnalysisSettings settings;
   settings.expected_frequency_hz = expected_frequency_hz(experiment, known);
   try {
@@ -86,7 +86,7 @@ std::vector<filters::Gaussian> smoothed(const Experiment& experiment, const Reco
 // What intervals are to be multiplied by: the noise near the mode counts where there is more of it than R
 // says. Less is no reason for a shorter interval: a motion that the model cannot follow, clipped readings
 // first of all, may leave little at the mode and yet shift it.
-double widening(const RecordIdentification& found) {
+double interval_widening(const RecordIdentification& found) {
   return std::max(1.0, found.near_mode.student() * found.near_mode.deviation / found.noise_deviation[0]);
 }
 
@@ -97,7 +97,7 @@ void take_residual_noise(const Experiment& experiment, const Record& record, Rec
   found.noise_from_record.assign(record.channels.size(), true);
   for (Index i = 0; i < record.samples.rows(); ++i) {
     found.noise_deviation[i] =
-        std::max(found.noise_deviation[i], smallest_noise * largest_measured(record.samples.row(i)));
+        std::max(found.noise_deviation[i], smallest_record_noise * largest_measured(record.samples.row(i)));
     if (const auto given = experiment.noise.find(record.channels[static_cast<std::size_t>(i)].quantity);
         given != experiment.noise.end()) {
       found.noise_deviation[i] = given->second;
@@ -109,7 +109,7 @@ void take_residual_noise(const Experiment& experiment, const Record& record, Rec
       noise_near_mode(even.record.samples.row(0).transpose(), even.record.interval(), found.modal);
   // Of one reading: what is filled in has no noise of its own, and an even grid may be denser than they are.
   found.near_mode.deviation /= std::sqrt(even.share * even.density);
-  found.interval_factor = widening(found);
+  found.interval_factor = interval_widening(found);
   found.settings.output_noise = found.noise_deviation.cwiseAbs2().asDiagonal();
 }
 
@@ -128,9 +128,9 @@ void take_quiet_noise(const Eigen::VectorXd& quiet_noise, const Record& record, 
   for (Index i = 0; i < quiet_noise.size(); ++i)
     if (found.noise_from_record[static_cast<std::size_t>(i)])
       found.noise_deviation[i] =
-          std::max(quiet_noise[i], smallest_noise * largest_measured(record.samples.row(i)));
+          std::max(quiet_noise[i], smallest_record_noise * largest_measured(record.samples.row(i)));
   found.settings.output_noise = found.noise_deviation.cwiseAbs2().asDiagonal();
-  found.interval_factor = widening(found);
+  found.interval_factor = interval_widening(found);
 }
 
 // Of one quantity: where it varies over the decay, what the variation leaves at the mode is no noise, and
@@ -170,7 +170,7 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
   RecordIdentification result;
   const reduction::ReducedModel reduced = take_model(experiment, record, result);
 
-  analyse(experiment, on_even_stamps(record).record, result);
+  analyse_decay(experiment, on_even_stamps(record).record, result);
   take_residual_noise(experiment, record, result);
 
   const double beam_stiffness =
@@ -179,7 +179,7 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
   result.settings.filter_options = experiment.filter.options;
   result.settings.discretisation = experiment.discretisation;
   result.settings.initial = first_belief(experiment, record, result, beam_stiffness);
-  result.settings.passes = passes;
+  result.settings.passes = identification_passes;
   result.settings.on_failure = experiment.on_failure;
   return result;
 }
@@ -210,7 +210,7 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
     start_from_mode(experiment.prior, record.interval(), result);
     filter();
   }
-  for (int pass = 0; !analysed && !failed() && pass < passes; ++pass) {
+  for (int pass = 0; !analysed && !failed() && pass < identification_passes; ++pass) {
     take_mode_of_filter(result);
     take_residual_noise(experiment, record, result);
     if (result.noise_method == "before_event") take_quiet_noise(quiet_noise, record, result);
@@ -218,7 +218,7 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
   }
   if (result.noise_method == "likelihood" && !failed()) {
     take_likeliest_noise(experiment, record, result);
-    result.interval_factor = widening(result);
+    result.interval_factor = interval_widening(result);
     filter();
   }
   if (experiment.estimator != "filter") result.batch = identify_batch(result, measured);

@@ -11,16 +11,16 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr Colour colours[] = {Colour::blue,   Colour::vermillion, Colour::green, Colour::purple,
-                              Colour::orange, Colour::sky,        Colour::black, Colour::grey};
+constexpr Colour reduction_colours[] = {Colour::blue,   Colour::vermillion, Colour::green, Colour::purple,
+                                        Colour::orange, Colour::sky,        Colour::black, Colour::grey};
 
 Colour colour_of(std::size_t number) {
-  return colours[number % std::size(colours)];
+  return reduction_colours[number % std::size(reduction_colours)];
 }
 
 // Filled at first, then open points in the same colours.
 CurveStyle points_of(std::size_t number) {
-  return number < std::size(colours) ? CurveStyle::points : CurveStyle::open_points;
+  return number < std::size(reduction_colours) ? CurveStyle::points : CurveStyle::open_points;
 }
 
 Curve curve(const std::string& label, const VectorXd& x, const VectorXd& y, Colour colour,

@@ -12,7 +12,7 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-constexpr Index most_modes = 200;
+constexpr Index most_compared_modes = 200;
 
 double stiffness_at_the_point(const fem::StructuralSystem& system, Index rigid) {
   return rigid > 0 ? std::numeric_limits<double>::quiet_NaN() : fem::static_stiffness(system);
@@ -33,7 +33,7 @@ double mass_at_the_point(const fem::StructuralSystem& system, const fem::Modes& 
 fem::Modes lowest_modes(const fem::StructuralSystem& system, Index at_least, double below_hz) {
   const Eigen::ArrayXd diagonal = VectorXd(system.mass.diagonal()).array();
   const Index all = (diagonal > 0.0).count();  // a lumped mesh has rotations without inertia
-  const Index most = std::min(all, std::max(most_modes, at_least));
+  const Index most = std::min(all, std::max(most_compared_modes, at_least));
   for (Index count = std::min(most, std::max<Index>(at_least, 25));; count = std::min(2 * count, most)) {
     fem::Modes found = fem::modes(system, count);
     if (count == most || found.frequency_hz()[count - 1] >= below_hz) return found;

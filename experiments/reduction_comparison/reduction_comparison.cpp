@@ -18,7 +18,7 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_error = std::numeric_limits<double>::quiet_NaN();
 
 fem::DampingLaw damping_in_force(const Experiment& experiment, ReductionComparison& all) {
   constexpr double assumed = 0.005;
@@ -44,8 +44,8 @@ struct Reduced {
   reduction::ReducedModel model;
 };
 
-Reduced reduced(const Choice& choice, const fem::StructuralSystem& system,
-                const reduction::Training& training) {
+Reduced reduced_candidate(const Choice& choice, const fem::StructuralSystem& system,
+                          const reduction::Training& training) {
   return at_place(choice.place, [&] {
     const auto method = reduction::reduction_registry().make(choice.name, choice.options);
     Reduced found{method->bases(system, training), {}};
@@ -64,16 +64,17 @@ MatrixXd deflections(const fem::StructuralSystem& system, const MatrixXd& shapes
 void compare_modes(const ReductionComparison& all, const ModelModes& modes, ComparedReduction& one) {
   const Index count = all.compared();
   const MatrixXd full = all.modes.shapes.middleCols(all.modes.modes.rigid, count);
-  const MatrixXd reduced = modes.shapes.rightCols(modes.elastic());
-  const MatrixXd agreement = mac(full, reduced, all.system.mass);
+  const MatrixXd reduced_candidate = modes.shapes.rightCols(modes.elastic());
+  const MatrixXd agreement = mac(full, reduced_candidate, all.system.mass);
   const MatrixXd full_deflection = deflections(all.system, full),
-                 reduced_deflection = deflections(all.system, reduced);
+                 reduced_deflection = deflections(all.system, reduced_candidate);
   const MatrixXd plain = mac(full_deflection, reduced_deflection);
   one.partner = partners(agreement);
-  one.frequency_hz = one.frequency_error = one.mac = one.deflection_mac = VectorXd::Constant(count, unknown);
+  one.frequency_hz = one.frequency_error = one.mac = one.deflection_mac =
+      VectorXd::Constant(count, unknown_error);
   std::vector<Index> mine, theirs;
   for (Index i = 0; i < count; ++i) {
-    if (reduced.cols() > 0) one.mac[i] = agreement.row(i).maxCoeff();
+    if (reduced_candidate.cols() > 0) one.mac[i] = agreement.row(i).maxCoeff();
     const Index j = one.partner[i];
     if (j < 0) continue;
     one.frequency_hz[i] = modes.modes.frequency_hz()[modes.modes.rigid + j];
@@ -90,7 +91,7 @@ void compare_modes(const ReductionComparison& all, const ModelModes& modes, Comp
 }
 
 double relative_error(const VectorXd& found, const VectorXd& known) {
-  return known.size() > 0 ? (found - known).norm() / known.norm() : unknown;
+  return known.size() > 0 ? (found - known).norm() / known.norm() : unknown_error;
 }
 
 // Without any damping resonances are infinite, and so is every difference about them.
@@ -100,38 +101,38 @@ bool is_undamped(const ReductionComparison& all) {
 }
 
 void compare_behaviour(const ReductionComparison& all, ComparedReduction& one) {
-  const ModelBehaviour &full = all.behaviour, &reduced = one.behaviour;
-  one.static_stiffness_error = reduced.static_stiffness / full.static_stiffness - 1.0;
-  one.modal_mass_error = reduced.modal_mass / full.modal_mass - 1.0;
+  const ModelBehaviour &full = all.behaviour, &reduced_candidate = one.behaviour;
+  one.static_stiffness_error = reduced_candidate.static_stiffness / full.static_stiffness - 1.0;
+  one.modal_mass_error = reduced_candidate.modal_mass / full.modal_mass - 1.0;
   const ResponseDifference difference =
-      is_undamped(all) ? ResponseDifference{unknown, unknown, unknown}
-                       : compare_magnitudes(all.frequency_hz, full.receptance, reduced.receptance);
+      is_undamped(all) ? ResponseDifference{unknown_error, unknown_error, unknown_error}
+                       : compare_magnitudes(all.frequency_hz, full.receptance, reduced_candidate.receptance);
   one.response_error = difference.relative;
   one.worst_response = difference.worst_db;
   one.worst_response_hz = difference.worst_hz;
-  one.displacement_error = relative_error(reduced.decay.displacement, full.decay.displacement);
-  one.acceleration_error = relative_error(reduced.decay.acceleration, full.decay.acceleration);
+  one.displacement_error = relative_error(reduced_candidate.decay.displacement, full.decay.displacement);
+  one.acceleration_error = relative_error(reduced_candidate.decay.acceleration, full.decay.acceleration);
 }
 
-struct Candidate {
+struct ReductionCandidate {
   ComparedReduction one;
   fem::StructuralSystem system;
   ModelModes modes;
 };
 
-std::vector<Candidate> reduce_all(const Experiment& experiment, const std::vector<Choice>& choices,
-                                  const std::filesystem::path& folder, double below_hz,
-                                  const Progress& progress, ReductionComparison& all) {
-  std::vector<Candidate> candidates;
+std::vector<ReductionCandidate> reduce_all(const Experiment& experiment, const std::vector<Choice>& choices,
+                                           const std::filesystem::path& folder, double below_hz,
+                                           const Progress& progress, ReductionComparison& all) {
+  std::vector<ReductionCandidate> candidates;
   const std::vector<std::string> names = labels(choices);
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const Choice& choice = choices[i];
     progress(names[i]);
     const reduction::Training training = training_of(choice, experiment.beam.length(), folder);
-    Candidate candidate;
+    ReductionCandidate candidate;
     try {
       const auto begin = std::chrono::steady_clock::now();
-      Reduced found = reduced(choice, all.system, training);
+      Reduced found = reduced_candidate(choice, all.system, training);
       candidate.one.reduce_seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       candidate.one.size = found.model.system.size();
@@ -193,16 +194,18 @@ ReductionComparison compare_reductions(const Experiment& experiment, const std::
     all.notes.emplace_back(
         "Without damping resonances are infinite: frequency responses are drawn and not compared.");
 
-  std::vector<Candidate> candidates = reduce_all(experiment, choices, folder, below_hz, progress, all);
+  std::vector<ReductionCandidate> candidates =
+      reduce_all(experiment, choices, folder, below_hz, progress, all);
   if (candidates.empty()) throw std::invalid_argument("no reduction is left to be compared");
   std::vector<VectorXd> resonances{all.modes.modes.angular_frequency};
-  for (const Candidate& candidate : candidates) resonances.push_back(candidate.modes.modes.angular_frequency);
+  for (const ReductionCandidate& candidate : candidates)
+    resonances.push_back(candidate.modes.modes.angular_frequency);
   all.frequency_hz = response_grid(first_hz / 5.0, settings.band * first_hz, resonances, all.damping);
 
   progress("responses of the mesh");
   all.behaviour =
       behaviour_of(all.system, all.modes, all.system.mass, all.damping, all.frequency_hz, all.release);
-  for (Candidate& candidate : candidates) {
+  for (ReductionCandidate& candidate : candidates) {
     ComparedReduction& one = candidate.one;
     progress("responses of " + one.label);
     one.behaviour = behaviour_of(candidate.system, candidate.modes, all.system.mass, all.damping,

@@ -58,7 +58,7 @@ std::string text_of(const ReductionComparison& all) {
   return text;
 }
 
-nlohmann::ordered_json configuration(const Experiment& experiment, const ReductionComparison& all) {
+nlohmann::ordered_json reduction_configuration(const Experiment& experiment, const ReductionComparison& all) {
   nlohmann::ordered_json json = describe(experiment);
   json["damping"] = describe(all.damping);
   json["modes"] = all.settings.modes;
@@ -74,7 +74,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Reducti
   const ReductionComparison& all = *comparison;
   Results results;
   results.command = "reduce";
-  results.configuration = configuration(experiment, all);
+  results.configuration = reduction_configuration(experiment, all);
   results.values = values(all);
   results.heading(experiment.title.empty() ? "Reductions" : experiment.title);
   results.paragraph(

@@ -16,7 +16,7 @@ std::string number_of(const ReductionComparison& all, Index mode) {
 }
 
 // In per cent, without what rounding has left of a number that is zero.
-double percent(double relative) {
+double in_percent(double relative) {
   constexpr double rounding = 1e-11;
   return std::abs(relative) < rounding ? 0.0 : 100.0 * relative;
 }
@@ -48,9 +48,10 @@ Table reduction_table(const ReductionComparison& all) {
   const auto n = static_cast<double>(all.system.size());
   for (const ComparedReduction& one : all.reductions) {
     const auto r = static_cast<double>(one.size);
-    table.row({one.label, r, one.identity ? std::nan("") : n * r, percent(one.static_stiffness_error),
-               percent(one.modal_mass_error), percent(one.response_error), one.worst_response,
-               one.worst_response_hz, percent(one.displacement_error), percent(one.acceleration_error)});
+    table.row({one.label, r, one.identity ? std::nan("") : n * r, in_percent(one.static_stiffness_error),
+               in_percent(one.modal_mass_error), in_percent(one.response_error), one.worst_response,
+               one.worst_response_hz, in_percent(one.displacement_error),
+               in_percent(one.acceleration_error)});
   }
   table.note = fmt::format(
       "r: coordinates, n r: numbers in the shapes that carry them to the mesh, n = {}. Static stiffness and "
@@ -84,7 +85,7 @@ Table frequency_table(const ReductionComparison& all) {
                   "mode_" + number_of(all, i) + "_error_percent", "{:+.4g}"});
   for (const ComparedReduction& one : all.reductions) {
     std::vector<Cell> row{one.label};
-    for (const double error : one.frequency_error) row.emplace_back(percent(error));
+    for (const double error : one.frequency_error) row.emplace_back(in_percent(error));
     table.row(std::move(row));
   }
   table.note = "-: no mode of the reduced model stands for this one (MAC above 1/2). 0: below 1e-9 %.";

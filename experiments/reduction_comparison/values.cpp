@@ -8,7 +8,7 @@ namespace {
 using Eigen::Index;
 using Json = nlohmann::ordered_json;
 
-Json percent(double relative) {
+Json percent_json(double relative) {
   return number_or_null(100.0 * relative);
 }
 
@@ -17,7 +17,7 @@ Json modes_of(const ReductionComparison& all, const ComparedReduction& one) {
   for (Index i = 0; i < all.compared(); ++i)
     modes.push_back({{"mode", all.modes.modes.rigid + i + 1},
                      {"frequency_hz", number_or_null(one.frequency_hz[i])},
-                     {"frequency_error_percent", percent(one.frequency_error[i])},
+                     {"frequency_error_percent", percent_json(one.frequency_error[i])},
                      {"mac", number_or_null(one.mac[i])},
                      {"mac_of_deflections", number_or_null(one.deflection_mac[i])}});
   return modes;
@@ -40,18 +40,18 @@ Json reduction_of(const ReductionComparison& all, const ComparedReduction& one) 
   json["lowest_comac"] = number_or_null(lowest.value);
   json["lowest_comac_m"] = lowest.point < 0 ? Json(nullptr) : Json(all.system.mesh.positions()[lowest.point]);
   json["static_stiffness_n_per_m"] = number_or_null(one.behaviour.static_stiffness);
-  json["static_stiffness_error_percent"] = percent(one.static_stiffness_error);
+  json["static_stiffness_error_percent"] = percent_json(one.static_stiffness_error);
   json["modal_mass_kg"] = number_or_null(one.behaviour.modal_mass);
-  json["modal_mass_error_percent"] = percent(one.modal_mass_error);
+  json["modal_mass_error_percent"] = percent_json(one.modal_mass_error);
   if (one.size == 1) {
     json["equivalent_stiffness_n_per_m"] = json["static_stiffness_n_per_m"];
     json["equivalent_mass_kg"] = json["modal_mass_kg"];
   }
-  json["frequency_response_error_percent"] = percent(one.response_error);
+  json["frequency_response_error_percent"] = percent_json(one.response_error);
   json["frequency_response_worst_db"] = number_or_null(one.worst_response);
   json["frequency_response_worst_hz"] = number_or_null(one.worst_response_hz);
-  json["decay_displacement_error_percent"] = percent(one.displacement_error);
-  json["decay_acceleration_error_percent"] = percent(one.acceleration_error);
+  json["decay_displacement_error_percent"] = percent_json(one.displacement_error);
+  json["decay_acceleration_error_percent"] = percent_json(one.acceleration_error);
   if (one.significance.size() > 0) json["significance"] = significance_of(one);
   return json;
 }

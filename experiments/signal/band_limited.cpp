@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr Index reach = 16;  // nodes to either side
-constexpr double pi = std::numbers::pi;
+constexpr Index kernel_reach = 16;  // nodes to either side
+using std::numbers::pi;
 
 double sinc(double u) {
   return std::abs(u) < 1e-9 ? 1 : std::sin(pi * u) / (pi * u);
@@ -24,7 +24,7 @@ double sinc(double u) {
 /// h(u), 100 dB down from 0.6 of the node rate on.
 double exact_kernel(double u) {
   constexpr double beta = 10.06;
-  const double edge = u / static_cast<double>(reach);
+  const double edge = u / static_cast<double>(kernel_reach);
   if (std::abs(edge) >= 1) return 0;
   static const double top = std::cyl_bessel_i(0, beta);
   return sinc(u) * std::cyl_bessel_i(0, beta * std::sqrt(1 - edge * edge)) / top;
@@ -34,41 +34,42 @@ double exact_kernel(double u) {
 double kernel(double u) {
   constexpr double per_node = 8192;
   static const std::vector<double> table = [] {
-    std::vector<double> values;
-    for (double k = 0; k <= per_node * static_cast<double>(reach) + 1; ++k)
-      values.push_back(exact_kernel(k / per_node));
-    return values;
+    std::vector<double> band_limited_values;
+    for (double k = 0; k <= per_node * static_cast<double>(kernel_reach) + 1; ++k)
+      band_limited_values.push_back(exact_kernel(k / per_node));
+    return band_limited_values;
   }();
   const double place = std::abs(u) * per_node;
-  if (place >= per_node * static_cast<double>(reach)) return 0;
+  if (place >= per_node * static_cast<double>(kernel_reach)) return 0;
   const auto left = static_cast<std::size_t>(place);
   const double share = place - static_cast<double>(left);
   return (1 - share) * table[left] + share * table[left + 1];
 }
 
-/// Rows of A: the weights of 2 reach nodes in one value.
+/// Rows of A: the weights of 2 kernel_reach nodes in one value.
 struct Row {
   Index first;
-  Eigen::Matrix<double, 2 * reach, 1> weight;
+  Eigen::Matrix<double, 2 * kernel_reach, 1> weight;
 };
 
 Row row_at(double place) {  // in nodes
-  Row row{static_cast<Index>(std::floor(place)) - reach + 1, {}};
-  for (Index j = 0; j < 2 * reach; ++j) row.weight[j] = kernel(place - static_cast<double>(row.first + j));
+  Row row{static_cast<Index>(std::floor(place)) - kernel_reach + 1, {}};
+  for (Index j = 0; j < 2 * kernel_reach; ++j)
+    row.weight[j] = kernel(place - static_cast<double>(row.first + j));
   return row;
 }
 
-VectorXd values(const std::vector<Row>& rows, const VectorXd& nodes) {
+VectorXd band_limited_values(const std::vector<Row>& rows, const VectorXd& nodes) {
   VectorXd result(static_cast<Index>(rows.size()));
   for (Index k = 0; k < result.size(); ++k)
-    result[k] = rows[k].weight.dot(nodes.segment<2 * reach>(rows[k].first));
+    result[k] = rows[k].weight.dot(nodes.segment<2 * kernel_reach>(rows[k].first));
   return result;
 }
 
 VectorXd transposed(const std::vector<Row>& rows, const VectorXd& right, Index nodes) {
   VectorXd result = VectorXd::Zero(nodes);
   for (Index k = 0; k < right.size(); ++k)
-    result.segment<2 * reach>(rows[k].first) += right[k] * rows[k].weight;
+    result.segment<2 * kernel_reach>(rows[k].first) += right[k] * rows[k].weight;
   return result;
 }
 
@@ -76,14 +77,18 @@ VectorXd transposed(const std::vector<Row>& rows, const VectorXd& right, Index n
 /// values obey best: exact for up to 16 decaying or growing sines. Neither end counts as known.
 void predict(VectorXd& signal, Index known) {
   constexpr Index most_order = 32, most_values = 1000;
-  const Index values = std::min(known - 2 * reach, most_values), order = std::min(most_order, values / 3);
+  const Index band_limited_values = std::min(known - 2 * kernel_reach, most_values),
+              order = std::min(most_order, band_limited_values / 3);
   if (order < 2) return;
-  Eigen::MatrixXd past(values - order, order);
-  for (Index k = 0; k < past.rows(); ++k) past.row(k) = signal.segment(known - values + k, order).transpose();
+  Eigen::MatrixXd past(band_limited_values - order, order);
+  for (Index k = 0; k < past.rows(); ++k)
+    past.row(k) = signal.segment(known - band_limited_values + k, order).transpose();
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(1e-3);
-  const VectorXd weight = solver.compute(past).solve(signal.segment(known - values + order, past.rows()));
-  const double largest = signal.segment(known - values, values).cwiseAbs().maxCoeff();
+  const VectorXd weight =
+      solver.compute(past).solve(signal.segment(known - band_limited_values + order, past.rows()));
+  const double largest =
+      signal.segment(known - band_limited_values, band_limited_values).cwiseAbs().maxCoeff();
   for (Index k = known; k < signal.size(); ++k)
     signal[k] = std::clamp(weight.dot(signal.segment(k - order, order)), -2 * largest, 2 * largest);
 }
@@ -98,13 +103,13 @@ struct Interpolation {
   VectorXd solve(const VectorXd& signal, VectorXd& nodes) {
     constexpr double stiffness = 0.01;
     const VectorXd begun = nodes;
-    VectorXd left = signal - values(rows, nodes), gradient = transposed(rows, left, nodes.size()),
-             direction = gradient;
+    VectorXd left = signal - band_limited_values(rows, nodes),
+             gradient = transposed(rows, left, nodes.size()), direction = gradient;
     double size = gradient.squaredNorm();
     constexpr int most = 200;
     const double enough = 1e-9 * signal.norm();
     for (int k = 0; k < most && left.norm() > enough && std::sqrt(size) > enough; ++k, ++iterations) {
-      const VectorXd along = values(rows, direction);
+      const VectorXd along = band_limited_values(rows, direction);
       const double step = size / std::max(along.squaredNorm() + stiffness * direction.squaredNorm(), 1e-300);
       nodes += step * direction;
       left -= step * along;
@@ -127,8 +132,8 @@ BandLimited::BandLimited(VectorXd time, const VectorXd& signal) {
                mean_rate = static_cast<double>(count - 1) / (last - time[0]);
   const double between = std::ceil((last - time[0]) * std::min(mean_rate, 1 / widest) - 1e-6);
   rate_ = between / (last - time[0]);
-  first_ = time[0] - static_cast<double>(reach) / rate_;
-  nodes_.resize(static_cast<Index>(between) + 1 + 2 * reach);
+  first_ = time[0] - static_cast<double>(kernel_reach) / rate_;
+  nodes_.resize(static_cast<Index>(between) + 1 + 2 * kernel_reach);
   for (Index j = 0; j < nodes_.size(); ++j) {
     const double at = first_ + static_cast<double>(j) / rate_;
     if (at < time[0])
@@ -142,10 +147,10 @@ BandLimited::BandLimited(VectorXd time, const VectorXd& signal) {
   for (const double at : time) interpolation.rows.push_back(row_at((at - first_) * rate_));
   VectorXd left = interpolation.solve(signal, nodes_);
   constexpr int rounds = 3;  // each leaves less of what the one before had wrong at the ends
-  for (int round = 0; round < rounds && nodes_.size() > 10 * reach; ++round) {
+  for (int round = 0; round < rounds && nodes_.size() > 10 * kernel_reach; ++round) {
     for (int end = 0; end < 2; ++end) {
       nodes_.reverseInPlace();
-      predict(nodes_, nodes_.size() - 2 * reach);
+      predict(nodes_, nodes_.size() - 2 * kernel_reach);
     }
     left = interpolation.solve(signal, nodes_);
   }
@@ -157,8 +162,8 @@ VectorXd BandLimited::operator()(const VectorXd& at) const {
   VectorXd result(at.size());
   for (Index k = 0; k < at.size(); ++k) {
     const Row row = row_at((at[k] - first_) * rate_);
-    const Index from = std::clamp<Index>(row.first, 0, nodes_.size() - 2 * reach);
-    result[k] = row.weight.dot(nodes_.segment<2 * reach>(from));
+    const Index from = std::clamp<Index>(row.first, 0, nodes_.size() - 2 * kernel_reach);
+    result[k] = row.weight.dot(nodes_.segment<2 * kernel_reach>(from));
   }
   return result;
 }
@@ -166,10 +171,10 @@ VectorXd BandLimited::operator()(const VectorXd& at) const {
 double BandLimited::kernel_error(double frequency) {
   double worst = 0;
   for (int part = 0; part <= 20; ++part) {
-    const double u = reach + 0.05 * part;
+    const double u = kernel_reach + 0.05 * part;
     const Row row = row_at(u);
     std::complex<double> sum = -1;
-    for (Index j = 0; j < 2 * reach; ++j)
+    for (Index j = 0; j < 2 * kernel_reach; ++j)
       sum += row.weight[j] * std::polar(1.0, 2 * pi * frequency * (static_cast<double>(row.first + j) - u));
     worst = std::max(worst, std::abs(sum));
   }

@@ -10,7 +10,7 @@ namespace {
 
 enum class Band { low, high };
 
-void check(int order, double corner_hz, double interval) {
+void check_butterworth(int order, double corner_hz, double interval) {
   std::ostringstream message;
   if (!(interval > 0 && std::isfinite(interval)))
     message << "sampling interval " << interval << " s; expected a positive value";
@@ -43,7 +43,7 @@ Biquad first_order(Band band, double W) {
 }
 
 CascadedFilter design(Band band, int order, double corner_hz, double interval) {
-  check(order, corner_hz, interval);
+  check_butterworth(order, corner_hz, interval);
   const double W = std::tan(std::numbers::pi * corner_hz * interval);
   CascadedFilter filter{{}, interval};
   for (int k = 0; k < order / 2; ++k)

@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-void check(Eigen::Index count, double interval, int times) {
+void check_frequency_calculus(Eigen::Index count, double interval, int times) {
   if (count < 2 || !(interval > 0) || times < 1 || times > 2)
     throw std::invalid_argument("signal of " + std::to_string(count) + " samples, " + std::to_string(times) +
                                 " times; expected 2 samples or more, and 1 or 2 times");
@@ -55,7 +55,7 @@ double above_corner(double frequency_hz, double corner_hz) {
 
 Eigen::VectorXd integrate_in_frequency(const Eigen::VectorXd& signal, double interval, int times,
                                        double corner_hz) {
-  check(signal.size(), interval, times);
+  check_frequency_calculus(signal.size(), interval, times);
   if (!(corner_hz > 0 && corner_hz < 0.5 / interval))
     throw std::invalid_argument("corner of " + std::to_string(corner_hz) +
                                 " Hz; expected a value between 0 and half the sampling rate, " +
@@ -67,7 +67,7 @@ Eigen::VectorXd integrate_in_frequency(const Eigen::VectorXd& signal, double int
 }
 
 Eigen::VectorXd differentiate_in_frequency(const Eigen::VectorXd& signal, double interval, int times) {
-  check(signal.size(), interval, times);
+  check_frequency_calculus(signal.size(), interval, times);
   const Eigen::Index last = signal.size() - 1;
   const Eigen::VectorXd line = Eigen::VectorXd::LinSpaced(signal.size(), signal[0], signal[last]);
   const double slope = (signal[last] - signal[0]) / (static_cast<double>(last) * interval);

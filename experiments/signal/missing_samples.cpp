@@ -15,13 +15,13 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 /// Samples [from, to) that are fitted together, those from `inner` to `outer` being taken from the fit.
-struct Block {
+struct MissingRun {
   Index from, inner, outer, to;
 };
 
-std::vector<Block> blocks_of(const VectorXd& signal, double period) {
+std::vector<MissingRun> missing_runs_of(const VectorXd& signal, double period) {
   const auto margin = std::max<Index>(static_cast<Index>(std::ceil(period)), 16), core = 2 * margin;
-  std::vector<Block> blocks;
+  std::vector<MissingRun> blocks;
   for (Index inner = 0; inner < signal.size(); inner += core) {
     const Index outer = std::min(inner + core, signal.size());
     if (signal.segment(inner, outer - inner).allFinite()) continue;
@@ -32,7 +32,7 @@ std::vector<Block> blocks_of(const VectorXd& signal, double period) {
 }
 
 /// Of the samples of a block; frequencies in cycles per sample, the strongest first.
-MatrixXd basis(const Block& block, const std::vector<double>& frequencies) {
+MatrixXd basis(const MissingRun& block, const std::vector<double>& frequencies) {
   const Index count = block.to - block.from;
   MatrixXd columns(count, 4 + 4 * static_cast<Index>(frequencies.size()));
   const Eigen::ArrayXd sample = Eigen::ArrayXd::LinSpaced(count, 0, static_cast<double>(count - 1)),
@@ -53,7 +53,7 @@ MatrixXd basis(const Block& block, const std::vector<double>& frequencies) {
 }
 
 /// The fit to the finite samples of a block, at all of them (between inner and outer).
-VectorXd fitted(const VectorXd& signal, const Block& block, std::vector<double> frequencies) {
+VectorXd fitted(const VectorXd& signal, const MissingRun& block, std::vector<double> frequencies) {
   std::vector<Index> known;
   for (Index k = block.from; k < block.to; ++k)
     if (std::isfinite(signal[k])) known.push_back(k - block.from);
@@ -103,15 +103,15 @@ double largest_measured(const Eigen::MatrixXd& samples) {
 VectorXd filled(const VectorXd& signal, double period) {
   constexpr std::size_t most_lines = 4;
   constexpr double above_median = 6;
-  const std::vector<Block> blocks = blocks_of(signal, period);
+  const std::vector<MissingRun> blocks = missing_runs_of(signal, period);
   if (blocks.empty()) return signal;
   std::vector<double> frequencies{1 / period};
   for (;;) {
     VectorXd model = VectorXd::Zero(signal.size()), left = VectorXd::Zero(signal.size());
-    for (const Block& block : blocks)
+    for (const MissingRun& block : blocks)
       model.segment(block.inner, block.outer - block.inner) = fitted(signal, block, frequencies);
     VectorXd rest = signal - model;
-    for (const Block& block : blocks)
+    for (const MissingRun& block : blocks)
       for (Index k = block.inner; k < block.outer; ++k)
         if (std::isfinite(rest[k])) left[k] = rest[k];
     const auto& [frequency, amplitude] = amplitude_spectrum(left, 1.0);

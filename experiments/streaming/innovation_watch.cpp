@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double largest = 1e300;  // square: a sum of a window stays a number
+constexpr double largest_square = 1e300;  // square: a sum of a window stays a number
 
 // What chi-square of so many degrees exceeds with this probability.
 double limit(std::map<Index, double>& known, Index degrees, double probability) {
@@ -26,7 +26,8 @@ double limit(std::map<Index, double>& known, Index degrees, double probability) 
 
 InnovationWatch::Verdict InnovationWatch::judge(double normalised_square, Index outputs) {
   if (outputs == 0) return Verdict::keep;
-  const double square = normalised_square < largest ? normalised_square : largest;  // also of a NaN
+  const double square =
+      normalised_square < largest_square ? normalised_square : largest_square;  // also of a NaN
   if (settled_ && square > limit(gates_, outputs, outlying)) {
     ++left_out_;
     return ++in_a_row_ < several ? Verdict::leave_out : begin_anew(Verdict::jumped);
@@ -36,7 +37,7 @@ InnovationWatch::Verdict InnovationWatch::judge(double normalised_square, Index 
   degrees_ += outputs;
   for (; degrees_ - squares_.front().second >= window; squares_.pop_front())
     degrees_ -= squares_.front().second;
-  sum_ = std::min(sum_ + square, largest);
+  sum_ = std::min(sum_ + square, largest_square);
   since_ += outputs;
   if (!settled_) unsettled_ += outputs;
   if (degrees_ < window) return Verdict::keep;
@@ -77,7 +78,7 @@ double InnovationWatch::mean_square() const {
   if (degrees_ == 0) return std::numeric_limits<double>::quiet_NaN();
   const double sum = std::accumulate(squares_.begin(), squares_.end(), 0.0,
                                      [](double all, const auto& one) { return all + one.first; });
-  return std::min(sum, largest) / static_cast<double>(degrees_);
+  return std::min(sum, largest_square) / static_cast<double>(degrees_);
 }
 
 double InnovationWatch::largest_mean_square() const {

@@ -11,17 +11,17 @@
 namespace beamid::experiments {
 namespace {
 
-constexpr const char* blanks = " \t\r";
+constexpr const char* line_blanks = " \t\r";
 
-std::string_view trimmed(std::string_view field) {
-  const std::size_t first = field.find_first_not_of(blanks);
+std::string_view trimmed_line(std::string_view field) {
+  const std::size_t first = field.find_first_not_of(line_blanks);
   if (first == std::string_view::npos) return {};
-  return field.substr(first, field.find_last_not_of(blanks) - first + 1);
+  return field.substr(first, field.find_last_not_of(line_blanks) - first + 1);
 }
 
-double number(std::string_view field, const Place& place) {
+double line_number_value(std::string_view field, const Place& place) {
   constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-  const std::string_view text = trimmed(field);
+  const std::string_view text = trimmed_line(field);
   if (text.empty()) return missing;
   std::string_view digits = text;
   if (digits.starts_with('+')) digits.remove_prefix(1);
@@ -45,7 +45,7 @@ filters::Sample read_sample(const std::string& line, Eigen::Index outputs, const
   for (Eigen::Index i = 0; i <= outputs; ++i) {
     const std::size_t end = std::min(line.find(',', begin), line.size());
     const Place here{place.file, place.line, begin + 1};
-    const double value = number(std::string_view(line).substr(begin, end - begin), here);
+    const double value = line_number_value(std::string_view(line).substr(begin, end - begin), here);
     if (i == 0 && !std::isfinite(value)) throw InputError(here, "no time; expected seconds");
     (i == 0 ? sample.time : sample.output[i - 1]) = value;
     begin = end + 1;

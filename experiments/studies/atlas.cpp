@@ -41,7 +41,7 @@ class AtlasStudy final : public Study {
   AtlasSettings settings_;
 };
 
-const bool registered = study_registry().add(
+const bool atlas_registered = study_registry().add(
     {"atlas",
      "what every discretisation does to stiffness and damping, in closed form and measured",
      "[hairer1996]",

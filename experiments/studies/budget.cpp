@@ -88,7 +88,7 @@ class BudgetStudy final : public Study {
   int orders_ = 2;
 };
 
-const bool registered = study_registry().add(
+const bool budget_registered = study_registry().add(
     {"budget",
      "what each cause, from the beam to the filter, contributes to the errors of K and C",
      "[inverse2009], [shapley1953]",

@@ -70,7 +70,7 @@ class HigherModeStudy final : public Study {
   NoiseSettings settings_;
 };
 
-const bool registered = study_registry().add(
+const bool noise_registered = study_registry().add(
     {"noise",
      "when a filter of one mode may take the others for noise, and what to do when not",
      "[inverse2009]",

@@ -40,7 +40,7 @@ class PaperStudy final : public Study {
   int trials_ = 0;
 };
 
-const bool registered = study_registry().add(
+const bool paper_registered = study_registry().add(
     {"paper",
      "the 2009 steel-beam study: reproduced, explained and put right",
      "[inverse2009]",

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr std::size_t most_curves = 6;  // more cannot be told apart
+constexpr std::size_t most_sweep_curves = 6;  // more cannot be told apart
 constexpr std::size_t most_parameters = 3;
 
 /// A key whose values are numbers to draw against; plan.varied.size() without one.
@@ -55,7 +55,7 @@ std::vector<Series> series_of(const SweepPlan& plan, const std::vector<PointStat
     const std::string name = name_of(plan, all, one, key);
     auto at =
         std::find_if(found.begin(), found.end(), [&](const Series& other) { return other.name == name; });
-    if (at == found.end() && found.size() == most_curves) continue;
+    if (at == found.end() && found.size() == most_sweep_curves) continue;
     if (at == found.end()) at = found.insert(at, Series{name, {}, {}, {}, {}, {}, {}});
     at->x.push_back(std::get<double>(values_of_point(plan, one.point)[key]));
     at->rms.push_back(one.rms_percent);
@@ -68,8 +68,8 @@ std::vector<Series> series_of(const SweepPlan& plan, const std::vector<PointStat
   return found;
 }
 
-constexpr Colour colours[most_curves] = {Colour::blue,   Colour::vermillion, Colour::green,
-                                         Colour::purple, Colour::orange,     Colour::sky};
+constexpr Colour sweep_colours[most_sweep_curves] = {Colour::blue,   Colour::vermillion, Colour::green,
+                                                     Colour::purple, Colour::orange,     Colour::sky};
 
 void add_panels(Figure& figure, const std::string& key, const std::string& parameter,
                 const std::vector<Series>& all) {
@@ -80,11 +80,16 @@ void add_panels(Figure& figure, const std::string& key, const std::string& param
     const Series& one = all[i];
     const VectorXd x = vector_of(one.x);
     const std::string label = one.name.empty() ? "filter" : one.name;
-    errors.curves.push_back({label, x, vector_of(one.rms), CurveStyle::points, {}, {}, colours[i]});
-    errors.curves.push_back(
-        {i == 0 ? "Cramér-Rao bound" : "", x, vector_of(one.bound), CurveStyle::dashed, {}, {}, colours[i]});
+    errors.curves.push_back({label, x, vector_of(one.rms), CurveStyle::points, {}, {}, sweep_colours[i]});
+    errors.curves.push_back({i == 0 ? "Cramér-Rao bound" : "",
+                             x,
+                             vector_of(one.bound),
+                             CurveStyle::dashed,
+                             {},
+                             {},
+                             sweep_colours[i]});
     coverage.curves.push_back({label, x, vector_of(one.coverage), CurveStyle::points, vector_of(one.lower),
-                               vector_of(one.upper), colours[i]});
+                               vector_of(one.upper), sweep_colours[i]});
   }
   const VectorXd ends = Eigen::Vector2d(vector_of(all[0].x).minCoeff(), vector_of(all[0].x).maxCoeff());
   coverage.curves.push_back(

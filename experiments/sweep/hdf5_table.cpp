@@ -28,7 +28,7 @@ Member whole(const std::string& name, const std::function<std::int64_t(const Swe
           }};
 }
 
-Member number(const std::string& name, const std::function<double(const SweepRow&)>& value) {
+Member number_cell(const std::string& name, const std::function<double(const SweepRow&)>& value) {
   return {name, 8, Member::Kind::number, [value](const SweepRow& row, char* place) {
             const double found = value(row);
             std::memcpy(place, &found, sizeof found);
@@ -54,7 +54,7 @@ std::vector<Member> members_of(const SweepPlan& plan, const std::vector<SweepRow
         std::all_of(key.values.begin(), key.values.end(),
                     [](const filters::OptionValue& value) { return std::holds_alternative<double>(value); });
     if (numeric)
-      members.push_back(number(key.key, [j](const SweepRow& row) {
+      members.push_back(number_cell(key.key, [j](const SweepRow& row) {
         return experiments::number(row.values[j]).value_or(std::nan(""));
       }));
     else
@@ -65,7 +65,7 @@ std::vector<Member> members_of(const SweepPlan& plan, const std::vector<SweepRow
     members.push_back(text(
         name, [member = member](const SweepRow& row) -> const std::string& { return row.*member; }, rows));
   for (const auto& [name, member] : number_columns())
-    members.push_back(number(name, [member = member](const SweepRow& row) { return row.*member; }));
+    members.push_back(number_cell(name, [member = member](const SweepRow& row) { return row.*member; }));
   return members;
 }
 

@@ -16,13 +16,13 @@ namespace {
 using filters::OptionValue;
 using Law = VariedKey::Law;
 
-[[noreturn]] void refuse(const std::string& text, const std::string& expected) {
+[[noreturn]] void refuse_value(const std::string& text, const std::string& expected) {
   throw std::invalid_argument(fmt::format("'{}'; expected {}", text, expected));
 }
 
 double number_in(const std::string& text, const std::string& part) {
   const std::optional<double> value = number(part);
-  if (!value) refuse(text, fmt::format("a number in the place of '{}'", part));
+  if (!value) refuse_value(text, fmt::format("a number in the place of '{}'", part));
   return *value;
 }
 
@@ -41,24 +41,27 @@ std::optional<Law> law_of(const std::string& word) {
 
 void read_law(VariedKey& varied, const std::vector<std::string>& parts) {
   if (parts.size() != 3)
-    refuse(varied.text,
-           varied.law == Law::normal ? "KEY=normal:MEAN:DEVIATION" : fmt::format("KEY={}:FROM:TO", parts[0]));
+    refuse_value(varied.text, varied.law == Law::normal ? "KEY=normal:MEAN:DEVIATION"
+                                                        : fmt::format("KEY={}:FROM:TO", parts[0]));
   varied.first = number_in(varied.text, parts[1]);
   varied.second = number_in(varied.text, parts[2]);
-  if (varied.law == Law::normal && !(varied.second > 0.0)) refuse(varied.text, "a positive deviation");
-  if (varied.law != Law::normal && !(varied.first < varied.second)) refuse(varied.text, "FROM below TO");
-  if (varied.law == Law::log_uniform && !(varied.first > 0.0)) refuse(varied.text, "positive FROM and TO");
+  if (varied.law == Law::normal && !(varied.second > 0.0)) refuse_value(varied.text, "a positive deviation");
+  if (varied.law != Law::normal && !(varied.first < varied.second))
+    refuse_value(varied.text, "FROM below TO");
+  if (varied.law == Law::log_uniform && !(varied.first > 0.0))
+    refuse_value(varied.text, "positive FROM and TO");
 }
 
 void read_range(VariedKey& varied, const std::vector<std::string>& parts) {
   constexpr double most_steps = 1e6;
   const bool logarithmic = parts.size() == 4;
-  if (logarithmic && parts[3] != "log") refuse(varied.text, "KEY=FROM:TO:STEPS or KEY=FROM:TO:STEPS:log");
+  if (logarithmic && parts[3] != "log")
+    refuse_value(varied.text, "KEY=FROM:TO:STEPS or KEY=FROM:TO:STEPS:log");
   const double from = number_in(varied.text, parts[0]), to = number_in(varied.text, parts[1]);
   const double steps = number_in(varied.text, parts[2]);
   if (!(steps >= 2.0 && steps <= most_steps && steps == std::floor(steps)))
-    refuse(varied.text, fmt::format("a whole number of steps from 2 to {:g}", most_steps));
-  if (logarithmic && !(from > 0.0 && to > 0.0)) refuse(varied.text, "positive FROM and TO");
+    refuse_value(varied.text, fmt::format("a whole number of steps from 2 to {:g}", most_steps));
+  if (logarithmic && !(from > 0.0 && to > 0.0)) refuse_value(varied.text, "positive FROM and TO");
   const int last = static_cast<int>(steps) - 1;
   for (int i = 0; i <= last; ++i) {
     const double share = static_cast<double>(i) / last;
@@ -96,7 +99,7 @@ VariedKey parse_varied(const std::string& text) {
   const std::size_t dot = text.rfind('.', equals);
   if (equals == std::string::npos || dot == std::string::npos || dot == 0 || dot + 1 == equals ||
       equals + 1 == text.size())
-    refuse(text, "TABLE.KEY=FROM:TO:STEPS, TABLE.KEY=A,B,C or TABLE.KEY=uniform:FROM:TO");
+    refuse_value(text, "TABLE.KEY=FROM:TO:STEPS, TABLE.KEY=A,B,C or TABLE.KEY=uniform:FROM:TO");
   VariedKey varied;
   varied.text = text;
   varied.key = text.substr(0, equals);
@@ -109,11 +112,11 @@ VariedKey parse_varied(const std::string& text) {
     read_range(varied, parts);
   } else if (parts.size() == 1) {
     for (const std::string& word : split(rest, ',')) {
-      if (word.empty()) refuse(text, "a value between commas");
+      if (word.empty()) refuse_value(text, "a value between commas");
       varied.values.push_back(value_of(word));
     }
   } else {
-    refuse(text, "TABLE.KEY=FROM:TO:STEPS, TABLE.KEY=A,B,C or TABLE.KEY=uniform:FROM:TO");
+    refuse_value(text, "TABLE.KEY=FROM:TO:STEPS, TABLE.KEY=A,B,C or TABLE.KEY=uniform:FROM:TO");
   }
   return varied;
 }

@@ -32,14 +32,14 @@ std::vector<std::pair<const char*, std::string PointStatistics::*>> differing(
 }
 
 /// An end of its interval; that of none or of all is exact, not to rounding.
-Cell percent(const filters::Proportion& proportion, double filters::Proportion::*bound) {
+Cell sweep_percent(const filters::Proportion& proportion, double filters::Proportion::*bound) {
   if (proportion.runs == 0) return std::nan("");
   if (proportion.count == 0 && bound == &filters::Proportion::lower_95) return 0.0;
   if (proportion.count == proportion.runs && bound == &filters::Proportion::upper_95) return 100.0;
   return 100.0 * proportion.*bound;
 }
 
-Cell percent(const filters::Proportion& proportion) {
+Cell sweep_percent(const filters::Proportion& proportion) {
   return proportion.runs > 0 ? 100.0 * proportion.value() : std::nan("");
 }
 
@@ -86,10 +86,10 @@ Table table_of(const SweepPlan& plan, const std::vector<PointStatistics>& all, c
     if (!truth) row.emplace_back(one.mean);
     if (truth)
       row.insert(row.end(), {one.bias_percent, one.bias_percent_error, one.rms_percent, one.rms_over_bound,
-                             percent(one.coverage), percent(one.coverage, &P::lower_95),
-                             percent(one.coverage, &P::upper_95)});
-    row.insert(row.end(), {percent(one.divergence), percent(one.divergence, &P::lower_95),
-                           percent(one.divergence, &P::upper_95), static_cast<double>(one.unusable)});
+                             sweep_percent(one.coverage), sweep_percent(one.coverage, &P::lower_95),
+                             sweep_percent(one.coverage, &P::upper_95)});
+    row.insert(row.end(), {sweep_percent(one.divergence), sweep_percent(one.divergence, &P::lower_95),
+                           sweep_percent(one.divergence, &P::upper_95), static_cast<double>(one.unusable)});
     table.row(row);
   }
   return table;

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+constexpr double curve_gap = std::numeric_limits<double>::quiet_NaN();
 
 // A horizontal stroke over each plateau, with gaps between them.
 template <class Value>
@@ -20,7 +20,7 @@ Curve strokes(const Tracking& found, const char* label, Value value) {
     const Plateau& plateau = found.plateaus[static_cast<std::size_t>(i)];
     const double y = value(plateau);
     curve.x.segment(3 * i, 3) << plateau.from, plateau.to, plateau.to;
-    curve.y.segment(3 * i, 3) << y, y, gap;
+    curve.y.segment(3 * i, 3) << y, y, curve_gap;
   }
   return curve;
 }

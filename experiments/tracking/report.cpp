@@ -111,7 +111,7 @@ Json interval(double estimate, double deviation) {
           {"upper_95", estimate + quantile_95 * deviation}};
 }
 
-Json values(const Tracking& found, const std::vector<PlateauChange>& between) {
+Json tracking_values(const Tracking& found, const std::vector<PlateauChange>& between) {
   Json json{{"band_hz", {found.band_hz.first, found.band_hz.second}},
             {"history_interval_s", found.interval},
             {"noise_si", found.noise},
@@ -174,7 +174,7 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
                            {"false_alarms", settings.false_alarms},
                            {"shortest_cycles", settings.shortest_cycles}};
   results.configuration["walk_per_sqrt_s"] = settings.walk ? Json(*settings.walk) : Json("likelihood");
-  results.values = values(found, between);
+  results.values = tracking_values(found, between);
   results.heading(record_name);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. One mode from {:.4g} to {:.4g} Hz "

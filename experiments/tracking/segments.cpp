@@ -19,9 +19,9 @@ using Eigen::Index, Eigen::VectorXd;
 using namespace ringing;
 
 constexpr double tau = 2.0 * std::numbers::pi;
-constexpr double look_ahead = 6;          // cycles
-constexpr double stiffness_doubt = 0.14;  // of ln K: 7 % of the frequency
-constexpr double damping_guess = 0.005, damping_doubt = 0.02;
+constexpr double look_ahead = 6;                  // cycles
+constexpr double tracked_stiffness_doubt = 0.14;  // of ln K: 7 % of the frequency
+constexpr double damping_guess = 0.005, tracked_damping_doubt = 0.02;
 
 // Frequency of the largest Fourier amplitude within the band, under a Hann window.
 double peak(const VectorXd& samples, double interval, std::pair<double, double> band) {
@@ -74,7 +74,8 @@ filters::Gaussian fresh_belief(const Ringing& ringing, Index first) {
   belief.mean[damping] = damping_guess;
   belief.mean[offset] = ahead.mean();
   VectorXd deviation(size);
-  deviation << amplitude, tau * f * amplitude, 0.0, 0.0, stiffness_doubt, damping_doubt, amplitude;
+  deviation << amplitude, tau * f * amplitude, 0.0, 0.0, tracked_stiffness_doubt, tracked_damping_doubt,
+      amplitude;
   belief.covariance = deviation.cwiseAbs2().asDiagonal();
   return belief;
 }

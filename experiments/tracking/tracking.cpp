@@ -112,7 +112,7 @@ Plateau plateau_of(const Ringing& ringing, const std::vector<filters::Gaussian>&
   return plateau;
 }
 
-void check(const TrackSettings& settings, double interval) {
+void check_tracking(const TrackSettings& settings, double interval) {
   const double highest = 0.5 / interval;
   if (settings.band_hz &&
       !(settings.band_hz->first > 0 && settings.band_hz->first < settings.band_hz->second &&
@@ -146,7 +146,7 @@ std::pair<double, double> track_band(const VectorXd& signal, double interval) {
 
 Tracking track(const VectorXd& signal, double start, double interval, const TrackSettings& settings,
                const Progress& progress) {
-  check(settings, interval);
+  check_tracking(settings, interval);
   const auto say = [&](const std::string& words) {
     if (progress) progress(words);
   };

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-constexpr double no_strain = 1e-9;  // relative to the terms that cancel in it
+constexpr double no_motion_strain = 1e-9;  // relative to the terms that cancel in it
 
 VectorXd gauge_motion(const StrainSweeps& sweeps, int gauge) {
   VectorXd motion = VectorXd::Zero(sweeps.coordinates());
@@ -57,7 +57,8 @@ RigidMotions rigid_motions(const StrainSweeps& sweeps, const Eigen::SparseMatrix
   if (rows > 0 && gauges > 0) {
     qr.compute(scaled);
     const auto diagonal = qr.matrixQR().diagonal().cwiseAbs();
-    while (rank < diagonal.size() && diagonal[rank] > no_strain * std::sqrt(static_cast<double>(gauges)))
+    while (rank < diagonal.size() &&
+           diagonal[rank] > no_motion_strain * std::sqrt(static_cast<double>(gauges)))
       ++rank;
     if (rank > 0) order = qr.colsPermutation().indices();
   }

@@ -136,7 +136,7 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
   MatrixXd told_, noise_, process_, tangent_, sensor_;  // noise_: R (p x p) as estimated, told_: as given
 };
 
-const bool registered = filter_registry().add(
+const bool adaptive_ekf_registered = filter_registry().add(
     {"adaptive_ekf",
      "extended Kalman filter that estimates its noise from the innovations",
      "[mehra1970], [mohamed1999]",

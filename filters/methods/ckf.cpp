@@ -6,7 +6,7 @@
 namespace beamid::filters {
 namespace {
 
-const bool registered = filter_registry().add(
+const bool ckf_registered = filter_registry().add(
     {"ckf",
      "cubature Kalman filter, Joseph-like update",
      "[arasaratnam2009]",

@@ -154,7 +154,7 @@ class DualExtendedKalmanFilter final : public Filter {
   MatrixXd tangent_, sensor_, sensitivity_;
 };
 
-const bool registered = filter_registry().add(
+const bool dual_ekf_registered = filter_registry().add(
     {"dual_ekf",
      "separate extended Kalman filters for states and parameters",
      "[wan2001], [friedland1969]",

@@ -4,7 +4,7 @@
 namespace beamid::filters {
 namespace {
 
-const bool registered = filter_registry().add(
+const bool ekf_registered = filter_registry().add(
     {"ekf",
      "extended Kalman filter, Joseph update",
      "[jazwinski1970], [bucy1968]",

@@ -146,7 +146,7 @@ class EnsembleKalmanFilter final : public Filter {
   Eigen::LLT<MatrixXd> factor_, noise_factor_;
 };
 
-const bool registered = filter_registry().add(
+const bool enkf_registered = filter_registry().add(
     {"enkf",
      "ensemble Kalman filter, stochastic or deterministic transform",
      "[evensen2003], [burgers1998], [bishop2001], [hunt2007], [pham2001], [hoteit2015]",

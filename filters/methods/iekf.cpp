@@ -122,7 +122,7 @@ class IteratedExtendedKalmanFilter final : public Filter {
   Eigen::LLT<MatrixXd> covariance_factor_, noise_factor_;
 };
 
-const bool registered = filter_registry().add(
+const bool iekf_registered = filter_registry().add(
     {"iekf",
      "iterated extended Kalman filter: Gauss-Newton with line search in every correction",
      "[bell1993]",

@@ -147,7 +147,7 @@ class KalmanFilter final : public Filter {
   Eigen::LLT<MatrixXd> factor_;
 };
 
-const bool registered = filter_registry().add(
+const bool kf_registered = filter_registry().add(
     {"kf",
      "Kalman filter for linear models, square-root array form",
      "[kalman1960], [kaminski1971]",

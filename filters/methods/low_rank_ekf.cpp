@@ -144,7 +144,7 @@ class LowRankExtendedKalmanFilter final : public Filter {
   Eigen::LLT<MatrixXd> innovation_factor_;
 };
 
-const bool registered = filter_registry().add(
+const bool low_rank_ekf_registered = filter_registry().add(
     {"low_rank_ekf",
      "extended Kalman filter on a factor of the covariance: O(n r) a step",
      "[carlson1973], [jazwinski1970]",

@@ -167,7 +167,7 @@ class LowRankUnscentedKalmanFilter final : public Filter {
   Eigen::LLT<MatrixXd> innovation_factor_;
 };
 
-const bool registered = filter_registry().add(
+const bool low_rank_ukf_registered = filter_registry().add(
     {"low_rank_ukf",
      "unscented Kalman filter with sigma points along a factor of the covariance: 2r + 1 motions a step",
      "[julier2004], [wan2000]",

@@ -196,7 +196,7 @@ class ParticleFilter final : public Filter {
   Eigen::LLT<MatrixXd> factor_, noise_factor_;
 };
 
-const bool registered = filter_registry().add(
+const bool particle_registered = filter_registry().add(
     {"particle",
      "particle filter: systematic resampling, regularised where there is no process noise",
      "[gordon1993], [kitagawa1996], [musso2001], [liu2001]",

@@ -105,7 +105,7 @@ class RobustExtendedKalmanFilter final : public Filter {
   MatrixXd tangent_, sensor_, innovation_covariance_, noise_;
 };
 
-const bool registered = filter_registry().add(
+const bool robust_ekf_registered = filter_registry().add(
     {"robust_ekf",
      "extended Kalman filter that weighs outlying readings down",
      "[huber1964], [lange1989], [durovic1999]",

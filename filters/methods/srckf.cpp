@@ -6,7 +6,7 @@
 namespace beamid::filters {
 namespace {
 
-const bool registered = filter_registry().add(
+const bool srckf_registered = filter_registry().add(
     {"srckf",
      "square-root cubature Kalman filter, covariance positive by construction",
      "[arasaratnam2009]",

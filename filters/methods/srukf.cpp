@@ -6,7 +6,7 @@
 namespace beamid::filters {
 namespace {
 
-const bool registered = filter_registry().add(
+const bool srukf_registered = filter_registry().add(
     {"srukf",
      "square-root unscented Kalman filter, covariance positive by construction",
      "[vandermerwe2001]",

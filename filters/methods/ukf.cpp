@@ -7,7 +7,7 @@
 namespace beamid::filters {
 namespace {
 
-const bool registered = filter_registry().add(
+const bool ukf_registered = filter_registry().add(
     {"ukf",
      "unscented Kalman filter, weights exact by construction, Joseph-like update",
      "[julier2004], [wan2000]",

@@ -21,7 +21,7 @@ class BackwardEuler final : public Scheme {
   ImplicitStep solve_{1.0};
 };
 
-const bool registered = scheme_registry().add(
+const bool backward_euler_registered = scheme_registry().add(
     {"backward_euler", "implicit, first order", "[hairer1996, ch. IV.3]", {}, {}, [](const Options&) {
        return std::make_unique<BackwardEuler>();
      }});

@@ -140,7 +140,7 @@ class Cvode final : public Scheme {
   std::unique_ptr<Integrator> integrator_;
 };
 
-const bool registered = scheme_registry().add(
+const bool cvode_registered = scheme_registry().add(
     {"cvode",
      "adaptive (SUNDIALS CVODES), tangent by forward sensitivities; for nonlinear motion",
      "[hindmarsh2005]",

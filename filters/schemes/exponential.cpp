@@ -130,7 +130,7 @@ class Exponential final : public Scheme {
   MatrixXd a_, b_, derivative_;
 };
 
-const bool registered =
+const bool exponential_registered =
     scheme_registry().add({"exponential",
                            "exact for linear motion with constant parameters, tangents included",
                            "[vanloan1978]",

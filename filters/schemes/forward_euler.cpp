@@ -27,7 +27,7 @@ class ForwardEuler final : public Scheme {
   Eigen::VectorXd rate_;
 };
 
-const bool registered =
+const bool forward_euler_registered =
     scheme_registry().add({"forward_euler",
                            "explicit, first order; the scheme of the 2009 paper",
                            "[inverse2009]",

@@ -23,7 +23,7 @@ class ImplicitMidpoint final : public Scheme {
   ImplicitStep solve_{0.5};
 };
 
-const bool registered =
+const bool implicit_midpoint_registered =
     scheme_registry().add({"implicit_midpoint",
                            "implicit, second order, keeps energy",
                            "[hairer1996, ch. IV.3]",

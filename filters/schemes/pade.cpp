@@ -94,7 +94,7 @@ class Pade final : public Scheme {
   MatrixXd z_, below_, right_, slope_, b_;
 };
 
-const bool registered = scheme_registry().add(
+const bool pade_registered = scheme_registry().add(
     {"pade",
      "implicit, fourth order, keeps energy: (2,2) Pade step of linear motion, two-stage Gauss method of any",
      "[hairer1996, ch. IV.3]",

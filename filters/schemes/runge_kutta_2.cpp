@@ -31,7 +31,7 @@ class RungeKutta2 final : public Scheme {
   Eigen::MatrixXd start_, middle_;
 };
 
-const bool registered =
+const bool runge_kutta_2_registered =
     scheme_registry().add({"runge_kutta_2",
                            "explicit, second order (midpoint)",
                            "[hairer1993, ch. II.1]",

@@ -42,7 +42,7 @@ class RungeKutta4 final : public Scheme {
   Eigen::MatrixXd jacobian_, slope_;
 };
 
-const bool registered =
+const bool runge_kutta_4_registered =
     scheme_registry().add({"runge_kutta_4",
                            "explicit, fourth order (classical)",
                            "[hairer1993, ch. II.1]",

@@ -26,7 +26,7 @@ class RungeKutta4Differences final : public Scheme {
   std::unique_ptr<Scheme> step_ = scheme_registry().make("runge_kutta_4", {});
 };
 
-const bool registered =
+const bool runge_kutta_4_differences_registered =
     scheme_registry().add({"runge_kutta_4_differences",
                            "explicit, fourth order (classical), the tangent by central differences",
                            "[hairer1993, ch. II.1]",

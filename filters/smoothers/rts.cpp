@@ -19,7 +19,7 @@ class RauchTungStriebel final : public Smoother {
   }
 };
 
-const bool registered =
+const bool rts_registered =
     smoother_registry().add({"rts",
                              "Rauch-Tung-Striebel smoother, linear about the filtered mean",
                              "[rauch1965], [sarkka2013]",

@@ -44,7 +44,7 @@ class UnscentedRauchTungStriebel final : public Smoother {
   Options options_;
 };
 
-const bool registered = smoother_registry().add(
+const bool urts_registered = smoother_registry().add(
     {"urts",
      "unscented Rauch-Tung-Striebel smoother, sigma points about the filtered mean",
      "[sarkka2008]",

@@ -31,7 +31,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-const std::string owner = "reduction 'balanced_truncation'";
+const std::string balanced_truncation_owner = "reduction 'balanced_truncation'";
 constexpr Index most_modes = 100;  // that a gramian is formed of, where there are more than twice as many
 
 MatrixXd gramian(const MatrixXd& seen, const VectorXd& frequency, double ratio) {
@@ -52,14 +52,14 @@ class BalancedTruncation final : public Reduction {
       : modes_(count_option(options, "modes", "balanced_truncation", 1)),
         ratio_(positive_option(options, "damping_ratio", "balanced_truncation")) {
     if (!(ratio_ < 1.0))
-      throw std::invalid_argument("option 'damping_ratio' of " + owner + " is " + std::to_string(ratio_) +
-                                  "; expected one below 1");
+      throw std::invalid_argument("option 'damping_ratio' of " + balanced_truncation_owner + " is " +
+                                  std::to_string(ratio_) + "; expected one below 1");
   }
 
   Bases bases(const fem::StructuralSystem& system, const Training&) const override {
     const Index n = system.size();
     require_at_most(modes_, n, "modes", "balanced_truncation");
-    const std::vector<int> points = master_coordinates(system, {}, owner);
+    const std::vector<int> points = master_coordinates(system, {}, balanced_truncation_owner);
     const fem::Modes modes = fem::modes(system, n <= 2 * most_modes ? n : std::max(most_modes, modes_));
     const Index rigid = modes.rigid, flexible = modes.size() - rigid;
     if (modes_ <= rigid) return {modes.shape.leftCols(modes_)};
@@ -78,7 +78,7 @@ class BalancedTruncation final : public Reduction {
   double ratio_;
 };
 
-const bool registered = reduction_registry().add(
+const bool balanced_truncation_registered = reduction_registry().add(
     {"balanced_truncation",
      "shapes that forces at the outputs reach, and the outputs see, the most",
      "[reis2008], [meyer1996]",

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd;
 
-const std::string owner = "reduction 'craig_bampton'";
+const std::string craig_bampton_owner = "reduction 'craig_bampton'";
 
 // Modes of the system with the coordinates not in `inside` at rest, on all coordinates (n x count).
 MatrixXd fixed_interface_modes(const fem::StructuralSystem& system, const std::vector<int>& inside,
@@ -39,7 +39,7 @@ class CraigBampton final : public Reduction {
         modes_(count_option(options, "modes", "craig_bampton", 0)) {}
 
   Bases bases(const fem::StructuralSystem& system, const Training&) const override {
-    const std::vector<int> boundary = interface_coordinates(system, interface_, owner);
+    const std::vector<int> boundary = interface_coordinates(system, interface_, craig_bampton_owner);
     std::vector<bool> is_boundary(static_cast<std::size_t>(system.size()), false);
     for (const int coordinate : boundary) is_boundary[coordinate] = true;
     std::vector<int> inside;
@@ -50,7 +50,7 @@ class CraigBampton final : public Reduction {
     const auto constraints = static_cast<Index>(boundary.size());
     MatrixXd shapes(system.size(), constraints + modes_);
     shapes.leftCols(constraints) =
-        ConstrainedStatics(system, unit_rows(boundary, system.size()), owner).unit_shapes();
+        ConstrainedStatics(system, unit_rows(boundary, system.size()), craig_bampton_owner).unit_shapes();
     if (modes_ > 0) shapes.rightCols(modes_) = fixed_interface_modes(system, inside, modes_);
     return {shapes};
   }
@@ -60,7 +60,7 @@ class CraigBampton final : public Reduction {
   Index modes_;
 };
 
-const bool registered = reduction_registry().add(
+const bool craig_bampton_registered = reduction_registry().add(
     {"craig_bampton",
      "an interface kept as it is, and modes of the rest with the interface fixed",
      "[craig1968]",

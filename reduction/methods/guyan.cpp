@@ -13,22 +13,22 @@
 namespace beamid::reduction {
 namespace {
 
-const std::string owner = "reduction 'guyan'";
+const std::string guyan_owner = "reduction 'guyan'";
 
 class Guyan final : public Reduction {
  public:
   explicit Guyan(std::vector<double> masters) : masters_(std::move(masters)) {}
 
   Bases bases(const fem::StructuralSystem& system, const Training&) const override {
-    const std::vector<int> masters = master_coordinates(system, masters_, owner);
-    return {ConstrainedStatics(system, unit_rows(masters, system.size()), owner).unit_shapes()};
+    const std::vector<int> masters = master_coordinates(system, masters_, guyan_owner);
+    return {ConstrainedStatics(system, unit_rows(masters, system.size()), guyan_owner).unit_shapes()};
   }
 
  private:
   std::vector<double> masters_;
 };
 
-const bool registered = reduction_registry().add(
+const bool guyan_registered = reduction_registry().add(
     {"guyan",
      "deflections of master points, the rest follows statically",
      "[guyan1965]",

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-const std::string owner = "reduction 'irs'";
+const std::string irs_owner = "reduction 'irs'";
 
 class ImprovedReducedSystem final : public Reduction {
  public:
@@ -26,8 +26,8 @@ class ImprovedReducedSystem final : public Reduction {
       : masters_(options.numbers("masters_m")), iterations_(count_option(options, "iterations", "irs", 0)) {}
 
   Bases bases(const fem::StructuralSystem& system, const Training&) const override {
-    const std::vector<int> masters = master_coordinates(system, masters_, owner);
-    const ConstrainedStatics statics(system, unit_rows(masters, system.size()), owner);
+    const std::vector<int> masters = master_coordinates(system, masters_, irs_owner);
+    const ConstrainedStatics statics(system, unit_rows(masters, system.size()), irs_owner);
     MatrixXd shapes = statics.unit_shapes();
     for (Eigen::Index i = 0; i < iterations_; ++i) {
       const MatrixXd strain = system.stiffness.strain * shapes;
@@ -35,7 +35,7 @@ class ImprovedReducedSystem final : public Reduction {
       const MatrixXd load = system.mass * shapes, mass = shapes.transpose() * load;
       const Eigen::LLT<MatrixXd> factor(mass);
       if (factor.info() != Eigen::Success)
-        throw std::invalid_argument(owner + ": the masters have no mass to move; expected other masters");
+        throw std::invalid_argument(irs_owner + ": the masters have no mass to move; expected other masters");
       shapes = statics.unit_shapes() + statics.deflection_under(load * factor.solve(stiffness));
     }
     return {shapes};
@@ -46,7 +46,7 @@ class ImprovedReducedSystem final : public Reduction {
   Eigen::Index iterations_;
 };
 
-const bool registered = reduction_registry().add(
+const bool irs_registered = reduction_registry().add(
     {"irs",
      "as guyan, the rest following inertia forces too; iterated, if asked",
      "[ocallahan1989], [friswell1995]",

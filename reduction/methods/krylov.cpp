@@ -102,7 +102,7 @@ class Krylov final : public Reduction {
   bool base_;
 };
 
-const bool registered = reduction_registry().add(
+const bool krylov_registered = reduction_registry().add(
     {"krylov",
      "shapes that match the receptance about zero and about a frequency (load-dependent Ritz vectors)",
      "[wilson1982], [bai2005]",

@@ -55,7 +55,7 @@ class ModalTruncation final : public Reduction {
   }
 };
 
-const bool registered = reduction_registry().add(
+const bool modal_truncation_registered = reduction_registry().add(
     {"modal_truncation",
      "the lowest mode shapes, with static correction if asked",
      "[craig2006, ch. 11], [dickens1997]",

@@ -13,7 +13,7 @@ class None final : public Reduction {
   }
 };
 
-const bool registered = reduction_registry().add(
+const bool none_registered = reduction_registry().add(
     {"none",
      "every coordinate kept",
      "",

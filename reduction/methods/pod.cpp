@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-const std::string owner = "reduction 'pod'";
+const std::string pod_owner = "reduction 'pod'";
 
 struct Run {
   std::string response;
@@ -32,7 +32,8 @@ struct Run {
 
 double lowest_flexible_frequency(const fem::StructuralSystem& system) {
   const Index rigid = fem::StiffnessSolver(system.stiffness).rigid_motions().cols();
-  if (rigid >= system.size()) throw std::invalid_argument(owner + ": no motion of the structure strains it");
+  if (rigid >= system.size())
+    throw std::invalid_argument(pod_owner + ": no motion of the structure strains it");
   return fem::modes(system, rigid + 1).angular_frequency[rigid];
 }
 
@@ -41,12 +42,12 @@ fem::Loading loading(const fem::StructuralSystem& system, const Run& run, Index 
   const std::vector<int> forces = force_inputs(system);
   const int input = from_base ? base_input(system) : forces.empty() ? -1 : forces.front();
   if (input < 0)
-    throw std::invalid_argument(owner + ": the system has no input for response '" + run.response + "'");
+    throw std::invalid_argument(pod_owner + ": the system has no input for response '" + run.response + "'");
   fem::Loading loading;
   if (run.response == "release") {
     const fem::StiffnessSolver solver(system.stiffness);
     if (solver.rigid_motions().cols() > 0)
-      throw std::invalid_argument(owner +
+      throw std::invalid_argument(pod_owner +
                                   ": a structure that can move without strain cannot be released "
                                   "from rest; expected response = \"pulse\" or training");
     loading.initial_displacement = solver.solve(MatrixXd(system.inputs.col(input)));
@@ -92,7 +93,7 @@ class ProperOrthogonal final : public Reduction {
       const MatrixXd motions = simulated(system, run_);
       return decompose(system, motions, MatrixXd::Identity(motions.cols(), motions.cols()));
     }
-    return decompose(system, static_interpolation(system, training, owner), training.deflections);
+    return decompose(system, static_interpolation(system, training, pod_owner), training.deflections);
   }
 
  private:
@@ -107,18 +108,18 @@ class ProperOrthogonal final : public Reduction {
     basis.add_all(shapes);
     const MatrixXd motions = (basis.columns().transpose() * (system.mass * shapes)) * histories;
     if (!(motions.cwiseAbs().maxCoeff() > 0.0) || !motions.allFinite())
-      throw std::invalid_argument(owner + ": the motions it learns from have no mass that moves");
+      throw std::invalid_argument(pod_owner + ": the motions it learns from have no mass that moves");
     const Eigen::BDCSVD<MatrixXd> svd(motions, Eigen::ComputeThinU);
     const VectorXd values = svd.singularValues() / svd.singularValues()[0];
     const Index rank = (values.array() > 1e-14).count();
     if (modes_ > rank)
-      throw std::invalid_argument(owner + ": the motions it learns from hold " + std::to_string(rank) +
+      throw std::invalid_argument(pod_owner + ": the motions it learns from hold " + std::to_string(rank) +
                                   " shapes; expected at least the " + std::to_string(modes_) + " of modes");
     return {basis.columns() * svd.matrixU().leftCols(modes_), values, "singular value over the largest [-]"};
   }
 };
 
-const bool registered = reduction_registry().add(
+const bool pod_registered = reduction_registry().add(
     {"pod",
      "shapes that hold most of a motion, given or simulated",
      "[sirovich1987], [feeny1998]",

@@ -24,14 +24,15 @@ namespace {
 using Eigen::VectorXd;
 using Kind = fem::Coordinate::Kind;
 
-const std::string owner = "reduction 'rayleigh'";
+const std::string rayleigh_owner = "reduction 'rayleigh'";
 
 VectorXd static_deflection(const fem::StructuralSystem& system, int input, const std::string& shape) {
   if (input < 0)
-    throw std::invalid_argument(owner + ": the system has no input that makes shape '" + shape + "'");
+    throw std::invalid_argument(rayleigh_owner + ": the system has no input that makes shape '" + shape +
+                                "'");
   const ElasticStatics statics(system);
   if (statics.rigid_modes().cols() > 0)
-    throw std::invalid_argument(owner + ": the structure can move without strain; shape '" + shape +
+    throw std::invalid_argument(rayleigh_owner + ": the structure can move without strain; shape '" + shape +
                                 "' needs supports that hold it");
   return statics.solve(system.inputs.col(input));
 }
@@ -58,7 +59,7 @@ void require_cosine_fits(const fem::StructuralSystem& system, double length) {
       const double x = system.mesh.nodes[node].x;
       if (free[node] || cosine_shape(kind, x, length) == 0.0) continue;
       std::ostringstream message;
-      message << owner << ": shape 'one_minus_cosine' moves x = " << x
+      message << rayleigh_owner << ": shape 'one_minus_cosine' moves x = " << x
               << " m, which a support holds; expected a beam that is held at its root only";
       throw std::invalid_argument(message.str());
     }
@@ -68,29 +69,31 @@ void require_cosine_fits(const fem::StructuralSystem& system, double length) {
 // What is inside elements, or hangs on them, follows the nodes statically.
 VectorXd one_minus_cosine(const fem::StructuralSystem& system) {
   if (system.mesh.nodes.empty())
-    throw std::invalid_argument(owner + " needs a mesh for shape 'one_minus_cosine'");
+    throw std::invalid_argument(rayleigh_owner + " needs a mesh for shape 'one_minus_cosine'");
   const double length = system.mesh.positions().maxCoeff();
   VectorXd shape = VectorXd::Zero(system.size());
   std::vector<int> nodal;
   for (int i = 0; i < system.size(); ++i) {
     const fem::Coordinate& coordinate = system.coordinates[i];
     if (coordinate.kind == Kind::axial)
-      throw std::invalid_argument(owner + ": shape 'one_minus_cosine' is one of a beam, not of a frame");
+      throw std::invalid_argument(rayleigh_owner +
+                                  ": shape 'one_minus_cosine' is one of a beam, not of a frame");
     if (coordinate.kind == Kind::generalised) continue;
     shape[i] = coordinate.scale * cosine_shape(coordinate.kind, coordinate.position, length);
     nodal.push_back(i);
   }
   require_cosine_fits(system, length);
   if (static_cast<Eigen::Index>(nodal.size()) == system.size()) return shape;
-  const ConstrainedStatics statics(system, unit_rows(nodal, system.size()), owner);
+  const ConstrainedStatics statics(system, unit_rows(nodal, system.size()), rayleigh_owner);
   return statics.unit_shapes() * shape(nodal);
 }
 
 VectorXd given(const fem::StructuralSystem& system, const Training& training) {
   if (training.deflections.cols() != 1)
-    throw std::invalid_argument(owner + ": shape 'given' has " + std::to_string(training.deflections.cols()) +
+    throw std::invalid_argument(rayleigh_owner + ": shape 'given' has " +
+                                std::to_string(training.deflections.cols()) +
                                 " columns of deflections; expected 1");
-  return static_interpolation(system, training, owner) * training.deflections;
+  return static_interpolation(system, training, rayleigh_owner) * training.deflections;
 }
 
 // To 1 at the first output, so that the mass is the equivalent mass there.
@@ -98,7 +101,8 @@ VectorXd scaled(const fem::StructuralSystem& system, const VectorXd& shape) {
   if (system.outputs.rows() == 0) return shape;
   const double seen = (system.outputs * shape)[0];
   if (!(std::abs(seen) > 1e-9 * shape.cwiseAbs().maxCoeff()))
-    throw std::invalid_argument(owner + ": the shape does not move the first output; expected another shape");
+    throw std::invalid_argument(rayleigh_owner +
+                                ": the shape does not move the first output; expected another shape");
   return shape / seen;
 }
 
@@ -127,7 +131,7 @@ class Rayleigh final : public Reduction {
   }
 };
 
-const bool registered = reduction_registry().add(
+const bool rayleigh_registered = reduction_registry().add(
     {"rayleigh",
      "one coordinate, the tip deflection, with an assumed shape (equivalent mass)",
      "[rayleigh1877]",

@@ -48,7 +48,7 @@ class Serep final : public Reduction {
   Index modes_;
 };
 
-const bool registered = reduction_registry().add(
+const bool serep_registered = reduction_registry().add(
     {"serep",
      "the lowest modes, told by the deflections of master points",
      "[ocallahan1989b]",

@@ -14,15 +14,15 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXd;
 
-struct Start {
+struct SineStart {
   Complex rate;
   double size;  ///< at the beginning; 0 where the mode cannot be isolated
 };
 
 /// Where a mode cannot be isolated, a damping rate of one decay over the record.
-Start start_at(const MatrixXd& outputs, double interval, Complex peak, const std::vector<Complex>& all) {
+SineStart start_at(const MatrixXd& outputs, double interval, Complex peak, const std::vector<Complex>& all) {
   const double length = interval * static_cast<double>(outputs.cols());
-  Start start{{-1 / length, peak.imag()}, 0};
+  SineStart start{{-1 / length, peak.imag()}, 0};
   for (Index i = 0; i < outputs.rows(); ++i) {
     try {
       const IsolatedMode mode =
@@ -43,7 +43,7 @@ class DampedSines final : public ModalMethod {
     found.decays = outputs;
     found.orders.push_back({0, {}});
     std::vector<Complex> peaks, rates;
-    std::vector<Start> starts;
+    std::vector<SineStart> starts;
     for (const double f : spectral_peaks(outputs, interval)) peaks.emplace_back(0, 2 * std::numbers::pi * f);
     for (const Complex& peak : peaks) starts.push_back(start_at(outputs, interval, peak, peaks));
     const auto refuse = [&](Complex rate, const char* reason) {
@@ -51,13 +51,14 @@ class DampedSines final : public ModalMethod {
     };
     while (!starts.empty()) {
       rates.clear();
-      for (const Start& start : starts) rates.push_back(start.rate);
+      for (const SineStart& start : starts) rates.push_back(start.rate);
       try {
         take(fit_decays_jointly(outputs, interval, rates), found);
         break;
       } catch (const std::runtime_error&) {
-        const auto weakest = std::min_element(starts.begin(), starts.end(),
-                                              [](const Start& a, const Start& b) { return a.size < b.size; });
+        const auto weakest =
+            std::min_element(starts.begin(), starts.end(),
+                             [](const SineStart& a, const SineStart& b) { return a.size < b.size; });
         refuse(weakest->rate, "least squares of all peaks do not converge with it");
         starts.erase(weakest);
       }
@@ -79,7 +80,7 @@ class DampedSines final : public ModalMethod {
   }
 };
 
-const bool registered = modal_method_registry().add(
+const bool damped_sine_registered = modal_method_registry().add(
     {"damped_sine",
      "damped sines at the peaks of the spectrum, all together by least squares, for free decays",
      "[golub1973], [kaufman1975]",

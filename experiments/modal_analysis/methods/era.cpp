@@ -28,7 +28,7 @@ class EigensystemMethod final : public ModalMethod {
   EigensystemSettings settings_;
 };
 
-const bool registered = modal_method_registry().add(
+const bool era_registered = modal_method_registry().add(
     {"era",
      "eigensystem realisation, for free decays",
      "[juang1985]",

@@ -27,7 +27,7 @@ class ResponsePeaks final : public ModalMethod {
   double smallest_peak_;
 };
 
-const bool registered = modal_method_registry().add(
+const bool frf_half_power_registered = modal_method_registry().add(
     {"frf_half_power",
      "each mode from the lines above half of its peak's power in hammer hits' responses; needs a force",
      "[ewins2000]",

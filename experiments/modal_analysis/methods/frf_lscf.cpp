@@ -20,7 +20,7 @@ class FrequencyResponseMethod final : public ModalMethod {
   }
 };
 
-const bool registered = modal_method_registry().add(
+const bool frf_lscf_registered = modal_method_registry().add(
     {"frf_lscf",
      "least-squares complex frequency estimation from hammer hits, with modal masses; needs a force",
      "[guillaume1998], [verboven2002], [cauberghe2004]",

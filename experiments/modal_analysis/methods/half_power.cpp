@@ -63,7 +63,7 @@ class HalfPower final : public ModeByModeMethod {
   double decay_;
 };
 
-const bool registered = modal_method_registry().add(
+const bool half_power_registered = modal_method_registry().add(
     {"half_power",
      "half-power width of each mode's spectrum, corrected for the finite record, for free decays",
      "[ewins2000]",

@@ -11,7 +11,7 @@ class HilbertEnvelope final : public ModeByModeMethod {
   }
 };
 
-const bool registered = modal_method_registry().add(
+const bool hilbert_envelope_registered = modal_method_registry().add(
     {"hilbert_envelope",
      "lines through the logarithm of each mode's envelope and through its phase, for free decays",
      "[feldman2011]",

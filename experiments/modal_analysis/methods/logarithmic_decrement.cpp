@@ -15,7 +15,7 @@ using Complex = std::complex<double>;
 using Eigen::Index, Eigen::VectorXd;
 
 /// Re(2 z e^(i w t)), 40 samples a cycle: log z between two values is a line, which for a decay it is.
-VectorXd motion_of(const IsolatedMode& mode, double interval) {
+VectorXd decrement_motion_of(const IsolatedMode& mode, double interval) {
   const Index last = mode.values.size() - 1;
   const auto count = static_cast<Index>(std::floor(static_cast<double>(last) * mode.interval / interval)) + 1;
   VectorXd motion(count);
@@ -37,7 +37,7 @@ class LogarithmicDecrement final : public ModeByModeMethod {
   ModeAnswer estimate(const IsolatedMode& mode) const override {
     const double period = 2 * std::numbers::pi / mode.rate().imag();
     const DecrementEstimate found =
-        logarithmic_decrement(motion_of(mode, period / 40), period / 40, settings_);
+        logarithmic_decrement(decrement_motion_of(mode, period / 40), period / 40, settings_);
     const double w = 2 * std::numbers::pi * found.frequency_hz;
     // Peaks half a cycle apart share the noise that the kernel correlates over a longer time.
     const double shared = std::max(1.0, mode.correlation / (0.5 * period));
@@ -51,7 +51,7 @@ class LogarithmicDecrement final : public ModeByModeMethod {
   DecrementSettings settings_;
 };
 
-const bool registered = modal_method_registry().add(
+const bool logarithmic_decrement_registered = modal_method_registry().add(
     {"logarithmic_decrement",
      "how fast the peaks of each isolated mode shrink, for free decays",
      "[rao2018]",

@@ -19,7 +19,7 @@ class StochasticMethod final : public ModalMethod {
   StochasticSettings settings_;
 };
 
-const bool registered = modal_method_registry().add(
+const bool ssi_cov_registered = modal_method_registry().add(
     {"ssi_cov",
      "stochastic subspace identification from correlations, for random vibration, with standard deviations",
      "[peeters1999], [reynders2008], [doehler2013]",

@@ -45,7 +45,7 @@ class BandPass final : public FilterStep {
   int order_;
 };
 
-const bool registered =
+const bool band_pass_registered =
     step_registry().add({"band_pass",
                          "Butterworth band-pass: a high-pass and a low-pass in series",
                          "[butterworth1930]",

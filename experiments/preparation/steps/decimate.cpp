@@ -40,7 +40,7 @@ class Decimate final : public PreparationStep {
   int factor_;
 };
 
-const bool registered =
+const bool decimate_registered =
     step_registry().add({"decimate",
                          "fewer samples, behind a symmetric low-pass against aliasing",
                          "[kaiser1974]",

@@ -60,7 +60,7 @@ class Detrend final : public ChannelStep {
   int degree_;
 };
 
-const bool registered =
+const bool detrend_registered =
     step_registry().add({"detrend",
                          "a polynomial in time, fitted by least squares, subtracted",
                          "",

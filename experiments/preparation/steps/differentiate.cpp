@@ -81,7 +81,7 @@ class Differentiate final : public ChannelStep {
   int times_;
 };
 
-const bool registered =
+const bool differentiate_registered =
     step_registry().add({"differentiate",
                          "displacement to velocity to acceleration, in time or in frequency",
                          "",

@@ -93,7 +93,7 @@ class Event final : public PreparationStep {
   OnsetSettings settings_;
 };
 
-const bool registered =
+const bool event_registered =
     step_registry().add({"event",
                          "the record cut to start a stated time after a hit or a release",
                          "",

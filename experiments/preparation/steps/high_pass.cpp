@@ -34,7 +34,7 @@ class HighPass final : public FilterStep {
   int order_;
 };
 
-const bool registered =
+const bool high_pass_registered =
     step_registry().add({"high_pass",
                          "Butterworth high-pass, against offset and drift",
                          "[butterworth1930]",

@@ -115,7 +115,7 @@ class Integrate final : public ChannelStep {
   double corner_;
 };
 
-const bool registered =
+const bool integrate_registered =
     step_registry().add({"integrate",
                          "acceleration to velocity to displacement, in time or in frequency",
                          "",

@@ -34,7 +34,7 @@ class LowPass final : public FilterStep {
   int order_;
 };
 
-const bool registered =
+const bool low_pass_registered =
     step_registry().add({"low_pass",
                          "Butterworth low-pass, against higher modes and noise",
                          "[butterworth1930]",

@@ -73,7 +73,7 @@ class Offset final : public ChannelStep {
   double from_, to_;
 };
 
-const bool registered =
+const bool offset_registered =
     step_registry().add({"offset",
                          "the mean of all, of the quiet part or of an interval, subtracted",
                          "",

@@ -52,12 +52,12 @@ struct Quality {
 };
 
 /// The readings of one channel that are there, parted where two are further apart than `gap`.
-struct Part {
+struct ResampledPart {
   VectorXd time, signal;
 };
 
-std::vector<Part> parts_of(const VectorXd& time, const VectorXd& signal, double gap) {
-  std::vector<Part> parts;
+std::vector<ResampledPart> parts_of(const VectorXd& time, const VectorXd& signal, double gap) {
+  std::vector<ResampledPart> parts;
   std::vector<Index> members;
   const auto end = [&] {
     if (!members.empty()) parts.push_back({time(members), signal(members)});
@@ -118,7 +118,7 @@ class Resample final : public PreparationStep {
     even.time_resolution = 0;
     Quality quality{0, 1 / mean};
     for (Index row = 0; row < record.samples.rows(); ++row)
-      for (const Part& part : parts_of(record.time, record.samples.row(row).transpose(), gap))
+      for (const ResampledPart& part : parts_of(record.time, record.samples.row(row).transpose(), gap))
         put(part, row, even, quality);
     const Index gaps = within.size() - within.count();
     const double frequency = strongest(even), relative = frequency / quality.rate;
@@ -151,7 +151,7 @@ class Resample final : public PreparationStep {
 
  private:
   /// The even samples within the part's time.
-  void put(const Part& part, Index row, Record& even, Quality& quality) const {
+  void put(const ResampledPart& part, Index row, Record& even, Quality& quality) const {
     constexpr Index fewest = 4, fewest_for_sinc = 64;
     const Index count = part.time.size();
     if (count < fewest) return;
@@ -176,7 +176,7 @@ class Resample final : public PreparationStep {
   bool spline_;
 };
 
-const bool registered = step_registry().add(
+const bool resample_registered = step_registry().add(
     {"resample",
      "unequal intervals brought to an even grid, band-limited or by a cubic spline, its error told",
      "[oppenheim2010], [bjorck1996], [deboor2001]",

@@ -23,7 +23,7 @@ class Reverse final : public ChannelStep {
   std::complex<double> factor(std::complex<double>, double) const override { return -1; }
 };
 
-const bool registered =
+const bool reverse_registered =
     step_registry().add({"reverse",
                          "the sign changed, where a sensor points against the force",
                          "",

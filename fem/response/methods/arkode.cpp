@@ -7,7 +7,7 @@
 namespace beamid::fem {
 namespace {
 
-void require(int flag, const char* call, double time) {
+void require_arkode(int flag, const char* call, double time) {
   require_success(flag, "arkode", call, time, ARKStepGetReturnFlagName);
 }
 
@@ -28,31 +28,33 @@ Response arkode(const ResponseProblem& problem, const ResponseOptions& options) 
   const std::unique_ptr<void, Free> memory(
       ARKStepCreate(nullptr, SundialsMotion::rate, 0.0, motion.state.get(), motion.context.get()));
   if (!memory) throw std::bad_alloc();
-  require(ARKStepSetErrFile(memory.get(), nullptr), "ARKStepSetErrFile",
-          0.0);  // failures are thrown, not printed
-  require(ARKStepSetUserData(memory.get(), &motion), "ARKStepSetUserData", 0.0);
-  require(ARKStepSetOrder(memory.get(), static_cast<int>(options.at("order"))), "ARKStepSetOrder", 0.0);
-  require(ARKStepSVtolerances(memory.get(), options.at("tolerance"), motion.absolute_tolerances.get()),
-          "ARKStepSVtolerances", 0.0);
-  require(ARKStepSetLinearSolver(memory.get(), motion.solver.get(), motion.matrix.get()),
-          "ARKStepSetLinearSolver", 0.0);
-  require(ARKStepSetLinSysFn(memory.get(), linear_system), "ARKStepSetLinSysFn", 0.0);
-  if (motion.equations.is_linear()) require(ARKStepSetLinear(memory.get(), 0), "ARKStepSetLinear", 0.0);
-  require(ARKStepSetMaxNumSteps(memory.get(), 1000000), "ARKStepSetMaxNumSteps", 0.0);
+  require_arkode(ARKStepSetErrFile(memory.get(), nullptr), "ARKStepSetErrFile",
+                 0.0);  // failures are thrown, not printed
+  require_arkode(ARKStepSetUserData(memory.get(), &motion), "ARKStepSetUserData", 0.0);
+  require_arkode(ARKStepSetOrder(memory.get(), static_cast<int>(options.at("order"))), "ARKStepSetOrder",
+                 0.0);
+  require_arkode(ARKStepSVtolerances(memory.get(), options.at("tolerance"), motion.absolute_tolerances.get()),
+                 "ARKStepSVtolerances", 0.0);
+  require_arkode(ARKStepSetLinearSolver(memory.get(), motion.solver.get(), motion.matrix.get()),
+                 "ARKStepSetLinearSolver", 0.0);
+  require_arkode(ARKStepSetLinSysFn(memory.get(), linear_system), "ARKStepSetLinSysFn", 0.0);
+  if (motion.equations.is_linear())
+    require_arkode(ARKStepSetLinear(memory.get(), 0), "ARKStepSetLinear", 0.0);
+  require_arkode(ARKStepSetMaxNumSteps(memory.get(), 1000000), "ARKStepSetMaxNumSteps", 0.0);
   if (problem.has_inputs())  // else it could step across a short pulse
-    require(ARKStepSetMaxStep(memory.get(), problem.grid.interval), "ARKStepSetMaxStep", 0.0);
+    require_arkode(ARKStepSetMaxStep(memory.get(), problem.grid.interval), "ARKStepSetMaxStep", 0.0);
 
   return motion.follow(problem, [&](double time) {
     realtype reached = 0.0;
     if (problem.has_inputs())  // they have a kink there, which no step may cross
-      require(ARKStepSetStopTime(memory.get(), time), "ARKStepSetStopTime", time);
-    require(ARKStepEvolve(memory.get(), time, motion.state.get(), &reached, ARK_NORMAL), "ARKStepEvolve",
-            time);
-    require(ARKStepGetDky(memory.get(), time, 1, motion.work.get()), "ARKStepGetDky", time);
+      require_arkode(ARKStepSetStopTime(memory.get(), time), "ARKStepSetStopTime", time);
+    require_arkode(ARKStepEvolve(memory.get(), time, motion.state.get(), &reached, ARK_NORMAL),
+                   "ARKStepEvolve", time);
+    require_arkode(ARKStepGetDky(memory.get(), time, 1, motion.work.get()), "ARKStepGetDky", time);
   });
 }
 
-const bool registered = register_response_method(
+const bool arkode_registered = register_response_method(
     {"arkode",
      "adaptive, implicit Runge-Kutta (SUNDIALS ARKODE, KLU); for nonlinear structures",
      "[reynolds2023], [davis2010]",

@@ -11,7 +11,7 @@
 namespace beamid::fem {
 namespace {
 
-void require(int flag, const char* call, double time) {
+void require_cvode(int flag, const char* call, double time) {
   require_success(flag, "cvode", call, time, CVodeGetReturnFlagName);
 }
 
@@ -34,29 +34,29 @@ Response cvode(const ResponseProblem& problem, const ResponseOptions& options) {
   };
   const std::unique_ptr<void, Free> memory(CVodeCreate(CV_BDF, motion.context.get()));
   if (!memory) throw std::bad_alloc();
-  require(CVodeSetErrFile(memory.get(), nullptr), "CVodeSetErrFile",
-          0.0);  // failures are thrown, not printed
-  require(CVodeInit(memory.get(), SundialsMotion::rate, 0.0, motion.state.get()), "CVodeInit", 0.0);
-  require(CVodeSetUserData(memory.get(), &motion), "CVodeSetUserData", 0.0);
-  require(CVodeSVtolerances(memory.get(), std::max(share * options.at("tolerance"), 1e-14),
-                            motion.absolute_tolerances.get()),
-          "CVodeSVtolerances", 0.0);
-  require(CVodeSetLinearSolver(memory.get(), motion.solver.get(), motion.matrix.get()),
-          "CVodeSetLinearSolver", 0.0);
-  require(CVodeSetLinSysFn(memory.get(), linear_system), "CVodeSetLinSysFn", 0.0);
-  require(CVodeSetMaxOrd(memory.get(), static_cast<int>(options.at("order"))), "CVodeSetMaxOrd", 0.0);
-  require(CVodeSetMaxNumSteps(memory.get(), 1000000), "CVodeSetMaxNumSteps", 0.0);
+  require_cvode(CVodeSetErrFile(memory.get(), nullptr), "CVodeSetErrFile",
+                0.0);  // failures are thrown, not printed
+  require_cvode(CVodeInit(memory.get(), SundialsMotion::rate, 0.0, motion.state.get()), "CVodeInit", 0.0);
+  require_cvode(CVodeSetUserData(memory.get(), &motion), "CVodeSetUserData", 0.0);
+  require_cvode(CVodeSVtolerances(memory.get(), std::max(share * options.at("tolerance"), 1e-14),
+                                  motion.absolute_tolerances.get()),
+                "CVodeSVtolerances", 0.0);
+  require_cvode(CVodeSetLinearSolver(memory.get(), motion.solver.get(), motion.matrix.get()),
+                "CVodeSetLinearSolver", 0.0);
+  require_cvode(CVodeSetLinSysFn(memory.get(), linear_system), "CVodeSetLinSysFn", 0.0);
+  require_cvode(CVodeSetMaxOrd(memory.get(), static_cast<int>(options.at("order"))), "CVodeSetMaxOrd", 0.0);
+  require_cvode(CVodeSetMaxNumSteps(memory.get(), 1000000), "CVodeSetMaxNumSteps", 0.0);
   if (problem.has_inputs())  // else it could step across a short pulse
-    require(CVodeSetMaxStep(memory.get(), problem.grid.interval), "CVodeSetMaxStep", 0.0);
+    require_cvode(CVodeSetMaxStep(memory.get(), problem.grid.interval), "CVodeSetMaxStep", 0.0);
 
   Response response = motion.follow(problem, [&](double time) {
     realtype reached = 0.0;
     if (problem.has_inputs())  // they have a kink there, which neither steps nor formulas may cross
-      require(CVodeSetStopTime(memory.get(), time), "CVodeSetStopTime", time);
-    require(CVode(memory.get(), time, motion.state.get(), &reached, CV_NORMAL), "CVode", time);
-    require(CVodeGetDky(memory.get(), time, 1, motion.work.get()), "CVodeGetDky", time);
+      require_cvode(CVodeSetStopTime(memory.get(), time), "CVodeSetStopTime", time);
+    require_cvode(CVode(memory.get(), time, motion.state.get(), &reached, CV_NORMAL), "CVode", time);
+    require_cvode(CVodeGetDky(memory.get(), time, 1, motion.work.get()), "CVodeGetDky", time);
     if (problem.has_inputs())
-      require(CVodeReInit(memory.get(), time, motion.state.get()), "CVodeReInit", time);
+      require_cvode(CVodeReInit(memory.get(), time, motion.state.get()), "CVodeReInit", time);
   });
   response.remarks.emplace_back(
       "cvode: accelerations are those of its interpolating polynomial and can err far more than "
@@ -64,7 +64,7 @@ Response cvode(const ResponseProblem& problem, const ResponseOptions& options) {
   return response;
 }
 
-const bool registered = register_response_method(
+const bool cvode_registered = register_response_method(
     {"cvode",
      "adaptive, backward differentiation (SUNDIALS CVODE, KLU); for strong damping, slow otherwise",
      "[hindmarsh2005], [davis2010]",

@@ -14,7 +14,7 @@ Response generalised_alpha(const ResponseProblem& problem, const ResponseOptions
   return integrate(problem, {"generalised_alpha", alpha_m, alpha_f, 0.25 * shift * shift, shift - 0.5});
 }
 
-const bool registered = register_response_method(
+const bool generalised_alpha_registered = register_response_method(
     {"generalised_alpha",
      "second order, fast motions multiplied by rho_infinity at each step, slow ones hardly damped",
      "[chung1993]",

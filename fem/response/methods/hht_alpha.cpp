@@ -11,7 +11,7 @@ Response hht_alpha(const ResponseProblem& problem, const ResponseOptions& option
   return integrate(problem, {"hht_alpha", 0.0, -alpha, 0.25 * (1.0 - alpha) * (1.0 - alpha), 0.5 - alpha});
 }
 
-const bool registered =
+const bool hht_alpha_registered =
     register_response_method({"hht_alpha",
                               "second order, damps what the interval cannot follow",
                               "[hilber1977]",

@@ -87,7 +87,7 @@ void keep_frames(const BlockedMotion& motion, const ModalBasis& basis, const Mat
   }
 }
 
-Response modal(const ResponseProblem& problem, const ResponseOptions& options) {
+Response modal_superposition(const ResponseProblem& problem, const ResponseOptions& options) {
   const StructuralSystem& system = problem.system;
   if (!system.nonlinear_forces.empty())
     throw std::invalid_argument(
@@ -122,12 +122,12 @@ Response modal(const ResponseProblem& problem, const ResponseOptions& options) {
   return std::move(recorder.response());
 }
 
-const bool registered = register_response_method(
+const bool modal_registered = register_response_method(
     {"modal",
      "exact sum of modes, for linear structures; no error from the interval",
      "[craig2006], [vanloan1978]",
      {{"modes", 0.0, "", "how many of the lowest modes; 0: all, 100 where there are more than 200"}}},
-    modal);
+    modal_superposition);
 
 }  // namespace
 }  // namespace beamid::fem

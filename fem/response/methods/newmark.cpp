@@ -12,7 +12,7 @@ Response newmark(const ResponseProblem& problem, const ResponseOptions& options)
   return integrate(problem, {"newmark", 0.0, 0.0, options.at("beta"), options.at("gamma")});
 }
 
-const bool registered = register_response_method(
+const bool newmark_registered = register_response_method(
     {"newmark",
      "average acceleration: second order, no numerical damping",
      "[newmark1959]",
