@@ -11,6 +11,7 @@
 #include "experiments/preparation/preparation_report.hpp"
 #include "experiments/record_comparison/chosen_channels.hpp"
 #include "experiments/record_comparison/comparison.hpp"
+#include "experiments/record_comparison/comparison_report.hpp"
 #include "filters/filter.hpp"
 
 namespace beamid::apps {

@@ -12,11 +12,15 @@
 #include "experiments/preparation/analysable_record.hpp"
 #include "experiments/preparation/preparation_report.hpp"
 #include "experiments/record_comparison/comparison.hpp"
+#include "experiments/record_comparison/comparison_report.hpp"
 #include "experiments/record_comparison/run_verdict.hpp"
 #include "experiments/record_identification/joint_comparison.hpp"
+#include "experiments/record_identification/joint_comparison_report.hpp"
 #include "experiments/record_identification/joint_identification.hpp"
+#include "experiments/record_identification/joint_report.hpp"
 #include "experiments/record_identification/noise_source.hpp"
 #include "experiments/record_identification/record_identification.hpp"
+#include "experiments/record_identification/record_report.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "apps/deliver.hpp"
 #include "experiments/beam_family/beam_family.hpp"
+#include "experiments/beam_family/report.hpp"
 #include "experiments/input/read_experiment.hpp"
 #include "experiments/plausibility.hpp"
 #include "experiments/preparation/prepared_record.hpp"

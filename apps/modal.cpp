@@ -8,6 +8,7 @@
 #include "apps/record_options.hpp"
 #include "experiments/input/choice_text.hpp"
 #include "experiments/modal_study/amplitude_report.hpp"
+#include "experiments/modal_study/hammer_report.hpp"
 #include "experiments/modal_study/hammer_study.hpp"
 #include "experiments/modal_study/mass_report.hpp"
 #include "experiments/modal_study/report.hpp"

@@ -25,15 +25,6 @@ Json list(const Vector& numbers) {
 
 }  // namespace
 
-std::optional<filters::Diagnostics> diagnostics_of(const filters::FilterRun& run,
-                                                   const filters::Gaussian& initial,
-                                                   const std::vector<Index>& unknowns) {
-  constexpr Index fewest = 100;
-  const Index reached = run.failure ? run.failure->step : run.normalised_squares.size();
-  if (reached < fewest) return std::nullopt;
-  return filters::diagnose(run, initial, unknowns);
-}
-
 Json values(const filters::Diagnostics& found, const std::vector<std::string>& outputs) {
   Json json{{"log_likelihood", finite(found.log_likelihood)}, {"whiteness", Json::array()}};
   for (std::size_t i = 0; i < outputs.size(); ++i)

@@ -10,12 +10,6 @@
 
 namespace beamid::experiments {
 
-/// Nothing where fewer than 100 samples were reached.
-/// @param unknowns entries of the state that are parameters
-std::optional<filters::Diagnostics> diagnostics_of(const filters::FilterRun& run,
-                                                   const filters::Gaussian& initial,
-                                                   const std::vector<Eigen::Index>& unknowns);
-
 /// Keys log_likelihood, whiteness (of each output), innovation_histogram, information.
 /// @param outputs names of the measured channels (p)
 nlohmann::ordered_json values(const filters::Diagnostics& found, const std::vector<std::string>& outputs);

@@ -38,7 +38,4 @@ struct BeamFamily {
 /// another file, or a record is not identified; InputError as compare()
 BeamFamily identify_family(std::vector<FamilyMember> members, const Progress& progress);
 
-/// Tables, figures, words and results.json keys.
-Results report(const BeamFamily& family);
-
 }  // namespace beamid::experiments

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/beam_family/beam_family.hpp"
+#include "experiments/beam_family/report.hpp"
 #include "experiments/continuum/description.hpp"
 #include "experiments/record_identification/joint_words.hpp"
 

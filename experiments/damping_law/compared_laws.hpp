@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/damping_law/damping_law.hpp"
+#include "experiments/damping_law/report.hpp"
 
 namespace beamid::experiments {
 

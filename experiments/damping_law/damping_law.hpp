@@ -9,7 +9,6 @@
 #include "experiments/experiment.hpp"
 #include "experiments/modal_analysis/amplitude_dependence.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
-#include "experiments/output/results.hpp"
 
 namespace beamid::experiments {
 
@@ -86,9 +85,5 @@ DampingLawStudy study_damping_law(const Experiment& experiment, const Record& re
 
 /// What the record supports, and whether that fits: sentences.
 std::string law_words(const DampingLawStudy& study);
-
-/// Tables, figures, words and results.json keys of `beamid identify --damping-law`.
-Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
-               const DampingLawStudy& study);
 
 }  // namespace beamid::experiments

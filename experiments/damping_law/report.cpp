@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "experiments/continuum/description.hpp"
-#include "experiments/damping_law/damping_law.hpp"
+#include "experiments/damping_law/report.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/record_inputs.hpp"
 

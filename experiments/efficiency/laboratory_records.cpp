@@ -15,6 +15,7 @@
 #include "experiments/input/write_record.hpp"
 #include "experiments/record_identification/identification_request.hpp"
 #include "experiments/record_identification/record_identification.hpp"
+#include "experiments/record_identification/record_report.hpp"
 
 namespace beamid::experiments {
 namespace {

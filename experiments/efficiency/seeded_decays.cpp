@@ -13,6 +13,7 @@
 #include "experiments/estimates.hpp"
 #include "experiments/random.hpp"
 #include "experiments/record_identification/record_identification.hpp"
+#include "experiments/record_identification/record_report.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "filters/monte_carlo.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/experiment.hpp"
 #include "experiments/input/record_table.hpp"
+#include "experiments/record_format.hpp"
 
 namespace beamid::experiments {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/experiment.hpp"
+#include "experiments/choice.hpp"
 #include "experiments/input/toml_table.hpp"
 
 namespace beamid::experiments {

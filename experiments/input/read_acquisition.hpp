@@ -1,8 +1,8 @@
 // The table [acquisition] of an experiment file, and the defects in [[sensors]].
 #pragma once
 
+#include "experiments/acquisition_settings.hpp"
 #include "experiments/input/toml_table.hpp"
-#include "experiments/rig/acquisition.hpp"
 
 namespace beamid::experiments {
 

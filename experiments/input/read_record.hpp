@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "experiments/experiment.hpp"
+#include "experiments/record_format.hpp"
 
 namespace beamid::experiments {
 

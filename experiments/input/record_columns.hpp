@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "experiments/experiment.hpp"
 #include "experiments/input/column_name.hpp"
 #include "experiments/input/record_table.hpp"
+#include "experiments/record_format.hpp"
 
 namespace beamid::experiments {
 

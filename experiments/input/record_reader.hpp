@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/experiment.hpp"
 #include "experiments/input/record_table.hpp"
+#include "experiments/record_format.hpp"
 #include "filters/registry.hpp"
 
 namespace beamid::experiments {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "experiments/experiment.hpp"
+#include "experiments/record_format.hpp"
 
 namespace beamid::experiments {
 

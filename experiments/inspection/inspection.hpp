@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/experiment.hpp"
 #include "experiments/inspection/defects.hpp"
 #include "experiments/inspection/offset_drift.hpp"
 #include "experiments/inspection/sampling_check.hpp"
 #include "experiments/inspection/signal_events.hpp"
-#include "experiments/output/results.hpp"
+#include "experiments/record_format.hpp"
 
 namespace beamid::experiments {
 
@@ -53,8 +52,5 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
 
 /// What to write into an experiment file so that every command reads the record like this.
 std::string record_table_text(const Inspection& found);
-
-/// Tables, warnings in words, and a figure of every channel's history and spectrum.
-Results report(const Inspection& found);
 
 }  // namespace beamid::experiments

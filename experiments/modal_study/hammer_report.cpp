@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/modal_study/hammer_study.hpp"
+#include "experiments/modal_study/hammer_report.hpp"
 #include "experiments/modal_study/report.hpp"
 
 namespace beamid::experiments {

@@ -7,7 +7,6 @@
 #include "experiments/modal_analysis/hammer_response.hpp"
 #include "experiments/modal_analysis/residue_fit.hpp"
 #include "experiments/modal_study/modal_study.hpp"
-#include "experiments/output/results.hpp"
 
 namespace beamid::experiments {
 
@@ -42,8 +41,5 @@ struct HammerStudy {
 /// @throws std::invalid_argument when records, band and orders do not fit.
 HammerStudy study_hits(const std::vector<std::string>& names, const std::vector<Record>& records,
                        const ModalStudySettings& settings);
-
-/// As a user sees it: modes with modal masses, responses with what the modes make of them, coherence.
-Results report(const ModalStudySettings& settings, const HammerStudy& study);
 
 }  // namespace beamid::experiments

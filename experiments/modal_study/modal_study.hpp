@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/experiment.hpp"
+#include "experiments/choice.hpp"
 #include "experiments/modal_analysis/modal_method.hpp"
 #include "experiments/modal_analysis/stabilisation.hpp"
 

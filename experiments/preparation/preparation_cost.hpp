@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/experiment.hpp"
+#include "experiments/record_format.hpp"
 
 namespace beamid::experiments {
 

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "experiments/experiment.hpp"
 #include "experiments/preparation/record_defects.hpp"
+#include "experiments/record_format.hpp"
 
 namespace beamid::experiments {
 

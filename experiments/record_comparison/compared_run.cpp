@@ -9,7 +9,6 @@
 #include <complex>
 #include <numbers>
 
-#include "experiments/diagnostics_report.hpp"
 #include "experiments/divergence.hpp"
 #include "experiments/finest_discretisation.hpp"
 #include "experiments/identification.hpp"
@@ -19,6 +18,7 @@
 #include "experiments/record_inputs.hpp"
 #include "experiments/recorded_frequency.hpp"
 #include "experiments/reproduction.hpp"
+#include "experiments/run_diagnostics.hpp"
 #include "experiments/start_belief.hpp"
 #include "filters/fisher_information.hpp"
 #include "filters/identifiability.hpp"

@@ -10,7 +10,6 @@
 #include "experiments/estimates.hpp"
 #include "experiments/experiment.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
-#include "experiments/output/results.hpp"
 #include "experiments/progress.hpp"
 #include "filters/diagnostics.hpp"
 
@@ -88,8 +87,5 @@ const char* to_string(ComparedRun::Status status);
 /// @throws InputError, std::invalid_argument when no run can be made of the experiment at all.
 Comparison compare(const Experiment& experiment, ComparedRecord record, const std::filesystem::path& folder,
                    const Progress& progress);
-
-/// Tables, figures, words and results.json keys.
-Results report(const Experiment& experiment, const Comparison& comparison);
 
 }  // namespace beamid::experiments

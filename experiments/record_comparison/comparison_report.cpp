@@ -6,8 +6,8 @@
 #include "experiments/continuum/description.hpp"
 #include "experiments/diagnostics_report.hpp"
 #include "experiments/model_setting.hpp"
-#include "experiments/record_comparison/comparison.hpp"
 #include "experiments/record_comparison/comparison_figures.hpp"
+#include "experiments/record_comparison/comparison_report.hpp"
 #include "experiments/record_comparison/comparison_words.hpp"
 #include "experiments/record_inputs.hpp"
 

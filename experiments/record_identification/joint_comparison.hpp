@@ -16,7 +16,4 @@ struct JointComparison {
 /// @throws std::invalid_argument when no run converged, or the records' models have different unknowns.
 JointComparison joint_comparison(std::vector<Comparison> records);
 
-/// Tables, figures, words and results.json keys.
-Results report(const Experiment& experiment, const JointComparison& joint);
-
 }  // namespace beamid::experiments

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/record_identification/joint_comparison.hpp"
+#include "experiments/record_identification/joint_comparison_report.hpp"
 #include "experiments/record_identification/joint_words.hpp"
 
 namespace beamid::experiments {

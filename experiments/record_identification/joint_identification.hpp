@@ -29,7 +29,4 @@ struct JointIdentification {
 /// @throws std::invalid_argument when equivalent masses differ.
 JointIdentification joint_identification(std::vector<IdentifiedRecord> records);
 
-/// Tables, figures, words and results.json keys.
-Results report(const Experiment& experiment, const JointIdentification& joint);
-
 }  // namespace beamid::experiments

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "experiments/estimates.hpp"
-#include "experiments/record_identification/joint_identification.hpp"
+#include "experiments/record_identification/joint_report.hpp"
 #include "experiments/record_identification/joint_words.hpp"
 #include "experiments/record_identification/record_values.hpp"
 

@@ -12,9 +12,9 @@
 #include "experiments/divergence.hpp"
 #include "experiments/modal_analysis/shape_fit.hpp"
 #include "experiments/preparation/analysable_record.hpp"
+#include "experiments/record_identification/identified_parameters.hpp"
 #include "experiments/record_identification/mode_residual.hpp"
 #include "experiments/record_identification/record_identification.hpp"
-#include "experiments/record_identification/record_values.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "experiments/channel_places.hpp"
-#include "experiments/diagnostics_report.hpp"
 #include "experiments/estimates.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/model_setting.hpp"
@@ -15,6 +14,7 @@
 #include "experiments/record_identification/first_belief.hpp"
 #include "experiments/record_identification/mode_residual.hpp"
 #include "experiments/record_identification/noise_source.hpp"
+#include "experiments/run_diagnostics.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"

@@ -6,7 +6,6 @@
 #include "experiments/experiment.hpp"
 #include "experiments/identification.hpp"
 #include "experiments/modal_analysis/dominant_mode.hpp"
-#include "experiments/output/results.hpp"
 #include "experiments/record_identification/amplitude_sections.hpp"
 #include "experiments/record_identification/judgement.hpp"
 #include "experiments/record_identification/noise_near_mode.hpp"
@@ -71,9 +70,5 @@ RecordIdentification prepare_identification(const Experiment& experiment, const 
 /// @param quiet_noise of the channels (p), by noise_before_event(); needed where the experiment wants it.
 RecordIdentification identify_record(const Experiment& experiment, const Record& record,
                                      const Eigen::VectorXd& quiet_noise = {});
-
-/// Tables, figures, words and results.json keys.
-Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
-               const RecordIdentification& found);
 
 }  // namespace beamid::experiments

@@ -1,3 +1,5 @@
+#include "experiments/record_identification/record_report.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>

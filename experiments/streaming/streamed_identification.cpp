@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/diagnostics_report.hpp"
 #include "experiments/input/method_choice.hpp"
 #include "experiments/model_setting.hpp"
 #include "experiments/output/csv.hpp"
+#include "experiments/run_diagnostics.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,6 +1,7 @@
 // Which damping law a record supports. Oracle: simulated free decays whose law and parameters are known,
 // integrated in fine steps by the textbook Runge-Kutta formula, not by the project's own schemes.
 #include "experiments/damping_law/damping_law.hpp"
+#include "experiments/damping_law/report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // Oracles: the beam that the record was simulated from, Rayleigh's tabulated frequency errors, the closed
 // form of the discretisation's bias, and the Cramer-Rao bound.
 #include "experiments/record_comparison/comparison.hpp"
+#include "experiments/record_comparison/comparison_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // Several records of one beam. Oracles: one least-squares fit of all of them, and the truth they were
 // simulated with.
 #include "experiments/record_identification/joint_identification.hpp"
+#include "experiments/record_identification/joint_report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 
 #include "experiments/input/read_record.hpp"
 #include "experiments/record_identification/record_identification.hpp"
+#include "experiments/record_identification/record_report.hpp"
 #include "fem/cantilever.hpp"
 
 namespace beamid::experiments {

@@ -1,5 +1,6 @@
 // Simulated records. Oracle: the stiffness and damping with which they were made.
 #include "experiments/record_identification/record_identification.hpp"
+#include "experiments/record_identification/record_report.hpp"
 
 #include <gtest/gtest.h>
 

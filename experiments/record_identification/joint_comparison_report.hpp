@@ -1,0 +1,12 @@
+// A comparison over several records as text, tables, figures and JSON.
+#pragma once
+
+#include "experiments/output/results.hpp"
+#include "experiments/record_identification/joint_comparison.hpp"
+
+namespace beamid::experiments {
+
+/// Tables, figures, words and results.json keys.
+Results report(const Experiment& experiment, const JointComparison& joint);
+
+}  // namespace beamid::experiments
