@@ -5,7 +5,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::bad_input_test {
 namespace {
 
 /// One thing wrong with the tutorial's experiment file or its record.
@@ -137,4 +137,4 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::bad_input_test

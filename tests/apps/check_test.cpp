@@ -3,7 +3,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::check_test {
 namespace {
 
 using nlohmann::json, testing::HasSubstr;
@@ -104,4 +104,4 @@ TEST(CheckOfMeasuredRecords, FindsNoSingleCauseForFourTipMasses) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::check_test

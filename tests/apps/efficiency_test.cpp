@@ -3,7 +3,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::efficiency_test {
 namespace {
 
 using nlohmann::json, testing::HasSubstr, testing::StartsWith;
@@ -96,4 +96,4 @@ TEST(Efficiency, NamesWhatItRefuses) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::efficiency_test

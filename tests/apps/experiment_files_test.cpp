@@ -5,7 +5,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::experiment_files_test {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty, testing::StartsWith;
@@ -130,4 +130,4 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::experiment_files_test

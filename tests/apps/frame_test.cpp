@@ -4,7 +4,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::frame_test {
 namespace {
 
 using nlohmann::json, testing::HasSubstr, testing::IsEmpty;
@@ -132,4 +132,4 @@ TEST(Frame, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::frame_test

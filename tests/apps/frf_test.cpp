@@ -6,15 +6,12 @@
 #include <numbers>
 
 #include "tests/apps/run_command.hpp"
+#include "tests/apps/study_beam.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::frf_test {
 namespace {
 
 using nlohmann::json, std::numbers::pi, testing::HasSubstr, testing::StartsWith;
-
-double frequency_hz(double root) {
-  return root * root / (2 * pi) * std::sqrt(228.96 / (3.055 / 1.1 * std::pow(1.1, 4)));
-}
 
 TEST(Frf, FindsResonancesAndAntiResonances) {
   for (const char* words :
@@ -27,10 +24,12 @@ TEST(Frf, FindsResonancesAndAntiResonances) {
     const double resonances[] = {1.875104068711961, 4.694091132974175, 7.854757438237613};
     const double anti_resonances[] = {3.926602312047919, 7.068582745628732};
     for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(pair["resonances"][i]["frequency_hz"].get<double>() / frequency_hz(resonances[i]), 1.0,
-                  1e-6);
+      EXPECT_NEAR(
+          pair["resonances"][i]["frequency_hz"].get<double>() / study_beam_frequency_hz(resonances[i]), 1.0,
+          1e-6);
     for (int i = 0; i < 2; ++i)
-      EXPECT_NEAR(pair["anti_resonances"][i]["frequency_hz"].get<double>() / frequency_hz(anti_resonances[i]),
+      EXPECT_NEAR(pair["anti_resonances"][i]["frequency_hz"].get<double>() /
+                      study_beam_frequency_hz(anti_resonances[i]),
                   1.0, 1e-5);
   }
 }
@@ -51,7 +50,7 @@ TEST(Frf, BeginsAtTheStaticDeflection) {
 // At resonance a single mode's receptance is 1 / (2 xi K) of its own stiffness; the others add a per cent.
 TEST(Frf, ShowsTheHeightOfAResonance) {
   const json found = json::parse(Workplace().run("frf --json --damping-ratio 0.01 --to 8").out);
-  const double modal_mass = 3.055 / 4, omega = 2 * pi * frequency_hz(1.875104068711961);
+  const double modal_mass = 3.055 / 4, omega = 2 * pi * study_beam_frequency_hz(1.875104068711961);
   EXPECT_NEAR(found["pairs"][0]["resonances"][0]["magnitude_m_per_n"].get<double>() * 0.02 * modal_mass *
                   omega * omega,
               1.0, 1e-3);
@@ -95,4 +94,4 @@ TEST(Frf, RefusesAPointThatCannotMove) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::frf_test

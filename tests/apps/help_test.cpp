@@ -3,7 +3,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::help_test {
 namespace {
 
 using testing::HasSubstr, testing::IsEmpty, testing::MatchesRegex, testing::StartsWith;
@@ -152,4 +152,4 @@ TEST(List, RefusesUnknownKindsAndNames) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::help_test

@@ -4,7 +4,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::hostile_input_test {
 namespace {
 
 using testing::HasSubstr, testing::Not;
@@ -238,4 +238,4 @@ TEST_F(Hostile, OverridesAndNamesAreReadToTheirEnd) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::hostile_input_test

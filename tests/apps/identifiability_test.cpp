@@ -3,7 +3,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::identifiability_test {
 namespace {
 
 using nlohmann::json, testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(IdentifiabilityCommand, SaysWhenAForceThatIsNotMeasuredNeverEnds) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::identifiability_test

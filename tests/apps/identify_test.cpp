@@ -11,7 +11,7 @@
 #include "fem/cantilever.hpp"
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::identify_test {
 namespace {
 
 using nlohmann::json;
@@ -251,4 +251,4 @@ TEST_F(Tutorial, HasAnExitCodeForADivergedFilterAndForAContradictedOne) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::identify_test

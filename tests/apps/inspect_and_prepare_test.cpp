@@ -7,7 +7,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::inspect_and_prepare_test {
 namespace {
 
 using nlohmann::json, testing::HasSubstr, testing::StartsWith;
@@ -129,4 +129,4 @@ TEST(Tutorial14, LeadsFromAFileToItsModes) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::inspect_and_prepare_test

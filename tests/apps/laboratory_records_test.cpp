@@ -10,7 +10,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::laboratory_records_test {
 namespace {
 
 using nlohmann::json;
@@ -180,4 +180,4 @@ TEST_F(Laboratory, InspectTellsFrequencyAndWhatToWrite) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::laboratory_records_test

@@ -3,7 +3,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::measured_records_test {
 namespace {
 
 using nlohmann::json;
@@ -137,4 +137,4 @@ INSTANTIATE_TEST_SUITE_P(UnbTipMass, TwoModes,
                          });
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::measured_records_test

@@ -9,7 +9,7 @@
 #include "experiments/random.hpp"
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::modal_test {
 namespace {
 
 using nlohmann::json, testing::HasSubstr;
@@ -250,4 +250,4 @@ TEST(Modal, ResolvesTwoNearModesOfAMeasuredHammerTest) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::modal_test

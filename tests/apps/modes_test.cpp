@@ -6,21 +6,12 @@
 #include <numbers>
 
 #include "tests/apps/run_command.hpp"
+#include "tests/apps/study_beam.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::modes_test {
 namespace {
 
 using nlohmann::json, std::numbers::pi, testing::HasSubstr, testing::IsEmpty, testing::StartsWith;
-
-json json_of(const Outcome& outcome) {
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return json::parse(outcome.out, nullptr, false);
-}
-
-// b^2 / (2 pi) sqrt(EI / (m L^4)) of the study's beam
-double frequency_hz(double root) {
-  return root * root / (2 * pi) * std::sqrt(228.96 / (3.055 / 1.1 * std::pow(1.1, 4)));
-}
 
 struct TestBeam {
   const char* tip_mass;
@@ -78,7 +69,8 @@ TEST(Modes, OfEverySupportHaveTheirExactRoots) {
         EXPECT_EQ(mode["frequency_hz"], 0.0) << ends.name;
       }
       if (i == ends.rigid) {
-        EXPECT_NEAR(mode["frequency_hz"].get<double>() / frequency_hz(ends.root), 1.0, 1e-8) << ends.name;
+        EXPECT_NEAR(mode["frequency_hz"].get<double>() / study_beam_frequency_hz(ends.root), 1.0, 1e-8)
+            << ends.name;
       }
     }
   }
@@ -240,4 +232,4 @@ TEST(Modes, AreAsManyAsTheMeshHas) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::modes_test

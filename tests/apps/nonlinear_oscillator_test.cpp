@@ -3,7 +3,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::nonlinear_oscillator_test {
 namespace {
 
 using nlohmann::json;
@@ -92,4 +92,4 @@ TEST(DampingLawOption, TellsMeasuredBeamsApart) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::nonlinear_oscillator_test

@@ -7,7 +7,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::paper_test {
 namespace {
 
 using nlohmann::json;
@@ -235,4 +235,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::paper_test

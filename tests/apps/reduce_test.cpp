@@ -6,15 +6,10 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::reduce_test {
 namespace {
 
 using nlohmann::json, testing::HasSubstr, testing::IsEmpty, testing::StartsWith;
-
-json json_of(const Outcome& outcome) {
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return json::parse(outcome.out, nullptr, false);
-}
 
 TEST(Reduce, ShowsRayleighsEquivalentMassAndItsPrice) {
   const json found = json_of(Workplace().run("reduce --json --tip-mass 0.0198575 --reduction rayleigh"));
@@ -136,4 +131,4 @@ TEST(Reduce, AnswersForEverySupportAndFineMeshes) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::reduce_test

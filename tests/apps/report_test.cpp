@@ -4,7 +4,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::report_test {
 namespace {
 
 using testing::HasSubstr;
@@ -116,4 +116,4 @@ TEST_F(Report, RefusesWhatBeamidDidNotWrite) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::report_test

@@ -8,7 +8,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::simulate_test {
 namespace {
 
 using nlohmann::json, std::numbers::pi, testing::HasSubstr, testing::StartsWith;
@@ -202,4 +202,4 @@ TEST(Simulate, RefusesWhatItCannotFollow) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::simulate_test

@@ -6,7 +6,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::stream_test {
 namespace {
 
 using testing::HasSubstr, testing::IsEmpty, testing::StartsWith;
@@ -165,4 +165,4 @@ TEST_F(Stream, SaysWhatIsWrongWithAState) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::stream_test

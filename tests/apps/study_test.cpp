@@ -5,7 +5,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::study_test {
 namespace {
 
 using nlohmann::json;
@@ -132,4 +132,4 @@ TEST(StudyDocument, QuotesWhatIdentifyFinds) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::study_test

@@ -8,7 +8,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::sweep_test {
 namespace {
 
 using testing::HasSubstr, testing::IsEmpty;
@@ -257,4 +257,4 @@ TEST_F(Sweep, SaysWhatIsWrongWithThePlan) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::sweep_test

@@ -5,7 +5,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::track_test {
 namespace {
 
 using nlohmann::json;
@@ -53,4 +53,4 @@ TEST(Track, RefusesBadWords) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::track_test

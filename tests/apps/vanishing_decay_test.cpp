@@ -6,7 +6,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps {
+namespace beamid::apps::vanishing_decay_test {
 namespace {
 
 std::string record(int count, const std::function<double(int)>& value) {
@@ -40,4 +40,4 @@ TEST(VanishingDecay, EndsNoCommandBySignal) {
 }
 
 }  // namespace
-}  // namespace beamid::apps
+}  // namespace beamid::apps::vanishing_decay_test

@@ -11,7 +11,7 @@
 #include "experiments/signal/median.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::acquisition_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -243,4 +243,4 @@ TEST(QuadraticDashpot, LetsTheDampingFallWithAmplitude) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::acquisition_test

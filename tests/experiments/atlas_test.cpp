@@ -7,7 +7,7 @@
 
 #include "experiments/paper/numerical_validation.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::atlas_test {
 namespace {
 
 Oscillator unit(double damping_ratio) {
@@ -51,4 +51,4 @@ TEST(Atlas, RefusesAStepThatDoesNotShowTheMotion) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::atlas_test

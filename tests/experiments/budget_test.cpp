@@ -8,7 +8,7 @@
 #include "experiments/paper/monte_carlo.hpp"
 #include "experiments/paper/test_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::budget_test {
 namespace {
 
 // The beam S(11.8), on a coarser mesh and for a shorter time.
@@ -118,4 +118,4 @@ TEST(Budget, RefusesARecordThatShowsTooLittle) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::budget_test

@@ -12,7 +12,7 @@
 #include "experiments/output/file.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::channel_places_test {
 namespace {
 
 using testing::HasSubstr, testing::ThrowsMessage;
@@ -97,4 +97,4 @@ TEST(ChannelPlaces, TravelWithARecordInTheFileBesideIt) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::channel_places_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beamid::experiments {
+namespace beamid::experiments::discretisation_bias_test {
 namespace {
 
 constexpr double interval = 1e-3;
@@ -127,4 +127,4 @@ TEST(DiscretisationBias, RefusesWhatDoesNotOscillate) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::discretisation_bias_test

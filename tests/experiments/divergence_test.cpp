@@ -10,7 +10,7 @@
 #include <complex>
 #include <numbers>
 
-namespace beamid::experiments {
+namespace beamid::experiments::divergence_test {
 namespace {
 
 using testing::HasSubstr;
@@ -68,4 +68,4 @@ TEST(StepTooLong, IsSilentWhereTheSchemeFollows) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::divergence_test

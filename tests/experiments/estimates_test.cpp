@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace beamid::experiments {
+namespace beamid::experiments::estimates_test {
 namespace {
 
 JointModel model_with(const std::vector<Unknown>& unknowns) {
@@ -62,4 +62,4 @@ TEST(Unknown, RefusesWhatItsFormCannotHold) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::estimates_test

@@ -14,7 +14,7 @@
 #include "experiments/higher_mode_noise/oscillator_bank.hpp"
 #include "experiments/paper/test_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::higher_mode_noise_test {
 namespace {
 
 NoiseSettings small_study() {
@@ -189,4 +189,4 @@ TEST(HigherModes, RefuseMoreModesThanTheBeamHasRatios) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::higher_mode_noise_test

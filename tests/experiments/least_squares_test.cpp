@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace beamid::experiments {
+namespace beamid::experiments::least_squares_test {
 namespace {
 
 using Eigen::MatrixXcd, Eigen::MatrixXd;
@@ -33,4 +33,4 @@ TEST(LeastSquares, HasAnAnswerWithoutColumnsAndRefusesWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::least_squares_test

@@ -13,7 +13,7 @@
 #include "experiments/record_inputs.hpp"
 #include "filters/batch_estimator.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::measured_force_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -210,4 +210,4 @@ TEST(RecordInputs, OfFreeMotionAreNone) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::measured_force_test

@@ -8,7 +8,7 @@
 #include "fem/gauge_row.hpp"
 #include "fem/parametric_system.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::model_setting_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -69,4 +69,4 @@ TEST(Measurements, PartForcesFromMotion) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::model_setting_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beamid::experiments {
+namespace beamid::experiments::oscillator_test {
 namespace {
 
 constexpr double ratios[] = {0.0, 0.0015, 0.1, 0.7, 0.999};
@@ -44,4 +44,4 @@ TEST(Oscillator, KeepsANegativeDamping) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::oscillator_test

@@ -5,7 +5,7 @@
 
 #include "experiments/input/read_experiment.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::plausibility_test {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
@@ -68,4 +68,4 @@ TEST(Plausibility, ComesFirst) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::plausibility_test

@@ -18,14 +18,15 @@
 #include "experiments/signal/integration.hpp"
 #include "experiments/virtual_rig.hpp"
 #include "fem/cantilever.hpp"
+#include "tests/experiments/damped_oscillation.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::preparation_test {
 namespace {
 
 using Complex = std::complex<double>;
 using filters::Options;
-using testing::HasSubstr;
+using test::complex_rate, testing::HasSubstr;
 constexpr double pi = std::numbers::pi;
 
 Choice step(const std::string& name, const Options& options = {}) {
@@ -41,12 +42,8 @@ Record sampled(Eigen::Index count, double interval, Quantity quantity, Signal si
   return record;
 }
 
-Complex rate_of(double frequency_hz, double ratio) {
-  return 2 * pi * frequency_hz * Complex(-ratio, std::sqrt(1 - ratio * ratio));
-}
-
 Record decay(Eigen::Index count, double interval, double frequency_hz, double ratio) {
-  const Complex rate = rate_of(frequency_hz, ratio);
+  const Complex rate = complex_rate(frequency_hz, ratio);
   return sampled(count, interval, Quantity::acceleration,
                  [rate](double t) { return std::exp(rate * t).real(); });
 }
@@ -134,14 +131,14 @@ TEST(Resampling, OfIrregularStampsReturnsTheFunctionAndTellsItsError) {
   Record record = decay(2000, 2e-3, 9, 0.01);
   record.time += 2e-4 * standard_normal(2000, 5, 0);
   record.samples =
-      record.time.unaryExpr([](double t) { return std::exp(rate_of(9, 0.01) * t).real(); }).transpose();
+      record.time.unaryExpr([](double t) { return std::exp(complex_rate(9, 0.01) * t).real(); }).transpose();
   const Record even = prepare(record, {step("resample")});
   const Record filtered = prepare(record, {step("low_pass", {{"corner_hz", 30.0}})});
   EXPECT_EQ(filtered.samples, prepare(even, {step("low_pass", {{"corner_hz", 30.0}})}).samples);
   EXPECT_THAT(filtered.remarks[0], HasSubstr("The stamps are uneven. Resampled at "));
   EXPECT_NEAR(even.time[1000] - even.time[999], even.time[1] - even.time[0], 1e-12);
   const Eigen::VectorXd exact =
-      even.time.unaryExpr([](double t) { return std::exp(rate_of(9, 0.01) * t).real(); });
+      even.time.unaryExpr([](double t) { return std::exp(complex_rate(9, 0.01) * t).real(); });
   EXPECT_LT(largest(even.samples.row(0).transpose() - exact), 1e-4);
   EXPECT_THAT(even.remarks[0], HasSubstr("Resampled at "));
 }
@@ -199,7 +196,7 @@ INSTANTIATE_TEST_SUITE_P(
 // Oracle: the closed forms of signal/, at the complex pole; the delay of a symmetric chain is none.
 TEST(Cost, OfZeroPhaseIsTheProductForwardsAndBackwards) {
   const CascadedFilter filter = butterworth_low_pass(4, 6, 1e-3);
-  const Complex rate = rate_of(4, 0.01);
+  const Complex rate = complex_rate(4, 0.01);
   const auto factor = [&](bool zero_phase) {
     return preparation_cost({step("low_pass", {{"corner_hz", 6.0}, {"zero_phase", zero_phase}})},
                             decay(5000, 1e-3, 4, 0.01), 4, 0.01)
@@ -306,4 +303,4 @@ TEST(PreparedRecord, IsCutToItsWindowBehindTheSteps) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::preparation_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace beamid::experiments {
+namespace beamid::experiments::random_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -62,4 +62,4 @@ TEST(StandardNormal, GivesTheSameNumbersHoweverManyAreAsked) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::random_test

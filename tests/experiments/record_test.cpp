@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace beamid::experiments {
+namespace beamid::experiments::record_test {
 namespace {
 
 // 101 samples from 2 s at 50 Hz; displacement 0, 1, 2, ... and acceleration 0, -1, -2, ...
@@ -76,4 +76,4 @@ TEST(Quantity, HasItsNameAndUnit) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::record_test

@@ -8,7 +8,7 @@
 #include "experiments/oscillator.hpp"
 #include "tests/experiments/models/one_coordinate.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::reproduction_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -90,4 +90,4 @@ TEST(StartBelief, CoversTheMotionTheOffsetsAndTheGuesses) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::reproduction_test

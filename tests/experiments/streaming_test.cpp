@@ -10,7 +10,7 @@
 #include "experiments/streaming/streamed_identification.hpp"
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::streaming_test {
 namespace {
 
 using Eigen::Index;
@@ -264,4 +264,4 @@ TEST(SampleLine, SaysWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::streaming_test

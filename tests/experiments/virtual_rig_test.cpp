@@ -8,7 +8,7 @@
 #include "fem/exact/exact_cantilever.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::virtual_rig_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -94,4 +94,4 @@ TEST_F(Accelerometer, GivesTheSameBytesForTheSameSeed) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::virtual_rig_test

@@ -12,7 +12,7 @@
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"
 
-namespace beamid {
+namespace beamid::complex_modes_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -152,4 +152,4 @@ TEST(ComplexModes, RefuseMechanismsAndImpossibleCounts) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::complex_modes_test

@@ -10,7 +10,7 @@
 #include "fem/modes.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::damping_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -138,4 +138,4 @@ TEST(Damping, RefusesAMatrixThatWouldBeFull) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::damping_test

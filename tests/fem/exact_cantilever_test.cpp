@@ -6,7 +6,7 @@
 
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::exact_cantilever_test {
 namespace {
 
 using fem::ExactMode;
@@ -67,4 +67,4 @@ TEST(ExactCantilever, RefusesImpossibleBeams) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::exact_cantilever_test

@@ -37,13 +37,6 @@ inline constexpr KnownBeam five_beams[] = {{0.0198575,
                                             {11.9904, 0.00917, 0.000342, 0.000040, 0.000008},
                                             {1.417, 0.134, 0.050, 0.025, 0.015}}};
 
-inline fem::Cantilever steel_beam(double tip_mass) {
-  fem::Cantilever beam;
-  beam.length = 1.10;
-  beam.bending_stiffness = 2.12e11 * fem::rectangle_second_moment(0.060, 0.006);
-  beam.mass_per_length = 3.055 / 1.10;
-  beam.tip_mass = tip_mass;
-  return beam;
-}
+fem::Cantilever steel_beam(double tip_mass);
 
 }  // namespace beamid::test

@@ -10,7 +10,7 @@
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/exact_frame.hpp"
 
-namespace beamid::fem {
+namespace beamid::fem::frame_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -284,4 +284,4 @@ TEST(Frame, RefusesTheImpossible) {
 }
 
 }  // namespace
-}  // namespace beamid::fem
+}  // namespace beamid::fem::frame_test

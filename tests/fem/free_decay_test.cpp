@@ -8,7 +8,7 @@
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::free_decay_test {
 namespace {
 
 TEST(Release, ModalAmplitudesAreThoseOfTheExactContinuum) {
@@ -66,4 +66,4 @@ TEST(FreeDecay, RefusesOverdampedModesAndUnequalLengths) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::free_decay_test

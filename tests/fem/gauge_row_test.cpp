@@ -11,7 +11,7 @@
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::fem {
+namespace beamid::fem::gauge_row_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -65,4 +65,4 @@ TEST(GaugeRow, AgreesWithThePolynomialWhereItMustNotBeUsed) {
 }
 
 }  // namespace
-}  // namespace beamid::fem
+}  // namespace beamid::fem::gauge_row_test

@@ -12,7 +12,7 @@
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 
-namespace beamid {
+namespace beamid::large_mesh_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -83,4 +83,4 @@ TEST(LargeMesh, AMillionCoordinatesLeaveAClampedBeamTwelveDigits) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::large_mesh_test

@@ -5,7 +5,7 @@
 
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::fem {
+namespace beamid::fem::mode_curves_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -99,4 +99,4 @@ TEST(ModeCurves, AreRefusedForAStructureThatIsNotHeld) {
 }
 
 }  // namespace
-}  // namespace beamid::fem
+}  // namespace beamid::fem::mode_curves_test

@@ -14,7 +14,7 @@
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::modes_test {
 namespace {
 
 using fem::ExactMode;
@@ -240,4 +240,4 @@ TEST(Modes, ReportHowManyDigitsTheFormsShare) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::modes_test

@@ -8,7 +8,7 @@
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::fem {
+namespace beamid::fem::parametric_system_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -236,4 +236,4 @@ TEST(CurvatureRow, RefusesAPlaceWithoutANode) {
 }
 
 }  // namespace
-}  // namespace beamid::fem
+}  // namespace beamid::fem::parametric_system_test

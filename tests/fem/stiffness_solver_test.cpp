@@ -10,7 +10,7 @@
 #include "fem/solvers/mixed_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::stiffness_solver_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -216,4 +216,4 @@ TEST(StiffnessSolver, TipStiffnessOfTheFinestMeshKeepsTwelveDigits) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::stiffness_solver_test

@@ -7,7 +7,7 @@
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 
-namespace beamid {
+namespace beamid::variation_test {
 namespace {
 
 using fem::Variation;
@@ -55,4 +55,4 @@ TEST(SharpTip, CarriesNothing) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::variation_test

@@ -9,7 +9,7 @@
 #include "tests/filters/conformance/every_filter.hpp"
 #include "tests/filters/linear_model.hpp"
 
-namespace beamid::test {
+namespace beamid::test::adaptive_ekf_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -98,4 +98,4 @@ TEST(AdaptiveEkf, RefusesOptionsThatMeanNothing) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::adaptive_ekf_test

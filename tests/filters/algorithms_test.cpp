@@ -10,7 +10,7 @@
 #include "filters/filter_run.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::algorithms_test {
 namespace {
 
 using Eigen::Matrix2d, Eigen::Matrix4d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::Vector4d, Eigen::VectorXd;
@@ -120,4 +120,4 @@ TEST(Triangularise, KeepsTheCovarianceOfAFactorOfAnyShape) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::algorithms_test

@@ -20,7 +20,7 @@ extern "C" void* malloc(std::size_t size) {
 }
 #endif
 
-namespace beamid {
+namespace beamid::allocation_test {
 namespace {
 
 #ifdef BEAMID_COUNTS_MALLOC
@@ -56,4 +56,4 @@ INSTANTIATE_TEST_SUITE_P(Dense, Steps, testing::Values("ekf", "ukf", "ckf", "sru
 #endif
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::allocation_test

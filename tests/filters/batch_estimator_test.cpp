@@ -12,7 +12,7 @@
 #include "tests/filters/linear_model.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::batch_estimator_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -196,4 +196,4 @@ TEST(BatchEstimator, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::batch_estimator_test

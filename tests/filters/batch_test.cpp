@@ -14,7 +14,7 @@
 #include "filters/algorithms/oscillator.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::batch_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::Vector4d, Eigen::VectorXd;
@@ -200,4 +200,4 @@ TEST(Batch, LendsNoCodeForNewProcessorsToTheRestOfTheProgram) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::batch_test

@@ -6,7 +6,7 @@
 
 #include "filters/filter.hpp"
 
-namespace beamid {
+namespace beamid::ckf_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -105,4 +105,4 @@ INSTANTIATE_TEST_SUITE_P(Both, Cubature, testing::Values("ckf", "srckf"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::ckf_test

@@ -4,7 +4,7 @@
 
 #include "tests/filters/conformance/every_filter.hpp"
 
-namespace beamid::test {
+namespace beamid::test::conformance_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -59,4 +59,4 @@ INSTANTIATE_TEST_SUITE_P(Registered, EveryFilter, testing::ValuesIn(names()),
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::conformance_test

@@ -9,7 +9,7 @@
 
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::diagnostics_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -151,4 +151,4 @@ TEST_F(Diagnosis, OfAConsistentRunFindsNothingWrong) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::diagnostics_test

@@ -5,7 +5,7 @@
 
 #include "tests/filters/conformance/every_filter.hpp"
 
-namespace beamid::test {
+namespace beamid::test::dual_ekf_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -68,4 +68,4 @@ TEST(DualEkf, RefusesParametersThatDoNotExist) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::dual_ekf_test

@@ -7,7 +7,7 @@
 #include "tests/filters/conformance/every_filter.hpp"
 #include "tests/filters/conformance/kalman_recursion.hpp"
 
-namespace beamid::test {
+namespace beamid::test::enkf_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -119,4 +119,4 @@ TEST(Enkf, RefusesOptionsThatMeanNothing) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::enkf_test

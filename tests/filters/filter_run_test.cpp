@@ -7,7 +7,7 @@
 
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::filter_run_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -29,4 +29,4 @@ TEST(Run, KeepsWhatItHasWhenADiscretisationCannotTakeTheStep) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::filter_run_test

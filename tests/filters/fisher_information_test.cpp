@@ -8,7 +8,7 @@
 #include "filters/filter_run.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::fisher_information_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -87,4 +87,4 @@ TEST(CramerRaoBound, RefusesWhatIsNotDetermined) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::fisher_information_test

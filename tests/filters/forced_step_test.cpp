@@ -8,7 +8,7 @@
 #include "filters/scheme.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::forced_step_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -146,4 +146,4 @@ TEST(ForcedPade, MovesAPolynomialMotionExactly) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::forced_step_test

@@ -11,7 +11,7 @@
 #include "filters/fisher_information.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::identifiability_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -223,4 +223,4 @@ TEST(InformationAlongDirections, RefusesShapesThatDisagree) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::identifiability_test

@@ -6,7 +6,7 @@
 #include "filters/filter_run.hpp"
 #include "tests/filters/classic/function_model.hpp"
 
-namespace beamid::test {
+namespace beamid::test::iekf_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -64,4 +64,4 @@ TEST(Iekf, RefusesIterationsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::iekf_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace beamid {
+namespace beamid::innovation_consistency_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -154,4 +154,4 @@ TEST_F(Innovations, AreTestedUpToWhereTheFilterFailed) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::innovation_consistency_test

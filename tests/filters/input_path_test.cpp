@@ -8,7 +8,7 @@
 
 #include "filters/step_input.hpp"
 
-namespace beamid {
+namespace beamid::input_path_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -119,4 +119,4 @@ TEST(StepInput, RefusesWhatIsNoMultipleOfTheInputs) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::input_path_test

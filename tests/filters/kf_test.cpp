@@ -8,7 +8,7 @@
 #include "tests/filters/conformance/every_filter.hpp"
 #include "tests/filters/linear_model.hpp"
 
-namespace beamid::test {
+namespace beamid::test::kf_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -92,4 +92,4 @@ TEST(Kf, RefusesAModelThatTurnsOutNotToBeLinear) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::kf_test

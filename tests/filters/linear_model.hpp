@@ -15,18 +15,14 @@ class LinearModel final : public filters::DiscreteModel {
   const Eigen::MatrixXd& output_noise() const override { return r; }
   double interval() const override { return 1.0; }
   void set_interval(double) override {}  // a step is a step, whatever the stamps say
-  void transition(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& next) override {
-    next = a * z;
-  }
+  void transition(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& next) override;
   void linearised_transition(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& next,
-                             Eigen::MatrixXd& jacobian) override {
-    next = a * z;
-    jacobian = a;
-  }
+                             Eigen::MatrixXd& jacobian) override;
   void output(const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::VectorXd& y) override { y = c * z; }
-  void output_jacobian(const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& jacobian) override {
-    jacobian = c;
-  }
+  void output_jacobian(const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& jacobian) override;
 };
+
+/// Two coupled states, the first of them observed.
+LinearModel two_state_model();
 
 }  // namespace beamid::test

@@ -9,7 +9,7 @@
 #include "tests/filters/linear_model.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::low_rank_ekf_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -214,4 +214,4 @@ INSTANTIATE_TEST_SUITE_P(All, FiltersOnFactors, testing::Values("ekf", "ukf", "l
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::low_rank_ekf_test

@@ -9,7 +9,7 @@
 #include "tests/filters/linear_model.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::low_rank_ukf_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -118,4 +118,4 @@ TEST(LowRankUkf, RefusesSpreadsThatBreakPositivity) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::low_rank_ukf_test

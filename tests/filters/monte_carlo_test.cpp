@@ -11,7 +11,7 @@
 #include "filters/fisher_information.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::monte_carlo_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -126,4 +126,4 @@ TEST(MonteCarlo, RefusesSizesThatDisagree) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::monte_carlo_test

@@ -10,7 +10,7 @@
 #include "tests/filters/linear_model.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::noise_estimation_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -201,4 +201,4 @@ INSTANTIATE_TEST_SUITE_P(ByEitherMethod, NoiseFromTheRecord,
                          });
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::noise_estimation_test

@@ -9,7 +9,7 @@
 #include "filters/scheme.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::oscillator_motion_test {
 namespace {
 
 using Eigen::Matrix4d, Eigen::Vector4d, Eigen::VectorXd;
@@ -211,4 +211,4 @@ TEST(OscillatorMotion, OfWhatIsNoNumberIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::oscillator_motion_test

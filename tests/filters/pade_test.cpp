@@ -7,7 +7,7 @@
 #include "filters/scheme.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::pade_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -128,4 +128,4 @@ TEST(Pade, SaysThatNewtonsMethodDoesNotConverge) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::pade_test

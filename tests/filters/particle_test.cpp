@@ -6,7 +6,7 @@
 #include "filters/particle_cloud.hpp"
 #include "tests/filters/conformance/every_filter.hpp"
 
-namespace beamid::test {
+namespace beamid::test::particle_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -108,4 +108,4 @@ TEST(Particle, RefusesOptionsThatMeanNothing) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::particle_test

@@ -8,7 +8,7 @@
 #include "filters/exact_draws.hpp"
 #include "filters/normal_noise.hpp"
 
-namespace beamid::filters {
+namespace beamid::filters::random_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -73,4 +73,4 @@ TEST(ExactDraws, SayWhereThereIsNoRoomForThem) {
 }
 
 }  // namespace
-}  // namespace beamid::filters
+}  // namespace beamid::filters::random_test

@@ -6,7 +6,7 @@
 #include "tests/filters/conformance/every_filter.hpp"
 #include "tests/filters/linear_model.hpp"
 
-namespace beamid::test {
+namespace beamid::test::robust_ekf_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -83,4 +83,4 @@ TEST(RobustEkf, RefusesOptionsThatMeanNothing) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::robust_ekf_test

@@ -13,7 +13,7 @@
 #include "tests/filters/linear_model.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::running_filter_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -293,4 +293,4 @@ TEST(DivergenceAlarm, IsSilentWhileAPoorGuessSettlesButNotForEver) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::running_filter_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace beamid {
+namespace beamid::sample_clock_test {
 namespace {
 
 using filters::SampleClock;
@@ -47,4 +47,4 @@ TEST(SampleClock, NeverGoesBack) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::sample_clock_test

@@ -10,7 +10,7 @@
 #include "filters/discrete_model.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::scheme_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -153,4 +153,4 @@ TEST(Discretise, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::scheme_test

@@ -13,7 +13,7 @@
 #include "tests/filters/linear_model.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::smoother_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -210,4 +210,4 @@ TEST_P(Smoothing, RefusesRunsWithoutBeliefsAndOfOtherRecords) {
 INSTANTIATE_TEST_SUITE_P(Registered, Smoothing, testing::Values("rts", "urts"));
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::smoother_test

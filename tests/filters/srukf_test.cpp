@@ -8,21 +8,11 @@
 #include "tests/filters/linear_model.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid {
+namespace beamid::srukf_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::Vector4d, Eigen::VectorXd;
 using filters::filter_registry;
-
-test::LinearModel walk() {
-  test::LinearModel model;
-  model.a.resize(2, 2), model.c.resize(1, 2);
-  model.a << 1, 0.1, -0.2, 0.98;
-  model.c << 1, 0;
-  model.q = 1e-3 * MatrixXd::Identity(2, 2);
-  model.r = MatrixXd::Constant(1, 1, 0.04);
-  return model;
-}
 
 class SquareRoot : public testing::TestWithParam<const char*> {};
 
@@ -30,7 +20,8 @@ TEST_P(SquareRoot, KeepsEveryDigitOfAMeasurementAfterAPriorOfTenToThe24) {
   // Oracle: P11 = P0 R / (P0 + R), which is R to 24 digits. A gain in doubles is 1 to rounding and leaves
   // anything from nothing to 1e8 behind.
   for (const double wide : {1e24, 3.7e24, 1e20}) {
-    const auto filter = filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(walk()));
+    const auto filter =
+        filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(test::two_state_model()));
     filter->reset({VectorXd::Zero(2), wide * MatrixXd::Identity(2, 2)});
     filter->correct(VectorXd::Constant(1, 3.0), {});
     EXPECT_NEAR(filter->belief().covariance(0, 0) / 0.04, 1.0, 1e-12) << wide;
@@ -41,8 +32,10 @@ TEST_P(SquareRoot, KeepsEveryDigitOfAMeasurementAfterAPriorOfTenToThe24) {
 
 TEST_P(SquareRoot, GoesOnFromTheFactorOfItsOwnBelief) {
   // Stopped and started again from the belief, as from one that never stopped.
-  const auto filter = filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(walk()));
-  const auto other = filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(walk()));
+  const auto filter =
+      filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(test::two_state_model()));
+  const auto other =
+      filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(test::two_state_model()));
   filter->reset({VectorXd::Zero(2), MatrixXd::Identity(2, 2)});
   for (int k = 0; k < 20; ++k) {
     filter->correct(VectorXd::Constant(1, std::sin(0.3 * k)), {});
@@ -88,7 +81,7 @@ TEST_P(SquareRoot, IsTheFilterOnTheCovarianceItself) {
 
 TEST_P(SquareRoot, TakesInASensorWithoutNoise) {
   // Oracle: y = x without noise leaves no variance of x, and x = y.
-  auto model = walk();
+  auto model = test::two_state_model();
   model.r.setZero();
   const auto filter = filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(model));
   MatrixXd prior(2, 2);
@@ -103,7 +96,7 @@ TEST_P(SquareRoot, TakesInASensorWithoutNoise) {
 
 TEST_P(SquareRoot, SeesOnlyWhatWasMeasuredAndTheNoiseOfTheStep) {
   // Oracle: ekf on the same linear model, outputs missing in turn and R another one from step to step.
-  auto model = walk();
+  auto model = test::two_state_model();
   model.c.setIdentity(2, 2);
   model.r = 0.04 * MatrixXd::Identity(2, 2);
   const auto filter = filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(model));
@@ -128,7 +121,8 @@ INSTANTIATE_TEST_SUITE_P(Both, SquareRoot, testing::Values("srukf", "srckf"),
 
 TEST(Srukf, RefusesTheSpreadsThatUkfRefuses) {
   const auto make = [](const filters::Options& options) {
-    return filter_registry().make("srukf", options, std::make_unique<test::LinearModel>(walk()));
+    return filter_registry().make("srukf", options,
+                                  std::make_unique<test::LinearModel>(test::two_state_model()));
   };
   EXPECT_NO_THROW(make({{"alpha", 1e-3}}));
   EXPECT_THROW(make({{"alpha", 0.0}}), std::invalid_argument);
@@ -138,4 +132,4 @@ TEST(Srukf, RefusesTheSpreadsThatUkfRefuses) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::srukf_test

@@ -6,7 +6,7 @@
 
 #include "tests/layers/source_files.hpp"
 
-namespace beamid::layers {
+namespace beamid::layers::citations_test {
 namespace {
 
 /// Keys such as julier2004 in a text that cites them as "[julier2004]" or "[julier2004, eq. 3]".
@@ -49,4 +49,4 @@ TEST(CitedKeys, AreFoundWithAndWithoutAPlace) {
 }
 
 }  // namespace
-}  // namespace beamid::layers
+}  // namespace beamid::layers::citations_test

@@ -5,7 +5,7 @@
 #include "tests/layers/include_rules.hpp"
 #include "tests/layers/source_files.hpp"
 
-namespace beamid::layers {
+namespace beamid::layers::layers_test {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
@@ -81,4 +81,4 @@ TEST(IncludeRules, OverlookWhatIsCommentedOut) {
 }
 
 }  // namespace
-}  // namespace beamid::layers
+}  // namespace beamid::layers::layers_test

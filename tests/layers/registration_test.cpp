@@ -15,7 +15,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/layers/source_files.hpp"
 
-namespace beamid::layers {
+namespace beamid::layers::registration_test {
 namespace {
 
 /// Names that a source text registers, in order of appearance.
@@ -99,4 +99,4 @@ TEST(RegisteredNames, AreReadFromEveryRegistrationOfAText) {
 }
 
 }  // namespace
-}  // namespace beamid::layers
+}  // namespace beamid::layers::registration_test

@@ -11,7 +11,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::projection_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -112,4 +112,4 @@ TEST(Projection, SaysThatAnAxialLoadBuckles) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::projection_test

@@ -10,7 +10,7 @@
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::reduction_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -182,4 +182,4 @@ TEST(Registry, NamesWhatItKnows) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::reduction_test

@@ -9,7 +9,7 @@
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::static_interpolation_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -91,4 +91,4 @@ TEST(StaticInterpolation, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::static_interpolation_test

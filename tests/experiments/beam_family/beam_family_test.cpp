@@ -6,7 +6,7 @@
 
 #include "experiments/input/read_experiment.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::beam_family_test {
 namespace {
 
 const Progress silent = [](const std::string&) {};
@@ -68,4 +68,4 @@ TEST(BeamFamily, NamesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::beam_family_test

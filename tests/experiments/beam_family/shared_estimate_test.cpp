@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <utility>
 
-namespace beamid::experiments {
+namespace beamid::experiments::shared_estimate_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -64,4 +64,4 @@ TEST(SharedEstimate, LeavesUncertainWhatNoRecordTells) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::shared_estimate_test

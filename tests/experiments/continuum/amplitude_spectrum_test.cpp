@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace beamid::experiments {
+namespace beamid::experiments::amplitude_spectrum_test {
 namespace {
 
 TEST(AmplitudeSpectrum, PeaksAtASinesAmplitude) {
@@ -22,4 +22,4 @@ TEST(AmplitudeSpectrum, PeaksAtASinesAmplitude) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::amplitude_spectrum_test

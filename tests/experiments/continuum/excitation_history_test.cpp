@@ -10,7 +10,7 @@
 #include "fem/assembly.hpp"
 #include "fem/cantilever.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::excitation_history_test {
 namespace {
 
 using Kind = Excitation::Kind;
@@ -109,4 +109,4 @@ TEST(Release, NeedsAStaticShape) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::excitation_history_test

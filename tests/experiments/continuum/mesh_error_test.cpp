@@ -10,7 +10,7 @@
 #include "experiments/continuum/modal_summary.hpp"
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::mesh_error_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -114,4 +114,4 @@ TEST(MeshError, IsHonestAtASharpTip) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::mesh_error_test

@@ -7,7 +7,7 @@
 
 #include "fem/cantilever.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::modal_summary_test {
 namespace {
 
 const Progress silent = [](const std::string&) {};
@@ -52,4 +52,4 @@ TEST(ModalSummary, LeavesOutWhatIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::modal_summary_test

@@ -4,7 +4,7 @@
 #include "experiments/continuum/simulated_test.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::strain_gauge_test {
 namespace {
 
 Experiment experiment_with(std::vector<Sensor> sensors) {
@@ -49,4 +49,4 @@ TEST(StrainGauge, LeavesTheOtherSensorsAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::strain_gauge_test

@@ -14,7 +14,7 @@
 #include "experiments/random.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::damping_law_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -186,4 +186,4 @@ TEST(NoiseNear, IsTheDeviationOfWhiteNoiseAndMoreWhereItIsDense) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::damping_law_test

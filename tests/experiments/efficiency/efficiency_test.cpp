@@ -8,7 +8,7 @@
 
 #include "experiments/efficiency/lengthening_passes.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::efficiency_test {
 namespace {
 
 Choice filter(const char* name) {
@@ -114,4 +114,4 @@ TEST(Efficiency, RefusesWhatItCannotExamine) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::efficiency_test

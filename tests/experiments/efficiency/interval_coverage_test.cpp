@@ -6,7 +6,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
-namespace beamid::experiments {
+namespace beamid::experiments::interval_coverage_test {
 namespace {
 
 // 95 % of independent records, binomial band of 99.9 %.
@@ -34,4 +34,4 @@ TEST(IntervalCoverage, RefusesASingleRun) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::interval_coverage_test

@@ -12,7 +12,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "fem/exact/exact_cantilever.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::laboratory_records_test {
 namespace {
 
 using testing::HasSubstr, testing::Not;
@@ -103,4 +103,4 @@ TEST(LaboratoryRecords, AreRightOrRefusedForTheirCause) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::laboratory_records_test

@@ -6,7 +6,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-namespace beamid::experiments {
+namespace beamid::experiments::seeded_decays_test {
 namespace {
 
 TEST(SeededDecays, AreAllIdentified) {
@@ -33,4 +33,4 @@ TEST(SeededDecays, OfManyPeriodsAreIdentifiedFromAPoorBeam) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::seeded_decays_test

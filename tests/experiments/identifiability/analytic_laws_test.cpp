@@ -7,7 +7,7 @@
 
 #include "tests/experiments/identifiability/oscillator.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::analytic_laws_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -188,4 +188,4 @@ TEST(AMassKnownToTwoPerCent, MakesTheStiffnessKnownToTwoPerCent) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::analytic_laws_test

@@ -10,7 +10,7 @@
 #include "tests/experiments/identifiability/oscillator.hpp"
 #include "tests/experiments/models/one_coordinate.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::channel_information_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -88,4 +88,4 @@ TEST(InformationAboutUnknowns, RefusesASensorWithoutNoise) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::channel_information_test

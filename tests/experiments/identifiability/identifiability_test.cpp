@@ -10,7 +10,7 @@
 #include "experiments/input/read_reduction.hpp"
 #include "experiments/input/toml_table.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::identifiability_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -200,4 +200,4 @@ TEST(IdentifiabilityReport, SaysInWordsWhatIsKnownOnlyInCombination) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::identifiability_test

@@ -5,7 +5,7 @@
 
 #include "experiments/input/toml_table.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::clean_text_test {
 namespace {
 
 // Oracle: ISO 8859-1 has the code points of Unicode's first block; sequences by hand from the table of RFC
@@ -55,4 +55,4 @@ TEST(TomlTexts, WithControlCharactersAreRefusedAtTheirPlace) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::clean_text_test

@@ -6,7 +6,7 @@
 #include "experiments/input/spelling.hpp"
 #include "experiments/input/units.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::column_name_test {
 namespace {
 
 TEST(ColumnName, TellsQuantityLabelAndUnit) {
@@ -68,4 +68,4 @@ TEST(Nearest, IsTheWordThatWasMeant) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::column_name_test

@@ -5,7 +5,7 @@
 
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::json_file_test {
 namespace {
 
 std::string error_of(const std::string& text) {
@@ -33,4 +33,4 @@ TEST(JsonFile, IsRefusedWhereItNestsWithoutEnd) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::json_file_test

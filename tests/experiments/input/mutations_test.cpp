@@ -7,7 +7,7 @@
 #include "experiments/input/read_record.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::mutations_test {
 namespace {
 
 /// One to four bytes or pieces removed, doubled, moved or replaced.
@@ -101,4 +101,4 @@ TEST(Mutations, OfARecordAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::mutations_test

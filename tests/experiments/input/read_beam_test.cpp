@@ -8,7 +8,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::read_beam_test {
 namespace {
 
 using std::numbers::pi;
@@ -245,4 +245,4 @@ TEST(Overrides, TakeThePlaceOfTheFilesOwnKeys) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::read_beam_test

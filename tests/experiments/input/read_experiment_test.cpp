@@ -8,7 +8,7 @@
 
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::read_experiment_test {
 namespace {
 
 constexpr const char* complete = R"(title = "steel cantilever"
@@ -324,5 +324,8 @@ TEST(InputError, KnowsItsPlace) {
   EXPECT_STREQ(InputError({"a.csv", 0, 5}, "empty").what(), "a.csv: empty");
 }
 
+#undef BEAM_KEYS
+#undef BEAM
+
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::read_experiment_test

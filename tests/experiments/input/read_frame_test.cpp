@@ -6,7 +6,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::read_frame_test {
 namespace {
 
 const std::string joints =
@@ -130,4 +130,4 @@ TEST(ReadExperiment, OfAFrameSaysWhoTakesIt) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::read_frame_test

@@ -5,7 +5,7 @@
 
 #include "experiments/input/read_experiment.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::read_parameters_test {
 namespace {
 
 using testing::HasSubstr;
@@ -121,4 +121,4 @@ TEST(ReadStrainGauges, NeedAPlaceAndADistance) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::read_parameters_test

@@ -5,7 +5,7 @@
 
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::read_record_test {
 namespace {
 
 /// Time in column 1 [s], acceleration in column 2 [m/s2].
@@ -281,5 +281,7 @@ TEST(ReadRecord, ReadsTheFiveMeasuredRecords) {
   }
 }
 
+#undef KNOWN
+
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::read_record_test

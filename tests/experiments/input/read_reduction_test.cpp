@@ -5,7 +5,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::read_reduction_test {
 namespace {
 
 std::string error_of(const std::string& text) {
@@ -110,4 +110,4 @@ TEST(Shape, IsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::read_reduction_test

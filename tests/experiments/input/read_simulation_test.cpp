@@ -6,7 +6,7 @@
 #include "experiments/input/read_experiment.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::read_simulation_test {
 namespace {
 
 const std::string beam = "beam = { length_m = 2, bending_stiffness_n_m2 = 100, mass_kg = 3 }\n";  // one line
@@ -170,4 +170,4 @@ TEST(ReadExperiment, RefusesBadTablesOfTheContinuum) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::read_simulation_test

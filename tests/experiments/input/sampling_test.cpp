@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace beamid::experiments {
+namespace beamid::experiments::sampling_test {
 namespace {
 
 std::optional<SamplingFault> fault_of(const std::vector<std::string>& printed) {
@@ -54,4 +54,4 @@ TEST(Sampling, KnowsTheResolutionOfPrintedNumbers) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::sampling_test

@@ -15,17 +15,8 @@ namespace beamid::experiments {
 /// A file of this content for as long as the object lives.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& name, const std::string& content)
-      : folder_(std::filesystem::temp_directory_path() / ("beamid_input_" + std::to_string(::getpid()))),
-        path_(folder_ / name) {
-    std::filesystem::create_directories(folder_);
-    std::ofstream(path_, std::ios::binary) << content;
-  }
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-    std::filesystem::remove(folder_, ignored);
-  }
+  TemporaryFile(const std::string& name, const std::string& content);
+  ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 

@@ -12,7 +12,7 @@
 #include "experiments/input/read_frame.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::vocabulary_test {
 namespace {
 
 std::string document() {
@@ -202,4 +202,4 @@ TEST(ConfigurationDocument,
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::vocabulary_test

@@ -8,7 +8,7 @@
 #include "experiments/input/read_record.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::write_record_test {
 namespace {
 
 Record random_record(Eigen::Index size, unsigned seed) {
@@ -69,4 +69,4 @@ TEST(WriteRecord, LeavesNothingBehindWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::write_record_test

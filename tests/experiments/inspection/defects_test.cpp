@@ -12,7 +12,7 @@
 #include <numbers>
 #include <random>
 
-namespace beamid::experiments {
+namespace beamid::experiments::defects_test {
 namespace {
 
 using Signal = std::vector<double>;
@@ -191,4 +191,4 @@ TEST(Defects, HearARattle) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::defects_test

@@ -11,7 +11,7 @@
 #include "experiments/inspection/noise_floor.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::inspection_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -207,4 +207,4 @@ TEST(Inspection, FindsWhatIsKnownOfTheMeasuredRecords) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::inspection_test

@@ -8,7 +8,7 @@
 
 #include "experiments/random.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::amplitude_dependence_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -96,4 +96,4 @@ TEST(AmplitudeDependence, KeepsModesApart) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::amplitude_dependence_test

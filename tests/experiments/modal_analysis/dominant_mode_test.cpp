@@ -8,30 +8,20 @@
 #include <stdexcept>
 
 #include "experiments/modal_analysis/damped_sine_fit.hpp"
+#include "tests/experiments/damped_oscillation.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::dominant_mode_test {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double turn = 2 * std::numbers::pi;
-
-Complex rate_of(double frequency_hz, double damping_ratio) {
-  return turn * frequency_hz * Complex(-damping_ratio, std::sqrt(1 - damping_ratio * damping_ratio));
-}
-
-Eigen::VectorXd decay(Complex amplitude, Complex rate, double interval, Eigen::Index count) {
-  Eigen::VectorXd signal(count);
-  for (Eigen::Index k = 0; k < count; ++k)
-    signal[k] = (amplitude * std::exp(rate * (interval * static_cast<double>(k)))).real();
-  return signal;
-}
+using test::complex_rate, test::damped_oscillation;
 
 // Oracle: the sine put in, from a rate that is off by 1 % in frequency and a half in damping.
 TEST(DampedSineFit, RecoversAnExactSineFromARoughStart) {
-  const Complex rate = rate_of(11.2, 0.013), amplitude(3, -2);
-  Eigen::VectorXd signal = decay(amplitude, rate, 1e-3, 1500);
+  const Complex rate = complex_rate(11.2, 0.013), amplitude(3, -2);
+  Eigen::VectorXd signal = damped_oscillation(amplitude, rate, 1e-3, 1500);
   signal.array() += 0.25;
-  const DampedSineFit fit = fit_damped_sines(signal, 1e-3, {rate_of(11.3, 0.006)});
+  const DampedSineFit fit = fit_damped_sines(signal, 1e-3, {complex_rate(11.3, 0.006)});
   EXPECT_NEAR(std::abs(fit.sines[0].rate - rate) / std::abs(rate), 0, 1e-12);
   EXPECT_NEAR(std::abs(fit.sines[0].amplitude - amplitude), 0, 1e-10);
   EXPECT_NEAR(fit.offset, 0.25, 1e-11);
@@ -42,9 +32,11 @@ TEST(DampedSineFit, RecoversAnExactSineFromARoughStart) {
 
 // Oracle: the sines put in, two of them 2.3 cycles apart over the signal.
 TEST(DampedSineFit, SeparatesTwoCloseSines) {
-  const Complex first = rate_of(22.7, 0.026), second = rate_of(28.4, 0.025);
-  const Eigen::VectorXd signal = decay(0.12, first, 6e-4, 660) + decay(Complex(0, 0.035), second, 6e-4, 660);
-  const DampedSineFit fit = fit_damped_sines(signal, 6e-4, {rate_of(22.5, 0.02), rate_of(28, 0.03)});
+  const Complex first = complex_rate(22.7, 0.026), second = complex_rate(28.4, 0.025);
+  const Eigen::VectorXd signal =
+      damped_oscillation(0.12, first, 6e-4, 660) + damped_oscillation(Complex(0, 0.035), second, 6e-4, 660);
+  const DampedSineFit fit =
+      fit_damped_sines(signal, 6e-4, {complex_rate(22.5, 0.02), complex_rate(28, 0.03)});
   ASSERT_EQ(fit.sines.size(), 2);
   EXPECT_NEAR(std::abs(fit.sines[0].rate - first) / std::abs(first), 0, 1e-9);
   EXPECT_NEAR(std::abs(fit.sines[1].rate - second) / std::abs(second), 0, 1e-9);
@@ -56,7 +48,8 @@ TEST(DominantMode, IsExactOnExactDecays) {
   const double frequency[] = {4.14551098976, 3.45552719485, 2.51565497735, 2.06820125253, 1.72990165242};
   const double damping[] = {0.002, 0.0045, 0.0028, 0.0022, 0.0015};
   for (int beam = 0; beam < 5; ++beam) {
-    const Eigen::VectorXd signal = decay(-5.0, rate_of(frequency[beam], damping[beam]), 1e-3, 25000);
+    const Eigen::VectorXd signal =
+        damped_oscillation(-5.0, complex_rate(frequency[beam], damping[beam]), 1e-3, 25000);
     ModalAnalysisSettings settings;
     if (beam % 2 == 0) settings.expected_frequency_hz = 1.1 * frequency[beam];
     const ModalEstimate estimate = dominant_mode(signal, 1e-3, settings);
@@ -65,7 +58,7 @@ TEST(DominantMode, IsExactOnExactDecays) {
     EXPECT_NEAR(estimate.realised_damping_ratio / damping[beam], 1, 1e-6);
     EXPECT_NEAR(estimate.amplitude, 5, 1e-9);
     EXPECT_NEAR(std::abs(estimate.phase), std::numbers::pi, 1e-8);
-    EXPECT_NEAR(std::abs(estimate.rate() - rate_of(frequency[beam], damping[beam])), 0, 1e-9);
+    EXPECT_NEAR(std::abs(estimate.rate() - complex_rate(frequency[beam], damping[beam])), 0, 1e-9);
   }
 }
 
@@ -75,8 +68,8 @@ TEST(DominantMode, IsExactOnExactDecays) {
 TEST(DominantMode, IsNotMisledByAStrongHigherMode) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal(0, 0.05);
-  Eigen::VectorXd signal = decay(7.915, rate_of(4.145511, 0.002), 1e-3, 25000) +
-                           decay(-7.577, rate_of(25.99, 0.005), 1e-3, 25000) +
+  Eigen::VectorXd signal = damped_oscillation(7.915, complex_rate(4.145511, 0.002), 1e-3, 25000) +
+                           damped_oscillation(-7.577, complex_rate(25.99, 0.005), 1e-3, 25000) +
                            Eigen::VectorXd::NullaryExpr(25000, [&] { return normal(generator); });
   signal.array() += 0.3;
   ModalAnalysisSettings settings;
@@ -94,7 +87,7 @@ TEST(DominantMode, IsNotMisledByAStrongHigherMode) {
 TEST(DominantMode, ReportsTheStandardDeviationsItHas) {
   std::mt19937_64 generator(3);
   std::normal_distribution<double> normal(0, 0.2);
-  const Eigen::VectorXd clean = decay(Complex(1, 1), rate_of(10, 0.01), 2e-3, 1500);
+  const Eigen::VectorXd clean = damped_oscillation(Complex(1, 1), complex_rate(10, 0.01), 2e-3, 1500);
   double frequency = 0, damping = 0;
   for (int run = 0; run < 100; ++run) {
     const ModalEstimate estimate =
@@ -112,7 +105,7 @@ TEST(DominantMode, ReportsTheStandardDeviationsItHas) {
 }
 
 TEST(DominantMode, NamesWhatItFoundWhenNoModeIsThere) {
-  const Eigen::VectorXd signal = decay(1, rate_of(10, 0.01), 2e-3, 1500);
+  const Eigen::VectorXd signal = damped_oscillation(1, complex_rate(10, 0.01), 2e-3, 1500);
   ModalAnalysisSettings settings;
   settings.expected_frequency_hz = 30;
   try {
@@ -128,4 +121,4 @@ TEST(DominantMode, NamesWhatItFoundWhenNoModeIsThere) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::dominant_mode_test

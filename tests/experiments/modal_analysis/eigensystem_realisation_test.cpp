@@ -8,22 +8,13 @@
 #include <random>
 #include <stdexcept>
 
-namespace beamid::experiments {
+#include "tests/experiments/damped_oscillation.hpp"
+
+namespace beamid::experiments::eigensystem_realisation_test {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double turn = 2 * std::numbers::pi;
-
-Complex rate_of(double frequency_hz, double damping_ratio) {
-  return turn * frequency_hz * Complex(-damping_ratio, std::sqrt(1 - damping_ratio * damping_ratio));
-}
-
-Eigen::VectorXd decay(Complex amplitude, Complex rate, double interval, Eigen::Index count) {
-  Eigen::VectorXd signal(count);
-  for (Eigen::Index k = 0; k < count; ++k)
-    signal[k] = (amplitude * std::exp(rate * (interval * static_cast<double>(k)))).real();
-  return signal;
-}
+using test::complex_rate, test::damped_oscillation;
 
 std::vector<IdentifiedMode> physical(const EigensystemRealisation& result) {
   std::vector<IdentifiedMode> modes;
@@ -39,7 +30,8 @@ TEST(EigensystemRealisation, RecoversOneToThreeExactDecays) {
   const Complex amplitude[] = {{1, 0.2}, {-0.4, 0.5}, {0.1, 0.3}};
   Eigen::VectorXd signal = Eigen::VectorXd::Zero(800);
   for (int count = 1; count <= 3; ++count) {
-    signal += decay(amplitude[count - 1], rate_of(frequency[count - 1], damping[count - 1]), interval, 800);
+    signal += damped_oscillation(amplitude[count - 1], complex_rate(frequency[count - 1], damping[count - 1]),
+                                 interval, 800);
     const EigensystemRealisation result = eigensystem_realisation(signal.transpose(), interval);
     const std::vector<IdentifiedMode> modes = physical(result);
     EXPECT_EQ(result.order, 2 * count);
@@ -57,14 +49,15 @@ TEST(EigensystemRealisation, RecoversOneToThreeExactDecays) {
 // Oracle: two modes seen by three sensors through known complex shapes.
 TEST(EigensystemRealisation, FindsTheShapesOfSeveralOutputs) {
   const double interval = 0.005;
-  const Complex first = rate_of(3, 0.005), second = rate_of(19, 0.01);
+  const Complex first = complex_rate(3, 0.005), second = complex_rate(19, 0.01);
   Eigen::Matrix<Complex, 3, 2> shapes;
   shapes << Complex(1, 0), Complex(0.5, 0.1), Complex(0.6, 0.1), Complex(-1, 0), Complex(0.2, 0),
       Complex(0, 0.8);
   Eigen::MatrixXd outputs(3, 500);
   for (int i = 0; i < 3; ++i)
-    outputs.row(i) =
-        (decay(shapes(i, 0), first, interval, 500) + decay(shapes(i, 1), second, interval, 500)).transpose();
+    outputs.row(i) = (damped_oscillation(shapes(i, 0), first, interval, 500) +
+                      damped_oscillation(shapes(i, 1), second, interval, 500))
+                         .transpose();
   const EigensystemRealisation result = eigensystem_realisation(outputs, interval);
   const std::vector<IdentifiedMode> modes = physical(result);
   ASSERT_EQ(modes.size(), 2);
@@ -92,8 +85,8 @@ Eigen::Vector2d cramer_rao(Complex amplitude, Complex rate, double interval, Eig
 TEST(EigensystemRealisation, ComesCloseToTheCramerRaoBound) {
   const double interval = 0.01, noise = 0.05;
   const Eigen::Index count = 500;
-  const Complex rate = rate_of(6, 0.005), amplitude(0.8, 0.6);
-  const Eigen::VectorXd clean = decay(amplitude, rate, interval, count);
+  const Complex rate = complex_rate(6, 0.005), amplitude(0.8, 0.6);
+  const Eigen::VectorXd clean = damped_oscillation(amplitude, rate, interval, count);
   std::mt19937_64 generator(11);
   std::normal_distribution<double> normal(0, noise);
   Eigen::Vector2d squares = Eigen::Vector2d::Zero();
@@ -122,9 +115,9 @@ TEST(EigensystemRealisation, ComesCloseToTheCramerRaoBound) {
 // A constant is a pole at zero, a growing sine has negative damping: neither is a mode of a free decay.
 TEST(EigensystemRealisation, MarksSpuriousPoles) {
   const double interval = 0.01;
-  Eigen::VectorXd signal = decay(1, rate_of(5, 0.01), interval, 600) +
-                           decay(0.3, rate_of(12, -0.001), interval, 600) +
-                           decay(1e-4, rate_of(20, 0.01), interval, 600);
+  Eigen::VectorXd signal = damped_oscillation(1, complex_rate(5, 0.01), interval, 600) +
+                           damped_oscillation(0.3, complex_rate(12, -0.001), interval, 600) +
+                           damped_oscillation(1e-4, complex_rate(20, 0.01), interval, 600);
   signal.array() += 0.5;
   const EigensystemRealisation result = eigensystem_realisation(signal.transpose(), interval);
   ASSERT_EQ(result.modes.size(), 4);
@@ -139,7 +132,7 @@ TEST(EigensystemRealisation, MarksSpuriousPoles) {
 }
 
 TEST(EigensystemRealisation, RefusesWhatItCannotAnalyse) {
-  const Eigen::MatrixXd signal = decay(1, rate_of(5, 0.01), 0.01, 100).transpose();
+  const Eigen::MatrixXd signal = damped_oscillation(1, complex_rate(5, 0.01), 0.01, 100).transpose();
   EXPECT_THROW(eigensystem_realisation(signal.leftCols(8), 0.01), std::invalid_argument);
   EXPECT_THROW(eigensystem_realisation(signal, 0), std::invalid_argument);
   EXPECT_THROW(eigensystem_realisation(Eigen::MatrixXd::Zero(1, 100), 0.01), std::invalid_argument);
@@ -155,4 +148,4 @@ TEST(EigensystemRealisation, RefusesWhatItCannotAnalyse) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::eigensystem_realisation_test

@@ -8,7 +8,7 @@
 #include "experiments/recorded_frequency.hpp"
 #include "tests/experiments/forced_oscillator.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::forced_mode_test {
 namespace {
 
 const Oscillator oscillator = Oscillator::from_frequency(1.08, 2.0 * std::numbers::pi * 3.4555, 0.02);
@@ -46,4 +46,4 @@ TEST(RecordedFrequency, IsAbsentWithItsReasonAndNeverAnException) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::forced_mode_test

@@ -9,7 +9,7 @@
 #include "experiments/modal_study/hammer_study.hpp"
 #include "experiments/random.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::hammer_test {
 namespace {
 
 constexpr double pi = std::numbers::pi, interval = 5e-4;
@@ -174,4 +174,4 @@ TEST(ResponsePeaks, FindsNearModesOfResponsesWithNoise) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::hammer_test

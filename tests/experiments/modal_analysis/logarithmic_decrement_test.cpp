@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace beamid::experiments {
+namespace beamid::experiments::logarithmic_decrement_test {
 namespace {
 
 Eigen::VectorXd decay(double frequency_hz, double damping_ratio, double offset, double interval,
@@ -59,4 +59,4 @@ TEST(LogarithmicDecrement, RefusesTooFewPeaks) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::logarithmic_decrement_test

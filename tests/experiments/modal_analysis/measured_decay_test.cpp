@@ -11,7 +11,7 @@
 #include "experiments/modal_analysis/dominant_mode.hpp"
 #include "experiments/modal_analysis/logarithmic_decrement.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::measured_decay_test {
 namespace {
 
 constexpr double sampling_interval = 31.0 / 51200.0;
@@ -109,4 +109,4 @@ TEST(MeasuredDecay, IsNotMisledByHigherModes) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::measured_decay_test

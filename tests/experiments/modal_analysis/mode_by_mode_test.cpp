@@ -10,7 +10,7 @@
 #include "experiments/modal_analysis/spectral_peaks.hpp"
 #include "experiments/random.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::mode_by_mode_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -153,4 +153,4 @@ TEST(SpectralPeaks, SeesNoneInNoise) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::mode_by_mode_test

@@ -11,22 +11,18 @@
 #include "experiments/modal_analysis/joint_decay_fit.hpp"
 #include "experiments/modal_analysis/modal_method.hpp"
 #include "experiments/random.hpp"
+#include "tests/experiments/damped_oscillation.hpp"
 #include "tests/experiments/modal_analysis/shaken_chain.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::stabilisation_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using Complex = std::complex<double>;
-using testing::HasSubstr;
-
-Complex rate_of(double frequency_hz, double damping_ratio) {
-  return 2 * std::numbers::pi * frequency_hz *
-         Complex(-damping_ratio, std::sqrt(1 - damping_ratio * damping_ratio));
-}
+using test::complex_rate, testing::HasSubstr;
 
 Pole pole_at(double frequency_hz, double damping_ratio) {
-  return {rate_of(frequency_hz, damping_ratio), Eigen::VectorXcd::Ones(1)};
+  return {complex_rate(frequency_hz, damping_ratio), Eigen::VectorXcd::Ones(1)};
 }
 
 /// Two decays, 5 and 8 Hz, in two channels, with white noise.
@@ -34,7 +30,7 @@ MatrixXd noisy_decay(double noise, std::uint64_t seed) {
   MatrixXd outputs = MatrixXd::Zero(2, 400);
   for (Index k = 0; k < outputs.cols(); ++k) {
     const double t = 0.01 * static_cast<double>(k);
-    const Complex a = std::exp(rate_of(5, 0.01) * t), b = 0.5 * std::exp(rate_of(8, 0.02) * t);
+    const Complex a = std::exp(complex_rate(5, 0.01) * t), b = 0.5 * std::exp(complex_rate(8, 0.02) * t);
     outputs(0, k) = 0.3 + a.real() + b.real();
     outputs(1, k) = 0.6 * a.real() - b.imag();
   }
@@ -101,9 +97,9 @@ TEST(Methods, AgreeOnDecayAndRandomVibration) {
   MatrixXd decay = MatrixXd::Zero(2, 500);
   for (const auto& mode : chain.modes())
     for (Index k = 0; k < decay.cols(); ++k) {
-      const double part =
-          std::exp(rate_of(mode.frequency_hz, mode.damping_ratio) * chain.interval * static_cast<double>(k))
-              .real();
+      const double part = std::exp(complex_rate(mode.frequency_hz, mode.damping_ratio) * chain.interval *
+                                   static_cast<double>(k))
+                              .real();
       decay(0, k) += part;
       decay(1, k) += (mode.frequency_hz < 1.5 ? 0.6 : -0.6) * part;
     }
@@ -132,7 +128,7 @@ TEST(Methods, AgreeOnDecayAndRandomVibration) {
 // Oracle: fit_damped_sines, which knows one channel and all its parameters at once.
 TEST(JointDecayFit, IsTheFitOfDampedSinesInOneChannel) {
   const MatrixXd outputs = noisy_decay(0.02, 5).topRows(1);
-  const std::vector<Complex> start{rate_of(5.05, 0.02), rate_of(7.9, 0.01)};
+  const std::vector<Complex> start{complex_rate(5.05, 0.02), complex_rate(7.9, 0.01)};
   const JointDecayFit joint = fit_decays_jointly(outputs, 0.01, start);
   const DampedSineFit one = fit_damped_sines(outputs.row(0).transpose(), 0.01, start);
   for (std::size_t m = 0; m < 2; ++m) {
@@ -150,8 +146,8 @@ TEST(JointDecayFit, KnowsItsOwnScatter) {
   VectorXd frequency(runs), damping(runs);
   double frequency_variance = 0, damping_variance = 0;
   for (int run = 0; run < runs; ++run) {
-    const JointDecayFit fit =
-        fit_decays_jointly(noisy_decay(0.05, 100 + run), 0.01, {rate_of(5, 0.01), rate_of(8, 0.02)});
+    const JointDecayFit fit = fit_decays_jointly(noisy_decay(0.05, 100 + run), 0.01,
+                                                 {complex_rate(5, 0.01), complex_rate(8, 0.02)});
     Pole pole{fit.rates[1], fit.shapes.col(1)};
     pole.take_deviations(fit.covariance.block<2, 2>(2, 2));
     frequency[run] = pole.frequency_hz();
@@ -171,9 +167,9 @@ TEST(JointDecayFit, KnowsItsOwnScatter) {
 TEST(JointDecayFit, RefusesWhatItCannotFit) {
   const MatrixXd outputs = noisy_decay(0, 1);
   EXPECT_THROW(fit_decays_jointly(outputs, 0.01, {}), std::invalid_argument);
-  EXPECT_THROW(fit_decays_jointly(outputs.leftCols(9), 0.01, {rate_of(5, 0.01)}), std::invalid_argument);
+  EXPECT_THROW(fit_decays_jointly(outputs.leftCols(9), 0.01, {complex_rate(5, 0.01)}), std::invalid_argument);
   EXPECT_THROW(fit_decays_jointly(outputs, 0.01, {Complex(-1, 0)}), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::stabilisation_test

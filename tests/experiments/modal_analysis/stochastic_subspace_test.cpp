@@ -7,7 +7,7 @@
 
 #include "tests/experiments/modal_analysis/shaken_chain.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::stochastic_subspace_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -68,4 +68,4 @@ TEST(StochasticSubspace, NamesWhatItRefuses) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::stochastic_subspace_test

@@ -8,7 +8,7 @@
 #include "experiments/modal_study/modal_study.hpp"
 #include "experiments/random.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::find_modes_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -207,4 +207,4 @@ TEST(FindModes, TakesTheLongestPartWithoutMissingReadings) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::find_modes_test

@@ -11,7 +11,7 @@
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::model_check_test {
 namespace {
 
 using testing::HasSubstr, testing::Not;
@@ -207,4 +207,4 @@ TEST(ModelCheck, RefusesCandidatesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::model_check_test

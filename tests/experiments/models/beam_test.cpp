@@ -12,7 +12,7 @@
 #include "filters/filter_run.hpp"
 #include "tests/experiments/models/beam_setting.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::beam_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -355,4 +355,4 @@ TEST(BeamModel, CountsRegionsAndTakesGivenNames) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::beam_test

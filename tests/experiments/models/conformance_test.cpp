@@ -8,7 +8,7 @@
 #include "filters/discrete_model.hpp"
 #include "tests/experiments/models/beam_setting.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::conformance_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -195,4 +195,4 @@ INSTANTIATE_TEST_SUITE_P(Registered, EveryModel,
                          });
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::conformance_test

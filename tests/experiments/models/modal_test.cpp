@@ -6,7 +6,7 @@
 
 #include "tests/experiments/models/beam_setting.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::modal_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -105,4 +105,4 @@ TEST(ModalModel, SaysWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::modal_test

@@ -8,7 +8,7 @@
 #include "filters/discrete_model.hpp"
 #include "tests/experiments/models/one_coordinate.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::nonlinear_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -113,4 +113,4 @@ TEST(NonlinearModels, FixWhatParametersDoNotName) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::nonlinear_test

@@ -9,7 +9,7 @@
 #include "tests/experiments/models/one_coordinate.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::sdof_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -131,4 +131,4 @@ TEST(Sdof, RefusesWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::sdof_test

@@ -9,7 +9,7 @@
 #include "filters/central_differences.hpp"
 #include "tests/experiments/models/beam_setting.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::following_motion_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -122,4 +122,4 @@ TEST(FollowingMotion, SaysWhereTheBeamHasNoModes) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::following_motion_test

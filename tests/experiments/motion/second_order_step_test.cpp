@@ -7,7 +7,7 @@
 #include "filters/discrete_model.hpp"
 #include "tests/experiments/models/beam_setting.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::second_order_step_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -204,4 +204,4 @@ TEST(OwnStepOfTheBeam, StopsWhereAModeTurnsTooFar) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::second_order_step_test

@@ -8,7 +8,7 @@
 #include "tests/experiments/output/read_vtu.hpp"
 #include "tests/experiments/output/temporary_folder.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::field_history_test {
 namespace {
 
 const fem::Beam described = fem::Cantilever{1.1, 228.96, 2.777, 0.36, 0.0};
@@ -95,4 +95,4 @@ TEST(FieldHistory, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::field_history_test

@@ -19,7 +19,7 @@
 #include "experiments/output/process.hpp"
 #include "tests/experiments/output/temporary_folder.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::figure_test {
 namespace {
 
 // 25 s of a decaying oscillation of 4 Hz at 1000 samples per second, and its first second.
@@ -271,4 +271,4 @@ TEST(Process, GivesOutputAndExitCode) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::figure_test

@@ -9,7 +9,7 @@
 #include "fem/frame.hpp"
 #include "tests/experiments/output/temporary_folder.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::mode_figure_test {
 namespace {
 
 // Pinned at both ends, cut into few elements.
@@ -95,4 +95,4 @@ TEST(ModeFigure, RefusesOtherSizes) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::mode_figure_test

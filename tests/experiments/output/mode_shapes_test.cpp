@@ -11,7 +11,7 @@
 #include "tests/experiments/output/read_vtu.hpp"
 #include "tests/experiments/output/temporary_folder.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::mode_shapes_test {
 namespace {
 
 using fem::Outline, fem::Variation;
@@ -259,4 +259,4 @@ TEST(ModeShapes, HugeMeshIsThinnedButKeepsItsEnds) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::mode_shapes_test

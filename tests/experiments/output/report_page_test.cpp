@@ -9,7 +9,7 @@
 #include "experiments/output/html.hpp"
 #include "experiments/output/joined_report.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::report_page_test {
 namespace {
 
 using testing::HasSubstr, testing::Not;
@@ -79,4 +79,4 @@ TEST(SideBySide, ShowsTheNumbersThatDiffer) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::report_page_test

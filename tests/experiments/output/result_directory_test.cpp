@@ -8,7 +8,7 @@
 
 #include "tests/experiments/output/temporary_folder.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::result_directory_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST(ResultDirectory, NoticesAFullDisk) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::result_directory_test

@@ -8,7 +8,7 @@
 #include "experiments/output/text.hpp"
 #include "tests/experiments/output/temporary_folder.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::results_test {
 namespace {
 
 Results results() {
@@ -51,7 +51,7 @@ TEST(Results, JsonHasTheSchemasKeysInOrder) {
 }
 
 TEST(Results, NumbersThatAreNotFiniteBecomeNullWithAWarning) {
-  Results results = experiments::results();
+  Results results = results_test::results();
   results.values["beams"][0]["frequency_hz"] = std::numeric_limits<double>::quiet_NaN();
   results.configuration["beam"]["length_m"] = -std::numeric_limits<double>::infinity();
   const auto json = to_json(results);
@@ -73,7 +73,7 @@ TEST(Results, RefuseKeysAndFilesThatAreTaken) {
 TEST(Results, WriteTheFilesTheyListAndTheSameBytesAgain) {
   TemporaryFolder temporary;
   for (const char* name : {"first", "second"}) {
-    Results results = experiments::results();
+    Results results = results_test::results();
     results.timing[0].second = *name;  // the clock never gives the same twice
     ResultDirectory directory(temporary.path / name, false);
     write(results, directory);
@@ -127,7 +127,7 @@ TEST(Results, JsonOnTheTerminalIsTheFile) {
 
 // Oracle: JSON is UTF-8 (RFC 8259, section 8.1); a Latin-1 text must not end the run.
 TEST(Results, TextsThatAreNotUtf8AreReplaced) {
-  Results results = experiments::results();
+  Results results = results_test::results();
   results.values["channel"] = "Beschleunigung \xb2";
   std::ostringstream stream;
   EXPECT_NO_THROW(print_json(stream, results));
@@ -135,4 +135,4 @@ TEST(Results, TextsThatAreNotUtf8AreReplaced) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::results_test

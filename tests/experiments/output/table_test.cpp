@@ -9,7 +9,7 @@
 
 #include "experiments/output/text.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::table_test {
 namespace {
 
 const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -146,4 +146,4 @@ TEST(Text, WrapsAtBlanksAndIndentsListItems) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::table_test

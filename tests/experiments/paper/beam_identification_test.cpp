@@ -10,7 +10,7 @@
 #include "tests/experiments/paper/shared_outcome.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments::paper {
+namespace beamid::experiments::paper::beam_identification_test {
 namespace {
 
 using test::beam_cases, test::outcome;
@@ -120,4 +120,4 @@ TEST(CramerRaoBound, IsThatOfADampedSine) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments::paper
+}  // namespace beamid::experiments::paper::beam_identification_test

@@ -9,7 +9,7 @@
 
 #include "experiments/discretisation_bias.hpp"
 
-namespace beamid::experiments::paper {
+namespace beamid::experiments::paper::monte_carlo_test {
 namespace {
 
 constexpr std::uint64_t seed = 2009;
@@ -66,4 +66,4 @@ TEST(Trials, HaveAStreamOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments::paper
+}  // namespace beamid::experiments::paper::monte_carlo_test

@@ -8,7 +8,7 @@
 
 #include "experiments/discretisation_bias.hpp"
 
-namespace beamid::experiments::paper {
+namespace beamid::experiments::paper::numerical_validation_test {
 namespace {
 
 const Oscillator truth = validation_truth();
@@ -111,4 +111,4 @@ TEST(DiscretisationBias, IsComparedForTheSixSchemesOfTheStudy) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments::paper
+}  // namespace beamid::experiments::paper::numerical_validation_test

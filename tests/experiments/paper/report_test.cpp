@@ -12,7 +12,7 @@
 #include "experiments/output/text.hpp"
 #include "tests/experiments/paper/shared_outcome.hpp"
 
-namespace beamid::experiments::paper {
+namespace beamid::experiments::paper::report_test {
 namespace {
 
 Results told() {
@@ -82,4 +82,4 @@ TEST(PaperReport, DrawsTheFiguresOfTheStudy) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments::paper
+}  // namespace beamid::experiments::paper::report_test

@@ -5,7 +5,7 @@
 #include "experiments/paper/report.hpp"
 #include "tests/experiments/paper/shared_outcome.hpp"
 
-namespace beamid::experiments::paper {
+namespace beamid::experiments::paper::values_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -89,4 +89,4 @@ TEST(PaperValues, AreTheSameForTheSameSeed) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments::paper
+}  // namespace beamid::experiments::paper::values_test

@@ -13,7 +13,7 @@
 #include "experiments/random.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::record_defects_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -137,4 +137,4 @@ TEST(Prepare, FiltersWhatIsThereAndLeavesTheRestMissing) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::record_defects_test

@@ -16,7 +16,7 @@
 #include "experiments/record_comparison/comparison_words.hpp"
 #include "fem/response/response.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::comparison_test {
 namespace {
 
 const Progress silent = [](const std::string&) {};
@@ -195,4 +195,4 @@ TEST(Report, HasTheKeysOfARun) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::comparison_test

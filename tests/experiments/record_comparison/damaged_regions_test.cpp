@@ -6,7 +6,7 @@
 #include "experiments/record_comparison/chosen_channels.hpp"
 #include "experiments/record_comparison/comparison.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::damaged_regions_test {
 namespace {
 
 const Progress silent = [](const std::string&) {};
@@ -86,4 +86,4 @@ TEST(ChosenChannels, RefuseNamesThatTheRecordDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::damaged_regions_test

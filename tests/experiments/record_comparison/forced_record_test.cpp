@@ -11,7 +11,7 @@
 #include "tests/experiments/forced_oscillator.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::forced_record_test {
 namespace {
 
 struct Case {
@@ -57,4 +57,4 @@ INSTANTIATE_TEST_SUITE_P(Models, DrivenThroughout,
                                          Case{"beam", 50, true, true}, Case{"beam", 100, true, false}));
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::forced_record_test

@@ -11,7 +11,7 @@
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::sensors_test {
 namespace {
 
 const Progress silent = [](const std::string&) {};
@@ -102,4 +102,4 @@ TEST(BodyMass, IsRefusedWhereNoBodySits) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::sensors_test

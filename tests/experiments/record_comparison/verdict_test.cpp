@@ -10,7 +10,7 @@
 #include "experiments/record_comparison/comparison_words.hpp"
 #include "experiments/record_comparison/run_verdict.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::verdict_test {
 namespace {
 
 using testing::Contains, testing::HasSubstr, testing::Not;
@@ -207,4 +207,4 @@ TEST(ModelBeam, IsWarnedWhereTheModalAnalysisSaysOtherwise) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::verdict_test

@@ -13,7 +13,7 @@
 #include "experiments/input/text_file.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::hdf5_dangers_test {
 namespace {
 
 using testing::HasSubstr, testing::MatchesRegex, testing::StartsWith;
@@ -240,4 +240,4 @@ TEST(MatlabStorage, InOtherFilesIsRefused) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::hdf5_dangers_test

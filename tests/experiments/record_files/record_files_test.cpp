@@ -14,7 +14,7 @@
 #include "experiments/input/text_file.hpp"
 #include "tests/experiments/input/temporary_file.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::record_files_test {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr;
@@ -622,4 +622,4 @@ TEST(DamagedFiles, OfMatlabAndHdf5AreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::record_files_test

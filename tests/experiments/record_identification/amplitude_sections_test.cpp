@@ -12,7 +12,7 @@
 #include "experiments/estimates.hpp"
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::amplitude_sections_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -136,4 +136,4 @@ TEST(SectionHalfWidth, HoldsNineteenOfTwenty) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::amplitude_sections_test

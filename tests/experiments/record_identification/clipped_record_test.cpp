@@ -5,7 +5,7 @@
 
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::clipped_record_test {
 namespace {
 
 using Eigen::Index;
@@ -61,4 +61,4 @@ TEST(ClippedReadings, LeftInNeverMakeAnIntervalShorter) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::clipped_record_test

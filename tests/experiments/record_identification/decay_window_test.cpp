@@ -10,7 +10,7 @@
 
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::decay_window_test {
 namespace {
 
 using Eigen::Index;
@@ -122,4 +122,4 @@ TEST(DecayWindow, LeavesARecordAloneThatEndsTooSoonBehindItsEvent) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::decay_window_test

@@ -12,7 +12,7 @@
 #include "experiments/modal_analysis/shape_fit.hpp"
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::joint_identification_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -160,4 +160,4 @@ TEST(JointIdentification, SaysThatRecordsOfAnotherBeamDisagree) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::joint_identification_test

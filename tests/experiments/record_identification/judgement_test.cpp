@@ -12,7 +12,7 @@
 #include "experiments/preparation/preparation_report.hpp"
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::judgement_test {
 namespace {
 
 using Eigen::Index;
@@ -158,4 +158,4 @@ TEST(Judgement, NamesTheConditionThatADivergedFilterFails) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::judgement_test

@@ -10,7 +10,7 @@
 #include "experiments/record_identification/record_report.hpp"
 #include "fem/cantilever.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::measured_record_test {
 namespace {
 
 constexpr double standard_gravity = 9.80665;  // m/s2
@@ -105,4 +105,4 @@ INSTANTIATE_TEST_SUITE_P(
                     MeasuredWindow{"massa4_test1-4.txt", 0.128, 0.608, 1.008, 22.77, 0.0295}));
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::measured_record_test

@@ -10,7 +10,7 @@
 
 #include "experiments/random.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::noise_near_mode_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -88,4 +88,4 @@ TEST(NoiseNearMode, IsHardlyKnownFromFewLines) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::noise_near_mode_test

@@ -10,7 +10,7 @@
 #include "experiments/record_identification/higher_modes.hpp"
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::noise_source_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -91,4 +91,4 @@ TEST(HigherModes, AreKeptFromTheFilterWhereTheyAreLarge) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::noise_source_test

@@ -11,7 +11,7 @@
 
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::record_identification_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -204,4 +204,4 @@ TEST(RecordIdentification, SaysWhereTheModelCannotBeUsed) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::record_identification_test

@@ -8,7 +8,7 @@
 #include "tests/experiments/input/temporary_file.hpp"
 #include "tests/experiments/record_identification/simulated_record.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::run_options_test {
 namespace {
 
 using Eigen::Index;
@@ -101,4 +101,4 @@ TEST(PrintedStamps, CountAsTheGridTheyWereRoundedFrom) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::run_options_test

@@ -22,38 +22,11 @@ struct SimulatedBeam {
       33.0 / 140.0 * beam.mass() + beam.tip_mass, mode.angular_frequency(), damping_ratio);
 
   /// The beam as its owner believes it to be: 10 % stiffer than it is, so that the frequency is 5 % off.
-  experiments::Experiment experiment() const {
-    experiments::Experiment experiment;
-    fem::Cantilever believed = beam;
-    believed.bending_stiffness *= 1.1;
-    experiment.beam = believed;
-    return experiment;
-  }
+  experiments::Experiment experiment() const;
 
   /// Channels of the quantities with white noise of `relative_noise` times each one's amplitude.
   experiments::Record record(const std::vector<experiments::Quantity>& quantities, double relative_noise,
-                             std::uint64_t seed) const {
-    using experiments::Quantity, Eigen::VectorXd;
-    constexpr Eigen::Index samples = 2001;
-    const auto one = [](double value) { return VectorXd::Constant(1, value); };
-    const double w = mode.angular_frequency(), amplitude = 0.012;
-    experiments::Record record;
-    record.time = VectorXd::LinSpaced(samples, 0.0, 10.0);
-    record.samples.resize(static_cast<Eigen::Index>(quantities.size()), samples);
-    const fem::Motion motion = fem::free_decay(one(amplitude), one(w), one(damping_ratio), record.time);
-    for (Eigen::Index i = 0; i < record.samples.rows(); ++i) {
-      const Quantity quantity = quantities[i];
-      const auto& [history, scale] =
-          quantity == Quantity::displacement ? std::pair{motion.displacement, amplitude}
-          : quantity == Quantity::velocity   ? std::pair{motion.velocity, amplitude * w}
-                                             : std::pair{motion.acceleration, amplitude * w * w};
-      record.samples.row(i) =
-          history +
-          relative_noise * scale * experiments::standard_normal(samples, seed, static_cast<std::uint64_t>(i));
-      record.channels.push_back({quantity, "tip"});
-    }
-    return record;
-  }
+                             std::uint64_t seed) const;
 };
 
 }  // namespace beamid::test

@@ -9,7 +9,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::chosen_reductions_test {
 namespace {
 
 std::vector<Choice> parsed(const std::vector<std::string>& texts) {
@@ -49,4 +49,4 @@ TEST(Labels, AreShortAndAllDifferent) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::chosen_reductions_test

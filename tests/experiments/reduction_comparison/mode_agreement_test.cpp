@@ -9,7 +9,7 @@
 #include "fem/modes.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::mode_agreement_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -60,4 +60,4 @@ TEST(Comac, ShowsThePointThatDiffers) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::mode_agreement_test

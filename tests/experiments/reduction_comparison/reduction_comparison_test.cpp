@@ -10,7 +10,7 @@
 #include "experiments/input/read_reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::reduction_comparison_test {
 namespace {
 
 using std::numbers::pi;
@@ -165,4 +165,4 @@ TEST(ReductionComparison, SamplesAStiffBeamFaster) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::reduction_comparison_test

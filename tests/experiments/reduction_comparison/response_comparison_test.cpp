@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace beamid::experiments {
+namespace beamid::experiments::response_comparison_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -52,4 +52,4 @@ TEST(MagnitudeComparison, TellsATenthEverywhereAndItsDecibels) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::response_comparison_test

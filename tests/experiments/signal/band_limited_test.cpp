@@ -7,7 +7,7 @@
 
 #include "experiments/random.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::band_limited_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -79,4 +79,4 @@ TEST(LinearInterpolation, LosesAsMuchAsSincSquared) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::band_limited_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace beamid::experiments {
+namespace beamid::experiments::butterworth_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -108,4 +108,4 @@ TEST(Butterworth, RefusesWhatItCannotBe) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::butterworth_test

@@ -6,19 +6,14 @@
 #include <stdexcept>
 
 #include "experiments/signal/butterworth.hpp"
+#include "tests/experiments/damped_oscillation.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::cascaded_filter_test {
 namespace {
 
 using Complex = std::complex<double>;
+using test::damped_oscillation;
 constexpr double interval = 1e-3;
-
-Eigen::VectorXd oscillation(Complex amplitude, Complex rate, Eigen::Index count) {
-  Eigen::VectorXd signal(count);
-  for (Eigen::Index k = 0; k < count; ++k)
-    signal[k] = (amplitude * std::exp(rate * (interval * static_cast<double>(k)))).real();
-  return signal;
-}
 
 // Oracle: H(e^(s dt)) e^(s t), exact once the transient is gone.
 TEST(CausalFilter, KeepsFrequencyAndDampingOfADecay) {
@@ -26,8 +21,9 @@ TEST(CausalFilter, KeepsFrequencyAndDampingOfADecay) {
   const CascadedFilter filter =
       cascade(butterworth_high_pass(2, 0.5, interval), butterworth_low_pass(4, 20, interval));
   const Eigen::Index settled = settling_samples(filter, 1e-9), count = settled + 5000;
-  const Eigen::VectorXd out = filter_causally(filter, oscillation(amplitude, rate, count));
-  const Eigen::VectorXd expected = oscillation(amplitude * response(filter, rate), rate, count);
+  const Eigen::VectorXd out = filter_causally(filter, damped_oscillation(amplitude, rate, interval, count));
+  const Eigen::VectorXd expected =
+      damped_oscillation(amplitude * response(filter, rate), rate, interval, count);
   EXPECT_LT((out - expected).tail(5000).cwiseAbs().maxCoeff(), 1e-8);
 }
 
@@ -37,8 +33,8 @@ TEST(CausalFilter, SettlesWhenItSays) {
   EXPECT_NEAR(static_cast<double>(settling_samples(filter, 1e-3)) * interval, std::log(1e3) / 2.2214, 0.01);
   const Complex rate(-0.05, 25);
   const Eigen::Index count = 20000;
-  const Eigen::VectorXd error =
-      filter_causally(filter, oscillation(1, rate, count)) - oscillation(response(filter, rate), rate, count);
+  const Eigen::VectorXd error = filter_causally(filter, damped_oscillation(1, rate, interval, count)) -
+                                damped_oscillation(response(filter, rate), rate, interval, count);
   for (const double tolerance : {1e-2, 1e-3, 1e-5})
     EXPECT_LT(error.tail(count - settling_samples(filter, tolerance)).cwiseAbs().maxCoeff(), tolerance);
 }
@@ -61,8 +57,9 @@ TEST(ZeroPhaseFilter, ShiftsNoPhase) {
       EXPECT_NEAR(std::arg(factor), 0, 1e-9);
       EXPECT_NEAR(std::abs(factor), std::norm(response(filter, rate)), 1e-9);
     }
-    const Eigen::VectorXd error = filter_forward_backward(filter, oscillation(Complex(1, 2), rate, count)) -
-                                  oscillation(factor * Complex(1, 2), rate, count);
+    const Eigen::VectorXd error =
+        filter_forward_backward(filter, damped_oscillation(Complex(1, 2), rate, interval, count)) -
+        damped_oscillation(factor * Complex(1, 2), rate, interval, count);
     EXPECT_LT(error.segment(end, count - 2 * end).cwiseAbs().maxCoeff(), 1e-7);
   }
 }
@@ -83,8 +80,9 @@ TEST(ZeroPhaseFilter, ContaminatesTheEndsOfADecayAndOnlyThem) {
   const CascadedFilter filter = butterworth_high_pass(2, 0.5, interval);
   const Complex rate(-0.05, 25);
   const Eigen::Index count = 25000, end = settling_samples(filter, 1e-3);
-  const Eigen::VectorXd error = filter_forward_backward(filter, oscillation(1, rate, count)) -
-                                oscillation(zero_phase_response(filter, rate), rate, count);
+  const Eigen::VectorXd error =
+      filter_forward_backward(filter, damped_oscillation(1, rate, interval, count)) -
+      damped_oscillation(zero_phase_response(filter, rate), rate, interval, count);
   EXPECT_GT(error.head(end).cwiseAbs().maxCoeff(), 0.02);
   EXPECT_LT(error.segment(end, count - 2 * end).cwiseAbs().maxCoeff(), 1e-3);
 }
@@ -98,4 +96,4 @@ TEST(CascadedFilter, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::cascaded_filter_test

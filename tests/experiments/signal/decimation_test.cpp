@@ -7,27 +7,23 @@
 #include <stdexcept>
 
 #include "experiments/signal/spectrum.hpp"
+#include "tests/experiments/damped_oscillation.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::decimation_test {
 namespace {
 
 using Complex = std::complex<double>;
+using test::damped_oscillation;
 constexpr double interval = 1e-3;
-
-Eigen::VectorXd oscillation(Complex amplitude, Complex rate, double step, double start, Eigen::Index count) {
-  Eigen::VectorXd signal(count);
-  for (Eigen::Index k = 0; k < count; ++k)
-    signal[k] = (amplitude * std::exp(rate * (start + step * static_cast<double>(k)))).real();
-  return signal;
-}
 
 // Oracle: the decay itself, times the kernel's factor, at the instants kept; from the very first sample.
 TEST(Decimation, KeepsADecayExactlyFromTheFirstSample) {
   const Complex rate(-0.4, 26), amplitude(1, -0.7);
   for (const int factor : {1, 2, 7, 30}) {
-    const DecimatedSignal out = decimate(oscillation(amplitude, rate, interval, 0, 2000), interval, factor);
+    const DecimatedSignal out =
+        decimate(damped_oscillation(amplitude, rate, interval, 2000), interval, factor);
     const Eigen::VectorXd expected =
-        oscillation(amplitude * out.response(rate), rate, out.interval, out.start, out.samples.size());
+        damped_oscillation(amplitude * out.response(rate), rate, out.interval, out.samples.size(), out.start);
     EXPECT_LT((out.samples - expected).cwiseAbs().maxCoeff(), 1e-13);
     EXPECT_DOUBLE_EQ(out.interval, factor * interval);
   }
@@ -50,8 +46,9 @@ TEST(Decimation, RefusesTooShortASignal) {
 
 // Oracle: the sine's own frequency; a tenth of a bin is the parabola's error.
 TEST(Spectrum, FindsTheStrongestFrequency) {
-  Eigen::VectorXd signal = oscillation(1, Complex(-0.1, 2 * std::numbers::pi * 13.37), interval, 0, 5000) +
-                           oscillation(0.4, Complex(0, 2 * std::numbers::pi * 90), interval, 0, 5000);
+  Eigen::VectorXd signal =
+      damped_oscillation(1, Complex(-0.1, 2 * std::numbers::pi * 13.37), interval, 5000) +
+      damped_oscillation(0.4, Complex(0, 2 * std::numbers::pi * 90), interval, 5000);
   signal.array() += 20;
   EXPECT_NEAR(strongest_frequency(signal, interval), 13.37, 0.01);
   EXPECT_THROW(strongest_frequency(Eigen::VectorXd::Ones(64), interval), std::invalid_argument);
@@ -59,4 +56,4 @@ TEST(Spectrum, FindsTheStrongestFrequency) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::decimation_test

@@ -6,26 +6,23 @@
 #include <random>
 #include <stdexcept>
 
-namespace beamid::experiments {
+#include "tests/experiments/damped_oscillation.hpp"
+
+namespace beamid::experiments::integration_test {
 namespace {
 
 using Complex = std::complex<double>;
+using test::damped_oscillation;
 constexpr double interval = 1e-3;
-
-Eigen::VectorXd oscillation(Complex amplitude, Complex rate, Eigen::Index count) {
-  Eigen::VectorXd signal(count);
-  for (Eigen::Index k = 0; k < count; ++k)
-    signal[k] = (amplitude * std::exp(rate * (interval * static_cast<double>(k)))).real();
-  return signal;
-}
 
 // Oracle: dt/2 (z + 1)/(z - 1), the exact factor of the rule on z^k, up to the constant of integration.
 TEST(TrapezoidalIntegral, HasItsExactFactorOnADecay) {
   const Complex rate(-0.3, 40), z = std::exp(rate * interval);
   const Complex factor = trapezoidal_response(rate, interval);
   EXPECT_NEAR(std::abs(factor / (0.5 * interval * (z + 1.0) / (z - 1.0)) - 1.0), 0, 1e-12);
-  const Eigen::VectorXd out = cumulative_trapezoid(oscillation(1, rate, 3000), interval, factor.real());
-  EXPECT_LT((out - oscillation(factor, rate, 3000)).cwiseAbs().maxCoeff(), 1e-13);
+  const Eigen::VectorXd out =
+      cumulative_trapezoid(damped_oscillation(1, rate, interval, 3000), interval, factor.real());
+  EXPECT_LT((out - damped_oscillation(factor, rate, interval, 3000)).cwiseAbs().maxCoeff(), 1e-13);
 }
 
 // Oracle: the rule is exact on straight lines.
@@ -39,7 +36,7 @@ TEST(TrapezoidalIntegral, IsExactOnStraightLines) {
 TEST(Processing, KeepsFrequencyAndDampingThroughBothIntegrals) {
   const double w = 2 * M_PI * 1.7299;
   const Complex rate(-0.0015 * w, w);
-  const Eigen::VectorXd acceleration = oscillation(1.417, rate, 25000);
+  const Eigen::VectorXd acceleration = damped_oscillation(1.417, rate, interval, 25000);
   for (const bool zero_phase : {false, true}) {
     ProcessingSettings settings;
     settings.zero_phase = zero_phase;
@@ -50,7 +47,7 @@ TEST(Processing, KeepsFrequencyAndDampingThroughBothIntegrals) {
     const Complex filtering = zero_phase ? zero_phase_response(filter, rate) : response(filter, rate);
     const Complex integral = trapezoidal_response(rate, interval);
     const auto error = [&](const Eigen::VectorXd& history, Complex factor) {
-      const Eigen::VectorXd difference = history - oscillation(1.417 * factor, rate, 25000);
+      const Eigen::VectorXd difference = history - damped_oscillation(1.417 * factor, rate, interval, 25000);
       return difference.segment(motion.settled_begin, motion.settled_end - motion.settled_begin)
                  .cwiseAbs()
                  .maxCoeff() /
@@ -87,4 +84,4 @@ TEST(Processing, SaysWhatItDoesNotAccept) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::integration_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace beamid::experiments {
+namespace beamid::experiments::local_motion_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -44,4 +44,4 @@ TEST(LocalMotion, IsEmptyWhereThereIsNoWindow) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::local_motion_test

@@ -8,7 +8,7 @@
 
 #include "experiments/random.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::onsets_test {
 namespace {
 
 constexpr double interval = 1e-3;
@@ -44,4 +44,4 @@ TEST(Onsets, RefuseASignalTooShort) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::onsets_test

@@ -19,7 +19,7 @@
 #include "tests/experiments/input/temporary_file.hpp"
 #include "tests/experiments/sweep/exact_rig.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -419,4 +419,4 @@ TEST(Sweep, ReachesTablesWithinTablesAndTheTruthAlone) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::sweep_test

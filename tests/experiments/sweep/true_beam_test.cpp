@@ -15,7 +15,7 @@
 #include "fem/modes.hpp"
 #include "tests/experiments/sweep/exact_rig.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::true_beam_test {
 namespace {
 
 SweepPlan plan_with(const std::vector<std::string>& vary, int seeds, bool once) {
@@ -104,4 +104,4 @@ TEST(SweepReport, PrintsNoErrorBelowTheBoundWithoutASentence) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::true_beam_test

@@ -12,7 +12,7 @@
 #include "experiments/tracking/report.hpp"
 #include "experiments/tracking/segments.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::tracking_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -113,4 +113,4 @@ TEST(Tracking, RefusesSettingsThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::tracking_test

@@ -11,7 +11,7 @@
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"
 
-namespace beamid {
+namespace beamid::adaptive_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd;
@@ -88,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(Sundials, AdaptiveMethod, testing::Values("arkode", "cv
                          [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::adaptive_test

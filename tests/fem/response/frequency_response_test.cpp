@@ -12,7 +12,7 @@
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"
 
-namespace beamid {
+namespace beamid::frequency_response_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXcd, Eigen::VectorXd;
@@ -190,4 +190,4 @@ TEST(FrequencyResponse, SaysWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::frequency_response_test

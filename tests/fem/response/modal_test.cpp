@@ -16,7 +16,7 @@
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"
 
-namespace beamid {
+namespace beamid::modal_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -245,4 +245,4 @@ TEST(ModalResponse, FreeBodyMovesByNewtonsLaw) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::modal_test

@@ -10,7 +10,7 @@
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"
 
-namespace beamid {
+namespace beamid::nonlinear_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -122,4 +122,4 @@ TEST(NonlinearBeam, IsRefusedByTheModalMethod) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::nonlinear_test

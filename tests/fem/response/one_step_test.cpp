@@ -10,7 +10,7 @@
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"
 
-namespace beamid {
+namespace beamid::one_step_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -176,4 +176,4 @@ TEST(OneStepMethods, RefuseARayleighLawThatFeedsAMode) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::one_step_test

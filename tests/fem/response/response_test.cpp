@@ -8,7 +8,7 @@
 
 #include "tests/fem/response/oscillator_system.hpp"
 
-namespace beamid {
+namespace beamid::response_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -77,4 +77,4 @@ TEST(Respond, GivesEveryMethodTheSameStart) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::response_test

@@ -8,7 +8,7 @@
 
 #include "fem/response/diagonal_product.hpp"
 
-namespace beamid {
+namespace beamid::symmetric_factor_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -61,4 +61,4 @@ TEST(DiagonalProduct, IsTheProductForBandsAndForScatteredEntries) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::symmetric_factor_test

@@ -5,7 +5,7 @@
 //     1 + cos b cosh b + mu b (cos b sinh b - sin b cosh b) = 0,     multiplied by omega_a^2 - omega^2.
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::absorber_test {
 namespace {
 
 using test::length, test::mass_per_length;
@@ -68,4 +68,4 @@ TEST(Absorber, FollowsTheBaseRigidly) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::absorber_test

@@ -5,7 +5,7 @@
 
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::axial_load_test {
 namespace {
 
 using std::numbers::pi;
@@ -94,4 +94,4 @@ TEST(AxialLoad, FrequencyVanishesAtTheBucklingLoad) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::axial_load_test

@@ -3,7 +3,7 @@
 
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::convergence_test {
 namespace {
 
 using test::length;
@@ -150,4 +150,4 @@ TEST(Convergence, ShapesConvergeWithTheFrequencies) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::convergence_test

@@ -1,7 +1,7 @@
 // What lies on a part of the length: a loss of stiffness and a mass that rides along.
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::damage_test {
 namespace {
 
 using test::bending_stiffness, test::length, test::mass_per_length;
@@ -95,4 +95,4 @@ TEST(SteppedBeam, JoinsTwoHalvesOfAKnownOne) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::damage_test

@@ -9,7 +9,7 @@
 #include "fem/complex_modes.hpp"
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::dashpot_test {
 namespace {
 
 using test::bending_stiffness, test::length, test::mass_per_length;
@@ -59,4 +59,4 @@ TEST(TipDashpot, EigenvaluesAreTheComplexRoots) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::dashpot_test

@@ -6,7 +6,7 @@
 //     b w'' + r w' = 0       b^3 w''' - t w = 0.
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::elastic_root_test {
 namespace {
 
 using test::bending_stiffness, test::length;
@@ -81,4 +81,4 @@ TEST(ElasticRoot, ASpringAtMidspanAddsToTheModesThatMoveIt) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::elastic_root_test

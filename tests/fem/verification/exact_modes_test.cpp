@@ -5,7 +5,7 @@
 #include "fem/exact/exact_cantilever.hpp"
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::exact_modes_test {
 namespace {
 
 using test::length;
@@ -135,4 +135,4 @@ TEST(ExactModes, RefusesWhatItCannotAnswer) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::exact_modes_test

@@ -14,7 +14,7 @@
 #include "fem/modes.hpp"
 #include "tests/fem/exact_frame.hpp"
 
-namespace beamid::fem {
+namespace beamid::fem::nafems_frames_test {
 namespace {
 
 Section square(double side, double stiffer) {
@@ -106,4 +106,4 @@ TEST(NafemsFrames, FreeSquareFrame) {
 }
 
 }  // namespace
-}  // namespace beamid::fem
+}  // namespace beamid::fem::nafems_frames_test

@@ -1,7 +1,7 @@
 // Published free-vibration benchmarks of straight beams in their plane.
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::nafems_test {
 namespace {
 
 constexpr double youngs_modulus = 200e9, poissons_ratio = 0.3, density = 8000.0;
@@ -63,4 +63,4 @@ TEST(Nafems, ThinCantilever) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::nafems_test

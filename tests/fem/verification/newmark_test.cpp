@@ -6,7 +6,7 @@
 #include "fem/response/response.hpp"
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::newmark_test {
 namespace {
 
 TEST(Newmark, PeriodIsLongerByTheArcTangent) {
@@ -30,4 +30,4 @@ TEST(Newmark, PeriodIsLongerByTheArcTangent) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::newmark_test

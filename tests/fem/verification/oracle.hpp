@@ -20,17 +20,11 @@
 namespace beamid::test {
 
 /// A uniform Euler-Bernoulli beam; numbers that no unit hides.
-inline fem::Beam uniform_beam() {
-  fem::Beam beam;
-  beam.segments = {{1.3, {7.3, 0.9, 0.0, {}, {}, {}}}};
-  return beam;
-}
+fem::Beam uniform_beam(std::vector<fem::Support> supports = {});
 inline constexpr double length = 1.3, bending_stiffness = 7.3, mass_per_length = 0.9;
 
 /// omega of b = beta L of that beam.
-inline double angular_frequency(double b) {
-  return b * b / (length * length) * std::sqrt(bending_stiffness / mass_per_length);
-}
+double angular_frequency(double b);
 
 /// The first `count` positive roots, found in steps far below their spacing and bracketed to the last digit.
 template <class Function>
@@ -59,35 +53,10 @@ struct Tolerance {
 
 /// Writes the largest error of the running test into the test report, from which docs/verification.md is
 /// made.
-inline void record(const std::string& key, double error) {
-  static std::map<std::string, double> largest;
-  const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-  double& worst = largest[std::string(test.test_suite_name()) + "." + test.name() + "." + key];
-  worst = std::max(worst, std::abs(error));
-  std::ostringstream text;
-  text.precision(2);
-  text << worst;
-  testing::Test::RecordProperty(key, text.str());
-}
+void record(const std::string& key, double error);
 
 /// Both methods against known frequencies [rad/s], zeros of rigid-body modes included.
-inline void expect_frequencies(const fem::Beam& beam, const std::vector<double>& known,
-                               const Tolerance& tolerance = {}) {
-  const auto count = static_cast<Eigen::Index>(known.size());
-  const auto exact = fem::exact_modes(beam, count, {});
-  const auto modes = fem::modes(fem::assemble(beam, tolerance.elements, {}), count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const auto expect_near = [&](const char* key, double omega, double limit) {
-      if (known[i] == 0.0) {
-        EXPECT_EQ(omega, 0.0) << key << ", mode " << i + 1;
-        return;
-      }
-      EXPECT_NEAR(omega / known[i], 1.0, limit) << key << ", mode " << i + 1;
-      record(key, omega / known[i] - 1.0);
-    };
-    if (exact) expect_near("exact_modes", exact->angular_frequency[i], tolerance.exact);
-    expect_near("finite_elements", modes.angular_frequency[i], tolerance.finite_elements);
-  }
-}
+void expect_frequencies(const fem::Beam& beam, const std::vector<double>& known,
+                        const Tolerance& tolerance = {});
 
 }  // namespace beamid::test

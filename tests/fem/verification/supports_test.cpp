@@ -5,7 +5,7 @@
 
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::supports_test {
 namespace {
 
 using std::cos, std::sin, std::tan, std::tanh;
@@ -14,12 +14,6 @@ using test::angular_frequency, test::length;
 constexpr fem::Support clamped_root{0.0, true, true}, clamped_tip{length, true, true};
 constexpr fem::Support pinned_root{0.0, true, false}, pinned_tip{length, true, false};
 constexpr fem::Support guided_root{0.0, false, true}, guided_tip{length, false, true};
-
-fem::Beam beam_on(std::vector<fem::Support> supports) {
-  fem::Beam beam = test::uniform_beam();
-  beam.supports = std::move(supports);
-  return beam;
-}
 
 std::vector<double> frequencies(std::vector<double> b, int rigid = 0) {
   for (double& root : b) root = angular_frequency(root);
@@ -34,52 +28,54 @@ const auto clamped_pinned = [](double b) { return sin(b) - cos(b) * tanh(b); }; 
 const auto clamped_guided = [](double b) { return sin(b) + cos(b) * tanh(b); };  // tan b = -tanh b
 
 TEST(Supports, ClampedFree) {
-  test::expect_frequencies(beam_on({clamped_root}), frequencies(test::roots(clamped_free, 5)));
+  test::expect_frequencies(test::uniform_beam({clamped_root}), frequencies(test::roots(clamped_free, 5)));
 }
 
 TEST(Supports, ClampedClamped) {
-  test::expect_frequencies(beam_on({clamped_root, clamped_tip}),
+  test::expect_frequencies(test::uniform_beam({clamped_root, clamped_tip}),
                            frequencies(test::roots(free_free, 5, 0.01, 1.0)));
 }
 
 TEST(Supports, ClampedPinned) {
   const auto known = frequencies(test::roots(clamped_pinned, 5, 0.01, 1.0));
-  test::expect_frequencies(beam_on({clamped_root, pinned_tip}), known);
-  test::expect_frequencies(beam_on({pinned_root, clamped_tip}), known);
+  test::expect_frequencies(test::uniform_beam({clamped_root, pinned_tip}), known);
+  test::expect_frequencies(test::uniform_beam({pinned_root, clamped_tip}), known);
 }
 
 TEST(Supports, ClampedGuided) {
-  test::expect_frequencies(beam_on({clamped_root, guided_tip}), frequencies(test::roots(clamped_guided, 5)));
+  test::expect_frequencies(test::uniform_beam({clamped_root, guided_tip}),
+                           frequencies(test::roots(clamped_guided, 5)));
 }
 
 TEST(Supports, PinnedPinned) {  // sin b = 0
   std::vector<double> b;
   for (int n = 1; n <= 5; ++n) b.push_back(n * std::numbers::pi);
-  test::expect_frequencies(beam_on({pinned_root, pinned_tip}), frequencies(b));
+  test::expect_frequencies(test::uniform_beam({pinned_root, pinned_tip}), frequencies(b));
 }
 
 TEST(Supports, GuidedPinned) {  // cos b = 0
   std::vector<double> b;
   for (int n = 1; n <= 5; ++n) b.push_back((n - 0.5) * std::numbers::pi);
-  test::expect_frequencies(beam_on({guided_root, pinned_tip}), frequencies(b));
+  test::expect_frequencies(test::uniform_beam({guided_root, pinned_tip}), frequencies(b));
 }
 
 TEST(Supports, FreeFreeHasTwoRigidModesOfFrequencyZero) {
-  test::expect_frequencies(beam_on({}), frequencies(test::roots(free_free, 4, 0.01, 1.0), 2));
+  test::expect_frequencies(test::uniform_beam({}), frequencies(test::roots(free_free, 4, 0.01, 1.0), 2));
 }
 
 TEST(Supports, PinnedFreeHasOneRigidMode) {
-  test::expect_frequencies(beam_on({pinned_root}), frequencies(test::roots(clamped_pinned, 4, 0.01, 1.0), 1));
+  test::expect_frequencies(test::uniform_beam({pinned_root}),
+                           frequencies(test::roots(clamped_pinned, 4, 0.01, 1.0), 1));
 }
 
 TEST(Supports, GuidedFreeHasOneRigidMode) {
-  test::expect_frequencies(beam_on({guided_root}), frequencies(test::roots(clamped_guided, 4), 1));
+  test::expect_frequencies(test::uniform_beam({guided_root}), frequencies(test::roots(clamped_guided, 4), 1));
 }
 
 TEST(Supports, GuidedGuidedHasOneRigidMode) {  // sin b = 0
   std::vector<double> b;
   for (int n = 1; n <= 4; ++n) b.push_back(n * std::numbers::pi);
-  test::expect_frequencies(beam_on({guided_root, guided_tip}), frequencies(b, 1));
+  test::expect_frequencies(test::uniform_beam({guided_root, guided_tip}), frequencies(b, 1));
 }
 
 TEST(Supports, TwoEqualSpansVibrateAsPinnedPinnedAndAsClampedPinned) {
@@ -88,20 +84,22 @@ TEST(Supports, TwoEqualSpansVibrateAsPinnedPinnedAndAsClampedPinned) {
   const auto clamped = test::roots(clamped_pinned, 2, 0.01, 1.0);
   std::vector<double> b;
   for (int n = 1; n <= 2; ++n) b.insert(b.end(), {2 * n * std::numbers::pi, 2 * clamped[n - 1]});
-  test::expect_frequencies(beam_on({pinned_root, {0.5 * length, true, false}, pinned_tip}), frequencies(b));
+  test::expect_frequencies(test::uniform_beam({pinned_root, {0.5 * length, true, false}, pinned_tip}),
+                           frequencies(b));
 }
 
 TEST(Supports, SpansOnTheTwoSidesOfAClampShareTheirFrequencies) {
   // Oracle: clamped-clamped spans of half the length, each frequency twice.
   std::vector<double> b;
   for (const double root : test::roots(free_free, 2, 0.01, 1.0)) b.insert(b.end(), {2 * root, 2 * root});
-  test::expect_frequencies(beam_on({clamped_root, {0.5 * length, true, true}, clamped_tip}), frequencies(b));
+  test::expect_frequencies(test::uniform_beam({clamped_root, {0.5 * length, true, true}, clamped_tip}),
+                           frequencies(b));
 }
 
 TEST(Supports, TheHundredthModeIsExactWithoutAMesh) {
   // Oracle: for high modes cos b cosh b = -1 has the root (n - 1/2) pi to rounding.
-  const auto modes =
-      fem::exact_modes(beam_on({clamped_root}), 100, Eigen::VectorXd::LinSpaced(2001, 0.0, length));
+  const auto modes = fem::exact_modes(test::uniform_beam({clamped_root}), 100,
+                                      Eigen::VectorXd::LinSpaced(2001, 0.0, length));
   EXPECT_NEAR(modes->angular_frequency[99] / angular_frequency(99.5 * std::numbers::pi), 1.0, 1e-13);
   // Oracle: far from its ends the shape is a sine of the same wave number, its amplitude 1/2 of that at the
   // free tip.
@@ -110,4 +108,4 @@ TEST(Supports, TheHundredthModeIsExactWithoutAMesh) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::supports_test

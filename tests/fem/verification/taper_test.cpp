@@ -10,7 +10,7 @@
 
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::taper_test {
 namespace {
 
 constexpr double youngs_modulus = 3.1, density = 0.8, depth = 0.24, span = 2.0;
@@ -141,4 +141,4 @@ TEST(Taper, NoExactModesAreClaimedForIt) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::taper_test

@@ -5,7 +5,7 @@
 
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::timoshenko_test {
 namespace {
 
 using std::numbers::pi;
@@ -155,4 +155,4 @@ TEST(Timoshenko, RotaryInertiaAloneIsRayleighsBeam) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::timoshenko_test

@@ -12,7 +12,7 @@
 // their determinant over the two shapes is the frequency equation.
 #include "tests/fem/verification/oracle.hpp"
 
-namespace beamid {
+namespace beamid::tip_body_test {
 namespace {
 
 using test::length, test::mass_per_length;
@@ -87,4 +87,4 @@ TEST(TipBody, ARigidBarBeyondTheTipIsABodyAtItsMiddle) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::tip_body_test

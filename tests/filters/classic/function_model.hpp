@@ -17,20 +17,12 @@ class FunctionModel final : public filters::DiscreteModel {
       : f_(std::move(f)), h_(std::move(h)), q_(std::move(process)), r_(std::move(noise)), dt_(dt) {}
 
   std::vector<filters::Label> state_labels() const override { return std::vector<filters::Label>(q_.rows()); }
-  std::vector<filters::Label> output_labels() const override {
-    return std::vector<filters::Label>(r_.rows());
-  }
+  std::vector<filters::Label> output_labels() const override;
   const Eigen::MatrixXd& process_noise() const override { return q_; }
   const Eigen::MatrixXd& output_noise() const override { return r_; }
   double interval() const override { return dt_; }
-  void transition(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& next) override {
-    next.resize(z.size());
-    f_(z, u, next);
-  }
-  void output(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& y) override {
-    y.resize(r_.rows());
-    h_(z, u, y);
-  }
+  void transition(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& next) override;
+  void output(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& y) override;
 
  private:
   Function f_, h_;

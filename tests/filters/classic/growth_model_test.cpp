@@ -12,7 +12,7 @@
 #include "filters/random.hpp"
 #include "tests/filters/classic/function_model.hpp"
 
-namespace beamid::test {
+namespace beamid::test::growth_model_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -104,4 +104,4 @@ TEST(GrowthModel, StopsNoFilterInSilence) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::growth_model_test

@@ -17,7 +17,7 @@
 #include "filters/filter_run.hpp"
 #include "filters/random.hpp"
 
-namespace beamid::test {
+namespace beamid::test::reentry_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -118,4 +118,4 @@ TEST(Reentry, IsBeyondTheExtendedFilterWhereTheBearingIsPoor) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::reentry_test

@@ -10,7 +10,7 @@
 #include "filters/filter_run.hpp"
 #include "filters/random.hpp"
 
-namespace beamid::test {
+namespace beamid::test::van_der_pol_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -88,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(Registered, VanDerPolBy, testing::ValuesIn(nonlinear_fi
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::van_der_pol_test

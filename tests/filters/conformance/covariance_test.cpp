@@ -4,7 +4,7 @@
 #include "tests/filters/conformance/every_filter.hpp"
 #include "tests/filters/linear_model.hpp"
 
-namespace beamid::test {
+namespace beamid::test::covariance_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -65,4 +65,4 @@ TEST_P(EveryFilter, FollowsAMotionUntilNothingIsLeftOfIt) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::covariance_test

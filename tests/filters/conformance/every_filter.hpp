@@ -15,10 +15,7 @@ namespace beamid::test {
 inline constexpr double mass = 3.0, stiffness = 515.8, damping = 7.867;  // damping ratio 10 %
 
 /// The oscillator of unknown stiffness and damping, sampled exactly.
-inline std::unique_ptr<filters::DiscreteModel> joint_model(int outputs, double dt, double noise) {
-  return filters::discretise(std::make_shared<Oscillator>(mass, outputs), dt, "exponential",
-                             {{}, noise * noise * Eigen::MatrixXd::Identity(outputs, outputs)});
-}
+std::unique_ptr<filters::DiscreteModel> joint_model(int outputs, double dt, double noise);
 
 /// The same with stiffness and damping known: z = [x, v], linear.
 class KnownOscillator final : public filters::DiscreteModel {
@@ -31,29 +28,15 @@ class KnownOscillator final : public filters::DiscreteModel {
   const Eigen::MatrixXd& output_noise() const override { return joint_->output_noise(); }
   double interval() const override { return joint_->interval(); }
   void set_interval(double dt) override { joint_->set_interval(dt); }
-  void transition(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& next) override {
-    joint_->transition(whole(z), u, value_);
-    next = value_.head(2);
-  }
+  void transition(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& next) override;
   void linearised_transition(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& next,
-                             Eigen::MatrixXd& jacobian) override {
-    joint_->linearised_transition(whole(z), u, value_, tangent_);
-    next = value_.head(2);
-    jacobian = tangent_.topLeftCorner(2, 2);
-  }
-  void output(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& y) override {
-    joint_->output(whole(z), u, y);
-  }
+                             Eigen::MatrixXd& jacobian) override;
+  void output(const Eigen::VectorXd& z, const Eigen::VectorXd& u, Eigen::VectorXd& y) override;
   void output_jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& u,
-                       Eigen::MatrixXd& jacobian) override {
-    joint_->output_jacobian(whole(z), u, tangent_);
-    jacobian = tangent_.leftCols(2);
-  }
+                       Eigen::MatrixXd& jacobian) override;
 
  private:
-  static Eigen::VectorXd whole(const Eigen::VectorXd& z) {
-    return Eigen::Vector4d(z[0], z[1], stiffness, damping);
-  }
+  static Eigen::VectorXd whole(const Eigen::VectorXd& z);
 
   std::unique_ptr<filters::DiscreteModel> joint_;
   Eigen::VectorXd value_;
@@ -61,41 +44,19 @@ class KnownOscillator final : public filters::DiscreteModel {
 };
 
 /// N samples of a free decay from [x0, 0], exact, with white noise of the given deviation on each output.
-inline filters::Measurements decay(int outputs, Eigen::Index samples, double dt, double noise,
-                                   std::mt19937& random, double x0 = 0.012) {
-  const auto model = joint_model(outputs, dt, 1.0);
-  std::normal_distribution<double> normal;
-  filters::Measurements record{Eigen::VectorXd(samples), Eigen::MatrixXd(outputs, samples), {}};
-  Eigen::VectorXd z = Eigen::Vector4d(x0, 0.0, stiffness, damping), next;
-  for (Eigen::Index k = 0; k < samples; ++k) {
-    record.time[k] = static_cast<double>(k) * dt;
-    for (Eigen::Index i = 0; i < outputs; ++i) record.outputs(i, k) = z[i] + noise * normal(random);
-    model->transition(z, {}, next);
-    z.swap(next);
-  }
-  return record;
-}
+filters::Measurements decay(int outputs, Eigen::Index samples, double dt, double noise, std::mt19937& random,
+                            double x0 = 0.012);
 
 class EveryFilter : public testing::TestWithParam<std::string> {
  protected:
   static std::unique_ptr<filters::Filter> make(std::unique_ptr<filters::DiscreteModel> model,
-                                               const filters::Options& options = {}) {
-    return filters::filter_registry().make(GetParam(), options, std::move(model));
-  }
-  static bool declares(const char* contract) {
-    return filters::filter_registry().find(GetParam()).contracts.contains(contract);
-  }
+                                               const filters::Options& options = {});
+  static bool declares(const char* contract);
   static bool linear_only() { return declares(filters::contract::linear_models_only); }
 
   /// On the oscillator: [x, v, K, C], or [x, v] alone for filters of linear models.
-  static std::unique_ptr<filters::Filter> oscillator(int outputs, double dt, double noise) {
-    if (linear_only()) return make(std::make_unique<KnownOscillator>(outputs, dt, noise));
-    return make(joint_model(outputs, dt, noise));
-  }
-  static filters::Gaussian start(const Eigen::Vector4d& mean, const Eigen::Vector4d& variance) {
-    const Eigen::Index n = linear_only() ? 2 : 4;
-    return {mean.head(n), Eigen::MatrixXd(variance.head(n).asDiagonal())};
-  }
+  static std::unique_ptr<filters::Filter> oscillator(int outputs, double dt, double noise);
+  static filters::Gaussian start(const Eigen::Vector4d& mean, const Eigen::Vector4d& variance);
 };
 
 }  // namespace beamid::test

@@ -5,7 +5,7 @@
 #include "filters/innovation_consistency.hpp"
 #include "tests/filters/conformance/every_filter.hpp"
 
-namespace beamid::test {
+namespace beamid::test::identification_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -91,4 +91,4 @@ TEST_P(EveryFilter, SurvivesAStartThatIsOneSampleLateOrSaysSo) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::identification_test

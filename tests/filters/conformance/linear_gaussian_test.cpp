@@ -2,7 +2,7 @@
 #include "tests/filters/conformance/every_filter.hpp"
 #include "tests/filters/conformance/kalman_recursion.hpp"
 
-namespace beamid::test {
+namespace beamid::test::linear_gaussian_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -118,4 +118,4 @@ TEST_P(EveryFilter, GoesOnFromItsBeliefAsIfNeverInterrupted) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::linear_gaussian_test

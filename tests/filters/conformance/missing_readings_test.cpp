@@ -4,7 +4,7 @@
 #include "tests/filters/conformance/every_filter.hpp"
 #include "tests/filters/conformance/kalman_recursion.hpp"
 
-namespace beamid::test {
+namespace beamid::test::missing_readings_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -96,4 +96,4 @@ TEST_P(EveryFilter, CarriesOnOverGaps) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::missing_readings_test

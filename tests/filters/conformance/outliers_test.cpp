@@ -3,7 +3,7 @@
 
 #include "tests/filters/conformance/every_filter.hpp"
 
-namespace beamid::test {
+namespace beamid::test::outliers_test {
 namespace {
 
 using Eigen::Index, Eigen::Vector4d;
@@ -48,4 +48,4 @@ TEST_P(EveryFilter, FindsTheTruthAmongOutliersIfItIsRobust) {
 }
 
 }  // namespace
-}  // namespace beamid::test
+}  // namespace beamid::test::outliers_test

@@ -10,7 +10,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::balanced_truncation_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -114,4 +114,4 @@ TEST(BalancedTruncation, RefusesImpossibleDamping) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::balanced_truncation_test

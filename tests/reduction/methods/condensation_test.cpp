@@ -11,7 +11,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::condensation_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -251,4 +251,4 @@ TEST(CraigBampton, OfEveryCoordinateIsNoReduction) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::condensation_test

@@ -12,7 +12,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::krylov_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -125,4 +125,4 @@ TEST(Krylov, RefusesWhatItCannotExpandAbout) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::krylov_test

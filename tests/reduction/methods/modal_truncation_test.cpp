@@ -9,7 +9,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::modal_truncation_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -77,4 +77,4 @@ TEST(ModalTruncation, StaticCorrectionServesAFreeBeam) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::modal_truncation_test

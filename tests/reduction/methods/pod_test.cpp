@@ -8,7 +8,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::pod_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -106,4 +106,4 @@ TEST(ProperOrthogonalDecomposition, RefusesMoreShapesThanTheMotionHas) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::pod_test

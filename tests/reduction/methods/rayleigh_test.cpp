@@ -11,7 +11,7 @@
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 
-namespace beamid {
+namespace beamid::rayleigh_test {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
@@ -111,4 +111,4 @@ TEST(Rayleigh, NamesTheShapesItKnows) {
 }
 
 }  // namespace
-}  // namespace beamid
+}  // namespace beamid::rayleigh_test

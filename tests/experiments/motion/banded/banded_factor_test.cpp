@@ -6,7 +6,7 @@
 #include <complex>
 #include <random>
 
-namespace beamid::experiments::banded {
+namespace beamid::experiments::banded::banded_factor_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd;
@@ -86,4 +86,4 @@ TEST(BandedFactor, RefusesWideBandsAndSingularOnes) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments::banded
+}  // namespace beamid::experiments::banded::banded_factor_test

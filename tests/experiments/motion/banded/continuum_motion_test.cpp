@@ -14,7 +14,7 @@
 #include "filters/filter.hpp"
 #include "tests/experiments/motion/banded/dense_continuum.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::continuum_motion_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -443,4 +443,4 @@ TEST(ContinuumMotion, StopsAtNumbersThatAreNone) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::continuum_motion_test

@@ -14,7 +14,7 @@
 #include "tests/experiments/motion/banded/dense_continuum.hpp"
 #include "tests/filters/oscillator.hpp"
 
-namespace beamid::experiments {
+namespace beamid::experiments::forced_mesh_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -162,4 +162,4 @@ TEST(ForcedMesh, TellsItsStiffness) {
 }
 
 }  // namespace
-}  // namespace beamid::experiments
+}  // namespace beamid::experiments::forced_mesh_test
