@@ -11,11 +11,6 @@ namespace {
 
 using testing::IsEmpty;
 
-/// Set by tests/golden/update: what is found becomes golden.
-bool updating() {
-  return std::getenv("BEAMID_UPDATE_GOLDEN") != nullptr;
-}
-
 std::string first_ones(const std::vector<std::string>& differences) {
   constexpr std::size_t shown = 20;
   std::string text;

@@ -8,6 +8,11 @@ namespace beamid::docs {
 namespace fs = std::filesystem;
 using apps::Outcome, apps::contents, apps::source;
 
+/// Set by tests/golden/update: what is found becomes golden, and the lines of pages.
+inline bool updating() {
+  return std::getenv("BEAMID_UPDATE_GOLDEN") != nullptr;
+}
+
 /// README.md and docs/ in a temporary folder, and a POSIX shell there that finds beamid.
 class Shell {
  public:
