@@ -1,7 +1,7 @@
 #include "apps/beam_options.hpp"
 
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/plausibility.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/plausibility.hpp"
 
 namespace beamid::apps {
 namespace {

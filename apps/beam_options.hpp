@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "apps/command.hpp"
-#include "experiments/experiment.hpp"
-#include "experiments/input/toml_table.hpp"
-#include "experiments/output/results.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/results/results.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::apps {
 

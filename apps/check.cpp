@@ -4,13 +4,13 @@
 #include <filesystem>
 
 #include "apps/deliver.hpp"
-#include "experiments/input/choice_text.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/model_check/observed_modes.hpp"
-#include "experiments/model_check/report.hpp"
-#include "experiments/plausibility.hpp"
-#include "experiments/preparation/analysable_record.hpp"
-#include "experiments/preparation/preparation_report.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/model_check/observed_modes.hpp"
+#include "experiments/identify/plausibility.hpp"
+#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/studies/check/report.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
+#include "experiments/text/choice_text.hpp"
 
 namespace beamid::apps {
 namespace {

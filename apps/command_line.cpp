@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "apps/command.hpp"
-#include "experiments/input/clean_text.hpp"
-#include "experiments/input/input_error.hpp"
+#include "experiments/text/clean_text.hpp"
+#include "experiments/text/input_error.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <optional>
 
-#include "experiments/input/clean_text.hpp"
+#include "experiments/text/clean_text.hpp"
 
 namespace beamid::apps {
 

@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "apps/command.hpp"
-#include "experiments/output/results.hpp"
-#include "experiments/progress.hpp"
+#include "experiments/results/results.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::apps {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "apps/deliver.hpp"
-#include "experiments/efficiency/interval_coverage.hpp"
-#include "experiments/efficiency/laboratory_records.hpp"
-#include "experiments/efficiency/report.hpp"
-#include "experiments/efficiency/seeded_decays.hpp"
-#include "experiments/input/choice_text.hpp"
+#include "experiments/studies/efficiency/interval_coverage.hpp"
+#include "experiments/studies/efficiency/laboratory_records.hpp"
+#include "experiments/studies/efficiency/report.hpp"
+#include "experiments/studies/efficiency/seeded_decays.hpp"
+#include "experiments/text/choice_text.hpp"
 
 namespace beamid::apps {
 namespace {

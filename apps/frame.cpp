@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include "apps/deliver.hpp"
-#include "experiments/continuum/frame_modes.hpp"
-#include "experiments/input/method_choice.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/input/read_frame.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/config/read_frame.hpp"
+#include "experiments/studies/continuum/frame_modes.hpp"
+#include "experiments/text/method_choice.hpp"
 
 namespace beamid::apps {
 namespace {

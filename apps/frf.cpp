@@ -1,7 +1,7 @@
 // beamid frf: frequency responses from point to point.
 #include "apps/beam_options.hpp"
 #include "apps/deliver.hpp"
-#include "experiments/continuum/frequency_response_report.hpp"
+#include "experiments/studies/continuum/frequency_response_report.hpp"
 
 namespace beamid::apps {
 namespace {

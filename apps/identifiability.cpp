@@ -2,8 +2,8 @@
 #include "apps/beam_options.hpp"
 #include "apps/deliver.hpp"
 #include "apps/model_option.hpp"
-#include "experiments/identifiability/report.hpp"
-#include "experiments/input/read_reduction.hpp"
+#include "experiments/config/read_reduction.hpp"
+#include "experiments/studies/bounds/report.hpp"
 
 namespace beamid::apps {
 namespace {

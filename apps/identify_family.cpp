@@ -5,11 +5,11 @@
 #include <string>
 
 #include "apps/deliver.hpp"
-#include "experiments/beam_family/beam_family.hpp"
-#include "experiments/beam_family/report.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/plausibility.hpp"
-#include "experiments/preparation/prepared_record.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/family/beam_family.hpp"
+#include "experiments/identify/plausibility.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
+#include "experiments/studies/identify/family_report.hpp"
 
 namespace beamid::apps {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/command.hpp"
-#include "experiments/output/results.hpp"
+#include "experiments/results/results.hpp"
 
 namespace beamid::apps {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "experiments/damping_law/damping_law.hpp"
-#include "experiments/failure_response.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/input/spelling.hpp"
+#include "experiments/config/failure_response.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/damping_law/damping_law.hpp"
+#include "experiments/text/spelling.hpp"
 #include "filters/smoother.hpp"
 
 namespace beamid::apps {

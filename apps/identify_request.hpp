@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/command.hpp"
-#include "experiments/record_identification/identification_request.hpp"
+#include "experiments/identify/identification_request.hpp"
 
 namespace beamid::apps {
 

@@ -1,5 +1,5 @@
 // beamid inspect: what is in a record's file, and what is wrong with it?
-#include "experiments/inspection/inspection.hpp"
+#include "experiments/record/inspect/inspection.hpp"
 
 #include "apps/deliver.hpp"
 #include "apps/record_options.hpp"

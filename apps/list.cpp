@@ -3,11 +3,11 @@
 
 #include "apps/command.hpp"
 #include "apps/method_list.hpp"
-#include "experiments/joint_model.hpp"
-#include "experiments/input/record_reader.hpp"
-#include "experiments/modal_analysis/modal_method.hpp"
-#include "experiments/preparation/preparation_step.hpp"
-#include "experiments/study.hpp"
+#include "experiments/modal/modal_method.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
+#include "experiments/record/record_reader.hpp"
+#include "experiments/studies/study.hpp"
 #include "fem/response/response.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
@@ -90,11 +90,11 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command list_command() {
-  return {
-      "list",
-      "[discretisations|filters|modal_methods|models|readers|reductions|responses|smoothers|steps|studies [NAME]]",
-      "what can be chosen by name, and the options of each",
-      "  beamid list\n  beamid list filters\n  beamid list filters ukf\n", run};
+  return {"list",
+          "[discretisations|filters|modal_methods|models|readers|reductions|responses|smoothers|steps|"
+          "studies [NAME]]",
+          "what can be chosen by name, and the options of each",
+          "  beamid list\n  beamid list filters\n  beamid list filters ukf\n", run};
 }
 
 }  // namespace beamid::apps

@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "apps/reference.hpp"
-#include "experiments/modal_analysis/modal_method.hpp"
-#include "experiments/output/table.hpp"
-#include "experiments/output/text.hpp"
+#include "experiments/modal/modal_method.hpp"
+#include "experiments/results/table.hpp"
+#include "experiments/results/text.hpp"
 #include "filters/filter.hpp"
 #include "reduction/reduction.hpp"
 

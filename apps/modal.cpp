@@ -6,14 +6,14 @@
 
 #include "apps/deliver.hpp"
 #include "apps/record_options.hpp"
-#include "experiments/input/choice_text.hpp"
-#include "experiments/modal_study/amplitude_report.hpp"
-#include "experiments/modal_study/hammer_report.hpp"
-#include "experiments/modal_study/hammer_study.hpp"
-#include "experiments/modal_study/mass_report.hpp"
-#include "experiments/modal_study/report.hpp"
-#include "experiments/preparation/analysable_record.hpp"
-#include "experiments/preparation/preparation_report.hpp"
+#include "experiments/modal/study/hammer_study.hpp"
+#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/studies/modal/amplitude_report.hpp"
+#include "experiments/studies/modal/hammer_report.hpp"
+#include "experiments/studies/modal/mass_report.hpp"
+#include "experiments/studies/modal/report.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
+#include "experiments/text/choice_text.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -1,7 +1,7 @@
 #include "apps/model_option.hpp"
 
-#include "experiments/input/method_choice.hpp"
-#include "experiments/joint_model.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/text/method_choice.hpp"
 
 namespace beamid::apps {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/command.hpp"
-#include "experiments/experiment.hpp"
+#include "experiments/config/experiment.hpp"
 
 namespace beamid::apps {
 

@@ -1,7 +1,7 @@
 // beamid modes: natural frequencies and mode shapes, each with what tells how far to trust it.
 #include "apps/beam_options.hpp"
 #include "apps/deliver.hpp"
-#include "experiments/continuum/modal_report.hpp"
+#include "experiments/studies/continuum/modal_report.hpp"
 
 namespace beamid::apps {
 namespace {

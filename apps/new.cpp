@@ -3,8 +3,8 @@
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "experiments/input/input_error.hpp"
-#include "experiments/output/file.hpp"
+#include "experiments/results/file.hpp"
+#include "experiments/text/input_error.hpp"
 
 namespace beamid::apps {
 namespace {

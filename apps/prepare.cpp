@@ -2,8 +2,8 @@
 #include <filesystem>
 
 #include "apps/deliver.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/preparation/preparation_report.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <charconv>
 
-#include "experiments/input/read_record_format.hpp"
-#include "experiments/input/record_reader.hpp"
-#include "experiments/input/spelling.hpp"
-#include "experiments/input/units.hpp"
+#include "experiments/config/read_record_format.hpp"
+#include "experiments/record/record_reader.hpp"
+#include "experiments/record/units.hpp"
+#include "experiments/text/spelling.hpp"
 
 namespace beamid::apps {
 namespace {

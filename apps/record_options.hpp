@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/command.hpp"
-#include "experiments/experiment.hpp"
+#include "experiments/config/experiment.hpp"
 
 namespace beamid::apps {
 

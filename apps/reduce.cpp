@@ -5,9 +5,9 @@
 
 #include "apps/beam_options.hpp"
 #include "apps/deliver.hpp"
-#include "experiments/input/read_reduction.hpp"
-#include "experiments/reduction_comparison/chosen_reductions.hpp"
-#include "experiments/reduction_comparison/report.hpp"
+#include "experiments/config/read_reduction.hpp"
+#include "experiments/studies/reduce/chosen_reductions.hpp"
+#include "experiments/studies/reduce/report.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -6,9 +6,9 @@
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "experiments/input/clean_text.hpp"
-#include "experiments/output/joined_report.hpp"
-#include "experiments/output/report_pdf.hpp"
+#include "experiments/results/joined_report.hpp"
+#include "experiments/results/report_pdf.hpp"
+#include "experiments/text/clean_text.hpp"
 
 namespace beamid::apps {
 namespace {

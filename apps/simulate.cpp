@@ -1,8 +1,8 @@
 // beamid simulate: the virtual test rig.
 #include "apps/beam_options.hpp"
 #include "apps/deliver.hpp"
-#include "experiments/continuum/simulation_report.hpp"
-#include "experiments/input/read_acquisition.hpp"
+#include "experiments/config/read_acquisition.hpp"
+#include "experiments/studies/continuum/simulation_report.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -7,18 +7,18 @@
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "experiments/failure_response.hpp"
-#include "experiments/input/json_file.hpp"
-#include "experiments/input/method_choice.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/input/spelling.hpp"
-#include "experiments/model_setting.hpp"
-#include "experiments/output/file.hpp"
-#include "experiments/plausibility.hpp"
-#include "experiments/preparation/prepared_record.hpp"
-#include "experiments/streaming/sample_line.hpp"
-#include "experiments/streaming/sample_source.hpp"
-#include "experiments/streaming/streamed_identification.hpp"
+#include "experiments/config/failure_response.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/plausibility.hpp"
+#include "experiments/identify/stream/sample_line.hpp"
+#include "experiments/identify/stream/sample_source.hpp"
+#include "experiments/identify/stream/streamed_identification.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
+#include "experiments/results/file.hpp"
+#include "experiments/text/json_file.hpp"
+#include "experiments/text/method_choice.hpp"
+#include "experiments/text/spelling.hpp"
 
 namespace beamid::apps {
 namespace {

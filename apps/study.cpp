@@ -1,5 +1,5 @@
 // Every registered study as a command: its options are the command's.
-#include "experiments/study.hpp"
+#include "experiments/studies/study.hpp"
 
 #include <fmt/format.h>
 

@@ -6,14 +6,14 @@
 #include <thread>
 
 #include "apps/deliver.hpp"
-#include "experiments/input/method_choice.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/plausibility.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/config/read_sweep.hpp"
+#include "experiments/identify/plausibility.hpp"
+#include "experiments/studies/sweep/perform.hpp"
+#include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/journal.hpp"
-#include "experiments/sweep/perform.hpp"
-#include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/repeats.hpp"
-#include "experiments/sweep/report.hpp"
+#include "experiments/text/method_choice.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -5,11 +5,11 @@
 
 #include "apps/deliver.hpp"
 #include "apps/record_options.hpp"
-#include "experiments/input/input_error.hpp"
-#include "experiments/model_setting.hpp"
-#include "experiments/preparation/analysable_record.hpp"
-#include "experiments/preparation/preparation_report.hpp"
-#include "experiments/tracking/report.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
+#include "experiments/studies/track/report.hpp"
+#include "experiments/text/input_error.hpp"
 
 namespace beamid::apps {
 namespace {

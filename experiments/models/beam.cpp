@@ -12,11 +12,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/motion/banded/continuum_motion.hpp"
-#include "experiments/motion/beam_damping.hpp"
-#include "experiments/motion/beam_equations.hpp"
-#include "experiments/motion/following_motion.hpp"
-#include "experiments/motion/sensor_options.hpp"
+#include "experiments/models/banded/continuum_motion.hpp"
+#include "experiments/models/motion/beam_damping.hpp"
+#include "experiments/models/motion/beam_equations.hpp"
+#include "experiments/models/motion/following_motion.hpp"
+#include "experiments/models/motion/sensor_options.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/motion/oscillator_motion.hpp"
+#include "experiments/models/motion/oscillator_motion.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/motion/oscillator_motion.hpp"
+#include "experiments/models/motion/oscillator_motion.hpp"
 
 namespace beamid::experiments {
 namespace {

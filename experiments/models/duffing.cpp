@@ -3,7 +3,7 @@
 //     M x'' + C x' + K x + K3 x^3 = e f
 //
 // At the amplitude a it moves at omega^2 = (K + 3/4 K3 a^2) / M, to first order in K3.
-#include "experiments/motion/oscillator_motion.hpp"
+#include "experiments/models/motion/oscillator_motion.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/motion/beam_equations.hpp"
-#include "experiments/motion/sensor_options.hpp"
+#include "experiments/models/motion/beam_equations.hpp"
+#include "experiments/models/motion/sensor_options.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/random.hpp"
+#include "experiments/signal/random.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "experiments/acquisition_settings.hpp"
-#include "experiments/record.hpp"
+#include "experiments/config/acquisition_settings.hpp"
+#include "experiments/record/record.hpp"
 
 namespace beamid::experiments {
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/atlas/report.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/study.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/studies/atlas/report.hpp"
+#include "experiments/studies/study.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/budget/report.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/paper/beam_identification.hpp"
-#include "experiments/paper/monte_carlo.hpp"
-#include "experiments/study.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/studies/budget/report.hpp"
+#include "experiments/studies/paper/beam_identification.hpp"
+#include "experiments/studies/paper/monte_carlo.hpp"
+#include "experiments/studies/study.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 

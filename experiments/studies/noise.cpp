@@ -2,10 +2,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/higher_mode_noise/report.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/paper/test_beams.hpp"
-#include "experiments/study.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/studies/noise/report.hpp"
+#include "experiments/studies/paper/test_beams.hpp"
+#include "experiments/studies/study.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 

@@ -2,8 +2,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "experiments/paper/report.hpp"
-#include "experiments/study.hpp"
+#include "experiments/studies/paper/report.hpp"
+#include "experiments/studies/study.hpp"
 
 namespace beamid::experiments {
 namespace {

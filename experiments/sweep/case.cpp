@@ -4,10 +4,10 @@
 #include <mutex>
 #include <new>
 
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/input/text_file.hpp"
-#include "experiments/input/words.hpp"
-#include "experiments/preparation/prepared_record.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
+#include "experiments/text/text_file.hpp"
+#include "experiments/text/words.hpp"
 
 namespace beamid::experiments {
 namespace {

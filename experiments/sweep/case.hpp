@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/experiment.hpp"
-#include "experiments/record_comparison/comparison.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/compare/comparison.hpp"
 #include "experiments/sweep/rows.hpp"
 
 namespace beamid::experiments {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "experiments/input/words.hpp"
+#include "experiments/text/words.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -13,9 +13,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "experiments/input/input_error.hpp"
-#include "experiments/output/file.hpp"
+#include "experiments/results/file.hpp"
 #include "experiments/sweep/manifest.hpp"
+#include "experiments/text/input_error.hpp"
 
 namespace beamid::experiments {
 namespace {

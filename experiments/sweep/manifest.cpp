@@ -5,11 +5,11 @@
 #include <fstream>
 #include <iterator>
 
-#include "experiments/input/input_error.hpp"
-#include "experiments/input/json_file.hpp"
-#include "experiments/input/read_experiment.hpp"
-#include "experiments/input/text_file.hpp"
-#include "experiments/input/words.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/text/input_error.hpp"
+#include "experiments/text/json_file.hpp"
+#include "experiments/text/text_file.hpp"
+#include "experiments/text/words.hpp"
 #include "filters/batch.hpp"
 
 namespace beamid::experiments {

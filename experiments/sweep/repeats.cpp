@@ -7,14 +7,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "experiments/divergence.hpp"
-#include "experiments/identification.hpp"
-#include "experiments/input/choice_text.hpp"
-#include "experiments/input/read_reduction.hpp"
-#include "experiments/model_setting.hpp"
-#include "experiments/record_comparison/first_guess.hpp"
-#include "experiments/record_comparison/true_value.hpp"
-#include "experiments/reproduction.hpp"
+#include "experiments/config/read_reduction.hpp"
+#include "experiments/identify/compare/first_guess.hpp"
+#include "experiments/identify/compare/true_value.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/reproduction.hpp"
+#include "experiments/models/divergence.hpp"
+#include "experiments/models/identification.hpp"
+#include "experiments/text/choice_text.hpp"
 #include "fem/modes.hpp"
 #include "filters/batch.hpp"
 #include "filters/fisher_information.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "experiments/output/csv.hpp"
+#include "experiments/results/csv.hpp"
 
 namespace beamid::experiments {
 namespace {

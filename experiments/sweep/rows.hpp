@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/sweep/plan.hpp"
+#include "experiments/config/sweep_plan.hpp"
 
 namespace beamid::experiments {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/progress.hpp"
 #include "experiments/sweep/rows.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
 

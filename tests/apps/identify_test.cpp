@@ -6,8 +6,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "experiments/input/write_record.hpp"
-#include "experiments/virtual_rig.hpp"
+#include "experiments/record/write_record.hpp"
+#include "experiments/rig/virtual_rig.hpp"
 #include "fem/cantilever.hpp"
 #include "tests/apps/run_command.hpp"
 

@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/motion/banded/banded_step.hpp"
-#include "experiments/motion/banded/continuum_motion.hpp"
+#include "experiments/models/banded/banded_step.hpp"
+#include "experiments/models/banded/continuum_motion.hpp"
 #include "fem/cantilever.hpp"
 #include "fem/modes.hpp"
 #include "fem/stiffness_solver.hpp"

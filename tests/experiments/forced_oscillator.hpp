@@ -3,9 +3,9 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "experiments/oscillator.hpp"
-#include "experiments/random.hpp"
-#include "experiments/record.hpp"
+#include "experiments/models/oscillator.hpp"
+#include "experiments/record/record.hpp"
+#include "experiments/signal/random.hpp"
 
 namespace beamid::test {
 

@@ -73,18 +73,48 @@ inline const std::vector<Library>& libraries() {
        {"Eigen/", "unsupported/Eigen/"},
        {"fem/", "reduction/", "filters/", "experiments/", "apps/"},
        true},
-      {"VTK", {"vtk"}, {"experiments/output/"}},
-      {"toml++", {"toml"}, {"experiments/input/", "experiments/output/library_versions.cpp"}},
+      {"VTK", {"vtk"}, {"experiments/results/vtk/", "experiments/results/library_versions.cpp"}},
+      {"toml++", {"toml"}, {"experiments/text/", "experiments/results/library_versions.cpp"}},
       {"nlohmann-json", {"nlohmann/"}, {"experiments/", "apps/"}, true},
       {"fmt", {"fmt/"}, {"experiments/", "apps/"}, true},
       {"HDF5", {"hdf5"}, {"experiments/"}},
       {"MPI", {"mpi.h"}, {"experiments/sweep/mpi_processes.cpp"}},
-      {"matio", {"matio"}, {"experiments/record_files/"}},
+      {"matio", {"matio"}, {"experiments/record/files/"}},
       {"oneTBB", {"tbb/", "oneapi/"}, {"experiments/"}},
       {"Boost.Math", {"boost/math/"}, {"fem/", "filters/", "experiments/"}},
       {"Boost.Program_options", {"boost/program_options"}, {"apps/"}, true},
       {"POSIX", {"unistd.h", "fcntl.h", "poll.h", "spawn.h", "signal.h", "sys/"}, {"experiments/", "apps/"}}};
   return known;
+}
+
+/// The rooms of experiments/, from the ground up: a file includes its own room and those below it.
+inline const std::vector<std::string>& floors() {
+  static const std::vector<std::string> from_the_ground{"signal",   "text",   "record", "results",
+                                                        "modal",    "models", "config", "rig",
+                                                        "identify", "sweep",  "studies"};
+  return from_the_ground;
+}
+
+/// "identify" of "experiments/identify/compare/comparison.hpp"; empty outside experiments/.
+inline std::string room_of(const std::string& path) {
+  constexpr std::string_view house = "experiments/";
+  if (path.rfind(house, 0) != 0) return "";
+  const std::size_t end = path.find('/', house.size());
+  return end == std::string::npos ? "a loose file" : path.substr(house.size(), end - house.size());
+}
+
+/// What is wrong with an include between rooms; empty when it leads down or stays.
+inline std::string upward(const std::string& file, const std::string& target) {
+  const std::string from = room_of(file), to = room_of(target);
+  if (from.empty() || to.empty()) return "";
+  const auto floor = [](const std::string& room) {
+    return std::find(floors().begin(), floors().end(), room);
+  };
+  for (const std::string& room : {from, to})
+    if (floor(room) == floors().end()) return "experiments/ has no room '" + room + "'";
+  return floor(to) > floor(from)
+             ? "room " + from + " includes \"" + target + "\" of " + to + ", a room above it"
+             : "";
 }
 
 /// What is wrong with one include of `file` (a path from the repository's root); empty when it is allowed.
@@ -93,7 +123,7 @@ inline std::string objection(const std::string& file, const Include& include) {
   if (include.quoted) {
     const auto rule = allowed_within_project().find(folder);
     if (rule == allowed_within_project().end()) return "no rule for folder '" + folder + "'";
-    if (starts_with_any(include.target, rule->second)) return "";
+    if (starts_with_any(include.target, rule->second)) return upward(file, include.target);
     return folder + " includes \"" + include.target +
            "\"; expected a path from the root below: " + joined(rule->second);
   }

@@ -42,27 +42,36 @@ TEST(IncludeRules, LetReductionSeeTheRegistryButNoFilter) {
 }
 
 TEST(IncludeRules, RefuseLibrariesOutsideTheirPlaces) {
-  EXPECT_THAT(objections("experiments/record.cpp", "#include <vtkPoints.h>\n"), testing::SizeIs(1));
-  EXPECT_THAT(objections("experiments/output/mesh.cpp", "#include <vtkPoints.h>\n"), IsEmpty());
+  EXPECT_THAT(objections("experiments/record/record.cpp", "#include <vtkPoints.h>\n"), testing::SizeIs(1));
+  EXPECT_THAT(objections("experiments/results/vtk/mesh.cpp", "#include <vtkPoints.h>\n"), IsEmpty());
   EXPECT_THAT(objections("filters/filter_run.cpp", "#include <cvodes/cvodes.h>\n"), testing::SizeIs(1));
   EXPECT_THAT(objections("filters/schemes/cvode.cpp", "#include <cvodes/cvodes.h>\n"), IsEmpty());
   EXPECT_THAT(objections("reduction/projection.cpp", "#include <Eigen/UmfPackSupport>\n"),
               testing::SizeIs(1));
   EXPECT_THAT(objections("reduction/modes.cpp", "#  include <Spectra/SymGEigsSolver.h>\n"),
               testing::SizeIs(1));
-  EXPECT_THAT(objections("experiments/record.hpp", "#include <toml++/toml.h>\n"), testing::SizeIs(1));
+  EXPECT_THAT(objections("experiments/record/record.hpp", "#include <toml++/toml.h>\n"), testing::SizeIs(1));
   EXPECT_THAT(objections("experiments/paper.cpp", "#include <boost/program_options.hpp>\n"),
               testing::SizeIs(1));
 }
 
+TEST(IncludeRules, RefuseARoomThatLooksUp) {
+  EXPECT_THAT(objections("experiments/modal/pole.hpp", "#include \"experiments/record/record.hpp\"\n"),
+              IsEmpty());
+  EXPECT_THAT(objections("experiments/modal/pole.hpp", "#include \"experiments/studies/study.hpp\"\n"),
+              ElementsAre(HasSubstr("room modal includes")));
+  EXPECT_THAT(objections("experiments/attic/box.hpp", "#include \"experiments/record/record.hpp\"\n"),
+              ElementsAre(HasSubstr("no room 'attic'")));
+}
+
 TEST(IncludeRules, LetOnlySourcesOfItsPlaceShareAHeaderThatShowsALibrary) {
   std::map<std::string, std::string> texts{
-      {"experiments/input/node.hpp", "#include <toml++/toml.h>\n"},
-      {"experiments/input/node.cpp", "#include \"experiments/input/node.hpp\"\n"}};
+      {"experiments/text/node.hpp", "#include <toml++/toml.h>\n"},
+      {"experiments/text/node.cpp", "#include \"experiments/text/node.hpp\"\n"}};
   EXPECT_THAT(leaks(texts), IsEmpty());
-  texts["experiments/input/table.hpp"] = texts["experiments/input/node.cpp"];
-  texts["experiments/paper.cpp"] = texts["experiments/input/node.cpp"];
-  EXPECT_THAT(leaks(texts), testing::UnorderedElementsAre(HasSubstr("experiments/input/table.hpp:1: "),
+  texts["experiments/text/table.hpp"] = texts["experiments/text/node.cpp"];
+  texts["experiments/paper.cpp"] = texts["experiments/text/node.cpp"];
+  EXPECT_THAT(leaks(texts), testing::UnorderedElementsAre(HasSubstr("experiments/text/table.hpp:1: "),
                                                           HasSubstr("experiments/paper.cpp:1: ")));
 }
 

@@ -5,11 +5,11 @@
 
 #include <regex>
 
-#include "experiments/input/record_reader.hpp"
-#include "experiments/joint_model.hpp"
-#include "experiments/modal_analysis/modal_method.hpp"
-#include "experiments/preparation/preparation_step.hpp"
-#include "experiments/study.hpp"
+#include "experiments/modal/modal_method.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
+#include "experiments/record/record_reader.hpp"
+#include "experiments/studies/study.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
 #include "reduction/reduction.hpp"
@@ -46,8 +46,8 @@ TEST_P(ExtensionFolder, HasOneRegistrationPerFileUnderTheNameOfTheFile) {
 
 INSTANTIATE_TEST_SUITE_P(Project, ExtensionFolder,
                          testing::Values("filters/methods", "filters/schemes", "reduction/methods",
-                                         "experiments/modal_analysis/methods", "experiments/models",
-                                         "experiments/preparation/steps", "experiments/record_files",
+                                         "experiments/modal/methods", "experiments/models",
+                                         "experiments/record/steps", "experiments/record/files",
                                          "experiments/studies"),
                          [](const auto& tested) {
                            return std::regex_replace(std::string(tested.param), std::regex("/"), "_");
@@ -65,21 +65,20 @@ TEST(Registry, KnowsEveryReductionOfItsFolder) {
   EXPECT_EQ(names_known_to(reduction::reduction_registry()), extensions_in("reduction/methods"));
 }
 TEST(Registry, KnowsEveryModalMethodOfItsFolder) {
-  EXPECT_EQ(names_known_to(experiments::modal_method_registry()),
-            extensions_in("experiments/modal_analysis/methods"));
+  EXPECT_EQ(names_known_to(experiments::modal_method_registry()), extensions_in("experiments/modal/methods"));
 }
 TEST(Registry, KnowsEveryModelOfItsFolder) {
   EXPECT_EQ(names_known_to(experiments::model_registry()), extensions_in("experiments/models"));
 }
 TEST(Registry, KnowsEveryPreparationStepOfItsFolder) {
-  EXPECT_EQ(names_known_to(experiments::step_registry()), extensions_in("experiments/preparation/steps"));
+  EXPECT_EQ(names_known_to(experiments::step_registry()), extensions_in("experiments/record/steps"));
 }
 TEST(Registry, KnowsEveryStudyOfItsFolder) {
   EXPECT_EQ(names_known_to(experiments::study_registry()), extensions_in("experiments/studies"));
 }
 
 TEST(Registry, KnowsEveryReaderOfItsFolder) {
-  EXPECT_EQ(names_known_to(experiments::record_reader_registry()), extensions_in("experiments/record_files"));
+  EXPECT_EQ(names_known_to(experiments::record_reader_registry()), extensions_in("experiments/record/files"));
 }
 
 // The comparison means nothing when the folders are not found.

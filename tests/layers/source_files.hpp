@@ -27,14 +27,15 @@ inline std::vector<std::string> sources_below(const std::string& folder) {
   return {files.begin(), files.end()};
 }
 
-/// Names of the extensions in a folder: its .cpp files, except those with a header, which only help the
-/// others.
+/// Names of the extensions in a folder: the .cpp files in it, not below it, except those with a header, which
+/// only help the others.
 inline std::set<std::string> extensions_in(const std::string& folder) {
   std::set<std::string> names;
   for (const std::string& file : sources_below(folder)) {
     std::filesystem::path path(file);
     const std::string header = path.replace_extension(".hpp").generic_string();
-    if (file.ends_with(".cpp") && !std::filesystem::exists(std::filesystem::path(BEAMID_SOURCE_DIR) / header))
+    if (path.parent_path() == folder && file.ends_with(".cpp") &&
+        !std::filesystem::exists(std::filesystem::path(BEAMID_SOURCE_DIR) / header))
       names.insert(path.stem().string());
   }
   return names;

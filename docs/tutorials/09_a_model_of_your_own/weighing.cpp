@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/joint_model.hpp"
+#include "experiments/models/joint_model.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // A steel cantilever of the paper as an identification setting: sensors, forces, parameters.
 #pragma once
 
-#include "experiments/continuum/beam_points.hpp"
-#include "experiments/joint_model.hpp"
+#include "experiments/models/beam_points.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "fem/parametric_system.hpp"
 #include "tests/fem/five_beams.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/motion/banded/continuum_motion.hpp"
+#include "experiments/models/banded/continuum_motion.hpp"
 #include "fem/exact/exact_cantilever.hpp"
 #include "fem/modes.hpp"
 #include "filters/central_differences.hpp"

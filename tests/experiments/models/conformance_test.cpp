@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "experiments/joint_model.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "filters/central_differences.hpp"
 #include "filters/discrete_model.hpp"
 #include "tests/experiments/models/beam_setting.hpp"

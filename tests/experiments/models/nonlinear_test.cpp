@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/joint_model.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "filters/discrete_model.hpp"
 #include "tests/experiments/models/one_coordinate.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "experiments/joint_model.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "fem/assembly.hpp"
 #include "tests/experiments/models/one_coordinate.hpp"
 #include "tests/fem/five_beams.hpp"

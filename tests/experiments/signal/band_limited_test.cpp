@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/random.hpp"
+#include "experiments/signal/random.hpp"
 
 namespace beamid::experiments::band_limited_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "experiments/random.hpp"
+#include "experiments/signal/random.hpp"
 
 namespace beamid::experiments::onsets_test {
 namespace {

@@ -6,17 +6,17 @@
 #include <fstream>
 #include <numeric>
 
-#include "experiments/input/input_error.hpp"
-#include "experiments/output/file.hpp"
+#include "experiments/config/read_sweep.hpp"
+#include "experiments/results/file.hpp"
+#include "experiments/studies/sweep/perform.hpp"
 #include "experiments/sweep/hdf5_table.hpp"
 #include "experiments/sweep/journal.hpp"
 #include "experiments/sweep/manifest.hpp"
-#include "experiments/sweep/perform.hpp"
-#include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/repeats.hpp"
 #include "experiments/sweep/statistics.hpp"
 #include "experiments/sweep/sweep.hpp"
-#include "tests/experiments/input/temporary_file.hpp"
+#include "experiments/text/input_error.hpp"
+#include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/sweep/exact_rig.hpp"
 
 namespace beamid::experiments::sweep_test {

@@ -1,0 +1,128 @@
+#include "experiments/config/channel_places.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+#include "experiments/models/beam_points.hpp"
+#include "experiments/record/column_name.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// "x0.25m", in a column's name "x0_25m", "tip", "root", also where a second channel of that name has been
+// numbered: "tip_2".
+std::optional<double> place_in_name(std::string name, double length) {
+  if (const std::size_t number = name.rfind('_');
+      number != std::string::npos && name.find_first_not_of("0123456789", number + 1) == std::string::npos)
+    name.erase(number);
+  if (name == "tip") return length;
+  if (name == "root") return 0.0;
+  std::replace(name.begin(), name.end(), '_', '.');
+  if (name.size() < 3 || name.front() != 'x' || name.back() != 'm') return {};
+  double position = 0.0;
+  const char* const end = name.data() + name.size() - 1;
+  const auto [rest, error] = std::from_chars(name.data() + 1, end, position);
+  if (error != std::errc() || rest != end || !(position >= 0.0 && position <= length)) return {};
+  return position;
+}
+
+// Whether columns of these channels have one name: as close as a file keeps it.
+bool same_column(const Channel& one, const Channel& other) {
+  Record first, second;
+  first.channels = {one};
+  second.channels = {other};
+  return column_names(first)[1] == column_names(second)[1];
+}
+
+double place_of(const Sensor& sensor, const fem::Beam& beam) {
+  return sensor.position.value_or(fem::natural_point(beam).position);
+}
+
+// The sensor that a channel comes from; null where none is named like it and several are of its quantity.
+const Sensor* sensor_of(const Channel& channel, const Experiment& experiment) {
+  const Sensor* only = nullptr;
+  int alike = 0;
+  for (const Sensor& sensor : experiment.sensors) {
+    if (sensor.quantity != channel.quantity) continue;
+    const std::string name = sensor.name.empty()
+                                 ? name_of_place(place_of(sensor, experiment.beam), experiment.beam.length())
+                                 : sensor.name;
+    if (same_column(channel, {sensor.quantity, name})) return &sensor;
+    only = &sensor;
+    ++alike;
+  }
+  return alike == 1 ? only : nullptr;
+}
+
+[[noreturn]] void refuse_unplaced(const Channel& channel, const Experiment& experiment) {
+  std::string named;
+  for (const Sensor& sensor : experiment.sensors)
+    if (sensor.quantity == channel.quantity && !sensor.name.empty())
+      named += (named.empty() ? "" : ", ") + sensor.name;
+  throw std::invalid_argument(
+      fmt::format("where channel '{}' ({}) sits on the beam is not known; expected position_m in "
+                  "[[record.channels]]{}, or a "
+                  "[[sensors]] of that name{}",
+                  channel.name, to_string(channel.quantity),
+                  channel.quantity == Quantity::strain ? " with the gauge's distance_m" : "",
+                  named.empty() ? "" : "; the file names " + named));
+}
+
+}  // namespace
+
+Record with_places(Record record, const Experiment& experiment) {
+  const double length = experiment.beam.length();
+  std::vector<Channel*> left;
+  for (Channel& channel : record.channels) {
+    const bool gauge = channel.quantity == Quantity::strain;
+    if (channel.position && (!gauge || channel.distance != 0.0)) continue;
+    const Sensor* const sensor = sensor_of(channel, experiment);
+    if (sensor) {
+      channel.position = place_of(*sensor, experiment.beam);
+      channel.distance = sensor->distance;
+    } else if (!channel.position && !gauge) {
+      channel.position = place_in_name(channel.name, length);
+    }
+    if (!channel.position || (gauge && channel.distance == 0.0)) left.push_back(&channel);
+  }
+  for (Channel* const channel : left) {
+    const auto alike = [&](const auto& other) { return other.quantity == channel->quantity; };
+    const bool one = std::count_if(left.begin(), left.end(), [&](const Channel* other) {
+                       return other->quantity == channel->quantity;
+                     }) == 1;
+    const bool sensors = std::any_of(experiment.sensors.begin(), experiment.sensors.end(), alike);
+    if (!one || sensors || channel->quantity == Quantity::strain) refuse_unplaced(*channel, experiment);
+  }
+  for (Channel* const channel : left) channel->position = fem::natural_point(experiment.beam).position;
+  return record;
+}
+
+std::string channel_text(const Channel& channel) {
+  const std::string where = channel.position ? fmt::format(" at {:g} m", *channel.position) : "";
+  const std::string quantity = to_string(channel.quantity);
+  return (channel.name.empty() || channel.name == quantity ? quantity : channel.name + ": " + quantity) +
+         where;
+}
+
+std::string channels_text(const Record& record) {
+  std::string text;
+  for (const Channel& channel : record.channels) text += (text.empty() ? "" : ", ") + channel_text(channel);
+  return text;
+}
+
+nlohmann::ordered_json channel_values(const Record& record) {
+  nlohmann::ordered_json values = nlohmann::ordered_json::array();
+  for (const Channel& channel : record.channels) {
+    values.push_back({{"name", channel.name},
+                      {"quantity", to_string(channel.quantity)},
+                      {"unit", si_unit(channel.quantity)}});
+    values.back()["position_m"] =
+        channel.position ? nlohmann::ordered_json(*channel.position) : nlohmann::ordered_json(nullptr);
+  }
+  return values;
+}
+
+}  // namespace beamid::experiments

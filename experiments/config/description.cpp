@@ -1,0 +1,120 @@
+#include "experiments/config/description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "experiments/config/beam_description.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string range(const fem::Beam& beam,
+                  const std::function<const fem::Variation&(const fem::Section&)>& quantity) {
+  double least = INFINITY, most = -INFINITY;
+  for (const fem::Segment& segment : beam.segments)
+    for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      least = std::min(least, quantity(segment.section)(s));
+      most = std::max(most, quantity(segment.section)(s));
+    }
+  return least == most ? fmt::format("{:.6g}", least) : fmt::format("{:.6g} to {:.6g}", least, most);
+}
+
+std::string held(const fem::Beam& beam) {
+  std::string text;
+  for (const fem::Support& support : beam.supports)
+    text += fmt::format("{}{} at {:g} m", text.empty() ? "" : ", ",
+                        !support.rotation    ? "pinned"
+                        : support.deflection ? "clamped"
+                                             : "guided",
+                        support.position);
+  return text.empty() ? "nowhere held" : text;
+}
+
+std::string count(std::size_t number, const char* one, const char* many) {
+  return number == 0 ? "" : fmt::format("; {} {}", number, number == 1 ? one : many);
+}
+
+Json anchors_json(const std::vector<fem::DampingAnchor>& anchors) {
+  Json json = Json::array();
+  for (const fem::DampingAnchor& anchor : anchors)
+    json.push_back({{"frequency_hz", anchor.frequency_hz}, {"ratio", anchor.ratio}});
+  return json;
+}
+
+}  // namespace
+
+std::string bending_stiffness_text(const fem::Beam& beam) {
+  return range(
+      beam, [](const auto& s) -> auto& { return s.bending_stiffness; });
+}
+
+std::string beam_text(const fem::Beam& beam, int elements, Eigen::Index coordinates) {
+  const bool timoshenko =
+      std::any_of(beam.segments.begin(), beam.segments.end(),
+                  [](const fem::Segment& segment) { return segment.section.shear_stiffness; });
+  std::string text =
+      fmt::format("{} beam: {:g} m, EI = {} N m2, {} kg/m, {:.6g} kg; {}",
+                  timoshenko ? "Timoshenko" : "Euler-Bernoulli", beam.length(), bending_stiffness_text(beam),
+                  range(
+                      beam, [](const auto& s) -> auto& { return s.mass_per_length; }),
+                  beam.mass(), held(beam));
+  for (const fem::Body& body : beam.bodies) {
+    text += fmt::format("; {:.6g} kg", body.mass);
+    if (body.rotary_inertia != 0.0) text += fmt::format(", {:.6g} kg m2", body.rotary_inertia);
+    text += body.position == beam.length() ? " at the tip" : fmt::format(" at {:g} m", body.position);
+    if (body.eccentricity != 0.0) text += fmt::format(", {:g} m beyond", body.eccentricity);
+  }
+  for (const fem::Spring& spring : beam.springs) {
+    std::string constants;
+    const auto add = [&](double value, const char* unit) {
+      if (value != 0.0) constants += fmt::format("{}{:.6g} {}", constants.empty() ? "" : ", ", value, unit);
+    };
+    add(spring.translational, "N/m"), add(spring.rotational, "N m/rad"), add(spring.cubic, "N/m3");
+    text +=
+        fmt::format("; at {:g} m a spring of {}", spring.position, constants.empty() ? "0 N/m" : constants);
+  }
+  text += count(beam.dashpots.size(), "dashpot", "dashpots") +
+          count(beam.absorbers.size(), "absorber", "absorbers") +
+          count(beam.damages.size(), "damage", "damages") +
+          count(beam.added_masses.size(), "added mass", "added masses");
+  if (beam.axial_load != 0.0)
+    text += fmt::format("; {:.6g} N of {}", std::abs(beam.axial_load),
+                        beam.axial_load > 0.0 ? "compression" : "tension");
+  return text + fmt::format(". {} elements{}, {} degrees of freedom.", elements,
+                            beam.mass_model == fem::MassModel::lumped ? " with lumped mass" : "",
+                            coordinates);
+}
+
+Json describe(const fem::DampingLaw& law) {
+  Json json{{"law", fem::name(law)}};
+  if (const auto* modal = std::get_if<fem::ModalDamping>(&law)) json["ratios"] = modal->ratios;
+  if (const auto* rayleigh = std::get_if<fem::RayleighDamping>(&law))
+    json["anchors"] = anchors_json(std::vector{rayleigh->first, rayleigh->second});
+  if (const auto* caughey = std::get_if<fem::CaugheyDamping>(&law))
+    json["anchors"] = anchors_json(caughey->anchors);
+  if (const auto* structural = std::get_if<fem::StructuralDamping>(&law))
+    json["loss_factor"] = structural->loss_factor;
+  return json;
+}
+
+Json describe(const Experiment& experiment) {
+  return {{"title", experiment.title},
+          {"beam", describe(experiment.beam, experiment.elements)},
+          {"damping", describe(experiment.damping)}};
+}
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+void add_notes(Results& results, const std::vector<std::string>& notes) {
+  results.values["notes"] = notes;
+  for (const std::string& note : notes) results.paragraph(note);
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,33 @@
+// How the commands on the beam itself say what they worked on.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "experiments/config/experiment.hpp"
+#include "experiments/results/results.hpp"
+
+namespace beamid::experiments {
+
+/// The beam in a sentence or two: length, stiffness, masses, what holds it, mesh.
+std::string beam_text(const fem::Beam& beam, int elements, Eigen::Index coordinates);
+
+/// E I [N m2]: "228.96", or "28.62 to 228.96" where it varies.
+std::string bending_stiffness_text(const fem::Beam& beam);
+
+/// {"law": "rayleigh", "anchors": [...]}
+nlohmann::ordered_json describe(const fem::DampingLaw& law);
+
+/// Title, beam and damping, with which "configuration" begins.
+nlohmann::ordered_json describe(const Experiment& experiment);
+
+/// A number, or null where there is none.
+nlohmann::ordered_json number_or_null(double value);
+
+/// Adds notes to the report, as paragraphs, and to the values, as "notes".
+void add_notes(Results& results, const std::vector<std::string>& notes);
+
+/// Above so many elements pictures show the same beam with as many.
+inline constexpr int most_drawn_elements = 2000;
+
+}  // namespace beamid::experiments

@@ -1,0 +1,59 @@
+// One beam and what is done with it, as its TOML file describes it (docs/configuration.md).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/config/identifiability_settings.hpp"
+#include "experiments/config/settings.hpp"
+#include "experiments/config/sweep_plan.hpp"
+#include "experiments/models/parameter_choice.hpp"
+#include "experiments/record/record_format.hpp"
+#include "experiments/text/choice.hpp"
+#include "fem/beam.hpp"
+#include "fem/damping.hpp"
+#include "filters/running_filter.hpp"
+
+namespace beamid::experiments {
+
+/// What is believed before the record is seen; absent values are worked out from the model and the record.
+struct PriorBelief {
+  std::optional<double> stiffness, stiffness_deviation;  ///< [N/m]
+  std::optional<double> damping_ratio, damping_ratio_deviation;
+};
+
+struct Experiment {
+  std::string title;
+  fem::Beam beam;
+  int elements = 40;
+  fem::DampingLaw damping;
+  Excitation excitation;
+  std::vector<Sensor> sensors;  ///< none: displacement and acceleration at the natural point
+  Simulation simulation;
+  FrequencyResponseSettings frequency_response;
+  std::optional<std::string> record_file;  ///< relative to the TOML file's folder
+  RecordFormat format;
+  Choice reduction{"rayleigh", {}};
+  std::vector<Choice>
+      reductions;  ///< to be compared, in the order of the file; none: a choice of the command
+  Choice model{"sdof", {}};
+  std::vector<ParameterChoice> parameters;  ///< none: what the model asks about by itself
+  Choice filter{"ekf", {}};
+  std::string discretisation = "exponential";
+  filters::OnFailure on_failure = filters::OnFailure::stop;
+  std::string smoother;                      ///< of the history of an identification; empty: none
+  std::vector<Choice> filters;               ///< to be compared; none: `filter`
+  std::vector<std::string> discretisations;  ///< likewise; none: `discretisation`
+  int passes = 3;                            ///< over the record, of every run of a comparison
+  IdentifiabilitySettings identifiability;
+  PriorBelief prior;
+  std::map<Quantity, double> noise;     ///< standard deviation per quantity [SI]; absent: from the record
+  Choice noise_method{"residual", {}};  ///< how absent ones are found: residual, likelihood, before_event
+  std::string estimator = "filter";     ///< of an identification: filter, batch or both
+  SweepPlan sweep;
+};
+
+}  // namespace beamid::experiments

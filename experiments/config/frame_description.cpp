@@ -1,0 +1,97 @@
+#include "experiments/config/frame_description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/config/beam_description.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string kind_of(const fem::Frame::Support& support) {
+  for (const auto& [name, kind] : frame_support_kinds())
+    if (kind.x == support.x && kind.y == support.y && kind.rotation == support.rotation) return name;
+  return "free";
+}
+
+Json describe_member(const fem::Frame& frame, std::size_t i) {
+  const fem::Frame::Member& member = frame.members[i];
+  Json json{{"first", member.first + 1}, {"second", member.second + 1}};
+  json.update(describe(fem::Segment{frame.length(i), member.section}));
+  if (member.hinged_at_first) json["hinged_at_first"] = true;
+  if (member.hinged_at_second) json["hinged_at_second"] = true;
+  return json;
+}
+
+std::string counted(std::size_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, fem::Frame::Support>>& frame_support_kinds() {
+  static const std::vector<std::pair<std::string, fem::Frame::Support>> kinds{
+      {"clamped", {0, true, true, true}},     {"pinned", {0, true, true, false}},
+      {"rolling_x", {0, false, true, false}}, {"rolling_y", {0, true, false, false}},
+      {"sliding_x", {0, false, true, true}},  {"sliding_y", {0, true, false, true}},
+      {"guided", {0, false, false, true}}};
+  return kinds;
+}
+
+Json describe(const FrameExperiment& experiment) {
+  const fem::Frame& frame = experiment.frame;
+  Json json{{"elements_per_member", experiment.elements_per_member},
+            {"mass_model", frame.mass_model == fem::MassModel::lumped ? "lumped" : "consistent"}};
+  for (std::size_t i = 0; i < frame.joints.size(); ++i)
+    json["joints"].push_back(
+        {{"name", experiment.joint_names[i]}, {"x_m", frame.joints[i].x}, {"y_m", frame.joints[i].y}});
+  for (std::size_t i = 0; i < frame.members.size(); ++i) json["members"].push_back(describe_member(frame, i));
+  for (const auto& support : frame.supports)
+    json["supports"].push_back({{"joint", support.joint + 1}, {"kind", kind_of(support)}});
+  for (const auto& body : frame.bodies)
+    json["bodies"].push_back(
+        {{"joint", body.joint + 1}, {"mass_kg", body.mass}, {"rotary_inertia_kg_m2", body.rotary_inertia}});
+  for (const auto& spring : frame.springs)
+    json["springs"].push_back({{"joint", spring.joint + 1},
+                               {"translational_x_n_per_m", spring.x},
+                               {"translational_y_n_per_m", spring.y},
+                               {"rotational_n_m_per_rad", spring.rotational}});
+  return {{"title", experiment.title}, {"frame", json}};
+}
+
+std::string frame_text(const FrameExperiment& experiment, Eigen::Index coordinates) {
+  const fem::Frame& frame = experiment.frame;
+  std::string text =
+      fmt::format("Plane frame: {} between {}, {:.6g} kg", counted(frame.members.size(), "member"),
+                  counted(frame.joints.size(), "joint"), total_mass(frame));
+  std::string held;
+  for (const auto& [name, kind] : frame_support_kinds()) {
+    std::string joints;
+    for (const fem::Frame::Support& support : frame.supports)
+      if (kind_of(support) == name)
+        joints += (joints.empty() ? "" : ", ") + experiment.joint_names[support.joint];
+    if (!joints.empty()) held += fmt::format("; {} at {}", name, joints);
+  }
+  text += held.empty() ? "; nowhere held" : held;
+  if (!frame.bodies.empty())
+    text += fmt::format("; {}",
+                        frame.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", frame.bodies.size()));
+  if (!frame.springs.empty()) text += "; " + counted(frame.springs.size(), "spring");
+  return text + fmt::format(". {} per member{}, {} degrees of freedom.",
+                            counted(static_cast<std::size_t>(experiment.elements_per_member), "element"),
+                            frame.mass_model == fem::MassModel::lumped ? " with lumped mass" : "",
+                            coordinates);
+}
+
+double total_mass(const fem::Frame& frame) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < frame.members.size(); ++i)
+    sum += frame.members[i].section.mass_per_length.mean() * frame.length(i);
+  for (const fem::Frame::Body& body : frame.bodies) sum += body.mass;
+  return sum;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,38 @@
+#include "experiments/config/read_gauge.hpp"
+
+#include <algorithm>
+
+#include "experiments/config/read_attachments.hpp"
+#include "experiments/config/useless_keys.hpp"
+
+namespace beamid::experiments {
+
+std::optional<double> read_position(const TomlTable& table, const fem::Beam& beam, Quantity quantity) {
+  if (!table.contains("position_m") && quantity != Quantity::strain) return std::nullopt;
+  return position_on_beam(table, "position_m", beam.length());
+}
+
+double read_distance(const TomlTable& table, const fem::Beam& beam, Quantity quantity,
+                     const std::optional<double>& position) {
+  const auto distance = table.find_number("distance_m");
+  if (quantity != Quantity::strain) {
+    refuse_useless(table, {"distance_m"}, std::string("for the quantity ") + to_string(quantity),
+                   "quantity = \"strain\", or no distance_m");
+    return 0.0;
+  }
+  if (distance && *distance != 0.0) return *distance;
+  const std::string expected = "a number of metres that is not zero: how far the gauge is from the axis";
+  if (distance) table.refuse("distance_m", expected);
+  double start = 0.0;
+  const double x = position.value_or(0.0);
+  for (const fem::Segment& segment : beam.segments) {
+    const double s = (x - start) / segment.length;
+    start += segment.length;
+    if (s > 1.0 && &segment != &beam.segments.back()) continue;
+    if (segment.section.outline.shape == fem::Outline::Shape::none) break;
+    return 0.5 * segment.section.outline.height(std::min(s, 1.0));
+  }
+  table.miss("distance_m", expected + "; the section there has no height that would tell");
+}
+
+}  // namespace beamid::experiments

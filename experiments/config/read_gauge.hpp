@@ -1,0 +1,22 @@
+// Where a sensor sits, and how far from the axis a strain gauge is glued.
+#pragma once
+
+#include <optional>
+
+#include "experiments/record/record.hpp"
+#include "experiments/text/toml_table.hpp"
+#include "fem/beam.hpp"
+
+namespace beamid::experiments {
+
+/// `position_m`, where given. @throws InputError when it is off the beam, or missing for a strain gauge.
+std::optional<double> read_position(const TomlTable& table, const fem::Beam& beam, Quantity quantity);
+
+/// `distance_m` of a strain gauge from the axis, c of -c w'' [m], positive on the side of positive
+/// deflection; absent: half the section's height there. Zero for other quantities.
+/// @throws InputError when the key stands beside another quantity, or the section has no drawn height.
+/// @param position of a strain gauge [m]
+double read_distance(const TomlTable& table, const fem::Beam& beam, Quantity quantity,
+                     const std::optional<double>& position);
+
+}  // namespace beamid::experiments

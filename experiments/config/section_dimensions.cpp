@@ -1,0 +1,57 @@
+#include "experiments/config/section_dimensions.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "experiments/config/useless_keys.hpp"
+
+namespace beamid::experiments {
+
+using fem::Variation;
+using std::numbers::pi;
+
+SectionDimensions::SectionDimensions(const TomlTable& table) : table_(table) {
+  const auto dimension = [&](const std::string& name) -> std::optional<Variation> {
+    const auto start = table.find_number(name + "_m", Sign::positive);
+    const auto end = table.find_number("end_" + name + "_m", Sign::not_negative);
+    if (end && !start) table.miss(name + "_m", "a positive number beside end_" + name + "_m");
+    if (!start) return std::nullopt;
+    return end ? Variation::linear(*start, *end) : Variation(*start);
+  };
+  const auto width = dimension("width"), height = dimension("height"), diameter = dimension("diameter");
+  if (diameter) {
+    refuse_useless(table, {"width_m", "height_m"}, "beside diameter_m", "a rectangle or a circle");
+    outline_ = {fem::Outline::Shape::ellipse, *diameter, *diameter};
+  } else if (width && height) {
+    outline_ = {fem::Outline::Shape::rectangle, *width, *height};
+  }
+}
+
+void SectionDimensions::require(const std::string& owner) const {
+  if (known()) return;
+  for (const std::string key : {"width_m", "height_m"})
+    if (!table_.contains(key)) {
+      const bool neither = !table_.contains("width_m") && !table_.contains("height_m");
+      table_.miss(key, "a positive number beside " + owner + (neither ? ", or diameter_m" : ""));
+    }
+}
+
+Variation SectionDimensions::area() const {
+  return Variation(circular() ? pi / 4.0 : 1.0) * outline_.width * outline_.height;
+}
+
+Variation SectionDimensions::second_moment() const {
+  const Variation& height = outline_.height;
+  return outline_.width * height * height * height * Variation(circular() ? pi / 64.0 : 1.0 / 12.0);
+}
+
+Variation SectionDimensions::square_of_gyration() const {
+  return outline_.height * outline_.height * Variation(circular() ? 1.0 / 16.0 : 1.0 / 12.0);
+}
+
+double SectionDimensions::shear_factor(double poissons_ratio) const {
+  return circular() ? fem::circle_shear_factor(poissons_ratio) : fem::rectangle_shear_factor(poissons_ratio);
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,87 @@
+#include "experiments/identify/compare/first_guess.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "experiments/identify/record_inputs.hpp"
+#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/identification.hpp"
+#include "experiments/signal/decimation.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double guess_samples_per_period = 8.0;
+constexpr Index fewest_guess_samples = 64;  // samples that are worth a first guess
+constexpr double guess_noise = 0.3;      // noise of it, of a channel's root mean square: neighbours leak in
+constexpr Index longest_guess = 1024;    // samples at the full rate, which filters take up well
+constexpr double level_ratio = 3.0;      // of the rates of successive levels
+constexpr double guess_widening = 30.0;  // of the deviations found
+
+// Covariance of the unknowns alone.
+MatrixXd covariance_of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
+  if (belief.covariance.size() > 0) return belief.covariance(model.unknown_places, model.unknown_places);
+  const MatrixXd rows = belief.factor(model.unknown_places, Eigen::all);
+  return rows * rows.transpose();
+}
+
+// Every `factor`-th sample, low-passed; empty when too few remain.
+filters::Measurements decimated(const filters::Measurements& record, Index inputs, double interval,
+                                int factor) {
+  filters::Measurements coarse;
+  if (record.time.size() < (fewest_guess_samples + 10) * factor) return coarse;
+  coarse.outputs = decimate_channels(record.outputs, factor);
+  coarse.time =
+      interval * factor *
+      VectorXd::LinSpaced(coarse.outputs.cols(), 0.0, static_cast<double>(coarse.outputs.cols() - 1));
+  coarse.inputs = decimated_inputs(record, inputs, factor, coarse.time).columns;
+  return coarse;
+}
+
+// The guess after a record that holds the low modes only.
+FirstGuess hear(const JointModel& model, const std::vector<Observation>& observations, const LowRecord& low,
+                const FirstGuess& guess) {
+  const FirstGuess found = fit_low_modes(model, observations, low, guess, guess_noise);
+  const MatrixXd& p = guess.unknowns;
+  const MatrixXd wide = guess_widening * guess_widening * found.unknowns;
+  // The product of both densities, P (P + F)^-1 F.
+  return {found.mean, p * (p + wide).ldlt().solve(wide)};
+}
+
+}  // namespace
+
+StartDirections with_guess(StartDirections directions, const JointModel& model, const FirstGuess& guess) {
+  directions.unknowns.setZero();
+  directions.unknowns(model.unknown_places, Eigen::all) = root_of(guess.unknowns);
+  return directions;
+}
+
+std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double interval,
+                                               const MatrixXd& output_noise) {
+  return filters::discretise(model.motion, interval, finest_discretisation(model, interval),
+                             {{}, output_noise});
+}
+
+FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
+                       const filters::Measurements& record, double frequency_hz) {
+  const double dt = record.interval();
+  const filters::Gaussian believed = start_belief(
+      model, start_directions(model, observations, start_scale(model, observations, record.outputs, 1.0)));
+  FirstGuess guess{believed.mean, covariance_of_unknowns(model, believed)};
+  for (double factor = 1.0 / (guess_samples_per_period * frequency_hz * dt); factor >= 2.0;
+       factor /= level_ratio) {
+    const int whole = static_cast<int>(factor);
+    const filters::Measurements coarse = decimated(record, model.motion->input_size(), dt, whole);
+    if (coarse.size() > 0) guess = hear(model, observations, {coarse, 0.5 / (whole * dt)}, guess);
+  }
+  if (record.size() >= fewest_guess_samples)
+    guess = hear(model, observations, {beginning(record, std::min(longest_guess, record.size())), 0.5 / dt},
+                 guess);
+  return guess;
+}
+
+}  // namespace beamid::experiments

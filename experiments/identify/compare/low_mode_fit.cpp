@@ -1,0 +1,172 @@
+#include "experiments/identify/compare/low_mode_fit.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "experiments/identify/reproduction.hpp"
+#include "experiments/models/current_modes.hpp"
+#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/identification.hpp"
+#include "filters/output_error.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr Index fewest_fit_samples = 64;  // samples that are worth a fit
+constexpr double first_periods = 3.0;     // of the fastest mode heard, that are taken up first
+constexpr int iterations = 12;
+constexpr double close_enough = 0.02;  // length of the next step, in deviations of what is sought
+constexpr double largest_damping = 1e6;
+
+/// J near some c: 1/2 |R d - q|^2 + 1/2 remainder^2 + 1/2 |c + d|^2.
+struct LowModeLinearisation {
+  double cost = std::numeric_limits<double>::infinity();  // infinite where there is no motion
+  VectorXd state;                                         // the best start (n)
+  MatrixXd root;                                          // R (q x q)
+  VectorXd slope;                                         // q
+};
+
+class LowModeFit {
+ public:
+  LowModeFit(const JointModel& model, const std::vector<Observation>& observations, double highest_hz,
+             const FirstGuess& guess, double noise)
+      : model_(model),
+        observations_(observations),
+        highest_hz_(highest_hz),
+        guess_(guess),
+        noise_(noise),
+        unknowns_(root_of(guess.unknowns)) {}
+
+  Index unknowns() const { return unknowns_.cols(); }
+
+  // The modes that the record holds, at a state's unknowns; there is always the first.
+  JointModel low_modes(const VectorXd& state) const {
+    JointModel model = with_modes_at(model_, state);
+    Index count = 1;
+    while (count < model.mode_frequencies.size() &&
+           model.mode_frequencies[count] < 2.0 * std::numbers::pi * highest_hz_)
+      ++count;
+    model.mode_shapes = model.mode_shapes.leftCols(count).eval();
+    model.mode_frequencies = model.mode_frequencies.head(count).eval();
+    return model;
+  }
+
+  LowModeLinearisation at(const VectorXd& c, const filters::Measurements& heard) const {
+    LowModeLinearisation result;
+    const Index samples = heard.size(), q = unknowns();
+    VectorXd state = guess_.mean;
+    state(model_.unknown_places) += unknowns_ * c;
+    try {
+      const JointModel low = low_modes(state);
+      const StartDirections start = start_directions(
+          low, observations_, start_scale(low, observations_, heard.outputs, heard.time[samples - 1]));
+      const VectorXd size = heard.outputs.rowwise().norm() / std::sqrt(static_cast<double>(samples));
+      const MatrixXd noise = (noise_ * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
+      const double interval = heard.time[samples - 1] / static_cast<double>(samples - 1);
+      const auto discrete =
+          filters::discretise(low.motion, interval, finest_discretisation(low), {{}, noise});
+      const VectorXd best = reproduce(*discrete, state, start, heard).initial_state;
+
+      MatrixXd directions(best.size(), start.motion.cols() + q);
+      directions.leftCols(start.motion.cols()) = start.motion;
+      MatrixXd follow = motion_slopes(low, best);
+      for (Index j = 0; j < q; ++j) follow(model_.unknown_places[static_cast<std::size_t>(j)], j) = 1.0;
+      directions.rightCols(q) = follow * unknowns_;
+      const MatrixXd no_prior;
+      const filters::OutputErrorPass pass = filters::OutputError(*discrete, best, directions, heard, no_prior)
+                                                .pass(VectorXd::Zero(directions.cols()), samples);
+      if (!pass.finite) return result;
+      std::vector<Index> projected(static_cast<std::size_t>(start.motion.cols()));
+      for (std::size_t i = 0; i < projected.size(); ++i) projected[i] = static_cast<Index>(i);
+      const MatrixXd root = pass.information.without(projected).root();
+      result.state = best;
+      result.root = root.topLeftCorner(q, q);
+      result.slope = root.col(q).head(q);
+      result.cost = pass.cost + 0.5 * c.squaredNorm();
+    } catch (const std::runtime_error&) {  // no such motion: the cost stays infinite
+    }
+    return result;
+  }
+
+ private:
+  const JointModel& model_;
+  const std::vector<Observation>& observations_;
+  double highest_hz_;
+  const FirstGuess& guess_;
+  double noise_;
+  MatrixXd unknowns_;  // U (q x q)
+};
+
+// Rows of the least squares problem in d: the record, what is believed, and the damping.
+VectorXd step(const LowModeLinearisation& now, const VectorXd& c, double damping) {
+  const Index q = c.size();
+  MatrixXd rows(3 * q, q);
+  rows << now.root, MatrixXd::Identity(q, q), std::sqrt(damping) * MatrixXd::Identity(q, q);
+  VectorXd right(3 * q);
+  right << now.slope, -c, VectorXd::Zero(q);
+  return rows.colPivHouseholderQr().solve(right);
+}
+
+// Levenberg-Marquardt from c, which it moves; what holds there.
+LowModeLinearisation descend(const LowModeFit& fit, const filters::Measurements& heard, VectorXd& c) {
+  LowModeLinearisation now = fit.at(c, heard);
+  double damping = 0.0;
+  for (int i = 0; i < iterations && std::isfinite(now.cost); ++i) {
+    const VectorXd d = step(now, c, damping);
+    LowModeLinearisation next = fit.at(c + d, heard);
+    if (next.cost < now.cost) {
+      const double length = std::hypot((now.root * d).norm(), d.norm());
+      c += d;
+      now = std::move(next);
+      damping = damping > 1.0 ? 0.1 * damping : 0.0;
+      if (length < close_enough) break;
+      continue;
+    }
+    damping = std::max(10.0 * damping, 0.01 * now.root.squaredNorm());
+    if (damping > largest_damping * std::max(1.0, now.root.squaredNorm())) break;
+  }
+  return now;
+}
+
+}  // namespace
+
+MatrixXd root_of(const MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> found(0.5 * (covariance + covariance.transpose()));
+  return found.eigenvectors() * found.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+filters::Measurements beginning(const filters::Measurements& record, Index samples) {
+  filters::Measurements part;
+  part.time = record.time.head(samples).array() - record.time[0];
+  part.outputs = record.outputs.leftCols(samples);
+  if (record.inputs.size() > 0) part.inputs = record.inputs.leftCols(samples);
+  return part;
+}
+
+FirstGuess fit_low_modes(const JointModel& model, const std::vector<Observation>& observations,
+                         const LowRecord& record, const FirstGuess& guess, double noise) {
+  const LowModeFit fit(model, observations, record.highest_hz, guess, noise);
+  const Index samples = record.measurements.size(), q = fit.unknowns();
+  const double period = 2.0 * std::numbers::pi / fit.low_modes(guess.mean).mode_frequencies.maxCoeff();
+  const double interval = record.measurements.time[samples - 1] / static_cast<double>(samples - 1);
+  VectorXd c = VectorXd::Zero(q);
+  LowModeLinearisation found;
+  Index part = std::max(fewest_fit_samples, static_cast<Index>(std::ceil(first_periods * period / interval)));
+  for (bool whole = false; !whole; part *= 2) {
+    whole = part >= samples;
+    found = descend(fit, beginning(record.measurements, std::min(part, samples)), c);
+  }
+  if (!std::isfinite(found.cost)) return guess;
+  const MatrixXd u = root_of(guess.unknowns);
+  const MatrixXd information = found.root.transpose() * found.root + MatrixXd::Identity(q, q);
+  return {next_start(model, {guess.mean, {}}, {found.state, {}}).mean,
+          u * information.ldlt().solve(u.transpose())};
+}
+
+}  // namespace beamid::experiments

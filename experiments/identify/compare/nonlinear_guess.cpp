@@ -1,0 +1,66 @@
+#include "experiments/identify/compare/nonlinear_guess.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "experiments/identify/nonlinear_reproduction.hpp"
+#include "filters/batch_estimator.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr Index longest_nonlinear_guess = 4096;    // samples
+constexpr double nonlinear_guess_noise = 0.05;     // noise of it, of a channel's root mean square
+constexpr double nonlinear_guess_widening = 30.0;  // of the deviations found
+constexpr double periods = 1.5;                    // that are taken up first
+constexpr double far_frequency = 2.0;
+
+// The stiffness of the oscillator at the record's frequency, where it is asked about.
+void take_frequency(const JointModel& model, double frequency_hz, VectorXd& state) {
+  const double omega = 2.0 * std::numbers::pi * frequency_hz, ratio = omega / model.mode_frequencies[0];
+  if (!(ratio < far_frequency && ratio > 1.0 / far_frequency)) return;
+  for (std::size_t j = 0; j < model.unknowns.size(); ++j)
+    if (model.unknowns[j].quantity == "stiffness" && !model.unknowns[j].nuisance) try {
+        state[model.unknown_places[j]] = model.unknowns[j].to_state(model.equivalent_mass * omega * omega);
+      } catch (const std::invalid_argument&) {  // outside its bounds: the guess stays
+      }
+}
+
+}  // namespace
+
+FirstGuess nonlinear_guess(const JointModel& model, const std::vector<Observation>& observations,
+                           const filters::Measurements& record, double frequency_hz) {
+  const filters::Measurements heard = beginning(record, std::min(longest_nonlinear_guess, record.size()));
+  const Index samples = heard.size();
+  const StartDirections directions = start_directions(
+      model, observations, start_scale(model, observations, heard.outputs, heard.time[samples - 1]));
+  VectorXd state = start_belief(model, directions).mean;
+  const MatrixXd unknowns = directions.unknowns(model.unknown_places, Eigen::all);
+  const FirstGuess believed{state, unknowns * unknowns.transpose()};
+  take_frequency(model, frequency_hz, state);
+  const VectorXd size = heard.outputs.rowwise().norm() / std::sqrt(static_cast<double>(samples));
+  const MatrixXd noise = (nonlinear_guess_noise * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
+  const auto discrete = finest(model, heard.time[samples - 1] / static_cast<double>(samples - 1), noise);
+
+  filters::BatchSettings settings;
+  settings.first_samples = samples_in(model, heard, periods);
+  settings.tolerance = 1e-3;
+  const MatrixXd all = directions.all();
+  settings.prior_factor = MatrixXd::Zero(all.cols(), all.cols());
+  settings.prior_factor.diagonal().tail(directions.unknowns.cols()).setOnes();
+  state = nearest_phase(*discrete, state, directions, heard, settings.first_samples);
+  const filters::BatchEstimate found = filters::estimate_batch(*discrete, state, all, heard, settings);
+  if (found.status == filters::BatchStatus::failed || found.covariance.size() == 0) return believed;
+  const MatrixXd wide = nonlinear_guess_widening * nonlinear_guess_widening * unknowns *
+                        found.covariance.bottomRightCorner(unknowns.cols(), unknowns.cols()) *
+                        unknowns.transpose();
+  // The product of both densities, P (P + F)^-1 F.
+  const MatrixXd& p = believed.unknowns;
+  return {found.state, p * (p + wide).ldlt().solve(wide)};
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,95 @@
+#include "experiments/identify/compare/started_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/identify/compare/nonlinear_guess.hpp"
+#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/motion/reduced_motion.hpp"
+#include "reduction/reduction.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index most_started_coordinates = 12;  // a low-pass leaves fewer modes than that
+
+// The same questions, guessed at what a state says.
+std::vector<ParameterChoice> choices_at(const JointModel& model, const Eigen::VectorXd& state) {
+  std::vector<ParameterChoice> choices;
+  for (std::size_t j = 0; j < model.unknowns.size(); ++j) {
+    const Unknown& unknown = model.unknowns[j];
+    ParameterChoice choice{unknown.quantity, unknown.name, unknown.region, unknown.mode};
+    choice.guess = unknown.to_physical(state[model.unknown_places[j]]);
+    choice.deviation = unknown.deviation;
+    choice.form = unknown.form;
+    if (std::isfinite(unknown.lower)) choice.lower = unknown.lower;
+    if (std::isfinite(unknown.upper)) choice.upper = unknown.upper;
+    choice.known = unknown.nuisance;
+    choices.push_back(choice);
+  }
+  return choices;
+}
+
+// Constants of one model's state in the places that another has for them.
+Eigen::VectorXd carried_over(const JointModel& from, const Eigen::VectorXd& state, const JointModel& to) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Index>(to.motion->state_labels().size()));
+  result(to.unknown_places) = state(from.unknown_places);
+  for (std::size_t i = 0; i < to.offsets.size(); ++i)
+    result[to.offsets[i].place] = state[from.offsets[i].place];
+  return result;
+}
+
+}  // namespace
+
+StartedModel started_model(const Choice& model, const ModelSetting& setting,
+                           const filters::Measurements& record, double frequency_hz) {
+  const auto made = [&](const ModelSetting& of) {
+    return std::move(*model_registry().make(model.name, model.options, of));
+  };
+  JointModel first = made(setting);
+  const Index modes = std::max(most_started_coordinates, first.mode_shapes.cols() + 4);
+  const bool mesh = is_whole_mesh(first);
+  if (is_nonlinear(first)) {
+    FirstGuess guess = nonlinear_guess(first, setting.observations, record, frequency_hz);
+    return {std::move(first), std::move(guess)};
+  }
+  if ((!mesh && first.motion_size() <= most_started_coordinates) || modes >= setting.system.size() ||
+      first.unknowns.front().quantity.empty()) {
+    FirstGuess guess = first_guess(first, setting.observations, record, frequency_hz);
+    return {std::move(first), std::move(guess)};
+  }
+  ModelSetting truncated = setting;
+  truncated.reduction = reduction::reduction_registry().make(
+      "modal_truncation", {{"modes", static_cast<double>(mesh ? modes : most_started_coordinates)}});
+  const JointModel small = made(truncated);
+  const FirstGuess heard = first_guess(small, setting.observations, record, frequency_hz);
+  if (mesh) {
+    ModelSetting nearer = setting;
+    nearer.parameters = choices_at(small, heard.mean);
+    first = made(nearer);
+  }
+  const Eigen::VectorXd mean = carried_over(small, heard.mean, first);
+  return {std::move(first), {mean, heard.unknowns}};
+}
+
+JointModel on_basis_at(const Choice& model, const ModelSetting& setting, const JointModel& from,
+                       const Eigen::VectorXd& state) {
+  const auto* motion = dynamic_cast<const ReducedMotion*>(from.motion.get());
+  if (!motion || motion->description().properties() == 0) return from;
+  ModelSetting there = setting;
+  there.parameters = choices_at(from, state);
+  try {
+    JointModel made = *model_registry().make(model.name, model.options, there);
+    if (made.motion_size() != from.motion_size()) return from;
+    made.unknowns = from.unknowns;
+    return made;
+  } catch (const std::invalid_argument&) {  // no such beam
+    return from;
+  } catch (const std::runtime_error&) {
+    return from;
+  }
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,80 @@
+#include "experiments/identify/compare/true_value.hpp"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/models/oscillator.hpp"
+#include "fem/assembly.hpp"
+#include "fem/modes.hpp"
+#include "fem/parametric_system.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::VectorXd;
+using Property = fem::BeamParameter::Quantity;
+
+const std::map<std::string, Property>& properties() {
+  static const std::map<std::string, Property> known{
+      {"bending_stiffness", Property::bending_stiffness},
+      {"tip_mass", Property::tip_mass},
+      {"body_mass", Property::body_mass},
+      {"tip_rotary_inertia", Property::tip_rotary_inertia},
+      {"root_rotational_stiffness", Property::root_rotational_stiffness},
+      {"root_translational_stiffness", Property::root_translational_stiffness},
+      {"axial_load", Property::axial_load}};
+  return known;
+}
+
+std::optional<double> property(const fem::Beam& beam, const Unknown& unknown, Property which) {
+  try {
+    return fem::value_of(beam, {which, unknown.region});
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+std::optional<double> rayleigh_coefficient(const fem::DampingLaw& law, bool of_mass) {
+  try {
+    const fem::ProportionalDamping found = fem::proportional_coefficients(law);
+    return of_mass ? found.mass : found.stiffness;
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+double true_mass(const Experiment& truth, const Record& record, const Choice& reduction,
+                 const std::filesystem::path& folder) {
+  Experiment alone = truth;
+  alone.parameters.clear();
+  const fem::StructuralSystem system = reduced(model_setting(alone, record, reduction, folder)).system;
+  const double reading = system.size() == 1 ? system.outputs.coeff(0, 0) : 0.0;
+  return reading != 0.0 ? system.mass.coeff(0, 0) / (reading * reading) : 0.0;
+}
+
+std::optional<double> true_value(const Experiment& truth, double mass, const Unknown& unknown) {
+  if (const auto found = properties().find(unknown.quantity); found != properties().end())
+    return property(truth.beam, unknown, found->second);
+  if (unknown.quantity == "mass_damping" || unknown.quantity == "stiffness_damping")
+    return rayleigh_coefficient(truth.damping, unknown.quantity == "mass_damping");
+
+  const int mode = unknown.mode.value_or(1);
+  const fem::StructuralSystem system = fem::assemble(truth.beam, truth.elements);
+  const fem::Modes modes = fem::modes(system, mode);
+  if (unknown.quantity == "frequency") return modes.frequency_hz()[mode - 1];
+  const bool hysteretic = std::holds_alternative<fem::StructuralDamping>(truth.damping);
+  const double ratio =
+      hysteretic ? std::nan("") : fem::damping_ratios(truth.damping, modes.angular_frequency)[mode - 1];
+  if (unknown.quantity == "damping_ratio") return ratio;
+  const auto oscillator = Oscillator::from_frequency(mass, modes.angular_frequency[0], ratio);
+  if (unknown.quantity == "stiffness") return oscillator.stiffness;
+  if (unknown.quantity == "damping") return oscillator.damping;
+  if (unknown.quantity == "mass") return 1.0 / std::pow((system.outputs * modes.shape.col(0))[0], 2);
+  return {};
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,233 @@
+#include "experiments/identify/damping_law/damping_law.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "experiments/identify/damping_law/law_sections.hpp"
+#include "experiments/identify/damping_law/slow_record.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/nonlinear_reproduction.hpp"
+#include "experiments/modal/study/decay_part.hpp"
+#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/text/spelling.hpp"
+#include "fem/modes.hpp"
+#include "filters/batch_estimator.hpp"
+#include "filters/discrete_model.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using std::numbers::pi;
+
+bool rubs(const std::string& law) {
+  return law == "coulomb" || law == "both";
+}
+bool drags(const std::string& law) {
+  return law == "quadratic" || law == "both";
+}
+
+// Amplitudes of the first channel's mode as displacement [m], at the ends of the record, as if its damping
+// did not change.
+void take_amplitudes(const Record& record, DampingLawStudy& study) {
+  const double omega = 2.0 * pi * study.modal.frequency_hz;
+  const Quantity quantity = record.channels[output_channels(record)[0]].quantity;
+  const double span = record.time[record.size() - 1] - record.time[0];
+  study.first_amplitude =
+      study.modal.amplitude * displacement_per_reading(quantity, study.modal.frequency_hz);
+  study.last_amplitude = study.first_amplitude * std::exp(-study.modal.damping_ratio * omega * span);
+}
+
+JointModel model_of(const std::string& law, ModelSetting setting, double friction_velocity) {
+  const auto ask = [&](const char* quantity) {
+    ParameterChoice choice;
+    choice.quantity = quantity;
+    setting.parameters.push_back(choice);
+  };
+  setting.parameters.clear();
+  for (const char* quantity : {"stiffness", "damping", "cubic_stiffness"}) ask(quantity);
+  if (rubs(law)) ask("coulomb_friction");
+  if (drags(law)) ask("quadratic_damping");
+  return std::move(
+      *model_registry().make("damped", {{"friction_velocity_m_per_s", friction_velocity}}, setting));
+}
+
+// The law against sections of the decay, and the amplitudes that the record shows: it says nothing of smaller
+// ones.
+void test_by_sections(const Record& record, DampingLawStudy& study) {
+  const FittedLaw& law = study.supported();
+  const DecaySections found = decay_sections(record, study.modal);
+  study.sections = found.sections;
+  if (study.sections.empty() || law.state.size() == 0) return;
+  study.first_amplitude = std::hypot(law.state[0], law.state[1] / (2.0 * pi * study.modal.frequency_hz));
+  study.last_amplitude = found.last_amplitude;
+  study.misfit = misfit_of(law, study.sections, static_cast<Index>(law.model.unknowns.size()));
+}
+
+// Motion, offsets and the terms that both have; the others begin at zero.
+VectorXd carried_over(const FittedLaw& from, const JointModel& to) {
+  VectorXd state = VectorXd::Zero(static_cast<Index>(to.motion->state_labels().size()));
+  state.head<2>() = from.state.head<2>();
+  for (std::size_t j = 0; j < to.unknowns.size(); ++j)
+    for (std::size_t i = 0; i < from.model.unknowns.size(); ++i)
+      if (from.model.unknowns[i].quantity == to.unknowns[j].quantity)
+        state[to.unknown_places[j]] = from.state[from.model.unknown_places[i]];
+  for (std::size_t i = 0; i < to.offsets.size(); ++i)
+    state[to.offsets[i].place] = from.state[from.model.offsets[i].place];
+  return state;
+}
+
+class LawFitter {
+ public:
+  LawFitter(const ModelSetting& setting, const SlowRecord& slow, const ModalEstimate& modal)
+      : setting_(setting), slow_(slow), modal_(modal) {}
+
+  // @param start another law's, or null: from the modal analysis
+  FittedLaw fit(const std::string& name, double friction_velocity, const VectorXd& noise,
+                const FittedLaw* start) const {
+    FittedLaw law;
+    law.name = name;
+    law.model = model_of(name, setting_, friction_velocity);
+    const filters::Measurements& record = slow_.fine;
+    const double interval = record.time[1] - record.time[0];
+    const StartScale scale = start_scale(law.model, setting_.observations, slow_.samples,
+                                         record.time[record.size() - 1] - record.time[0]);
+    const StartDirections directions = start_directions(law.model, setting_.observations, scale);
+    const MatrixXd covariance = noise.cwiseAbs2().asDiagonal();
+    const auto discrete = filters::discretise(law.model.motion, interval, "runge_kutta_4", {{}, covariance});
+    filters::BatchSettings settings;
+    settings.tolerance = 1e-3;
+    VectorXd state;
+    if (start) {
+      state = carried_over(*start, law.model);
+    } else {
+      settings.first_samples = samples_in(law.model, record, 2.0);
+      state = from_modal(law.model);
+      state = nearest_phase(*discrete, state, directions, record, settings.first_samples);
+    }
+    const MatrixXd all = directions.all();
+    const filters::BatchEstimate found = filters::estimate_batch(*discrete, state, all, record, settings);
+    law.reason = found.reason;
+    if (found.status == filters::BatchStatus::failed) return law;
+    law.state = found.state;
+    law.left = slow_.measured(found.residuals);
+    law.log_likelihood = found.log_likelihood;
+    law.unknowns = all.cols();
+    law.aic = 2.0 * static_cast<double>(law.unknowns) - 2.0 * law.log_likelihood;
+    law.bic = std::log(static_cast<double>(found.measured)) * static_cast<double>(law.unknowns) -
+              2.0 * law.log_likelihood;
+    if (found.covariance.size() == 0) return law;
+    law.estimates = estimates(law.model, {found.state, all * found.covariance * all.transpose()});
+    law.possible = true;
+    for (const Estimate& estimate : law.estimates)
+      if (estimate.value < 0.0 && estimate.name != "cubic_stiffness") {
+        law.possible = false;
+        law.reason =
+            fmt::format("{} {:.3g} {} would feed energy in", estimate.name, estimate.value, estimate.unit);
+      }
+    return law;
+  }
+
+ private:
+  const ModelSetting& setting_;
+  const SlowRecord& slow_;
+  const ModalEstimate& modal_;
+
+  VectorXd from_modal(const JointModel& model) const {
+    VectorXd state = VectorXd::Zero(static_cast<Index>(model.motion->state_labels().size()));
+    const double omega = 2.0 * pi * modal_.frequency_hz, mass = model.equivalent_mass;
+    for (std::size_t j = 0; j < model.unknowns.size(); ++j) {
+      const std::string& quantity = model.unknowns[j].quantity;
+      state[model.unknown_places[j]] = quantity == "stiffness" ? mass * omega * omega
+                                       : quantity == "damping" ? 2.0 * modal_.damping_ratio * omega * mass
+                                       : quantity == "mass"    ? mass
+                                                               : 0.0;
+    }
+    return state;
+  }
+};
+
+}  // namespace
+
+const std::vector<std::string>& damping_laws() {
+  static const std::vector<std::string> laws{"viscous", "coulomb", "quadratic", "both"};
+  return laws;
+}
+
+double FittedLaw::value(const std::string& quantity) const {
+  for (std::size_t j = 0; j < model.unknowns.size(); ++j)
+    if (model.unknowns[j].quantity == quantity && state.size() > 0)
+      return model.unknowns[j].to_physical(state[model.unknown_places[j]]);
+  return quantity == "mass" ? model.equivalent_mass : 0.0;
+}
+
+double FittedLaw::frequency_hz(double a) const {
+  return std::sqrt((value("stiffness") + 0.75 * value("cubic_stiffness") * a * a) / value("mass")) /
+         (2.0 * pi);
+}
+
+double FittedLaw::damping_ratio(double a) const {
+  const double omega = 2.0 * pi * frequency_hz(a);
+  const double equivalent = value("damping") + 4.0 * value("coulomb_friction") / (pi * a * omega) +
+                            8.0 * value("quadratic_damping") * a * omega / (3.0 * pi);
+  return equivalent / (2.0 * value("mass") * omega);
+}
+
+DampingLawStudy study_damping_law(const Experiment& experiment, const Record& whole, const std::string& law,
+                                  const std::filesystem::path& folder) {
+  constexpr double smoothing = 0.05;  // of the last velocity: 0.2 % of what friction dissipates there
+  constexpr double least = 0.002;     // of the first velocity, which steps of a 48th of a period still follow
+  const auto& all = damping_laws();
+  if (law != "auto" && std::find(all.begin(), all.end(), law) == all.end())
+    throw std::invalid_argument("unknown damping law '" + law + "'; known: auto, " + joined(all));
+  DampingLawStudy study;
+  study.warnings = whole.warnings;
+  AnalysableRecord ready = analysable(whole);
+  if (!ready.remark.empty()) study.remarks.push_back(std::move(ready.remark));
+  const Record& record = ready.record;
+  const ModelSetting setting = model_setting(experiment, record, experiment.reduction, folder);
+  ModalAnalysisSettings modal;
+  modal.expected_frequency_hz =
+      fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+  study.modal =
+      dominant_mode(record.samples.row(output_channels(record)[0]).transpose(), record.interval(), modal);
+  take_amplitudes(record, study);
+  const SlowRecord slow = slow_record(measurements(record), static_cast<Index>(force_channels(record).size()),
+                                      study.modal.frequency_hz);
+  study.decimation = slow.factor;
+  study.samples = slow.samples;
+  study.time = slow.time;
+  const double omega = 2.0 * pi * study.modal.frequency_hz;
+  study.friction_velocity = omega * std::max(smoothing * study.last_amplitude, least * study.first_amplitude);
+
+  const LawFitter fitter(setting, slow, study.modal);
+  const VectorXd size = slow.samples.rowwise().norm() / std::sqrt(static_cast<double>(slow.samples.cols()));
+  const FittedLaw first = fitter.fit("viscous", study.friction_velocity, 0.05 * size, nullptr);
+  if (first.state.size() == 0) throw std::invalid_argument("no motion fits the record: " + first.reason);
+  const FittedLaw richest = fitter.fit("both", study.friction_velocity, 0.05 * size, &first);
+  const FittedLaw& reference = richest.state.size() > 0 ? richest : first;
+  study.noise = noise_near(reference.left, slow.interval, study.modal.frequency_hz,
+                           static_cast<double>(reference.unknowns))
+                    .cwiseMax(1e-6 * size);
+  study.named = law != "auto";
+  for (const std::string& name : all) {
+    if (study.named && name != "viscous" && name != law) continue;
+    study.laws.push_back(
+        fitter.fit(name, study.friction_velocity, study.noise, name == "both" ? &reference : &first));
+    if (study.named && name == law) study.chosen = study.laws.size() - 1;
+  }
+  const auto better = [](const FittedLaw& a, const FittedLaw& b) {
+    return a.possible != b.possible ? a.possible : a.bic < b.bic;
+  };
+  if (!study.named)
+    study.chosen = static_cast<std::size_t>(std::min_element(study.laws.begin(), study.laws.end(), better) -
+                                            study.laws.begin());
+  test_by_sections(record, study);
+  return study;
+}
+
+}  // namespace beamid::experiments

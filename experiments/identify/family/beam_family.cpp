@@ -1,0 +1,176 @@
+#include "experiments/identify/family/beam_family.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index;
+
+constexpr int most_rounds = 6;
+constexpr double settled_below = 0.1;  // of a deviation
+
+const ComparedRun& run_of(const Comparison& one) {
+  return one.runs.at(0);
+}
+
+Comparison identified(const FamilyMember& member, const Progress& progress) {
+  Experiment experiment = member.experiment;
+  experiment.reductions = {experiment.reduction};
+  experiment.filters = {experiment.filter};
+  experiment.discretisations = {experiment.discretisation};
+  ComparedRecord compared;
+  compared.name = member.record_name;
+  compared.record = member.record;
+  Comparison found = compare(experiment, std::move(compared), member.folder, progress);
+  if (run_of(found).status != ComparedRun::Status::converged)
+    throw std::invalid_argument(
+        fmt::format("{} with {}: {}", member.name, member.record_name, run_of(found).reason));
+  return found;
+}
+
+NamedBelief belief_of(const ComparedRun& run) {
+  NamedBelief named;
+  named.belief.unknowns = run.unknown_state;
+  named.belief.prior = run.unknown_start.covariance;
+  named.belief.start = run.unknown_start.mean;
+  for (const Unknown& unknown : run.unknowns) {
+    named.names.push_back(unknown.name);
+    named.belief.nuisance.push_back(unknown.nuisance);
+  }
+  return named;
+}
+
+// The first member's unknown of that name.
+const Unknown& unknown_called(const std::string& name, const std::vector<Comparison>& all) {
+  for (const Comparison& one : all)
+    for (const Unknown& unknown : run_of(one).unknowns)
+      if (unknown.name == name) return unknown;
+  throw std::logic_error("no unknown '" + name + "'");
+}
+
+void check_alike(const BeamFamily& family) {
+  bool any_shared = false;
+  for (std::size_t r = 0; r < family.alone.size(); ++r)
+    for (const Unknown& unknown : run_of(family.alone[r]).unknowns) {
+      const Unknown& first = unknown_called(unknown.name, family.alone);
+      any_shared = any_shared || &first != &unknown;
+      if (first.form != unknown.form || first.unit != unknown.unit || first.nuisance != unknown.nuisance)
+        throw std::invalid_argument(fmt::format(
+            "parameter '{}' of {} has another form, unit or use than in the files before it; expected "
+            "the same, or another name",
+            unknown.name, family.members[r].name));
+    }
+  if (!any_shared)
+    throw std::invalid_argument(
+        "the experiment files share no parameter; expected one of the same name in at least two of them");
+}
+
+Estimate estimate_of(const Unknown& unknown, double mean, double deviation) {
+  return {unknown.name,
+          unknown.unit,
+          unknown.to_physical(mean),
+          std::abs(unknown.slope(mean)) * deviation,
+          unknown.to_physical(mean - quantile_95 * deviation),
+          unknown.to_physical(mean + quantile_95 * deviation),
+          unknown.guess,
+          unknown.deviation,
+          unknown.nuisance};
+}
+
+// What all say, and the physical numbers at it.
+void add_up(BeamFamily& family) {
+  std::vector<NamedBelief> beliefs;
+  for (const Comparison& one : family.alone) beliefs.push_back(belief_of(run_of(one)));
+  family.estimate = shared_estimate(beliefs);
+  const Eigen::VectorXd deviations = family.estimate.unknowns.deviations();
+  family.parameters.clear();
+  for (std::size_t j = 0; j < family.estimate.names.size(); ++j)
+    family.parameters.push_back(estimate_of(unknown_called(family.estimate.names[j], family.alone),
+                                            family.estimate.unknowns.mean[static_cast<Index>(j)],
+                                            deviations[static_cast<Index>(j)]));
+}
+
+using Deviations = std::vector<std::vector<double>>;  // of every member's unknowns, beforehand
+
+Deviations deviations_of(const BeamFamily& family) {
+  Deviations all;
+  for (const Comparison& one : family.alone) {
+    all.emplace_back();
+    for (const Unknown& unknown : run_of(one).unknowns) all.back().push_back(unknown.deviation);
+  }
+  return all;
+}
+
+// Every file asks about its parameters from there, as uncertain as to weigh nothing, 1 / 30^2, and no more:
+// what a record does not tell by itself would else wander along the curve of what fits it, where it is not
+// linear.
+void start_from(BeamFamily& family, const std::vector<Estimate>& before, const Deviations& first) {
+  constexpr double uncertain = 30.0, moves = 3.0;
+  for (std::size_t r = 0; r < family.members.size(); ++r) {
+    auto& choices = family.members[r].experiment.parameters;
+    const auto& unknowns = run_of(family.alone[r]).unknowns;
+    for (std::size_t j = 0; j < choices.size() && j < unknowns.size(); ++j) {
+      if (unknowns[j].nuisance) continue;
+      const auto place = std::find_if(family.parameters.begin(), family.parameters.end(),
+                                      [&](const Estimate& one) { return one.name == unknowns[j].name; });
+      const auto which = static_cast<std::size_t>(place - family.parameters.begin());
+      const double from = before.empty() ? unknowns[j].guess : before[which].value;
+      choices[j].guess = place->value;
+      choices[j].deviation = std::min(
+          first[r][j], std::max(uncertain * place->deviation, moves * std::abs(place->value - from)));
+      choices[j].relative_deviation.reset();
+    }
+  }
+}
+
+double largest_move(const std::vector<Estimate>& before, const std::vector<Estimate>& now) {
+  double largest = 0.0;
+  for (std::size_t j = 0; j < now.size(); ++j)
+    largest = std::max(largest, std::abs(now[j].value - before[j].value) / now[j].deviation);
+  return largest;
+}
+
+}  // namespace
+
+BeamFamily identify_family(std::vector<FamilyMember> members, const Progress& progress) {
+  for (const FamilyMember& member : members)
+    if (member.experiment.parameters.empty())
+      throw std::invalid_argument(
+          member.name +
+          " has no [[parameters]]; several beams share parameters by their names, expected "
+          "model beam or modal with [[parameters]] in every file");
+  BeamFamily family;
+  family.members = std::move(members);
+  Deviations first;
+  while (family.rounds < most_rounds && !family.settled) {
+    ++family.rounds;
+    family.alone.clear();
+    for (const FamilyMember& member : family.members) {
+      progress(fmt::format("round {}: {}", family.rounds, member.name));
+      family.alone.push_back(identified(member, [](const std::string&) {}));
+    }
+    if (family.rounds == 1) {
+      check_alike(family);
+      first = deviations_of(family);
+    }
+    const std::vector<Estimate> before = family.parameters;
+    add_up(family);
+    family.settled = !before.empty() && largest_move(before, family.parameters) < settled_below;
+    start_from(family, before, first);
+  }
+  for (const std::string& name : family.estimate.names) {
+    std::string beams;
+    for (std::size_t r = 0; r < family.members.size(); ++r)
+      for (const Unknown& unknown : run_of(family.alone[r]).unknowns)
+        if (unknown.name == name) beams += (beams.empty() ? "" : ", ") + family.members[r].name;
+    family.shared_by.push_back(beams);
+  }
+  return family;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,57 @@
+#include "experiments/identify/identification_request.hpp"
+
+#include <algorithm>
+
+#include "experiments/identify/decay_window.hpp"
+#include "experiments/identify/higher_modes.hpp"
+#include "experiments/identify/model_setting.hpp"
+
+namespace beamid::experiments {
+
+bool IdentificationRequest::is_free_oscillator() const {
+  return experiment.model.name == "sdof" && experiment.parameters.empty() &&
+         force_channels(prepared.record).empty();
+}
+
+namespace {
+
+// Whether higher modes are noise to the model, as they are to one degree of freedom.
+bool is_beam_of_one_mode(const IdentificationRequest& one) {
+  const Choice& reduction = one.experiment.reduction;
+  const auto& options = reduction.options.values();
+  const auto modes = options.find("modes");
+  const bool single = reduction.name == "rayleigh" ||
+                      (reduction.name == "modal_truncation" &&
+                       (modes == options.end() || modes->second == filters::OptionValue(1.0)));
+  return one.experiment.model.name == "beam" && single && force_channels(one.prepared.record).empty();
+}
+
+}  // namespace
+
+void cut_decay(IdentificationRequest& one) {
+  RecordFormat& format = one.experiment.format;
+  if (format.window || !one.is_free_oscillator()) return;
+  const auto window = decay_window(one.experiment, one.prepared.record);
+  if (!window) return;
+  format.window = {window->from, window->to};
+  one.window = window->words();
+  one.prepared.take(one.prepared.record, format, one.file);
+}
+
+void keep_out_higher_modes(IdentificationRequest& one) {
+  RecordFormat& format = one.experiment.format;
+  if (!format.preparation.empty() || !(one.is_free_oscillator() || is_beam_of_one_mode(one))) return;
+  Experiment oscillator = one.experiment;  // the same question, whatever model asks it
+  oscillator.model = {"sdof", model_registry().completed("sdof", {})};
+  oscillator.parameters.clear();
+  const auto step = step_against_higher_modes(oscillator, one.prepared.record);
+  if (!step) return;
+  format.preparation = {*step};
+  Record left = prepare(one.prepared.raw, format.preparation, format.window);
+  if (auto& window = format.window)  // the low-pass takes a little of both ends
+    window = {std::max(window->first, left.time[0]), std::min(window->second, left.time[left.size() - 1])};
+  one.prepared.take(std::move(left), format, one.file);
+  one.thinned = true;
+}
+
+}  // namespace beamid::experiments

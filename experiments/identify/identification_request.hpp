@@ -1,0 +1,32 @@
+// A record that is to be identified, and what is decided about it where nobody says.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "experiments/config/experiment.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
+
+namespace beamid::experiments {
+
+/// One record, with the experiment as it holds for it.
+struct IdentificationRequest {
+  std::filesystem::path file;
+  Experiment experiment;  ///< preparation and window included
+  PreparedRecord prepared;
+  std::string window = {};  ///< what was chosen, in words, where the experiment does not say
+  bool thinned = false;     ///< by a step against higher modes, which the experiment does not have
+
+  /// K and C of a free decay have a report of their own.
+  bool is_free_oscillator() const;
+};
+
+/// Cuts a free decay out of a record that the experiment does not cut.
+/// @throws as decay_window(); InputError at the window
+void cut_decay(IdentificationRequest& one);
+
+/// Adds the step that an experiment silent about preparation does not have.
+/// @throws as step_against_higher_modes(); InputError at the step or the window
+void keep_out_higher_modes(IdentificationRequest& one);
+
+}  // namespace beamid::experiments

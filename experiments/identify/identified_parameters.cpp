@@ -1,0 +1,27 @@
+#include "experiments/identify/identified_parameters.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace beamid::experiments {
+
+std::vector<Parameter> parameters(const RecordIdentification& found) {
+  return parameters(found, found.identification);
+}
+
+std::vector<Parameter> parameters(const RecordIdentification& found, const Identification& i) {
+  const Oscillator modal = Oscillator::from_frequency(
+      i.found.mass, 2.0 * std::numbers::pi * found.modal.frequency_hz, found.modal.damping_ratio);
+  const double absent = found.modal_failure.empty() ? 0.0 : std::nan("");
+  const double of_frequency = found.frequency_factor(), of_damping = found.damping_factor();
+  return {{"frequency [Hz]", "frequency_hz", 1.0, i.found.frequency_hz(),
+           of_frequency * i.frequency_deviation_hz, absent + found.modal.frequency_hz},
+          {"damping ratio [%]", "damping_ratio", 100.0, i.found.damping_ratio(),
+           of_damping * i.damping_ratio_deviation, absent + found.modal.damping_ratio},
+          {"stiffness K [N/m]", "stiffness_n_per_m", 1.0, i.found.stiffness,
+           of_frequency * i.stiffness_deviation, absent + modal.stiffness},
+          {"damping C [N s/m]", "damping_n_s_per_m", 1.0, i.found.damping, of_damping * i.damping_deviation,
+           absent + modal.damping}};
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,19 @@
+// The unknowns of any model from several records of one structure.
+#pragma once
+
+#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/joint_estimate.hpp"
+
+namespace beamid::experiments {
+
+/// What all records say together. Each was identified by itself, in one way: own start, noise and window.
+struct JointComparison {
+  std::vector<Comparison> records;   ///< of one run each
+  JointEstimate estimate;            ///< of what the filter's state carries, by the runs that converged
+  std::vector<Estimate> parameters;  ///< at it (q)
+};
+
+/// @throws std::invalid_argument when no run converged, or the records' models have different unknowns.
+JointComparison joint_comparison(std::vector<Comparison> records);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,114 @@
+#include "experiments/identify/model_setting.hpp"
+
+#include "experiments/config/read_reduction.hpp"
+#include "experiments/identify/record_inputs.hpp"
+#include "experiments/models/beam_points.hpp"
+#include "experiments/text/method_choice.hpp"
+#include "fem/gauge_row.hpp"
+#include "fem/parametric_system.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd;
+
+std::vector<Index> channels_where(const Record& record, bool force) {
+  std::vector<Index> found;
+  for (std::size_t i = 0; i < record.channels.size(); ++i)
+    if ((record.channels[i].quantity == Quantity::force) == force) found.push_back(static_cast<Index>(i));
+  return found;
+}
+
+// Nodes where strain is read, and where a region begins or ends: rows of this mesh then fit that of the
+// model.
+fem::Beam with_nodes_for(const Experiment& experiment, const Record& record) {
+  std::vector<double> nodes;
+  for (const Channel& channel : record.channels)
+    if (channel.quantity == Quantity::strain)
+      nodes.push_back(channel.position.value_or(fem::natural_point(experiment.beam).position));
+  for (const ParameterChoice& parameter : experiment.parameters)
+    if (parameter.region && parameter.quantity == "bending_stiffness")
+      nodes.insert(nodes.end(), {parameter.region->first, parameter.region->second});
+  return nodes.empty() ? experiment.beam : fem::with_nodes(experiment.beam, nodes);
+}
+
+// What the channels of one quantity show at their places: accelerations have the shapes of displacements.
+reduction::Training seen_shapes(const Record& record, const fem::Beam& beam) {
+  std::vector<Index> alike;
+  for (const Index i : channels_where(record, false))
+    if (record.channels[i].quantity == record.channels[channels_where(record, false)[0]].quantity)
+      alike.push_back(i);
+  reduction::Training training;
+  training.positions.resize(static_cast<Index>(alike.size()));
+  for (std::size_t i = 0; i < alike.size(); ++i)
+    training.positions[static_cast<Index>(i)] =
+        record.channels[alike[i]].position.value_or(fem::natural_point(beam).position);
+  training.deflections = record.samples(alike, Eigen::all);
+  return training;
+}
+
+}  // namespace
+
+std::vector<Index> output_channels(const Record& record) {
+  return channels_where(record, false);
+}
+std::vector<Index> force_channels(const Record& record) {
+  return channels_where(record, true);
+}
+
+filters::Measurements measurements(const Record& record) {
+  const std::vector<Index> outputs = output_channels(record), forces = force_channels(record);
+  filters::Measurements result{record.time, record.samples(outputs, Eigen::all), {}};
+  if (record.time_resolution < 0.5 * record.interval()) result.time_resolution = record.time_resolution;
+  if (!forces.empty()) take_inputs(record.samples(forces, Eigen::all), record.input_path, result);
+  return result;
+}
+
+ModelSetting model_setting(const Experiment& experiment, const Record& record, const Choice& reduction,
+                           const std::filesystem::path& folder) {
+  ModelSetting setting;
+  const fem::Beam beam = with_nodes_for(experiment, record);
+  BeamPoints points(beam);
+  const std::vector<Index> channels = output_channels(record);
+  std::vector<Index> rows;  // output of the system that a channel reads; a strain gauge has one of its own
+  for (const Index i : channels) {
+    const Channel& channel = record.channels[i];
+    rows.push_back(channel.quantity == Quantity::strain ? -1 : points.add(channel.position));
+    setting.observations.push_back({channel.quantity, channel.name});
+  }
+  for (const Index i : force_channels(record))
+    setting.forces.push_back(points.add(record.channels[i].position));
+  setting.system = fem::assemble(beam, experiment.elements, points.all());
+
+  const MatrixXd deflections = MatrixXd(setting.system.outputs);
+  MatrixXd outputs(static_cast<Index>(rows.size()), setting.system.size());
+  std::vector<std::string> names;
+  for (Index i = 0; i < outputs.rows(); ++i) {
+    const Channel& channel = record.channels[channels[i]];
+    if (rows[i] >= 0) {
+      outputs.row(i) = deflections.row(rows[i]);
+      names.push_back(setting.system.output_names[rows[i]]);
+    } else {
+      const double position = channel.position.value_or(fem::natural_point(beam).position);
+      outputs.row(i) = -channel.distance * MatrixXd(fem::gauge_row(setting.system, beam, position));
+      names.push_back(channel.name + "_strain");
+    }
+  }
+  setting.system.outputs = outputs.sparseView();
+  setting.system.output_names = names;
+  setting.damping = experiment.damping;
+  setting.parameters = experiment.parameters;
+  setting.continuum = ModelSetting::Continuum{beam, experiment.elements, points.all()};
+  at_place(reduction.place, [&] {
+    setting.reduction = reduction::reduction_registry().make(reduction.name, reduction.options);
+  });
+  if (!reduction.shape_file.empty())
+    setting.training = read_shape(folder / reduction.shape_file, experiment.beam.length());
+  const auto response = reduction.options.values().find("response");
+  if (response != reduction.options.values().end() &&
+      response->second == filters::OptionValue(std::string("record")))
+    setting.training = seen_shapes(record, experiment.beam);
+  return setting;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,116 @@
+#include "experiments/identify/noise_near_mode.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "experiments/identify/mode_residual.hpp"
+#include "experiments/models/estimates.hpp"
+#include "experiments/signal/decimation.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using Complex = std::complex<double>;
+
+constexpr double line_samples_per_cycle = 8, line_band = 1.6, slope_deviation = 2, least_weight = 2;
+constexpr Index kernel_and_more = 50;  // samples that must be left of the signal
+
+/// Orthonormal basis of what the fit can follow (n x 5): e^(s t), t e^(s t) and 1.
+MatrixXd fitted_space(const DecimatedSignal& coarse, const ModalEstimate& modal) {
+  const Index n = coarse.samples.size();
+  MatrixXd columns = MatrixXd::Ones(n, 5);
+  for (Index k = 0; k < n; ++k) {
+    const double t = static_cast<double>(k) / static_cast<double>(n);
+    const Complex e = std::exp(modal.rate() * (coarse.interval * static_cast<double>(k)));
+    columns.block<1, 4>(k, 0) << e.real(), e.imag(), t * e.real(), t * e.imag();
+  }
+  columns.colwise().normalize();
+  return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(n, columns.cols());
+}
+
+/// Periodograms |X_k|^2 / n of the columns of x (n x c) at line k.
+VectorXd periodogram(const MatrixXd& x, Index k) {
+  const auto n = static_cast<double>(x.rows());
+  Eigen::VectorXcd turns(x.rows());
+  for (Index j = 0; j < x.rows(); ++j)
+    turns[j] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>((j * k) % x.rows()) / n);
+  return (x.transpose() * turns).cwiseAbs2() / n;
+}
+
+/// Of the lines around the mode: what is left (P), the share of it that the fit does not take (w), and
+/// log(f_k / f).
+struct SpectralLines {
+  std::vector<double> left, weight, log_frequency;
+};
+
+SpectralLines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal) {
+  const MatrixXd space = fitted_space(coarse, modal);
+  MatrixXd columns(space.rows(), space.cols() + 1);
+  columns << coarse.samples - space * (space.transpose() * coarse.samples), space;
+  const double line = 1 / (static_cast<double>(space.rows()) * coarse.interval);  // [Hz]
+  const auto first = std::max<Index>(1, static_cast<Index>(std::ceil(modal.frequency_hz / line_band / line))),
+             last = static_cast<Index>(modal.frequency_hz * line_band / line);
+  SpectralLines lines;
+  double sum = 0;
+  for (Index k = first; (k <= last || sum < least_weight) && 2 * k < space.rows(); ++k) {
+    const VectorXd power = periodogram(columns, k);
+    lines.left.push_back(power[0]);
+    lines.weight.push_back(std::max(0.0, 1 - power.tail(space.cols()).sum()));
+    lines.log_frequency.push_back(std::log(static_cast<double>(k) * line / modal.frequency_hz));
+    sum += lines.weight.back();
+  }
+  return lines;
+}
+
+}  // namespace
+
+double student_factor(double freedom) {
+  constexpr double point = 0.975;
+  return boost::math::quantile(boost::math::students_t(freedom), point) / quantile_95;
+}
+
+NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const ModalEstimate& modal) {
+  constexpr int most_steps = 100;
+  constexpr double settled = 1e-10, prior = 1 / (slope_deviation * slope_deviation);
+  const double wanted = 1 / (interval * modal.frequency_hz * line_samples_per_cycle),
+               most = static_cast<double>(signal.size() / kernel_and_more);
+  const int factor = static_cast<int>(std::max(1.0, std::min(wanted, most)));
+  const DecimatedSignal coarse =
+      decimate(with_mode_in_gaps(signal, interval, modal.rate()), interval, factor);
+  const double measured =
+      static_cast<double>(signal.array().isFinite().count()) / static_cast<double>(signal.size());
+  const SpectralLines lines = lines_of(coarse, modal);
+  const auto count = static_cast<Index>(lines.left.size());
+  const Eigen::Map<const Eigen::ArrayXd> left(lines.left.data(), count), weight(lines.weight.data(), count),
+      u(lines.log_frequency.data(), count);
+  if (!(weight.sum() > 0)) return {modal.noise_standard_deviation, 1, 0, 0};
+  Eigen::Matrix2d information;  // expected, of a and b
+  information << weight.sum(), (weight * u).sum(), (weight * u).sum(), (weight * u * u).sum() + prior;
+  const Eigen::Matrix2d covariance = information.inverse();
+  NoiseNearMode result{0, measured * 2 / covariance(0, 0), 0, static_cast<int>(count)};
+  if (!(left.sum() > 0)) return result;
+  Eigen::Vector2d x(std::log(left.sum() / weight.sum()), 0);
+  for (int i = 0; i < most_steps; ++i) {  // Fisher's scoring
+    const Eigen::ArrayXd surplus = left * (-x[0] - x[1] * u).exp() - weight;
+    Eigen::Vector2d step = covariance * Eigen::Vector2d(surplus.sum(), (surplus * u).sum() - prior * x[1]);
+    step /= std::max(1.0, step.cwiseAbs().maxCoeff());
+    x += step;
+    if (step.norm() < settled) break;
+  }
+  // mean of e^a for a density of one, to first order: bias of a and half its variance
+  const Eigen::ArrayXd variance = covariance(0, 0) + 2 * covariance(0, 1) * u + covariance(1, 1) * u * u;
+  const Eigen::Vector2d pull((weight * variance).sum(), (weight * variance * u).sum());
+  const double mean = 1 - covariance.row(0).dot(pull) / 2 + covariance(0, 0) / 2;
+  result.deviation = std::exp(x[0] / 2) / std::sqrt(std::max(0.5, mean)) *
+                     std::sqrt(static_cast<double>(coarse.factor) / measured);
+  result.slope = x[1];
+  return result;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,41 @@
+// How dense the noise of a free decay is where it matters: at the mode's frequency.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "experiments/modal/dominant_mode.hpp"
+
+namespace beamid::experiments {
+
+/// 97.5 % point of Student's t over that of the normal distribution: what not knowing a noise exactly adds to
+/// a 95 % interval.
+double student_factor(double freedom);
+
+struct NoiseNearMode {
+  double deviation = 0;  ///< of white noise as dense as what is left at the mode [unit of the signal]
+  double freedom = 0;    ///< degrees of freedom of its square
+  double slope = 0;      ///< d log(density) / d log(frequency) there: 0 white, -1 for 1/f
+  int lines = 0;         ///< of the periodogram that it rests on
+
+  double student() const { return student_factor(freedom); }
+};
+
+/// The density S(f) of what the mode leaves of a signal (N), at its frequency f, by Whittle's
+/// likelihood [whittle1953] of its periodogram P_k = |E_k|^2 / n, decimated to 8 samples per cycle:
+///
+///     log S_k = a + b log(f_k / f),   f / 1.6 <= f_k <= 1.6 f
+///     -L(a, b) = sum_k w_k log S_k + P_k / S_k + b^2 / 8,        w_k = 1 - sum_j |Q_jk|^2 / n
+///
+/// S(f) = e^a, less its bias to first order [cordeiro1991]; freedom 2 / var a with (-L'')^-1 = cov(a, b). Q
+/// is an orthonormal basis of what the fit of amplitude, phase, frequency, damping and offset takes out of
+/// the noise, 1 - w_k the share of line k that goes with it. A companion mode is not taken out: to a filter
+/// of one mode it is noise. b^2 / 8 believes slopes beyond +-4 hardly, which few lines could not tell. The
+/// band grows upwards until the w_k sum to 2. Samples that are NaN were not measured: the mode takes their
+/// place, and what they would have left of the noise is added in proportion.
+///
+/// What weighs on frequency and damping is the density within a line or two of f, where light damping
+/// concentrates the response: the band's mean is another where the density falls through it.
+/// @throws as decimate() does.
+NoiseNearMode noise_near_mode(const Eigen::VectorXd& signal, double interval, const ModalEstimate& modal);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,304 @@
+#include "experiments/identify/stream/streamed_identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/run_diagnostics.hpp"
+#include "experiments/results/csv.hpp"
+#include "experiments/text/method_choice.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// Filters whose belief is all that they carry from sample to sample.
+bool carries_its_belief_alone(const std::string& filter) {
+  const auto& contracts = filters::filter_registry().find(filter).contracts;
+  return contracts.contains(filters::contract::exact_on_linear_gaussian) &&
+         !contracts.contains(filters::contract::sampled_on_linear_gaussian);
+}
+
+// The path of a force from sample to sample is known when the next one has come: not before, if it is
+// band-limited.
+std::vector<std::string> names_of_free_motion(const Record& earlier) {
+  const std::vector<Index> forces = force_channels(earlier);
+  if (!forces.empty())
+    throw std::invalid_argument(
+        fmt::format("a stream takes free motion; found the measured force '{}', of which a band-limited path "
+                    "needs the samples to come. Leave its channel out, or identify a record",
+                    earlier.channels[static_cast<std::size_t>(forces.front())].name));
+  return earlier.channel_names();
+}
+
+std::vector<std::string> state_names(const JointModel& model) {
+  std::vector<std::string> names;
+  for (const filters::Label& label : model.motion->state_labels()) names.push_back(label.name);
+  return names;
+}
+
+std::vector<double> numbers(const MatrixXd& matrix) {
+  return {matrix.data(), matrix.data() + matrix.size()};
+}
+
+// Of so many rows, and columns unless they are -1: as many as there are.
+MatrixXd matrix(const nlohmann::json& saved, const char* key, Index rows, Index columns) {
+  const auto numbers = saved.at(key).get<std::vector<double>>();
+  const auto size = static_cast<Index>(numbers.size());
+  if (columns < 0 ? size % rows != 0 : size != rows * columns)
+    throw std::invalid_argument(fmt::format("{} has {} numbers; expected {} rows of {}", key, size, rows,
+                                            columns < 0 ? "as many" : std::to_string(columns)));
+  const MatrixXd result = Eigen::Map<const MatrixXd>(numbers.data(), rows, size / rows);
+  if (!result.allFinite()) throw std::invalid_argument(fmt::format("{} holds what is no number", key));
+  return result;
+}
+
+// Of a state that some record has told something about: nothing is known for certain, and nothing not at all.
+void check_deviations(const char* of, const VectorXd& deviations) {
+  if (!(deviations.array() > 0.0).all())
+    throw std::invalid_argument(
+        fmt::format("a deviation of {} is {:g}; expected more than 0", of, deviations.minCoeff()));
+}
+
+constexpr Index outliers_told = 5;  // one by one
+
+}  // namespace
+
+StreamedIdentification::StreamedIdentification(const Experiment& experiment, const Record& earlier)
+    : names_(names_of_free_motion(earlier)),
+      prepared_(prepare_identification(experiment, earlier)),
+      choice_(experiment.filter),
+      interval_(earlier.interval()) {
+  const auto& settings = prepared_.settings;
+  filter_ = at_place(choice_.place, [&] {
+    return filters::filter_registry().make(
+        settings.filter, settings.filter_options,
+        filters::discretise(prepared_.model.motion, interval_, settings.discretisation,
+                            {{}, settings.output_noise}));
+  });
+  running_ = std::make_unique<filters::RunningFilter>(*filter_, settings.on_failure,
+                                                      measurements(earlier).time_resolution);
+  running_->start(settings.initial, settings.start);
+}
+
+bool StreamedIdentification::take_in(const filters::Sample& sample) {
+  const bool moved = running_->move_to(sample.time);
+  const filters::Gaussian predicted = moved ? running_->belief() : filters::Gaussian{};
+  const bool goes_on = moved && running_->correct(sample);
+  list_failures();
+  if (!goes_on) return false;
+  heed(predicted);
+  good_ = running_->save();
+  return true;
+}
+
+// The divergence alarm of a run is left to InnovationWatch, which acts on it.
+void StreamedIdentification::list_failures() {
+  const auto& events = running_->events();
+  for (; told_ < events.size(); ++told_)
+    if (!events[told_].reason.starts_with("the innovations diverge")) news_.push_back(words({events[told_]}));
+}
+
+void StreamedIdentification::heed(const filters::Gaussian& predicted) {
+  using Watched = InnovationWatch::Verdict;
+  const filters::Correction& correction = running_->correction();
+  const Index outputs = correction.innovation.size();
+  const bool before = watch_.settled();
+  const Watched verdict = watch_.judge(correction.normalised_square, outputs);
+  status_ = watch_.settled() ? Status::settled : Status::settling;
+  if (verdict == Watched::leave_out) {
+    filter_->reset(predicted);
+    status_ = Status::left_out;
+    if (watch_.left_out() <= outliers_told)
+      news_.push_back(
+          fmt::format("Sample {} at {:.6g} s is left out: its normalised innovation square is {:.3g}"
+                      "; expected {}.{}",
+                      running_->step(), running_->time(), correction.normalised_square, outputs,
+                      watch_.left_out() < outliers_told ? "" : " Others are counted only."));
+  } else if (verdict != Watched::keep) {
+    begin_anew(verdict);
+  } else if (watch_.settled() && outputs > 0) {
+    if (!before && watch_.starts() > 0)
+      news_.push_back(fmt::format("Settled at {:.6g} s.", running_->time()));
+    remembered_ += outputs;
+    if (before && remembered_ < InnovationWatch::window) return;
+    older_ = newer_;
+    newer_ = known_now();
+    remembered_ = 0;
+  }
+}
+
+void StreamedIdentification::begin_anew(InnovationWatch::Verdict why) {
+  using Watched = InnovationWatch::Verdict;
+  status_ = Status::begun_anew;
+  std::string said;
+  const double time = running_->time(), square = watch_.square_at_verdict();
+  if (why == Watched::jumped)
+    said = fmt::format("{} samples in a row up to {:.6g} s do not continue the motion: a hit or a release.",
+                       InnovationWatch::several, time);
+  else if (why == Watched::returned)
+    said = fmt::format(
+        "At {:.6g} s the innovations agree with the filter; what it learned before is dropped.", time);
+  else
+    said = fmt::format(
+        "At {:.6g} s the innovations do not agree with the filter: their mean normalised square over {} "
+        "outputs "
+        "is {:.3g}; expected 1. Motion that the model does not have, more noise than in the earlier record, "
+        "or "
+        "another structure.",
+        time, InnovationWatch::window, square);
+  if (why == Watched::left) newer_ = older_;
+  Known start = at_first();
+  if (newer_ && watch_.unsettled() <= forget_after) {
+    start = *newer_;
+    said += " The motion begins anew, with K and C as they were known.";
+  } else {
+    const Known now = newer_.value_or(known_now());
+    const VectorXd far = (now.mean - start.mean).cwiseAbs2() - 9.0 * start.covariance.diagonal();
+    if (why != Watched::gave_up && (far.array() <= 0.0).all()) start.mean = now.mean;
+    newer_.reset();
+    older_.reset();
+    said += " The filter begins anew, K and C as uncertain as at first.";
+  }
+  filter_->reset(first_belief(start));
+  news_.push_back(said);
+}
+
+StreamedIdentification::Known StreamedIdentification::known_now() const {
+  const filters::Gaussian belief = filter_->marginal(prepared_.model.unknown_places);
+  return {belief.mean, belief.marginal(0, belief.mean.size())};
+}
+
+StreamedIdentification::Known StreamedIdentification::at_first() const {
+  const filters::Gaussian& belief = prepared_.settings.initial;
+  const auto& places = prepared_.model.unknown_places;
+  return {belief.mean(places), belief.covariance(places, places)};
+}
+
+// About the sample just taken in: the motion as unknown as at first.
+filters::Gaussian StreamedIdentification::first_belief(const Known& unknowns) const {
+  filters::Gaussian belief = prepared_.settings.initial;
+  const auto& places = prepared_.model.unknown_places;
+  belief.mean(places) = unknowns.mean;
+  belief.covariance(places, places) = unknowns.covariance;
+  return belief;
+}
+
+std::vector<std::string> StreamedIdentification::news() {
+  return std::exchange(news_, {});
+}
+
+double StreamedIdentification::interval_factor() const {
+  const double mean = watch_.largest_mean_square();
+  return std::max(1.0, prepared_.interval_factor) * std::sqrt(std::max(1.0, std::isnan(mean) ? 1.0 : mean));
+}
+
+void StreamedIdentification::check_can_be_saved() const {
+  if (carries_its_belief_alone(choice_.name)) return;
+  throw std::invalid_argument(
+      "filter '" + choice_.name +
+      "' holds more than its belief, and its state cannot be saved; ekf, iekf, ukf, srukf and the like can");
+}
+
+nlohmann::ordered_json StreamedIdentification::save() const {
+  check_can_be_saved();
+  if (good_.step == 0) throw std::invalid_argument("no sample has been taken in; nothing to save");
+  auto known = nlohmann::ordered_json::array();
+  for (const std::optional<Known>* one : {&older_, &newer_})
+    if (*one) known.push_back({{"mean", numbers((*one)->mean)}, {"covariance", numbers((*one)->covariance)}});
+  return {{"filter", choice_.name},
+          {"states", state_names(prepared_.model)},
+          {"interval_s", interval_},
+          {"step", good_.step},
+          {"time_s", good_.time},
+          {"mean", numbers(good_.belief.mean)},
+          {"covariance", numbers(good_.belief.covariance)},
+          {"factor", numbers(good_.belief.factor)},
+          {"health", watch_.save()},
+          {"outputs_since_known", remembered_},
+          {"known", known}};
+}
+
+void StreamedIdentification::resume(const nlohmann::json& saved) {
+  const auto check = [&](const char* key, const nlohmann::json& expected) {
+    const nlohmann::json& found = saved.at(key);
+    const bool short_enough =
+        found.is_primitive() ||
+        (found.is_array() && found.size() < 100 &&
+         std::all_of(found.begin(), found.end(), [](const auto& one) { return one.is_primitive(); }));
+    if (found != expected)
+      throw std::invalid_argument(fmt::format(
+          "{} is {}; expected {}", key, short_enough ? found.dump() : found.type_name(), expected.dump()));
+  };
+  try {
+    check("filter", choice_.name);
+    check("states", state_names(prepared_.model));
+    check("interval_s", interval_);
+    const auto n = static_cast<Index>(state_names(prepared_.model).size()),
+               q = static_cast<Index>(prepared_.model.unknown_places.size());
+    filters::SavedRun run;
+    run.belief = {matrix(saved, "mean", n, 1), matrix(saved, "covariance", n, -1),
+                  matrix(saved, "factor", n, -1)};
+    check_deviations("the state", run.belief.deviations());
+    run.time = saved.at("time_s").get<double>();
+    const double step = saved.at("step").get<double>();
+    if (!(step >= 1.0 && step <= 1e15 && step == std::floor(step)))
+      throw std::invalid_argument(fmt::format("step is {:g}; expected a count of samples", step));
+    run.step = static_cast<Index>(step);
+    InnovationWatch watch;
+    watch.resume(saved.at("health"));
+    std::vector<Known> known;
+    for (const auto& one : saved.at("known")) {
+      known.push_back({matrix(one, "mean", q, 1), matrix(one, "covariance", q, q)});
+      check_deviations("known", known.back().covariance.diagonal());
+    }
+    if (known.size() > 2) throw std::invalid_argument("known holds more than two; expected what was saved");
+    remembered_ = std::clamp<Index>(saved.at("outputs_since_known").get<Index>(), 0, InnovationWatch::window);
+    running_->resume(run);
+    watch_ = watch;
+    status_ = watch_.settled() ? Status::settled : Status::settling;
+    newer_ = known.empty() ? std::nullopt : std::optional(known.back());
+    older_ = known.size() < 2 ? std::nullopt : std::optional(known.front());
+    told_ = 0;
+    good_ = running_->save();
+  } catch (const nlohmann::json::exception&) {
+    throw std::invalid_argument("a key is missing or of another type; expected what --save-state wrote");
+  }
+}
+
+const char* word(StreamedIdentification::Status status) {
+  using Status = StreamedIdentification::Status;
+  switch (status) {
+    case Status::settling:
+      return "settling";
+    case Status::settled:
+      return "settled";
+    case Status::left_out:
+      return "left_out";
+    default:
+      return "begun_anew";
+  }
+}
+
+std::string stream_header() {
+  return "time_s,stiffness_n_per_m,stiffness_deviation_n_per_m,damping_n_s_per_m,damping_deviation_n_s_per_m,"
+         "frequency_hz,frequency_deviation_hz,damping_ratio,damping_ratio_deviation,mean_normalised_square,"
+         "status\n";
+}
+
+std::string stream_row(double time, const StreamedIdentification& stream) {
+  const Identification found = stream.found();
+  const double widen = stream.interval_factor();
+  std::string row = csv_field(time);
+  for (const double number :
+       {found.found.stiffness, widen * found.stiffness_deviation, found.found.damping,
+        widen * found.damping_deviation, found.found.frequency_hz(), widen * found.frequency_deviation_hz,
+        found.found.damping_ratio(), widen * found.damping_ratio_deviation, stream.watch().mean_square()})
+    row += "," + csv_field(number);
+  return row + "," + word(stream.status()) + "\n";
+}
+
+}  // namespace beamid::experiments

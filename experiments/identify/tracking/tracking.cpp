@@ -1,0 +1,202 @@
+#include "experiments/identify/tracking/tracking.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "experiments/identify/tracking/ringing_model.hpp"
+#include "experiments/identify/tracking/segments.hpp"
+#include "experiments/modal/dominant_mode.hpp"
+#include "experiments/signal/decimation.hpp"
+#include "experiments/signal/median.hpp"
+#include "experiments/signal/spectrum.hpp"
+#include "filters/smoother.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+constexpr double first_walk = 0.02;  // [1/sqrt(s)], of the search for changes, and where the tuning starts
+
+// Levels tuned by the likelihood of one span.
+struct Levels {
+  filters::Noise noise;
+  double output_share = std::numeric_limits<double>::infinity();  // standard error of the output's
+};
+
+Levels tuned(const Ringing& ringing, const filters::Measurements& span, const filters::Gaussian& initial,
+             const TrackSettings& settings) {
+  const double force = 0.1 * typical_force(ringing);
+  filters::NoiseSettings search;
+  search.guess = ringing_noise(ringing, ringing.noise, force, settings.walk.value_or(first_walk));
+  search.process_groups = {{ringing::slope}};
+  if (!settings.walk) search.process_groups.push_back({ringing::stiffness, ringing::damping});
+  search.max_iterations = 25;
+  search.tolerance = 1e-3;
+  const filters::NoiseEstimate found = filters::estimate_noise(
+      [&](const filters::Noise& noise) { return ringing_filter(ringing, noise); }, initial, span, search);
+  if (found.status == filters::NoiseStatus::failed) return {search.guess};
+  return {found.noise, found.relative_deviations[0]};
+}
+
+std::vector<filters::Gaussian> smoothed(const Ringing& ringing, const filters::Measurements& span,
+                                        const filters::Gaussian& initial, const filters::Noise& noise) {
+  const auto filter = ringing_filter(ringing, noise);
+  const filters::FilterRun run = filters::run(*filter, initial, span, filters::Keep::all_beliefs);
+  if (run.failure) return run.filtered;
+  const auto model = ringing_model(ringing.centre_hz, ringing.interval, noise);
+  return filters::smooth(run, *model, span).beliefs;
+}
+
+void enter(const std::vector<filters::Gaussian>& beliefs, Index first, double centre_hz, Tracking& result) {
+  for (std::size_t i = 0; i < beliefs.size(); ++i) {
+    const VectorXd deviation = beliefs[i].deviations();
+    const Index k = first + static_cast<Index>(i);
+    result.frequency_hz[k] = centre_hz * std::exp(0.5 * beliefs[i].mean[ringing::stiffness]);
+    result.frequency_deviation[k] = 0.5 * deviation[ringing::stiffness];
+    result.damping_ratio[k] = beliefs[i].mean[ringing::damping];
+    result.damping_ratio_deviation[k] = deviation[ringing::damping];
+  }
+}
+
+// What a beat with a mode nearby does to a wandering frequency, no wandering explains: there the modal
+// analysis, which fits both modes, tells how far the mean may be off.
+void compare_with_modal_analysis(const Ringing& ringing, Plateau& plateau) {
+  constexpr double beyond = 3.0;  // deviations
+  plateau.modal_frequency_hz = plateau.modal_damping_ratio = std::numeric_limits<double>::quiet_NaN();
+  ModalAnalysisSettings settings;
+  settings.expected_frequency_hz = plateau.frequency_hz;
+  settings.frequency_tolerance = 0.03;
+  settings.companion_amplitude = 0.02;
+  try {
+    const ModalEstimate modal = dominant_mode(
+        ringing.signal.segment(plateau.first, plateau.last - plateau.first + 1), ringing.interval, settings);
+    plateau.modal_frequency_hz = modal.frequency_hz, plateau.modal_damping_ratio = modal.damping_ratio;
+    for (const CompanionMode& mode : modal.companions) plateau.companions_hz.push_back(mode.frequency_hz);
+  } catch (const std::exception&) {
+    return;  // too short, or no decay of constant stiffness: the plateau stands alone
+  }
+  const auto widen = [](double difference, double& deviation) {
+    if (std::abs(difference) > beyond * deviation) deviation = std::hypot(deviation, difference);
+  };
+  widen(plateau.frequency_hz - plateau.modal_frequency_hz, plateau.frequency_deviation_hz);
+  widen(plateau.damping_ratio - plateau.modal_damping_ratio, plateau.damping_ratio_deviation);
+}
+
+Plateau plateau_of(const Ringing& ringing, const std::vector<filters::Gaussian>& beliefs, Index first,
+                   const Levels& levels) {
+  Plateau plateau;
+  plateau.first = first, plateau.last = first + static_cast<Index>(beliefs.size()) - 1;
+  plateau.from = ringing.time[plateau.first], plateau.to = ringing.time[plateau.last];
+  const double span = plateau.to - plateau.from;
+  const filters::Gaussian& end = beliefs.back();
+  const VectorXd deviation = end.deviations();
+  plateau.frequency_hz = ringing.centre_hz * std::exp(0.5 * end.mean[ringing::stiffness_integral] / span);
+  plateau.frequency_deviation_hz = plateau.frequency_hz * 0.5 * deviation[ringing::stiffness_integral] / span;
+  plateau.damping_ratio = end.mean[ringing::damping_integral] / span;
+  plateau.damping_ratio_deviation = deviation[ringing::damping_integral] / span;
+  const double w = 2.0 * std::numbers::pi * plateau.frequency_hz;
+  const auto amplitude = [&](const filters::Gaussian& belief) {
+    return std::hypot(belief.mean[ringing::signal], belief.mean[ringing::slope] / w);
+  };
+  plateau.amplitude_from = amplitude(beliefs.front()), plateau.amplitude_to = amplitude(end);
+  compare_with_modal_analysis(ringing, plateau);
+  plateau.noise = std::sqrt(levels.noise.output(0, 0));
+  plateau.noise_relative_deviation = levels.output_share;
+  plateau.walk = std::sqrt(levels.noise.process(ringing::stiffness, ringing::stiffness) / ringing.interval);
+  plateau.force = std::sqrt(levels.noise.process(ringing::slope, ringing::slope) / ringing.interval);
+  return plateau;
+}
+
+void check_tracking(const TrackSettings& settings, double interval) {
+  const double highest = 0.5 / interval;
+  if (settings.band_hz &&
+      !(settings.band_hz->first > 0 && settings.band_hz->first < settings.band_hz->second &&
+        settings.band_hz->second < highest))
+    throw std::invalid_argument("band; expected 0 < from < to < " + std::to_string(highest) +
+                                " Hz, half the sampling rate");
+  if (settings.walk && !(*settings.walk >= 0 && std::isfinite(*settings.walk)))
+    throw std::invalid_argument("walk; expected a number >= 0 [1/sqrt(s)]");
+  if (!(settings.false_alarms > 0 && settings.false_alarms < 1))
+    throw std::invalid_argument("false_alarms; expected a probability above 0 and below 1");
+  if (!(settings.shortest_cycles >= 3)) throw std::invalid_argument("shortest_cycles; expected 3 at least");
+}
+
+}  // namespace
+
+std::pair<double, double> track_band(const VectorXd& signal, double interval) {
+  constexpr Index spans = 32, shortest = 16;
+  const Index count = signal.size() / spans;
+  if (count < shortest)
+    throw std::invalid_argument("signal of " + std::to_string(signal.size()) +
+                                " samples; expected 512 at least, or a band");
+  std::vector<double> frequencies;
+  for (Index i = 0; i < spans; ++i) {
+    const VectorXd span = signal.segment(i * count, count);
+    if (span.maxCoeff() > span.minCoeff()) frequencies.push_back(strongest_frequency(span, interval));
+  }
+  if (frequencies.empty()) throw std::invalid_argument("signal; expected one that varies");
+  const double middle = median(frequencies);
+  return {0.5 * middle, std::min(2.0 * middle, 0.45 / interval)};
+}
+
+Tracking track(const VectorXd& signal, double start, double interval, const TrackSettings& settings,
+               const Progress& progress) {
+  check_tracking(settings, interval);
+  const auto say = [&](const std::string& words) {
+    if (progress) progress(words);
+  };
+  Tracking result;
+  result.band_hz = settings.band_hz ? *settings.band_hz : track_band(signal, interval);
+  const int factor = std::max(1, static_cast<int>(0.3 / (result.band_hz.second * interval)));
+  const DecimatedSignal low = decimate(signal, interval, factor);
+  result.decimation = factor, result.interval = low.interval, result.signal = low.samples;
+  const Index samples = low.samples.size();
+  result.time = start + low.start +
+                low.interval * VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)).array();
+
+  Ringing ringing{result.time,
+                  result.signal,
+                  low.interval,
+                  result.band_hz,
+                  std::sqrt(result.band_hz.first * result.band_hz.second),
+                  0.0};
+  if (samples < ringing.cycles(2 * settings.shortest_cycles))
+    throw std::invalid_argument("signal of fewer than " + std::to_string(2 * settings.shortest_cycles) +
+                                " cycles at the middle of the band");
+  ringing.noise = result.noise = typical_noise(ringing);
+  say("seeking changes");
+  const Segments segments = find_segments(ringing, settings.walk.value_or(first_walk), settings.false_alarms);
+  result.threshold = segments.threshold, result.test_samples = segments.test_samples;
+  result.alarms.assign(segments.begins.begin() + 1, segments.begins.end());
+
+  for (VectorXd* history : {&result.frequency_hz, &result.frequency_deviation, &result.damping_ratio,
+                            &result.damping_ratio_deviation})
+    *history = VectorXd::Constant(samples, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < segments.begins.size(); ++i) {
+    const Index first = segments.begins[i];
+    const Index last = (i + 1 < segments.begins.size() ? segments.begins[i + 1] : samples) - 1;
+    const filters::Measurements span = ringing.span(first, last);
+    const filters::Gaussian initial = fresh_belief(ringing, first);
+    if (last - first < 1) {
+      enter({initial}, first, ringing.centre_hz, result);
+      continue;
+    }
+    const bool plateau = last - first + 1 >= ringing.cycles(settings.shortest_cycles);
+    if (plateau) say("plateau " + std::to_string(result.plateaus.size() + 1));
+    const Levels levels = plateau ? tuned(ringing, span, initial, settings)
+                                  : Levels{ringing_noise(ringing, ringing.noise, typical_force(ringing),
+                                                         settings.walk.value_or(first_walk))};
+    const auto beliefs = smoothed(ringing, span, initial, levels.noise);
+    enter(beliefs, first, ringing.centre_hz, result);
+    if (plateau && std::ssize(beliefs) == last - first + 1)
+      result.plateaus.push_back(plateau_of(ringing, beliefs, first, levels));
+  }
+  return result;
+}
+
+}  // namespace beamid::experiments

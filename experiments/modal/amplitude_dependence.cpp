@@ -1,0 +1,92 @@
+#include "experiments/modal/amplitude_dependence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "experiments/modal/envelope_line.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::VectorXd, Eigen::VectorXcd;
+
+using std::numbers::pi;
+
+VectorXd kaiser(Index half) {
+  constexpr double beta = 5.65;  // 60 dB
+  VectorXd kernel(2 * half + 1);
+  for (Index k = -half; k <= half; ++k) {
+    const double edge = static_cast<double>(k) / static_cast<double>(half + 1);
+    kernel[k + half] = std::cyl_bessel_i(0, beta * std::sqrt(1 - edge * edge));
+  }
+  return kernel / kernel.sum();
+}
+
+}  // namespace
+
+Demodulated demodulate(const VectorXd& signal, double interval, Complex rate,
+                       const std::vector<Complex>& others, double fewest_kernels) {
+  const double w = rate.imag();
+  double apart = w;
+  for (const Complex& other : others)
+    if (other.imag() != w) apart = std::min(apart, std::abs(other.imag() - w));
+  constexpr double first_zero = 2.06;  // of the Kaiser window's transform, times its length
+  const auto half = static_cast<Index>(std::ceil(0.5 * first_zero * 2 * pi / (apart * interval)));
+  const Index length = 2 * half + 1;
+  if (static_cast<double>(signal.size()) < fewest_kernels * static_cast<double>(length))
+    throw std::invalid_argument(
+        fmt::format("{:.3g} s of the mode at {:.4g} Hz, {:.3g} Hz from the next; expected {:.3g} s at least",
+                    static_cast<double>(signal.size()) * interval, w / (2 * pi), apart / (2 * pi),
+                    fewest_kernels * static_cast<double>(length) * interval));
+  const VectorXd kernel = kaiser(half);
+  VectorXcd turning(length);
+  Complex gain = 0;
+  for (Index k = -half; k <= half; ++k) {
+    turning[k + half] = kernel[k + half] * std::exp(Complex(0, -w * interval * static_cast<double>(k)));
+    gain += kernel[k + half] * std::exp(rate.real() * interval * static_cast<double>(k));
+  }
+  const Index hop = std::max<Index>(1, half / 6), count = (signal.size() - length) / hop + 1;
+  Demodulated found{VectorXcd(count), static_cast<double>(half) * interval,
+                    static_cast<double>(hop) * interval, interval / kernel.squaredNorm()};
+  for (Index m = 0; m < count; ++m) {
+    const double time = found.start + static_cast<double>(m) * found.interval;
+    found.values[m] = (turning.array() * signal.segment(m * hop, length).array().cast<Complex>()).sum() *
+                      std::exp(Complex(0, -w * time)) / gain;
+  }
+  return found;
+}
+
+std::vector<AmplitudePoint> amplitude_dependence(const VectorXd& signal, double interval, Complex rate,
+                                                 const std::vector<Complex>& others,
+                                                 const AmplitudeSettings& settings) {
+  const Demodulated found = demodulate(signal, interval, rate, others);
+  const Index count = found.values.size();
+  VectorXd time(count);
+  for (Index m = 0; m < count; ++m) time[m] = found.start + static_cast<double>(m) * found.interval;
+  const VectorXcd logarithm = unwrapped_logarithm(found.values);
+  constexpr double fall = 0.35, fewest_kernels = 4.5;
+  const double wanted =
+      settings.window > 0 ? settings.window
+                          : std::max(fall / std::max(-rate.real(), 1e-9), fewest_kernels * found.correlation);
+  const Index length = std::clamp<Index>(static_cast<Index>(std::lround(wanted / found.interval)), 6, count);
+  std::vector<AmplitudePoint> points;
+  for (Index begin = 0; begin + length <= count; begin += std::max<Index>(1, length / 2)) {
+    const EnvelopeLine line = line_through(time.segment(begin, length), logarithm.segment(begin, length),
+                                           found.interval / found.correlation);
+    const double damping = -line.slope.real(), turn = rate.imag() + line.slope.imag();
+    const double w = std::hypot(damping, turn);
+    AmplitudePoint point{line.time,    2 * std::exp(line.log_amplitude),
+                         w / (2 * pi), line.deviation / (2 * pi),
+                         damping / w,  line.deviation / w};
+    if (!(point.damping_ratio_deviation <= settings.largest_deviation * std::abs(point.damping_ratio))) break;
+    points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace beamid::experiments

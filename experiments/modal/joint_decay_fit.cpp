@@ -1,0 +1,177 @@
+#include "experiments/modal/joint_decay_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+void check_joint_decay_fit(const MatrixXd& outputs, double interval, const std::vector<Complex>& start) {
+  const std::size_t fewest = 2 * (4 * start.size() + 1);
+  const bool oscillating = std::all_of(start.begin(), start.end(), [](Complex rate) {
+    return rate.imag() > 0 && std::isfinite(rate.imag()) && std::isfinite(rate.real());
+  });
+  if (!start.empty() && oscillating && interval > 0 && outputs.allFinite() && outputs.rows() > 0 &&
+      static_cast<std::size_t>(outputs.cols()) >= fewest)
+    return;
+  std::ostringstream message;
+  message << "fit of " << start.size() << " damped sines to " << outputs.rows() << " channels of "
+          << outputs.cols() << " samples; expected at least " << fewest
+          << " finite samples and one or more rates of positive angular frequency";
+  throw std::invalid_argument(message.str());
+}
+
+/// The problem at given rates, with the best amplitudes.
+struct JointLinearisation {
+  MatrixXd parts;                ///< (2K+1 x p) amplitudes (Re, Im) and offset
+  MatrixXd residuals;            ///< (N x p)
+  std::vector<MatrixXd> slopes;  ///< (N x 2K) of each channel, without what amplitudes can follow
+  VectorXd variances;            ///< (p)
+  double misfit = 0;             ///< minus twice the logarithm of the likelihood, and a constant
+};
+
+JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd& rates, bool with_slopes) {
+  const Index count = y.rows(), modes = rates.size() / 2;
+  Eigen::MatrixXcd waves(count, modes);
+  MatrixXd basis(count, 2 * modes + 1);
+  for (Index m = 0; m < modes; ++m) {
+    for (Index k = 0; k < count; ++k)
+      waves(k, m) = std::exp(Complex(-rates[2 * m + 1], rates[2 * m]) * (interval * static_cast<double>(k)));
+    basis.col(2 * m) = waves.col(m).real();
+    basis.col(2 * m + 1) = -waves.col(m).imag();
+  }
+  basis.col(2 * modes).setOnes();
+  const Eigen::HouseholderQR<MatrixXd> qr(basis);
+  const MatrixXd range = qr.householderQ() * MatrixXd::Identity(count, basis.cols());
+  const MatrixXd projected = range.transpose() * y;
+  JointLinearisation at;
+  at.parts = qr.matrixQR().topRows(basis.cols()).triangularView<Eigen::Upper>().solve(projected);
+  at.residuals = y - range * projected;
+  const VectorXd floor = 1e-26 * y.colwise().squaredNorm().transpose().cwiseMax(1e-280);
+  at.variances =
+      at.residuals.colwise().squaredNorm().transpose().cwiseMax(floor) / static_cast<double>(count);
+  at.misfit = static_cast<double>(count) * at.variances.array().log().sum();
+  if (!with_slopes) return at;
+  const VectorXd time = interval * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
+  for (Index c = 0; c < y.cols(); ++c) {
+    MatrixXd slope(count, 2 * modes);
+    for (Index m = 0; m < modes; ++m) {
+      const Eigen::VectorXcd motion = Complex(at.parts(2 * m, c), at.parts(2 * m + 1, c)) * waves.col(m);
+      slope.col(2 * m) = -time.cwiseProduct(motion.imag());
+      slope.col(2 * m + 1) = -time.cwiseProduct(motion.real());
+    }
+    slope -= range * (range.transpose() * slope);
+    at.slopes.push_back(std::move(slope));
+  }
+  return at;
+}
+
+/// Variance of white noise as dense as a residual (N) is around w [rad/s]: its periodogram under a Hann
+/// window, the mean over 8 of its resolutions to either side.
+double local_variance(const VectorXd& residual, double interval, double w) {
+  const Index count = residual.size();
+  const double turn = 2 * std::numbers::pi / static_cast<double>(count);
+  double power = 0, weight = 0;
+  VectorXd windowed(count);
+  for (Index k = 0; k < count; ++k) {
+    const double hann = 1 - std::cos(turn * (static_cast<double>(k) + 0.5));
+    windowed[k] = hann * residual[k];
+    weight += hann * hann;
+  }
+  constexpr int bins = 8;
+  for (int b = -bins; b <= bins; ++b) {
+    const Complex step = std::polar(1.0, -(w * interval + turn * b));
+    Complex phase = 1, sum = 0;
+    for (Index k = 0; k < count; ++k, phase *= step) sum += windowed[k] * phase;
+    power += std::norm(sum) / (2 * bins + 1);
+  }
+  return power / weight;
+}
+
+/// (p x K)
+MatrixXd noise_near_modes(const JointLinearisation& at, double interval, const VectorXd& rates) {
+  const Index modes = rates.size() / 2, count = at.residuals.rows();
+  const double freedom = static_cast<double>(count) / static_cast<double>(count - 4 * modes - 1);
+  MatrixXd variance(at.residuals.cols(), modes);
+  for (Index c = 0; c < at.residuals.cols(); ++c)
+    for (Index m = 0; m < modes; ++m)
+      variance(c, m) = freedom * local_variance(at.residuals.col(c), interval, rates[2 * m]);
+  return variance;
+}
+
+MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& normal, const MatrixXd& noise_variance) {
+  const Index modes = noise_variance.cols();
+  MatrixXd middle = MatrixXd::Zero(2 * modes, 2 * modes);
+  for (Index c = 0; c < at.residuals.cols(); ++c) {
+    VectorXd density(2 * modes);
+    for (Index m = 0; m < modes; ++m) density.segment<2>(2 * m).setConstant(std::sqrt(noise_variance(c, m)));
+    const MatrixXd scaled = at.slopes[c] * (density / at.variances[c]).asDiagonal();
+    middle += scaled.transpose() * scaled;
+  }
+  const MatrixXd inverse = normal.ldlt().solve(MatrixXd::Identity(2 * modes, 2 * modes));
+  return inverse * middle * inverse;
+}
+
+}  // namespace
+
+JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
+                                 const std::vector<Complex>& start) {
+  check_joint_decay_fit(outputs, interval, start);
+  const Index modes = static_cast<Index>(start.size());
+  const MatrixXd y = outputs.transpose();
+  VectorXd rates(2 * modes);
+  for (Index m = 0; m < modes; ++m) rates.segment<2>(2 * m) << start[m].imag(), -start[m].real();
+  constexpr int most_iterations = 100;
+  JointLinearisation at = linearise(y, interval, rates, true);
+  double damping = 0;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    MatrixXd normal = MatrixXd::Zero(2 * modes, 2 * modes);
+    VectorXd gradient = VectorXd::Zero(2 * modes);
+    for (Index c = 0; c < y.cols(); ++c) {
+      normal += at.slopes[c].transpose() * at.slopes[c] / at.variances[c];
+      gradient += at.slopes[c].transpose() * at.residuals.col(c) / at.variances[c];
+    }
+    const VectorXd step =
+        (normal + damping * MatrixXd(normal.diagonal().asDiagonal())).ldlt().solve(gradient);
+    // A step that gains less than 1e-9 of a standard deviation, or moves the rates by rounding only, ends it.
+    const bool settled = step.dot(normal * step) < 1e-18 || step.norm() < 1e-13 * rates.norm();
+    const JointLinearisation next = linearise(y, interval, rates + step, true);
+    if (settled || next.misfit < at.misfit) {
+      if (next.misfit <= at.misfit) {
+        rates += step;
+        at = next;
+      }
+      damping = damping < 1e-6 ? 0 : damping / 10;
+    } else {
+      damping = std::max(10 * damping, 1e-4);
+      if (damping < 1e10) continue;
+    }
+    if (!settled && damping < 1e10) continue;
+    JointDecayFit fit;
+    fit.shapes.resize(y.cols(), modes);
+    for (Index m = 0; m < modes; ++m) {
+      fit.rates.emplace_back(-rates[2 * m + 1], rates[2 * m]);
+      fit.shapes.col(m) = at.parts.row(2 * m).transpose().cast<Complex>() +
+                          Complex(0, 1) * at.parts.row(2 * m + 1).transpose().cast<Complex>();
+    }
+    fit.offsets = at.parts.row(2 * modes).transpose();
+    fit.reconstruction = (y - at.residuals).transpose();
+    fit.residual_standard_deviation =
+        at.residuals.colwise().norm().transpose() / std::sqrt(static_cast<double>(y.rows() - 4 * modes - 1));
+    fit.noise_variance = noise_near_modes(at, interval, rates);
+    fit.covariance = covariance_of(at, normal, fit.noise_variance);
+    return fit;
+  }
+  throw std::runtime_error("least squares of " + std::to_string(modes) +
+                           " damped sines did not converge in " + std::to_string(most_iterations) + " steps");
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,147 @@
+#include "experiments/modal/residue_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "experiments/signal/least_squares.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXd, Eigen::MatrixXcd, Eigen::VectorXd, Eigen::VectorXcd;
+
+constexpr Complex i1{0, 1};
+
+VectorXcd points(const VectorXd& frequency_hz, double shift) {
+  return (2 * std::numbers::pi * i1 * frequency_hz.cast<Complex>()).array() + shift;
+}
+
+/// Columns of Re R_1, Im R_1, ..., U, L (F x 2K + 2).
+MatrixXcd basis(const VectorXcd& s, int power, const std::vector<Complex>& rates) {
+  const auto count = static_cast<Index>(rates.size());
+  MatrixXcd columns(s.size(), 2 * count + 2);
+  for (Index k = 0; k < s.size(); ++k) {
+    const Complex factor = std::pow(s[k], power);
+    for (Index m = 0; m < count; ++m) {
+      const Complex a = 1.0 / (s[k] - rates[m]), b = 1.0 / (s[k] - std::conj(rates[m]));
+      columns(k, 2 * m) = factor * (a + b);
+      columns(k, 2 * m + 1) = factor * i1 * (a - b);
+    }
+    columns(k, 2 * count) = factor;
+    columns(k, 2 * count + 1) = factor / (s[k] * s[k]);
+  }
+  return columns;
+}
+
+MatrixXd stacked(const MatrixXcd& columns) {
+  MatrixXd both(2 * columns.rows(), columns.cols());
+  both << columns.real(), columns.imag();
+  return both;
+}
+
+ResidueFit fit(const VectorXcd& s, const MatrixXcd& responses, int power, const std::vector<Complex>& rates) {
+  const MatrixXcd columns = basis(s, power, rates);
+  const auto count = static_cast<Index>(rates.size());
+  const MatrixXd solved = least_squares(stacked(columns), stacked(responses.transpose()));
+  ResidueFit found{rates,
+                   MatrixXcd(responses.rows(), count),
+                   solved.row(2 * count),
+                   solved.row(2 * count + 1),
+                   (columns * solved.cast<Complex>()).transpose(),
+                   {}};
+  for (Index m = 0; m < count; ++m)
+    found.residues.col(m) = (solved.row(2 * m).cast<Complex>() + i1 * solved.row(2 * m + 1)).transpose();
+  return found;
+}
+
+/// Derivatives by all parameters (2 p F x n), in the order of ResidueFit::covariance.
+MatrixXd jacobian(const VectorXcd& s, int power, const ResidueFit& at) {
+  const auto modes = static_cast<Index>(at.rates.size());
+  const Index outputs = at.residues.rows(), lines = s.size(), own = 2 * modes + 2;
+  MatrixXd result = MatrixXd::Zero(2 * outputs * lines, 2 * modes + outputs * own);
+  const MatrixXd linear = stacked(basis(s, power, at.rates));
+  for (Index o = 0; o < outputs; ++o) {
+    MatrixXcd of_poles(lines, 2 * modes);
+    for (Index k = 0; k < lines; ++k)
+      for (Index m = 0; m < modes; ++m) {
+        const Complex factor = std::pow(s[k], power), a = s[k] - at.rates[m],
+                      b = s[k] - std::conj(at.rates[m]);
+        const Complex p = factor * at.residues(o, m) / (a * a),
+                      q = factor * std::conj(at.residues(o, m)) / (b * b);
+        of_poles(k, 2 * m) = i1 * (p - q);
+        of_poles(k, 2 * m + 1) = -(p + q);
+      }
+    result.block(2 * o * lines, 0, 2 * lines, 2 * modes) = stacked(of_poles);
+    result.block(2 * o * lines, 2 * modes + o * own, 2 * lines, own) = linear;
+  }
+  return result;
+}
+
+VectorXd residual(const MatrixXcd& responses, const ResidueFit& at) {
+  const Index lines = responses.cols();
+  VectorXd left(2 * responses.size());
+  for (Index o = 0; o < responses.rows(); ++o) {
+    const VectorXcd difference = (responses.row(o) - at.reproduced.row(o)).transpose();
+    left.segment(2 * o * lines, 2 * lines) << difference.real(), difference.imag();
+  }
+  return left;
+}
+
+}  // namespace
+
+ResidueFit fit_residues(const VectorXd& frequency_hz, const MatrixXcd& responses, double shift, int power,
+                        const std::vector<Complex>& rates) {
+  return fit(points(frequency_hz, shift), responses, power, rates);
+}
+
+ResidueFit refine_poles(const VectorXd& frequency_hz, const MatrixXcd& responses, double shift, int power,
+                        const std::vector<Complex>& rates, double correlated) {
+  const VectorXcd s = points(frequency_hz, shift);
+  ResidueFit at = fit(s, responses, power, rates);
+  VectorXd left = residual(responses, at);
+  const auto modes = static_cast<Index>(rates.size());
+  double damping = 1e-6;
+  constexpr int most_iterations = 60;
+  for (int iteration = 0;; ++iteration) {
+    const MatrixXd slope = jacobian(s, power, at);
+    const VectorXd scale = slope.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+    const MatrixXd scaled = slope * scale.asDiagonal();
+    MatrixXd normal = scaled.transpose() * scaled;
+    const MatrixXd undamped = normal;
+    normal.diagonal().array() += damping;
+    const VectorXd step = scale.asDiagonal() * normal.ldlt().solve(scaled.transpose() * left);
+    std::vector<Complex> next = at.rates;
+    double moved = 0;
+    for (Index m = 0; m < modes; ++m) {
+      next[m] += Complex(-step[2 * m + 1], step[2 * m]);
+      moved = std::max(moved, std::abs(next[m] - at.rates[m]) / std::abs(next[m]));
+    }
+    ResidueFit tried = fit(s, responses, power, next);
+    const VectorXd tried_left = residual(responses, tried);
+    if (moved < 1e-9) {
+      const Index spare = left.size() - scaled.cols();
+      if (spare < 1) throw std::runtime_error("fewer lines than parameters");
+      const MatrixXd inverse =
+          scale.asDiagonal() *
+          MatrixXd(undamped.ldlt().solve(MatrixXd::Identity(undamped.rows(), undamped.cols())));
+      const MatrixXd weighted = scaled.transpose() * left.cwiseAbs2().asDiagonal() * scaled;
+      at.covariance = correlated * static_cast<double>(left.size()) / static_cast<double>(spare) *
+                      (inverse * weighted * inverse.transpose());
+      return at;
+    }
+    if (tried_left.squaredNorm() <= left.squaredNorm() * (1 + 1e-12)) {
+      at = std::move(tried);
+      left = tried_left;
+      damping = std::max(1e-12, 0.1 * damping);
+    } else {
+      damping = std::max(1e-6, 10 * damping);
+    }
+    if (iteration == most_iterations || damping > 1e12)
+      throw std::runtime_error("the fit of frequency responses does not converge");
+  }
+}
+
+}  // namespace beamid::experiments

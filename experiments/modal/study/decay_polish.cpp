@@ -1,0 +1,156 @@
+#include "experiments/modal/study/decay_polish.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "experiments/modal/study/drifting_mode.hpp"
+#include "experiments/modal/study/mode_objections.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Modes = std::vector<ModeEstimate>;
+
+void reject(std::size_t m, const std::string& why, RecordModes& found) {
+  found.stabilisation.rejected.push_back({found.modes[m].pole, found.modes[m].orders, why});
+  found.modes.erase(found.modes.begin() + static_cast<std::ptrdiff_t>(m));
+}
+
+/// Of two poles that are one mode, the one that is stable at fewer orders.
+bool reject_twin(const std::vector<Pole>& poles, RecordModes& found) {
+  const double duration = found.interval * static_cast<double>(found.target.cols());
+  for (std::size_t a = 0; a < poles.size(); ++a)
+    for (std::size_t b = a + 1; b < poles.size(); ++b) {
+      if (!cannot_be_told_apart(poles[a], poles[b], duration)) continue;
+      const auto weight = [&](std::size_t m) {
+        return std::pair(found.modes[m].orders.size(), found.modes[m].strength);
+      };
+      const std::size_t kept = weight(a) < weight(b) ? b : a, lost = kept == a ? b : a;
+      reject(lost,
+             fmt::format("one mode with {:.4g} Hz: they cannot be told apart in this record",
+                         poles[kept].frequency_hz()),
+             found);
+      return true;
+    }
+  return false;
+}
+
+/// Of two fitted poles that are one drifting mode, the weaker.
+bool reject_drifting(const JointDecayFit& fit, RecordModes& found) {
+  for (std::size_t a = 0; a < found.modes.size(); ++a)
+    for (std::size_t b = a + 1; b < found.modes.size(); ++b) {
+      if (!is_one_drifting_mode(fit, a, b, found.target, found.interval)) continue;
+      const bool first = fit.shapes.col(static_cast<Eigen::Index>(a)).norm() <
+                         fit.shapes.col(static_cast<Eigen::Index>(b)).norm();
+      reject(first ? a : b,
+             fmt::format("one mode with {:.4g} Hz, whose frequency or damping follows the amplitude",
+                         fitted_pole(fit, first ? b : a).frequency_hz()),
+             found);
+      return true;
+    }
+  return false;
+}
+
+/// Nothing where it does not converge: then the weakest mode is rejected.
+std::optional<JointDecayFit> fit_or_reject(RecordModes& found) {
+  std::vector<std::complex<double>> start;
+  for (const ModeEstimate& mode : found.modes) start.push_back(mode.pole.rate);
+  std::string why;
+  try {
+    return fit_decays_jointly(found.target, found.interval, start);
+  } catch (const std::runtime_error&) {
+    why = "least squares of all modes do not converge with it";
+  } catch (const std::invalid_argument&) {
+    why = "too few samples to fit it";
+  }
+  const auto weakest =
+      std::min_element(found.modes.begin(), found.modes.end(),
+                       [](const ModeEstimate& a, const ModeEstimate& b) { return a.strength < b.strength; });
+  reject(static_cast<std::size_t>(weakest - found.modes.begin()), why, found);
+  return std::nullopt;
+}
+
+/// Only the least certain goes: without it, others may stay.
+bool reject_least_certain(const JointDecayFit& fit, const StabilisationSettings& settings,
+                          RecordModes& found) {
+  std::optional<std::size_t> worst;
+  double largest = -1;
+  std::string why;
+  for (std::size_t m = 0; m < found.modes.size(); ++m) {
+    const Pole pole = fitted_pole(fit, m);
+    std::string objection = objection_to(found.modes[m].pole, fit, m, found, settings);
+    const double doubt = pole.frequency_deviation_hz / pole.frequency_hz();
+    if (objection.empty() || doubt <= largest) continue;
+    worst = m, largest = doubt, why = std::move(objection);
+  }
+  if (worst) reject(*worst, why, found);
+  return worst.has_value();
+}
+
+std::vector<Pole> poles_of(const Modes& modes) {
+  std::vector<Pole> poles;
+  for (const ModeEstimate& mode : modes) poles.push_back(mode.pole);
+  return poles;
+}
+
+std::vector<Pole> poles_of(const JointDecayFit& fit) {
+  std::vector<Pole> poles;
+  for (std::size_t m = 0; m < fit.rates.size(); ++m) poles.push_back(fitted_pole(fit, m));
+  return poles;
+}
+
+/// What was rejected for the company it was in, the strongest first, is tried once more with those that
+/// stayed: all of them have to.
+void try_again(Modes lost, const StabilisationSettings& settings, RecordModes& found) {
+  std::sort(lost.begin(), lost.end(),
+            [](const ModeEstimate& a, const ModeEstimate& b) { return a.strength > b.strength; });
+  for (const ModeEstimate& one : lost) {
+    RecordModes tried = found;
+    tried.modes.push_back(one);
+    std::erase_if(tried.stabilisation.rejected, [&](const PoleCluster& cluster) {
+      return cluster.pole.rate == one.pole.rate && cluster.orders == one.orders;
+    });
+    const std::size_t rejected = tried.stabilisation.rejected.size();
+    if (reject_twin(poles_of(tried.modes), tried)) continue;
+    const auto fit = fit_or_reject(tried);
+    if (!fit || reject_least_certain(*fit, settings, tried) || reject_twin(poles_of(*fit), tried) ||
+        reject_drifting(*fit, tried) || tried.stabilisation.rejected.size() != rejected)
+      continue;
+    for (std::size_t m = 0; m < tried.modes.size(); ++m) tried.modes[m].pole = fitted_pole(*fit, m);
+    found = std::move(tried);
+  }
+}
+
+}  // namespace
+
+void polish(RecordModes& found, const StabilisationSettings& settings) {
+  const bool any = !found.modes.empty();
+  while (reject_twin(poles_of(found.modes), found)) {
+  }
+  const Modes all = found.modes;
+  while (!found.modes.empty()) {
+    const auto fit = fit_or_reject(found);
+    if (!fit || reject_least_certain(*fit, settings, found)) continue;
+    const std::vector<Pole> poles = poles_of(*fit);
+    if (reject_twin(poles, found) || reject_drifting(*fit, found)) continue;
+    Modes lost;
+    for (const ModeEstimate& mode : all)
+      if (std::none_of(found.modes.begin(), found.modes.end(),
+                       [&](const ModeEstimate& one) { return one.pole.rate == mode.pole.rate; }))
+        lost.push_back(mode);
+    for (std::size_t m = 0; m < poles.size(); ++m) found.modes[m].pole = poles[m];
+    try_again(lost, settings, found);
+    std::sort(found.modes.begin(), found.modes.end(),
+              [](const auto& a, const auto& b) { return a.pole.frequency_hz() < b.pole.frequency_hz(); });
+    found.polished = true;
+    return;
+  }
+  if (any)
+    found.warnings.emplace_back(
+        "No pole was confirmed by least squares; --no-polish lists them as the method finds them.");
+}
+
+}  // namespace beamid::experiments

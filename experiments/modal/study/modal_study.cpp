@@ -1,0 +1,208 @@
+#include "experiments/modal/study/modal_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "experiments/modal/shape_fit.hpp"
+#include "experiments/modal/study/decay_part.hpp"
+#include "experiments/modal/study/decay_polish.hpp"
+#include "experiments/modal/study/mode_objections.hpp"
+#include "experiments/modal/study/pole_levels.hpp"
+#include "experiments/modal/study/signal_band.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+/// Rows over the root mean square of all channels of their quantity.
+VectorXd scales_of(const Record& record) {
+  std::map<Quantity, std::pair<double, double>> squares;
+  for (Index i = 0; i < record.samples.rows(); ++i) {
+    auto& [sum, count] = squares[record.channels[i].quantity];
+    sum += (record.samples.row(i).array() - record.samples.row(i).mean()).square().sum();
+    count += static_cast<double>(record.size());
+  }
+  VectorXd scales(record.samples.rows());
+  for (Index i = 0; i < scales.size(); ++i) {
+    const auto& [sum, count] = squares[record.channels[i].quantity];
+    scales[i] = sum > 0 ? std::sqrt(sum / count) : 1;
+  }
+  return scales;
+}
+
+/// Shapes in the channels' units: least squares of all modes to what they are to reproduce.
+void add_shapes(const VectorXd& scales, RecordModes& found) {
+  found.reproduced.resize(0, 0);
+  if (found.modes.empty()) return;
+  std::vector<std::complex<double>> rates;
+  for (const ModeEstimate& mode : found.modes) rates.push_back(mode.pole.rate);
+  rates.emplace_back(0);
+  std::vector<bool> oscillating(rates.size(), true);
+  oscillating.back() = false;
+  const ShapeFit fit = fit_shapes(found.target, found.interval, rates, oscillating);
+  found.reproduced = fit.reconstruction;
+  for (std::size_t m = 0; m < found.modes.size(); ++m) {
+    Pole& pole = found.modes[m].pole;
+    const Eigen::VectorXcd part = fit.shapes.col(static_cast<Index>(m));
+    if (found.free_decay) {
+      pole.shape = part;
+    } else {  // an autocorrelation's part is the square of a root mean square; phases are the shape's
+      Eigen::VectorXcd shape = scales.asDiagonal() * pole.shape;
+      for (Index i = 0; i < shape.size(); ++i)
+        shape[i] = std::polar(std::sqrt(std::max(0.0, part[i].real())), std::arg(shape[i]));
+      pole.shape = shape;
+    }
+    double squares = 0;
+    for (Index i = 0; i < part.size(); ++i)
+      squares += found.free_decay ? std::norm(part[i] / scales[i])
+                                  : std::pow(std::max(0.0, part[i].real()) / (scales[i] * scales[i]), 2);
+    found.modes[m].strength = std::sqrt(squares);
+  }
+}
+
+void leave_out_weak(const ModalStudySettings& settings, RecordModes& found) {
+  double strongest = 0;
+  for (const ModeEstimate& mode : found.modes) strongest = std::max(strongest, mode.strength);
+  double floor = settings.smallest_amplitude * strongest;
+  std::string why =
+      fmt::format("amplitude below {:.2g} % of the strongest", 100 * settings.smallest_amplitude);
+  if (settings.modes > 0 && static_cast<std::size_t>(settings.modes) < found.modes.size()) {
+    std::vector<double> strengths;
+    for (const ModeEstimate& mode : found.modes) strengths.push_back(mode.strength);
+    std::sort(strengths.rbegin(), strengths.rend());
+    if (strengths[settings.modes - 1] > floor) {
+      floor = strengths[settings.modes - 1];
+      why = fmt::format("weaker than the {} asked for", settings.modes);
+    }
+  }
+  for (const ModeEstimate& mode : found.modes)
+    if (mode.strength < floor) found.stabilisation.rejected.push_back({mode.pole, mode.orders, why});
+  std::erase_if(found.modes, [&](const ModeEstimate& mode) { return mode.strength < floor; });
+}
+
+/// Those that the method gives, and what it refused, within the band.
+void take_modes(RecordModes& found) {
+  const auto inside = [&](const Pole& pole) {
+    return pole.frequency_hz() >= found.band_hz.first && pole.frequency_hz() <= found.band_hz.second;
+  };
+  for (const OrderPoles& order : found.search.orders)
+    for (const Pole& pole : order.poles)
+      if (inside(pole)) found.modes.push_back({pole, {}});
+  for (const RefusedPole& refused : found.search.refused)
+    if (inside(refused.pole)) found.stabilisation.rejected.push_back({refused.pole, {}, refused.reason});
+  found.remarks.insert(found.remarks.end(), found.search.remarks.begin(), found.search.remarks.end());
+}
+
+/// A method for decays wants one, a method for random vibration a steady record. A slow decay loses little
+/// over a record, and two near modes can be stronger late: what decaying modes reproduce is a decay.
+void check_kind(const MatrixXd& samples, RecordModes& found) {
+  constexpr double reproduced = 0.5;  // of the motion's size
+  const MatrixXd motion = samples.colwise() - samples.rowwise().mean();
+  const Index half = motion.cols() / 2;
+  const double early = motion.leftCols(half).squaredNorm(), late = motion.rightCols(half).squaredNorm();
+  const bool decays =
+      (found.polished && !found.modes.empty()) ||
+      (found.reproduced.size() > 0 && (found.target - found.reproduced).norm() < reproduced * motion.norm());
+  if (found.free_decay && !decays && late > 0.7 * early)
+    found.warnings.push_back(
+        "The record does not decay: its second half is nearly as strong as its first, and no decaying modes "
+        "reproduce it. For random vibration take --method ssi_cov; for a decay that comes later in the "
+        "record, --window.");
+  if (!found.free_decay && std::max(early, late) > 10 * std::min(early, late))
+    found.warnings.push_back(
+        "The record is not steady: one half is much stronger than the other. For a free decay take --method "
+        "era; for random vibration, a --window without the strong part.");
+}
+
+/// What the record shows and no mode stands for: lines outside the band, and lines inside it.
+void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found) {
+  std::vector<double> outside, missed;
+  const auto near = [](const RecordLine& line, const Pole& pole) {
+    return std::abs(pole.frequency_hz() - line.frequency_hz) <
+           std::max(line.resolution_hz, 0.03 * line.frequency_hz);
+  };
+  for (const RecordLine& line : lines) {
+    const bool inside = line.frequency_hz >= found.band_hz.first && line.frequency_hz <= found.band_hz.second;
+    const auto& rejected = found.stabilisation.rejected;
+    if (!inside)
+      outside.push_back(line.frequency_hz);
+    else if (std::none_of(found.modes.begin(), found.modes.end(),
+                          [&](const ModeEstimate& mode) { return near(line, mode.pole); }) &&
+             std::none_of(rejected.begin(), rejected.end(), [&](const PoleCluster& cluster) {
+               return cluster.objection.starts_with("overtone") && near(line, cluster.pole);
+             }))
+      missed.push_back(line.frequency_hz);
+  }
+  if (!outside.empty())
+    found.warnings.push_back(fmt::format(
+        "{} at {} {} outside this band; --band takes {} in.", outside.size() > 1 ? "Lines" : "A line",
+        frequencies_text(outside), outside.size() > 1 ? "lie" : "lies", outside.size() > 1 ? "them" : "it"));
+  if (!missed.empty())
+    found.warnings.push_back(
+        fmt::format("No mode stands for the {} at {}; another --band, --window or --order may show one.",
+                    missed.size() > 1 ? "lines" : "line", frequencies_text(missed)));
+}
+
+}  // namespace
+
+RecordModes find_modes(const std::string& name, const Record& record, bool windowed,
+                       const ModalStudySettings& settings) {
+  const auto& registry = modal_method_registry();
+  RecordModes found;
+  found.name = name;
+  found.remarks = record.remarks;
+  found.free_decay = registry.find(settings.method.name).contracts.contains(contract::free_decay);
+  found.mode_by_mode = registry.find(settings.method.name).contracts.contains(contract::mode_by_mode);
+  found.record = complete_part(motion_of(record), found.remarks);
+  if (found.free_decay && !windowed) found.record = from_release(found.record, found.remarks);
+  check_intervals(found.record);
+  const double interval = found.record.interval();
+  const VectorXd scales = scales_of(found.record);
+  std::vector<RecordLine> lines;
+  if (found.free_decay)
+    lines = record_lines(scales.cwiseInverse().asDiagonal() * found.record.samples, interval);
+  found.band_hz = settings.band_hz ? *settings.band_hz : decay_band(found.record.samples, interval, lines);
+  check_band(found.band_hz, interval, found.record.size());
+
+  const CoarseRecord coarse = coarse_record(found.record, found.band_hz.second);
+  found.interval = coarse.last.interval;
+  found.start = found.record.time[0] + coarse.last.start;
+  const auto method = registry.make(settings.method.name, settings.method.options);
+  if (found.mode_by_mode) {
+    found.search = method->search(scales.cwiseInverse().asDiagonal() * coarse.samples, found.interval,
+                                  settings.largest_order);
+    take_modes(found);
+  } else {
+    search_levels(*method, settings, scales, lines, coarse, found);
+  }
+
+  found.target =
+      found.free_decay ? coarse.samples : MatrixXd(scales.cwiseAbs2().asDiagonal() * found.search.decays);
+  add_shapes(scales, found);
+  leave_out_weak(settings, found);
+  if (settings.polish.value_or(found.free_decay && !found.mode_by_mode)) {
+    if (!found.free_decay)
+      throw std::invalid_argument("--polish fits a free decay; method " + settings.method.name +
+                                  " takes the record for random vibration");
+    polish(found, settings.stabilisation);
+  }
+  add_shapes(scales, found);
+  if (found.free_decay) {
+    set_overtones_aside(found);
+    add_shapes(scales, found);
+  }
+  check_kind(coarse.samples, found);
+  name_missed_lines(lines, found);
+  if (found.free_decay) {
+    for (ModeEstimate& mode : found.modes)  // back to the undecimated record and its beginning
+      mode.pole.shape *= std::exp(-mode.pole.rate * coarse.last.start) / coarse.last.response(mode.pole.rate);
+  }
+  return found;
+}
+
+}  // namespace beamid::experiments

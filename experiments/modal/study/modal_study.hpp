@@ -1,0 +1,62 @@
+// Modes of one record by one method: band, poles over orders, choice, polish.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/modal/modal_method.hpp"
+#include "experiments/modal/stabilisation.hpp"
+#include "experiments/text/choice.hpp"
+
+namespace beamid::experiments {
+
+struct ModalStudySettings {
+  Choice method{"era", {}};
+  std::optional<std::pair<double, double>>
+      band_hz;  ///< absent: from 2 cycles in the record to beyond its highest line
+  int largest_order = 30;
+  int modes = 0;                      ///< the strongest ones; 0: all
+  std::optional<bool> polish;         ///< absent: of a method for free decays that goes over orders
+  double smallest_amplitude = 0.003;  ///< relative to the strongest mode; weaker ones are left out
+  StabilisationSettings stabilisation;
+};
+
+/// y_i(t) = Re(shape_i e^(rate t)), t = 0 at the first sample analysed. Deviations are NaN where unknown.
+struct ModeEstimate {
+  Pole pole;                ///< shape [unit of the channels]; of random vibration: root mean squares
+  std::vector<int> orders;  ///< of the models in which it was stable
+  double strength = 0;      ///< share of the squares of what it was to reproduce
+
+  double amplitude(Eigen::Index channel) const { return std::abs(pole.shape[channel]); }
+};
+
+/// The modes of one record, and how they were found.
+struct RecordModes {
+  std::string name;                   ///< of the record
+  Record record;                      ///< what was analysed: from its beginning on, motion only
+  std::vector<std::string> remarks;   ///< sentences
+  std::vector<std::string> warnings;  ///< sentences
+  bool free_decay = true;             ///< as the method takes it
+  bool mode_by_mode = false;          ///< without model orders
+  bool polished = false;
+  std::pair<double, double> band_hz;
+  double interval = 0;  ///< after decimation [s]
+  double start = 0;     ///< time of the first column of `target` [s]
+  PoleSearch search;
+  Stabilisation stabilisation;
+  std::vector<ModeEstimate> modes;  ///< by rising frequency
+  Eigen::MatrixXd target;           ///< (p x L) what the modes were to reproduce: record or autocorrelations
+  Eigen::MatrixXd reproduced;       ///< (p x L)
+};
+
+/// Analyses one record. Readings that are missing (NaN) end the part that is taken; without a window on a
+/// free decay, what precedes the largest reading is left out. Channels are scaled by quantity for the search,
+/// and decimated as far as the band allows. Lines that no mode stands for are named in the warnings.
+/// @throws std::invalid_argument when record, band and orders do not fit.
+RecordModes find_modes(const std::string& name, const Record& record, bool windowed,
+                       const ModalStudySettings& settings);
+
+}  // namespace beamid::experiments

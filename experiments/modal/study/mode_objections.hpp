@@ -1,0 +1,31 @@
+// Why a fitted pole of a free decay is no mode of the structure.
+#pragma once
+
+#include <string>
+
+#include "experiments/modal/joint_decay_fit.hpp"
+#include "experiments/modal/study/modal_study.hpp"
+
+namespace beamid::experiments {
+
+/// Mode m of a joint fit, with deviations.
+Pole fitted_pole(const JointDecayFit& fit, std::size_t m);
+
+/// Two poles less than a cycle apart over the record, or over three time constants of the slower decay where
+/// that is less, are one mode: a frequency or a damping that follows the amplitude is realised as several.
+bool cannot_be_told_apart(const Pole& a, const Pole& b, double duration);
+
+/// Why mode m is none; empty: it is one. It is none where least squares carried it away from `from`, where
+/// frequency or damping ratio are too uncertain, and where it is no more than noise: its energy over the
+/// density of the noise around, sum y^2 / s^2, is chi-square of 2 p + 2 degrees of freedom where there is
+/// nothing, and is not to be exceeded with probability 0.001 in any of the band's resolutions; a mode that is
+/// a quarter of a channel's energy is none.
+std::string objection_to(const Pole& from, const JointDecayFit& fit, std::size_t m, const RecordModes& found,
+                         const StabilisationSettings& settings);
+
+/// Takes the modes that are multiples (2 and 3) of a stronger one below them, with its damping ratio, out of
+/// the modes: a motion a cos(w t) that decays with d leaves the n-th power of a curved characteristic as
+/// a^n cos(n w t), which decays with n d.
+void set_overtones_aside(RecordModes& found);
+
+}  // namespace beamid::experiments

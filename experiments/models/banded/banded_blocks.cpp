@@ -1,0 +1,91 @@
+#include "experiments/models/banded/banded_blocks.hpp"
+
+#include <cstring>
+#include <numbers>
+
+namespace beamid::experiments::banded {
+
+using Eigen::Index;
+
+namespace {
+
+using std::numbers::sqrt3;
+using Vector = Lanes::Vector;
+
+[[gnu::always_inline]] inline void transpose(Vector& a, Vector& b, Vector& c, Vector& d) {
+  const Vector ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), ba = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Vector cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), dc = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ba, dc, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ba, dc, 2, 3, 6, 7);
+}
+
+[[gnu::always_inline]] inline void add_rows(Vector* rows, double* const* columns, Index at) {
+  transpose(rows[0], rows[1], rows[2], rows[3]);
+#pragma GCC unroll 4
+  for (int k = 0; k < Lanes::count; ++k) {
+    Vector value;
+    std::memcpy(&value, columns[k] + at, sizeof value);
+    value += rows[k];
+    std::memcpy(columns[k] + at, &value, sizeof value);
+  }
+}
+
+}  // namespace
+
+BEAMID_WIDE_CLONE void gather(const double* const* columns, Index size, Lanes* block) {
+  Index i = 0;
+  for (; i + Lanes::count <= size; i += Lanes::count) {
+    Vector part[Lanes::count];
+#pragma GCC unroll 4
+    for (int k = 0; k < Lanes::count; ++k) std::memcpy(&part[k], columns[k] + i, sizeof(Vector));
+    transpose(part[0], part[1], part[2], part[3]);
+#pragma GCC unroll 4
+    for (int k = 0; k < Lanes::count; ++k) block[i + k].values = part[k];
+  }
+  for (; i < size; ++i)
+    for (int k = 0; k < Lanes::count; ++k) block[i].values[k] = columns[k][i];
+}
+
+BEAMID_WIDE_CLONE void right_side(const Lanes* stiff, const Lanes* momentum, double interval, Index size,
+                                  ComplexLanes* right) {
+  const double real = -3.0 / interval, imaginary = -sqrt3 / interval;
+  for (Index i = 0; i < size; ++i) {
+    right[i].re = stiff[i] + real * momentum[i];
+    right[i].im = imaginary * momentum[i];
+  }
+}
+
+BEAMID_WIDE_CLONE void add_forcing(const Complex* forcing, const Lanes& part, Index first, Index last,
+                                   ComplexLanes* right) {
+  const Lanes factor = part;
+  for (Index i = first; i < last; ++i) {
+    right[i].re += forcing[i].re * factor;
+    right[i].im += forcing[i].im * factor;
+  }
+}
+
+BEAMID_WIDE_CLONE void scatter(const ComplexLanes* change, double interval, Index size,
+                               double* const* columns, double* const* rates) {
+  const double step = 4.0 * sqrt3, pace = 12.0 / interval;
+  Index i = 0;
+  for (; i + Lanes::count <= size; i += Lanes::count) {
+    Vector rows[Lanes::count], rate_rows[Lanes::count];
+#pragma GCC unroll 4
+    for (int k = 0; k < Lanes::count; ++k) {
+      const ComplexLanes& d = change[i + k];
+      rows[k] = step * d.im.values;
+      rate_rows[k] = pace * (d.re.values + sqrt3 * d.im.values);
+    }
+    add_rows(rows, columns, i);
+    add_rows(rate_rows, rates, i);
+  }
+  for (; i < size; ++i)
+    for (int k = 0; k < Lanes::count; ++k) {
+      columns[k][i] += step * change[i].im.values[k];
+      rates[k][i] += pace * (change[i].re.values[k] + sqrt3 * change[i].im.values[k]);
+    }
+}
+
+}  // namespace beamid::experiments::banded

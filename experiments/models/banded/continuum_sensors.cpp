@@ -1,0 +1,139 @@
+#include "experiments/models/banded/continuum_sensors.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "fem/modes.hpp"
+
+namespace beamid::experiments::banded {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+namespace {
+
+int half_width(const fem::SparseMatrix& a, const fem::SparseMatrix& b) {
+  int width = 0;
+  for (const fem::SparseMatrix* matrix : {&a, &b})
+    for (int j = 0; j < matrix->outerSize(); ++j)
+      for (fem::SparseMatrix::InnerIterator it(*matrix, j); it; ++it)
+        width = std::max(width, std::abs(static_cast<int>(it.row()) - j));
+  return width;
+}
+
+}  // namespace
+
+ContinuumSensors::ContinuumSensors(const fem::ParametricSystem& equations,
+                                   const MotionDescription& description, const StateLayout& layout)
+    : description_(description),
+      layout_(layout),
+      size_(equations.system.size()),
+      rows_(MatrixXd(equations.system.outputs).transpose()) {
+  const auto count = static_cast<Index>(description.observations.size());
+  if (rows_.cols() != count)
+    throw std::invalid_argument("the system has " + std::to_string(rows_.cols()) + " output rows for " +
+                                std::to_string(count) + " observations; expected one each");
+  for (Index i = 0; i < count; ++i)
+    if (reads(description.observations[i].quantity) == Reads::accelerations) sensors_.push_back(i);
+  if (sensors_.empty()) return;
+  smooth(equations.system);
+
+  const BandedMass mass(equations);
+  const auto k = static_cast<Index>(sensors_.size()), s = static_cast<Index>(mass.support().size());
+  MatrixXd right = MatrixXd::Zero(size_, k + s);
+  for (Index i = 0; i < k; ++i) right.col(i) = rows_.col(sensors_[i]);
+  for (Index i = 0; i < s; ++i) right(mass.support()[i], k + i) = 1.0;
+  const Eigen::SimplicialLDLT<fem::SparseMatrix> factor(equations.system.mass);
+  if (factor.info() != Eigen::Success)
+    throw std::invalid_argument(
+        "the mass matrix is not positive definite: some coordinate has no mass, and its "
+        "acceleration is not determined");
+  reference_ = receptance_ = factor.solve(right);
+}
+
+void ContinuumSensors::smooth(const fem::StructuralSystem& system) {
+  double highest = 0.0;  // omega^2 of the mesh, its order of magnitude
+  const fem::SparseMatrix stiffness = system.stiffness.assembled();
+  for (Index i = 0; i < size_; ++i)
+    highest = std::max(highest, std::abs(stiffness.coeff(i, i)) / system.mass.coeff(i, i));
+  fem::Modes modes = fem::modes(system, 1);
+  if (modes.rigid > 0) modes = fem::modes(system, std::min(size_, modes.rigid + 3));
+  if (modes.rigid >= modes.size()) return;
+  const double cut = cut_off * modes.angular_frequency[modes.rigid], spare = 10.0;
+  if (!(highest > spare * spare * cut * cut)) return;
+  smooths_ = true;
+  BandedFactor factor(size_, half_width(stiffness, system.mass));
+  const auto add = [&](const fem::SparseMatrix& matrix, const Complex& weight) {
+    for (int j = 0; j < matrix.outerSize(); ++j)
+      for (fem::SparseMatrix::InnerIterator it(matrix, j); it; ++it)
+        if (it.row() >= j) factor.row(it.row())[factor.width() + j - it.row()] += it.value() * weight;
+  };
+  add(system.mass, {1.0, 0.0});
+  add(stiffness, {0.0, 1.0 / (cut * cut)});
+  factor.factor();
+  std::vector<Complex> response(size_);
+  for (const Index sensor : sensors_) {
+    for (Index i = 0; i < size_; ++i) response[i] = {rows_(i, sensor), 0.0};
+    factor.solve(response.data());
+    for (Index i = 0; i < size_; ++i) rows_(i, sensor) = response[i].re;
+    rows_.col(sensor) = system.mass * rows_.col(sensor);
+  }
+}
+
+void ContinuumSensors::set(const BandedEquations& equations) {
+  if (sensors_.empty()) return;
+  const auto k = static_cast<Index>(sensors_.size());
+  const std::vector<Index>& support = equations.mass().support();
+  const auto s = static_cast<Index>(support.size());
+  if (s > 0) {
+    MatrixXd added = MatrixXd::Zero(s, s), seen(s, k + s);
+    const auto place = [&](Index i) {
+      return std::lower_bound(support.begin(), support.end(), i) - support.begin();
+    };
+    for (Index j = 0; j < equations.properties(); ++j)
+      for (const BandedMass::Entry& entry : equations.mass().slope(j))
+        added(place(entry.row), place(entry.column)) += equations.change()[j] * entry.value;
+    for (Index i = 0; i < s; ++i) seen.row(i) = reference_.row(support[i]);
+    const MatrixXd system = MatrixXd::Identity(s, s) + added * seen.rightCols(s);
+    receptance_ = reference_ - reference_.rightCols(s) * system.partialPivLu().solve(added * seen);
+  }
+  by_motion_.setZero(size_, k);
+  for (Index i = 0; i < k; ++i)
+    equations.stiffness().add_product(receptance_.col(i).data(), by_motion_.col(i).data());
+  by_rate_ = equations.stiffness_damping() * by_motion_;
+  for (Index i = 0; i < k; ++i) {
+    by_rate_.col(i) += equations.mass_damping() * rows_.col(sensors_[i]);
+    equations.add_dashpots(receptance_.col(i).data(), by_rate_.col(i).data());
+    for (const ModeDamping& mode : equations.mode_dampings())
+      by_rate_.col(i) += mode.factor * mode.momentum.dot(receptance_.col(i)) * mode.momentum;
+  }
+  by_motion_ = -by_motion_;
+  by_rate_ = -by_rate_;
+}
+
+void ContinuumSensors::output(const BandedEquations& equations, const VectorXd& state, const VectorXd& input,
+                              VectorXd& output) const {
+  const auto q = state.head(size_), rate = state.segment(size_, size_);
+  output.resize(rows_.cols());
+  VectorXd force;
+  Index k = 0;
+  for (Index i = 0; i < rows_.cols(); ++i) {
+    const Reads what = reads(description_.observations[i].quantity);
+    if (what == Reads::coordinates) output[i] = rows_.col(i).dot(q);
+    if (what == Reads::rates) output[i] = rows_.col(i).dot(rate);
+    if (what != Reads::accelerations) continue;
+    if (force.size() == 0) {  // K q through the strains, and not -by_motion_^T q, which cancels
+      force.setZero(size_);
+      equations.stiffness().add_product(q.data(), force.data());
+      force = equations.force(input) - force;
+    }
+    output[i] = receptance_.col(k).dot(force) + by_rate_.col(k).dot(rate);
+    if (description_.base >= 0 && input.size() > 0) output[i] += input[description_.base];
+    if (layout_.biases[i] >= 0) output[i] += state[layout_.biases[i]];
+    ++k;
+  }
+}
+
+}  // namespace beamid::experiments::banded

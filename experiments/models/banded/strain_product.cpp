@@ -1,0 +1,167 @@
+#include "experiments/models/banded/strain_product.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace beamid::experiments::banded {
+
+using Eigen::Index;
+
+StrainProduct::StrainProduct(const fem::SparseMatrix& strain, const fem::SparseMatrix& rigidity,
+                             const std::vector<int>& starts) {
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> rows = strain, entries = rigidity;
+  row_start_.assign(rows.outerIndexPtr(), rows.outerIndexPtr() + rows.rows() + 1);
+  column_.assign(rows.innerIndexPtr(), rows.innerIndexPtr() + rows.nonZeros());
+  value_.assign(rows.valuePtr(), rows.valuePtr() + rows.nonZeros());
+  Index first = strain.cols(), last = 0;
+  for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
+    const Block block{starts[b], starts[b + 1] - starts[b], static_cast<int>(rigidity_.size())};
+    if (block.size > largest_block)
+      throw std::invalid_argument("rigidity couples " + std::to_string(block.size) +
+                                  " strains; expected at most " + std::to_string(largest_block) +
+                                  ", those of one element");
+    std::array<double, largest_block * largest_block> own{};
+    bool any = false;
+    for (int r = 0; r < block.size; ++r)
+      for (decltype(entries)::InnerIterator it(entries, block.strain + r); it; ++it) {
+        own[r * block.size + it.col() - block.strain] = it.value();
+        any = true;  // a zero may be there to be added to
+      }
+    if (!any) continue;
+    for (int k = row_start_[block.strain]; k < row_start_[block.strain + block.size]; ++k) {
+      first = std::min<Index>(first, column_[k]);
+      last = std::max<Index>(last, column_[k] + 1);
+    }
+    if (add_element(block, own.data())) continue;
+    blocks_.push_back(block);
+    rigidity_.insert(rigidity_.end(), own.begin(), own.begin() + block.size * block.size);
+  }
+  reach_ = {std::min(first, last), last};
+}
+
+bool StrainProduct::add_element(const Block& block, const double* rigidity) {
+  if (block.size != 2) return false;
+  const int row = row_start_[block.strain];
+  const int* const column = &column_[row];
+  const double* const value = &value_[row];
+  if (row_start_[block.strain + 1] != row + 3 || row_start_[block.strain + 2] != row + 5) return false;
+  const int w = column[0];
+  if (column[1] != w + 1 || column[2] != w + 2 || column[3] != w + 1 || column[4] != w + 3) return false;
+  if (value[0] != 1.0 || value[2] != -1.0) return false;
+  const auto place = static_cast<int>(elements_.size());
+  const bool follows = !runs_.empty() && runs_.back().coordinate + 2 * (place - runs_.back().first) == w;
+  if (!follows) runs_.push_back({w, place, place});
+  runs_.back().last = place + 1;
+  const double coupling = 0.5 * (rigidity[1] + rigidity[2]);
+  elements_.push_back({value[1], value[3], value[4], rigidity[0], coupling, rigidity[3], block.strain});
+  return true;
+}
+
+void StrainProduct::take_rigidity(const StrainProduct& other) {
+  elements_ = other.elements_;
+  rigidity_ = other.rigidity_;
+}
+
+void StrainProduct::add(double factor, const StrainProduct& part) {
+  auto own = elements_.begin();
+  for (const Element& other : part.elements_) {
+    while (own->strain != other.strain) ++own;
+    own->d11 += factor * other.d11;
+    own->d12 += factor * other.d12;
+    own->d22 += factor * other.d22;
+  }
+  auto block = blocks_.begin();
+  for (const Block& other : part.blocks_) {
+    while (block->strain != other.strain) ++block;
+    for (int k = 0; k < other.size * other.size; ++k)
+      rigidity_[block->rigidity + k] += factor * part.rigidity_[other.rigidity + k];
+  }
+}
+
+template <class Entry>
+[[gnu::always_inline]] inline void StrainProduct::strains(const Block& block, const Entry* x,
+                                                          Entry* e) const {
+  for (int r = 0; r < block.size; ++r) {
+    const int begin = row_start_[block.strain + r], end = row_start_[block.strain + r + 1];
+    Entry sum{};
+    for (int k = begin; k < end; ++k) sum += value_[k] * x[column_[k]];
+    e[r] = sum;
+  }
+}
+
+template <class Entry>
+[[gnu::always_inline]] inline void StrainProduct::multiply(const Entry* x, Entry* y) const {
+  for (const Run& run : runs_) {
+    const Entry* here = x + run.coordinate;
+    Entry* out = y + run.coordinate;
+    Entry w = here[0], t = here[1], force = out[0], moment = out[1];
+    for (const Element *e = &elements_[run.first], *end = e + (run.last - run.first); e != end; ++e) {
+      const Entry next_w = here[2], next_t = here[3];
+      const Entry drift = w - next_w + e->a * t, bend = e->b * t + e->c * next_t;
+      const Entry n = e->d11 * drift + e->d12 * bend, m = e->d12 * drift + e->d22 * bend;
+      out[0] = force + n;
+      out[1] = moment + (e->a * n + e->b * m);
+      force = out[2] - n;
+      moment = out[3] + e->c * m;
+      w = next_w;
+      t = next_t;
+      here += 2;
+      out += 2;
+    }
+    out[0] = force;
+    out[1] = moment;
+  }
+  std::array<Entry, largest_block> e;
+  for (const Block& block : blocks_) {
+    strains(block, x, e.data());
+    const double* const rigidity = &rigidity_[block.rigidity];
+    for (int r = 0; r < block.size; ++r) {
+      Entry force{};
+      for (int c = 0; c < block.size; ++c) force += rigidity[r * block.size + c] * e[c];
+      for (int k = row_start_[block.strain + r]; k < row_start_[block.strain + r + 1]; ++k)
+        y[column_[k]] += value_[k] * force;
+    }
+  }
+}
+
+template <>
+void StrainProduct::operator()(const double* x, double* y) const {
+  multiply(x, y);
+}
+template <>
+void StrainProduct::operator()(const Complex* x, Complex* y) const {
+  multiply(x, y);
+}
+template <>
+BEAMID_WIDE_CLONE void StrainProduct::operator()(const Lanes* x, Lanes* y) const {
+  multiply(x, y);
+}
+
+double StrainProduct::form(const double* x, const double* y) const {
+  double sum = 0.0;
+  for (const Run& run : runs_) {
+    const double *left = x + run.coordinate, *right = y + run.coordinate;
+    for (const Element *e = &elements_[run.first], *end = e + (run.last - run.first); e != end; ++e) {
+      const double drift = left[0] - left[2] + e->a * left[1], bend = e->b * left[1] + e->c * left[3];
+      const double other_drift = right[0] - right[2] + e->a * right[1];
+      const double other_bend = e->b * right[1] + e->c * right[3];
+      sum += drift * (e->d11 * other_drift + e->d12 * other_bend) +
+             bend * (e->d12 * other_drift + e->d22 * other_bend);
+      left += 2;
+      right += 2;
+    }
+  }
+  std::array<double, largest_block> one, other;
+  for (const Block& block : blocks_) {
+    strains(block, x, one.data());
+    strains(block, y, other.data());
+    for (int r = 0; r < block.size; ++r)
+      for (int c = 0; c < block.size; ++c)
+        sum += one[r] * rigidity_[block.rigidity + r * block.size + c] * other[c];
+  }
+  return sum;
+}
+
+}  // namespace beamid::experiments::banded

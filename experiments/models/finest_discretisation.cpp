@@ -1,0 +1,23 @@
+#include "experiments/models/finest_discretisation.hpp"
+
+#include "experiments/models/banded/continuum_motion.hpp"
+
+namespace beamid::experiments {
+
+bool is_whole_mesh(const JointModel& model) {
+  return dynamic_cast<const ContinuumMotion*>(model.motion.get()) != nullptr;
+}
+
+bool is_nonlinear(const JointModel& model) {
+  return !is_whole_mesh(model) && dynamic_cast<const filters::LinearMotion*>(model.motion.get()) == nullptr;
+}
+
+std::string finest_discretisation(const JointModel& model, double interval) {
+  // The classical Runge-Kutta step is (omega dt)^4 / 120 of the frequency off: 1.3e-5 there.
+  constexpr double largest_step = 0.2;  // [rad]
+  if (is_nonlinear(model))
+    return model.mode_frequencies[0] * interval < largest_step ? "runge_kutta_4" : "cvode";
+  return is_whole_mesh(model) ? "pade" : "exponential";
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,87 @@
+#include "experiments/models/identification.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "experiments/models/divergence.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// Standard deviation of a . [K, C] for the covariance of K and C.
+double deviation(const Eigen::Matrix2d& covariance, double by_stiffness, double by_damping) {
+  const Eigen::Vector2d slope(by_stiffness, by_damping);
+  return std::sqrt(slope.dot(covariance * slope));
+}
+
+// What the next pass takes over: constants of the record. A bias that drifts is not one.
+std::vector<Eigen::Index> kept_places(const JointModel& model) {
+  std::vector<Eigen::Index> places;
+  for (std::size_t j = 0; j < model.unknowns.size(); ++j)
+    if (!model.unknowns[j].nuisance) places.push_back(model.unknown_places[j]);
+  for (const JointModel::Offset& offset : model.offsets) {
+    const bool drifts = std::any_of(model.offsets.begin(), model.offsets.end(), [&](const auto& other) {
+      return other.drift && other.channel == offset.channel;
+    });
+    if (!drifts) places.push_back(offset.place);
+  }
+  return places;
+}
+
+}  // namespace
+
+filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& initial,
+                             const filters::Gaussian& last) {
+  filters::Gaussian next = initial;
+  for (const Eigen::Index place : kept_places(model)) next.mean[place] = last.mean[place];
+  return next;
+}
+
+filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
+                                 const IdentificationSettings& settings, filters::Keep keep) {
+  const auto filter = filters::filter_registry().make(
+      settings.filter, settings.filter_options,
+      filters::discretise(model.motion, record.interval(), settings.discretisation,
+                          {{}, settings.output_noise}));
+  filters::Gaussian initial = settings.initial;
+  filters::FilterRun run;
+  for (int pass = 1; pass <= settings.passes; ++pass) {
+    const bool last = pass == settings.passes;
+    run = filters::run(*filter, initial, record,
+                       {last ? keep : filters::Keep::last_belief, settings.start, {}, settings.on_failure});
+    if (run.failure) break;
+    initial = next_start(model, initial, run.last);
+  }
+  return run;
+}
+
+Identification identification_at(const JointModel& model, const filters::Gaussian& belief) {
+  Identification result;
+  const Eigen::VectorXd& mean = belief.mean;
+  const Eigen::Matrix2d covariance = belief.marginal(2, 2);
+  result.found = {model.equivalent_mass, mean[2], mean[3]};
+  result.stiffness_deviation = deviation(covariance, 1.0, 0.0);
+  result.damping_deviation = deviation(covariance, 0.0, 1.0);
+  // f = sqrt(K/M) / 2 pi and xi = C / (2 sqrt(K M)), to first order in the errors of K and C
+  const auto& [mass, stiffness, damping] = result.found;
+  result.frequency_deviation_hz =
+      deviation(covariance, 0.25 / (std::numbers::pi * std::sqrt(stiffness * mass)), 0.0);
+  result.damping_ratio_deviation = deviation(covariance, -0.5 * result.found.damping_ratio() / stiffness,
+                                             0.5 / std::sqrt(stiffness * mass));
+  return result;
+}
+
+Identification identify(const JointModel& model, const filters::Measurements& record,
+                        const IdentificationSettings& settings, filters::Keep keep) {
+  filters::FilterRun run = filter_record(model, record, settings, keep);
+  Identification result = identification_at(model, run.last);
+  result.run = std::move(run);
+  return result;
+}
+
+bool lost(const Identification& result, double modal_frequency_hz) {
+  return !divergence(result, modal_frequency_hz).empty();
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,178 @@
+#include "experiments/models/motion/beam_equations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using Property = fem::BeamParameter::Quantity;
+
+constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1;
+
+fem::BeamParameter parameter_of(const std::string& quantity,
+                                const std::optional<std::pair<double, double>>& region) {
+  return {*beam_quantity(quantity), region};
+}
+
+bool same_mesh(const fem::StructuralSystem& a, const fem::StructuralSystem& b) {
+  if (a.size() != b.size()) return false;
+  const double slack = 1e-9 * (b.mesh.nodes.empty() ? 1.0 : b.mesh.nodes.back().x);
+  for (std::size_t i = 0; i < a.coordinates.size(); ++i)
+    if (a.coordinates[i].kind != b.coordinates[i].kind ||
+        std::abs(a.coordinates[i].position - b.coordinates[i].position) > slack)
+      return false;
+  return true;
+}
+
+// A row that reads deflections, on another mesh with nodes at the same points.
+void move_row(const fem::StructuralSystem& from, Index row, const fem::StructuralSystem& to, MatrixXd& rows) {
+  const MatrixXd outputs = MatrixXd(from.outputs.row(row));
+  for (Index i = 0; i < outputs.cols(); ++i) {
+    if (outputs(0, i) == 0.0) continue;
+    const fem::Coordinate& wanted = from.coordinates[static_cast<std::size_t>(i)];
+    const int node = wanted.kind == fem::Coordinate::Kind::deflection ? to.mesh.node_at(wanted.position) : -1;
+    const auto found =
+        std::find_if(to.coordinates.begin(), to.coordinates.end(), [&](const fem::Coordinate& c) {
+          return c.kind == fem::Coordinate::Kind::deflection && c.node == node;
+        });
+    if (node < 0 || found == to.coordinates.end())
+      throw std::invalid_argument(
+          fmt::format("observation {} reads a strain on a mesh without nodes at the ends of the parameters' "
+                      "regions; expected a mesh that has them",
+                      row + 1));
+    rows(row, found - to.coordinates.begin()) = outputs(0, i);
+  }
+}
+
+}  // namespace
+
+std::optional<Property> beam_quantity(const std::string& name) {
+  if (name == "bending_stiffness") return Property::bending_stiffness;
+  if (name == "tip_mass") return Property::tip_mass;
+  if (name == "body_mass") return Property::body_mass;
+  if (name == "tip_rotary_inertia") return Property::tip_rotary_inertia;
+  if (name == "root_rotational_stiffness") return Property::root_rotational_stiffness;
+  if (name == "root_translational_stiffness") return Property::root_translational_stiffness;
+  if (name == "axial_load") return Property::axial_load;
+  return std::nullopt;
+}
+
+std::vector<ParameterDefault> beam_defaults(const fem::Beam& beam,
+                                            const std::vector<ParameterChoice>& choices) {
+  std::vector<ParameterDefault> defaults(choices.size());
+  for (std::size_t j = 0; j < choices.size(); ++j) {
+    const ParameterChoice& choice = choices[j];
+    const auto quantity = beam_quantity(choice.quantity);
+    if (!quantity) continue;
+    const bool mass = *quantity == Property::tip_mass || *quantity == Property::body_mass ||
+                      *quantity == Property::tip_rotary_inertia;
+    try {
+      defaults[j] = {fem::value_of(beam, parameter_of(choice.quantity, choice.region)),
+                     mass ? mass_doubt : stiffness_doubt};
+    } catch (const std::invalid_argument& error) {
+      refuse(choice, choice.quantity + ": " + error.what());
+    }
+  }
+  return defaults;
+}
+
+fem::ParametricSystem beam_equations(const ModelSetting& setting, const std::vector<Unknown>& unknowns) {
+  if (!setting.continuum)
+    throw std::invalid_argument(
+        "model 'beam' asks about the beam itself; the system was given without the beam it was made from");
+  if (!setting.system.nonlinear_forces.empty())
+    throw std::invalid_argument(
+        fmt::format("model 'beam' is linear; found {} springs or dashpots that are not",
+                    setting.system.nonlinear_forces.size()));
+  fem::Beam beam = setting.continuum->beam;
+  std::vector<fem::BeamParameter> parameters;
+  for (const Unknown& unknown : unknowns) {
+    if (!beam_quantity(unknown.quantity)) continue;
+    parameters.push_back(parameter_of(unknown.quantity, unknown.region));
+    if (fem::value_of(beam, parameters.back()) != unknown.guess)
+      beam = fem::with_value(beam, parameters.back(), unknown.guess);
+  }
+  fem::ParametricSystem equations =
+      fem::assemble_parametric(beam, setting.continuum->elements, setting.continuum->points, parameters);
+  fem::StructuralSystem& system = equations.system;
+  if (same_mesh(setting.system, system)) {
+    system.outputs = setting.system.outputs;
+  } else {
+    MatrixXd rows = MatrixXd::Zero(setting.system.outputs.rows(), system.size());
+    for (Index i = 0; i < rows.rows(); ++i) move_row(setting.system, i, system, rows);
+    system.outputs = rows.sparseView();
+  }
+  system.output_names = setting.system.output_names;
+  return equations;
+}
+
+VectorXd scale_of_modes(const fem::StructuralSystem& system, const std::vector<Observation>& observations,
+                        const MatrixXd& shapes) {
+  const MatrixXd seen = system.outputs * shapes;
+  VectorXd scale(shapes.cols());
+  for (Index i = 0; i < shapes.cols(); ++i) {
+    double largest = 0.0, anywhere = 0.0;
+    for (Index k = 0; k < system.size(); ++k)
+      if (system.coordinates[static_cast<std::size_t>(k)].kind == fem::Coordinate::Kind::deflection)
+        anywhere = std::max(anywhere, std::abs(shapes(k, i)));
+    for (Index row = 0; row < seen.rows(); ++row)
+      if (observations[static_cast<std::size_t>(row)].quantity != Quantity::strain &&
+          std::abs(seen(row, i)) > std::abs(largest))
+        largest = seen(row, i);
+    if (std::abs(largest) <= 1e-6 * anywhere) largest = anywhere;
+    scale[i] = largest != 0.0 ? 1.0 / largest : 1.0;
+  }
+  return scale;
+}
+
+ReducedEquations on_shapes(const fem::ParametricSystem& equations, const MatrixXd& shapes,
+                           const VectorXd& frequencies, const std::vector<Index>& forces) {
+  const fem::StructuralSystem& system = equations.system;
+  const auto kept = [&](const fem::SparseMatrix& inputs) {
+    const MatrixXd all = shapes.transpose() * inputs;
+    return MatrixXd(all(Eigen::all, forces));
+  };
+  const auto project = [&](const fem::SparseMatrix& matrix, const MatrixXd& on) {
+    const MatrixXd product = on.transpose() * (matrix * on);
+    return MatrixXd(0.5 * (product + product.transpose()));
+  };
+  ReducedEquations reduced;
+  reduced.mass = project(system.mass, shapes).diagonal();
+  reduced.stiffness = reduced.mass.cwiseProduct(frequencies.cwiseAbs2());
+  reduced.damping = project(system.damping, shapes);
+  reduced.inputs = kept(system.inputs);
+  const MatrixXd strains = equations.strain * shapes;
+  for (const fem::ParametricSystem::Derivative& slope : equations.derivatives)
+    reduced.derivatives.push_back(
+        {project(slope.mass, shapes), project(slope.rigidity, strains), kept(slope.inputs)});
+  return reduced;
+}
+
+std::vector<DampedMode> damped_modes(const fem::ParametricSystem& equations, const fem::Modes& modes) {
+  const auto a = static_cast<Index>(equations.derivatives.size());
+  std::vector<DampedMode> damped;
+  for (Index i = modes.rigid; i < modes.size(); ++i) {
+    const VectorXd shape = modes.shape.col(i), strains = equations.strain * shape;
+    DampedMode mode;
+    mode.momentum = equations.system.mass * shape;
+    mode.momentum_slopes.resize(shape.size(), a);
+    mode.mass_slopes.resize(a);
+    mode.stiffness_slopes.resize(a);
+    mode.stiffness = modes.angular_frequency[i] * modes.angular_frequency[i];
+    for (Index j = 0; j < a; ++j) {
+      const auto& slope = equations.derivatives[static_cast<std::size_t>(j)];
+      mode.momentum_slopes.col(j) = slope.mass * shape;
+      mode.mass_slopes[j] = shape.dot(mode.momentum_slopes.col(j));
+      mode.stiffness_slopes[j] = strains.dot(slope.rigidity * strains);
+    }
+    damped.push_back(std::move(mode));
+  }
+  return damped;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,42 @@
+// The finite-element beam with its unknowns, as an identification setting describes it.
+#pragma once
+
+#include <vector>
+
+#include "experiments/models/motion/parametric_motion.hpp"
+#include "experiments/models/motion/reduced_motion.hpp"
+#include "fem/modes.hpp"
+#include "fem/parametric_system.hpp"
+
+namespace beamid::experiments {
+
+/// The quantity of the beam itself that a choice asks about; nothing for damping.
+std::optional<fem::BeamParameter::Quantity> beam_quantity(const std::string& name);
+
+/// What the model believes of each choice about the beam by itself: the value described, stiffnesses and the
+/// axial load to 30 %, masses to 10 %; of dampings nothing.
+/// @throws std::invalid_argument, or an InputError at a choice's place, when the beam has no such thing.
+std::vector<ParameterDefault> beam_defaults(const fem::Beam& beam,
+                                            const std::vector<ParameterChoice>& choices);
+
+/// The equations with the guesses as p_0; output row i is what observation i reads.
+/// @param unknowns those of the choices, in their order
+/// @throws std::invalid_argument when the setting lacks the beam, or the system has nonlinear forces, or its
+/// mesh lacks nodes at the regions' ends where strain is observed.
+fem::ParametricSystem beam_equations(const ModelSetting& setting, const std::vector<Unknown>& unknowns);
+
+/// Factors (k) by which modes become 1 at the output where they are largest; where the outputs see no
+/// displacement, 1 at the node where they are largest, and 1 without a mesh.
+/// @param shapes of the modes on the mesh (n x k)
+Eigen::VectorXd scale_of_modes(const fem::StructuralSystem& system,
+                               const std::vector<Observation>& observations, const Eigen::MatrixXd& shapes);
+
+/// M, K, E on these shapes: modes of a reduced model lifted to the mesh.
+/// @param frequencies of the modes [rad/s]; @param forces columns of E that are kept
+ReducedEquations on_shapes(const fem::ParametricSystem& equations, const Eigen::MatrixXd& shapes,
+                           const Eigen::VectorXd& frequencies, const std::vector<Eigen::Index>& forces);
+
+/// The same modes' damping on the whole mesh.
+std::vector<DampedMode> damped_modes(const fem::ParametricSystem& equations, const fem::Modes& modes);
+
+}  // namespace beamid::experiments

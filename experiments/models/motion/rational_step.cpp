@@ -1,0 +1,216 @@
+#include "experiments/models/motion/rational_step.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "filters/step_input.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// Up to this 1-norm an approximant of the degree is the exponential to rounding [higham2005, table 2.3].
+struct Degree {
+  double largest_norm;
+  std::vector<double> coefficients;  // b_0 .. b_m
+};
+
+const std::vector<Degree>& pade_degrees() {
+  static const std::vector<Degree> known{
+      {1.495585217958292e-2, {120, 60, 12, 1}},
+      {2.539398330063230e-1, {30240, 15120, 3360, 420, 30, 1}},
+      {9.504178996162932e-1, {17297280, 8648640, 1995840, 277200, 25200, 1512, 56, 1}},
+      {2.097847961257068,
+       {17643225600, 8821612800, 2075673600, 302702400, 30270240, 2162160, 110880, 3960, 90, 1}},
+      {5.371920351148152,
+       {64764752532480000, 32382376266240000, 7771770303897600, 1187353796428800, 129060195264000,
+        10559470521600, 670442572800, 33522128640, 1323241920, 40840800, 960960, 16380, 182, 1}}};
+  return known;
+}
+
+}  // namespace
+
+RationalStep::RationalStep(Scheme scheme, double dt, const VectorXd& frequencies)
+    : scheme_(scheme), dt_(dt), r_(frequencies.size()), size_(2 * r_) {
+  scale_.setOnes(2 * r_ + filters::StepInput::highest_degree + 1);
+  scale_.head(r_) = frequencies;
+}
+
+void RationalStep::take(const VectorXd& input, Index inputs) {
+  const filters::StepInput path(input, inputs);
+  if (path.size() == 0) {
+    chain_.resize(0, 0);
+  } else if (path.degree() == 0) {
+    chain_ = path.coefficient(0);
+  } else if (scheme_ == Scheme::pade) {
+    chain_.resize(path.size(), 2);
+    chain_.col(1) = path.slope();
+    chain_.col(0) = path.mean() - 0.5 * chain_.col(1);
+  } else {
+    chain_.resize(path.size(), path.degree() + 1);
+    double factorial = 1.0;
+    for (Index j = 0; j < chain_.cols(); ++j) {
+      if (j > 1) factorial *= static_cast<double>(j);
+      chain_.col(j) = factorial * path.coefficient(j);
+    }
+  }
+  size_ = 2 * r_ + chain_.cols();
+  if (scale_.size() < size_) scale_.conservativeResize(size_);
+}
+
+void RationalStep::choose_degree(double norm) {
+  squarings_ = 0;
+  if (!std::isfinite(norm)) throw std::runtime_error("the equations of motion are not finite");
+  if (scheme_ == Scheme::pade) {
+    coefficients_ = {12, 6, 1};
+    return;
+  }
+  for (const Degree& degree : pade_degrees())
+    if (norm <= degree.largest_norm) {
+      coefficients_ = degree.coefficients;
+      return;
+    }
+  constexpr int most_squarings = 12;
+  coefficients_ = pade_degrees().back().coefficients;
+  const double halvings = std::ceil(std::log2(norm / pade_degrees().back().largest_norm));
+  if (halvings > most_squarings)
+    throw std::runtime_error("the fastest motion turns too far within one interval for its exponential");
+  squarings_ = static_cast<int>(halvings);
+}
+
+void RationalStep::set(const SecondOrderForm& form, const VectorXd& input) {
+  take(input, form.inputs.cols());
+  const auto scale = scale_.head(r_);
+  x_.setZero(size_, size_);
+  x_.block(0, r_, r_, r_).diagonal() = dt_ * scale;
+  x_.block(r_, 0, r_, r_).noalias() = -dt_ * form.stiffness * scale.cwiseInverse().asDiagonal();
+  x_.block(r_, r_, r_, r_) = -dt_ * form.damping;
+  if (const Index chain = chain_.cols(); chain > 0) {
+    // Each power of the step is smaller than the one before, as those of smooth inputs are.
+    constexpr double pace = 0.2;
+    auto pushes = x_.block(r_, 2 * r_, r_, chain);
+    pushes.noalias() = dt_ * (form.inputs * chain_);
+    double first = 0.0;
+    for (Index j = chain - 1; j >= 0; --j)
+      first = std::max(pushes.col(j).cwiseAbs().maxCoeff(), first / pace);
+    first = first > 0.0 ? first / (dt_ * scale.maxCoeff()) : 1.0;
+    for (Index j = 0; j < chain; ++j) {
+      scale_[2 * r_ + j] = first * std::pow(pace, j);
+      pushes.col(j) /= scale_[2 * r_ + j];
+      if (j > 0) x_(2 * r_ + j, 2 * r_ + j - 1) = pace;
+    }
+  }
+  choose_degree(x_.cwiseAbs().colwise().sum().maxCoeff());
+  x_ *= std::ldexp(1.0, -squarings_);
+
+  // Even and odd parts by the powers of X^2 up to X^6, those beyond taken times X^6 [higham2005].
+  const auto b = [&](std::size_t k) { return k < coefficients_.size() ? coefficients_[k] : 0.0; };
+  const std::size_t degree = coefficients_.size() - 1;
+  even_.setZero(size_, size_);
+  odd_.setZero(size_, size_);
+  even_.diagonal().setConstant(b(0));
+  odd_.diagonal().setConstant(b(1));
+  square_.noalias() = x_ * x_;
+  power_ = square_;
+  MatrixXd& beyond_even = below_;
+  MatrixXd& beyond_odd = step_;
+  beyond_even.setZero(size_, size_);
+  beyond_odd.setZero(size_, size_);
+  for (std::size_t k = 2; k <= std::min<std::size_t>(degree, 6); k += 2) {
+    if (k > 2) {
+      spare_.noalias() = power_ * square_;
+      power_.swap(spare_);
+    }
+    even_ += b(k) * power_;
+    odd_ += b(k + 1) * power_;
+    beyond_even += b(k + 6) * power_;
+    beyond_odd += b(k + 7) * power_;
+  }
+  if (degree > 7) {
+    even_.noalias() += power_ * beyond_even;
+    odd_.noalias() += power_ * beyond_odd;
+  }
+  spare_.noalias() = x_ * odd_;
+  odd_.swap(spare_);
+  below_ = even_ - odd_;
+  factor_.compute(below_);
+  step_ = factor_.solve(2.0 * odd_);  // R - I
+  step_.diagonal().array() += 1.0;
+  whole_ = step_;
+  for (int k = 0; k < squarings_; ++k) {
+    spare_.noalias() = whole_ * whole_;
+    whole_.swap(spare_);
+  }
+}
+
+void RationalStep::apply(const VectorXd& state, VectorXd& next) const {
+  VectorXd scaled = VectorXd::Zero(size_);
+  scaled.head(2 * r_) = scale_.head(2 * r_).cwiseProduct(state.head(2 * r_));
+  if (size_ > 2 * r_) scaled[2 * r_] = scale_[2 * r_];
+  next.head(2 * r_).noalias() = whole_.topRows(2 * r_) * scaled;
+  next.head(2 * r_).array() /= scale_.head(2 * r_).array();
+}
+
+void RationalStep::tangent(Eigen::Ref<MatrixXd> matrix) const {
+  const auto scale = scale_.head(2 * r_);
+  matrix = scale.cwiseInverse().asDiagonal() * whole_.topLeftCorner(2 * r_, 2 * r_) * scale.asDiagonal();
+}
+
+void RationalStep::tangent_by_unknowns(const VectorXd& state, const std::vector<SecondOrderForm>& slopes,
+                                       Eigen::Ref<MatrixXd> matrix) {
+  const auto q = static_cast<Index>(slopes.size());
+  if (q == 0) return;
+  const Index substeps = Index{1} << squarings_;
+  const auto degree = static_cast<Index>(coefficients_.size()) - 1;
+  states_.resize(size_, substeps + 1);
+  states_.col(0).setZero();
+  states_.col(0).head(2 * r_) = scale_.head(2 * r_).cwiseProduct(state.head(2 * r_));
+  if (size_ > 2 * r_) states_(2 * r_, 0) = scale_[2 * r_];
+  for (Index k = 0; k < substeps; ++k) states_.col(k + 1).noalias() = step_ * states_.col(k);
+
+  // c_i, a block of columns each
+  const auto v = states_.leftCols(substeps), w = states_.rightCols(substeps);
+  terms_.resize(size_, degree * substeps);
+  for (Index i = degree; i > 0; --i) {
+    auto c = terms_.middleCols((i - 1) * substeps, substeps);
+    const double b = coefficients_[static_cast<std::size_t>(i)];
+    if (i % 2 == 1)
+      c = b * (v + w);
+    else
+      c = b * (v - w);
+    if (i < degree) c.noalias() += x_ * terms_.middleCols(i * substeps, substeps);
+  }
+
+  // dX c_i has entries in the rows of z'' only
+  const double h = dt_ * std::ldexp(1.0, -squarings_);
+  forced_.resize(r_, q * degree * substeps);
+  slope_.resize(r_, size_);
+  for (Index j = 0; j < q; ++j) {
+    const SecondOrderForm& form = slopes[static_cast<std::size_t>(j)];
+    slope_.leftCols(r_).noalias() = -h * form.stiffness * scale_.head(r_).cwiseInverse().asDiagonal();
+    slope_.middleCols(r_, r_) = -h * form.damping;
+    if (size_ > 2 * r_)
+      slope_.rightCols(chain_.cols()).noalias() =
+          h * (form.inputs * chain_) * scale_.segment(2 * r_, chain_.cols()).cwiseInverse().asDiagonal();
+    forced_.middleCols(j * degree * substeps, degree * substeps).noalias() = slope_ * terms_;
+  }
+  moved_.setZero(size_, q * substeps);
+  for (Index i = degree - 1; i >= 0; --i) {
+    if (i < degree - 1) {
+      spare_.noalias() = x_ * moved_;
+      moved_.swap(spare_);
+    }
+    for (Index j = 0; j < q; ++j)
+      moved_.block(r_, j * substeps, r_, substeps) +=
+          forced_.middleCols((j * degree + i) * substeps, substeps);
+  }
+  moved_ = factor_.solve(moved_);
+  for (Index j = 0; j < q; ++j) {
+    for (Index k = 1; k < substeps; ++k)
+      moved_.col(j * substeps + k) += step_ * moved_.col(j * substeps + k - 1);
+    matrix.col(j) = moved_.col((j + 1) * substeps - 1).head(2 * r_).cwiseQuotient(scale_.head(2 * r_));
+  }
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,190 @@
+#include "experiments/models/motion/second_order_step.hpp"
+
+#include <optional>
+
+#include "experiments/models/motion/rational_step.hpp"
+#include "filters/schemes/forced_oscillator.hpp"
+#include "filters/schemes/matrix_exponential.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::Matrix2d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
+
+class SecondOrderStep final : public filters::DiscreteModel {
+ public:
+  SecondOrderStep(std::shared_ptr<const SecondOrderMotion> motion, double dt, const std::string& scheme,
+                  filters::Noise noise)
+      : motion_(std::move(motion)),
+        dt_(dt),
+        noise_(std::move(noise)),
+        scheme_(scheme == "exponential" ? RationalStep::Scheme::exponential : RationalStep::Scheme::pade) {
+    prepare();
+  }
+
+  std::vector<filters::Label> state_labels() const override { return motion_->state_labels(); }
+  std::vector<filters::Label> output_labels() const override { return motion_->output_labels(); }
+  const MatrixXd& process_noise() const override { return noise_.process; }
+  const MatrixXd& output_noise() const override { return noise_.output; }
+  double interval() const override { return dt_; }
+  void set_interval(double dt) override {
+    if (dt == dt_) return;
+    filters::rescale(noise_, dt_, dt);
+    dt_ = dt;
+    prepare();
+  }
+
+  void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
+    step(state, input, next, nullptr);
+  }
+  void linearised_transition(const VectorXd& state, const VectorXd& input, VectorXd& next,
+                             MatrixXd& jacobian) override {
+    step(state, input, next, &jacobian);
+  }
+  // Below the rows of the motion the tangent is the identity.
+  void move(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd& directions) override {
+    step(state, input, next, &tangent_);
+    const StateLayout& at = motion_->layout();
+    moved_.noalias() = tangent_.topRows(at.motion) * directions;
+    directions.topRows(at.motion) = moved_;
+  }
+  void output(const VectorXd& state, const VectorXd& input, VectorXd& output) override {
+    evaluate(state, false);
+    motion_->read(state, input, form_, output);
+  }
+  void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) override {
+    evaluate(state, true);
+    motion_->read_jacobian(state, input, form_, slopes_, jacobian);
+  }
+
+ private:
+  std::shared_ptr<const SecondOrderMotion> motion_;
+  double dt_;
+  filters::Noise noise_;
+  RationalStep::Scheme scheme_;
+  bool apart_ = false;                    // oscillators in closed form
+  std::optional<RationalStep> rational_;  // all coordinates together; absent where it is never needed
+  // The equations at unknowns_, and what is known of them: a step and the outputs after it share them.
+  VectorXd unknowns_, held_input_;
+  bool has_form_ = false, has_slopes_ = false, is_set_ = false;
+  SecondOrderForm form_;
+  std::vector<SecondOrderForm> slopes_;
+  MatrixXd tangent_, moved_;
+
+  void prepare() {
+    is_set_ = false;
+    apart_ = scheme_ == RationalStep::Scheme::exponential && motion_->decoupled();
+    if (!apart_ || motion_->input_size() > 0) rational_.emplace(scheme_, dt_, motion_->frequencies());
+  }
+
+  // dt A of oscillator i, or its change along an unknown
+  Matrix2d turn(const SecondOrderForm& form, Index i, double rate) const {
+    Matrix2d z;
+    z << 0.0, dt_ * rate, -dt_ * form.stiffness(i, i), -dt_ * form.damping(i, i);
+    return z;
+  }
+
+  // dt B p_j of oscillator i in columns; none without inputs
+  filters::ForcedOscillator::Pushes pushes(const SecondOrderForm& form, Index i,
+                                           const VectorXd& input) const {
+    const Index m = form.inputs.cols(), count = m > 0 ? input.size() / m : 0;
+    filters::ForcedOscillator::Pushes found(2, count);
+    found.row(0).setZero();
+    if (count > 0) found.row(1).noalias() = dt_ * (form.inputs.row(i) * input.reshaped(m, count));
+    return found;
+  }
+
+  bool moves_apart(const VectorXd& input) const {
+    if (!apart_ || input.size() == 0) return apart_;
+    for (Index i = 0; i < form_.stiffness.rows(); ++i)
+      if (!filters::ForcedOscillator::takes(turn(form_, i, 1.0))) return false;
+    return true;
+  }
+
+  void evaluate(const VectorXd& state, bool slopes) {
+    const StateLayout& at = motion_->layout();
+    const auto unknowns =
+        state.segment(at.unknowns, static_cast<Index>(motion_->description().unknowns.size()));
+    if (!has_form_ || unknowns != unknowns_) {
+      has_form_ = has_slopes_ = is_set_ = false;
+      unknowns_ = unknowns;
+    }
+    if (has_slopes_ || (has_form_ && !slopes)) return;
+    motion_->evaluate(state, form_, slopes ? &slopes_ : nullptr);
+    has_form_ = true;
+    has_slopes_ = slopes;
+  }
+
+  void step(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
+    const StateLayout& at = motion_->layout();
+    evaluate(state, tangent != nullptr);
+    next = state;
+    if (tangent) tangent->setIdentity(at.size, at.size);
+    for (std::size_t i = 0; i < at.drifts.size(); ++i) {
+      if (at.drifts[i] < 0) continue;
+      next[at.biases[i]] += dt_ * state[at.drifts[i]];
+      if (tangent) (*tangent)(at.biases[i], at.drifts[i]) = dt_;
+    }
+    if (moves_apart(input))
+      step_apart(state, input, next, tangent);
+    else
+      step_together(state, input, next, tangent);
+  }
+
+  void step_together(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
+    if (!is_set_ || held_input_.size() != input.size() || held_input_ != input) {
+      rational_->set(form_, input);
+      held_input_ = input;
+      is_set_ = true;
+    }
+    rational_->apply(state, next);
+    if (!tangent) return;
+    const StateLayout& at = motion_->layout();
+    const Index moving = 2 * at.coordinates;
+    rational_->tangent(tangent->topLeftCorner(moving, moving));
+    rational_->tangent_by_unknowns(
+        state, slopes_, tangent->block(0, at.unknowns, moving, static_cast<Index>(slopes_.size())));
+  }
+
+  void step_apart(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
+    const StateLayout& at = motion_->layout();
+    const Index r = at.coordinates;
+    for (Index i = 0; i < r; ++i) {
+      const Matrix2d z = turn(form_, i, 1.0);
+      const filters::Exponential2x2 exponential(z);
+      const Vector2d before(state[i], state[r + i]);
+      Vector2d after = exponential.value() * before;
+      const auto pushed = pushes(form_, i, input);
+      std::optional<filters::ForcedOscillator> forced;
+      if (pushed.cols() > 0) after += forced.emplace(z, exponential.value(), pushed).value();
+      next[i] = after[0];
+      next[r + i] = after[1];
+      if (!tangent) continue;
+      (*tangent)(i, i) = exponential.value()(0, 0);
+      (*tangent)(i, r + i) = exponential.value()(0, 1);
+      (*tangent)(r + i, i) = exponential.value()(1, 0);
+      (*tangent)(r + i, r + i) = exponential.value()(1, 1);
+      for (std::size_t j = 0; j < slopes_.size(); ++j) {
+        const Matrix2d along = turn(slopes_[j], i, 0.0);
+        const auto pushed_along = pushes(slopes_[j], i, input);
+        if (along.isZero(0.0) && pushed_along.isZero(0.0)) continue;
+        const Matrix2d slope = exponential.derivative(along);
+        Vector2d moved = slope * before;
+        if (forced) moved += forced->derivative(along, slope, pushed_along);
+        (*tangent)(i, at.unknowns + static_cast<Index>(j)) = moved[0];
+        (*tangent)(r + i, at.unknowns + static_cast<Index>(j)) = moved[1];
+      }
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<filters::DiscreteModel> second_order_step(std::shared_ptr<const SecondOrderMotion> motion,
+                                                          double dt, const std::string& scheme,
+                                                          const filters::Noise& noise) {
+  if (scheme != "exponential" && scheme != "pade") return nullptr;
+  return std::make_unique<SecondOrderStep>(std::move(motion), dt, scheme, noise);
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,78 @@
+// Rows of numbers in a text file: separators, header, places.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/text/input_error.hpp"
+
+namespace beamid::experiments {
+
+/// Walks through the rows of a delimited text.
+///
+/// Blank lines and comment lines (# or % first) are passed over, lines end with LF, CRLF or CR. The names of
+/// the columns come from the last non-blank of the header lines, or, without header lines, from a first row
+/// in which nothing is a number, or else from the comment just before the first row where it names as many
+/// columns.
+///
+/// A tolerant walk begins at the first two rows in succession that are numbers throughout and equally long.
+/// The lines before them that hold as many fields and no number name the columns and then their units; rows
+/// of another length are left out and remembered.
+class DelimitedText {
+ public:
+  /// @param text must outlive this object.
+  /// @param separator '\0' for the first of tab, semicolon, comma that the first row of numbers shows, else
+  /// blanks;
+  ///        ' ' for any run of blanks and tabs.
+  /// @param decimal '.' or ','; '\0' for a comma where the first rows show commas and no point.
+  /// @throws InputError when there is no row of numbers.
+  DelimitedText(std::string file, std::string_view text, char separator, int header_lines, char decimal = '.',
+                bool tolerant = false);
+
+  const std::string& file() const { return file_; }
+  const std::vector<std::string>& names() const {
+    return names_;
+  }  ///< of the columns; empty when they have none
+  const std::vector<std::string>& units() const { return units_; }  ///< likewise; of a tolerant walk only
+  char separator() const { return separator_; }
+  char decimal() const { return decimal_; }
+  const std::vector<std::size_t>& skipped_lines() const { return skipped_; }  ///< of a tolerant walk
+  std::size_t header_line() const { return header_line_; }  ///< where the names stand; 0 without
+  std::size_t width() const { return width_; }              ///< columns of the first row of numbers
+
+  /// The next row. @returns false at the end.
+  /// @throws InputError when it has not width() columns, unless the walk is tolerant.
+  bool next();
+
+  Place place(std::size_t column) const;  ///< of a field of this row; columns count from 0
+  Place row_place() const { return {file_, line_number_, 1}; }
+  std::string_view line() const { return line_; }
+  std::size_t line_number() const { return line_number_; }
+  std::string_view field(std::size_t column) const { return fields_[column]; }
+
+  /// NaN where the field is no finite number.
+  double value(std::size_t column) const;
+  /// @throws InputError where it is none.
+  double number(std::size_t column) const;
+
+ private:
+  bool next_line();                    ///< of any kind
+  bool next_row();                     ///< passes over blank lines and comments, remembering the last comment
+  void find_header(int header_lines);  ///< and the first row after it
+  void find_rows();                    ///< the same of a tolerant walk
+  void choose_separator();             ///< and the decimal sign, by the first rows
+  void name_columns(std::string_view header, std::size_t line);
+
+  std::string file_;
+  std::string_view rest_, line_, comment_;
+  std::size_t line_number_ = 0, comment_line_ = 0, header_line_ = 0, width_ = 0;
+  char separator_, decimal_;
+  bool tolerant_;
+  std::vector<std::size_t> skipped_;
+  bool first_row_pending_ = false;
+  std::vector<std::string_view> fields_;
+  std::vector<std::string> names_, units_;
+};
+
+}  // namespace beamid::experiments

@@ -1,0 +1,61 @@
+// Rows of numbers in columns: the text export of nearly every analyser.
+#include "experiments/record/delimited_text.hpp"
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "experiments/record/record_reader.hpp"
+#include "experiments/record/text_cells.hpp"
+#include "experiments/text/text_file.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+class DelimitedTextReader final : public RecordReader {
+ public:
+  /// Whatever no other reader knows is taken for text, and refused in its words.
+  bool recognises(std::string_view) const override { return false; }
+
+  RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const override {
+    const auto content =
+        std::make_shared<const std::string>(read_text(file, "a record of numbers in columns"));
+    DelimitedText text(file.string(), *content, format.separator, format.header_lines, format.decimal,
+                       format.skip_malformed);
+    RecordTable table;
+    table.file = file.string();
+    table.names = text.names();
+    table.units = text.units();
+    table.header_line = text.header_line();
+    table.columns.resize(text.width());
+    table.precision.resize(text.width());
+    TextCells cells(table.file, content);
+    std::string token;
+    while (text.next()) {
+      cells.add(text.line(), text.line_number());
+      table.lines.push_back(text.line_number());
+      for (std::size_t column = 0; column < text.width(); ++column) {
+        table.columns[column].push_back(text.value(column));
+        token = text.field(column);
+        if (text.decimal() == ',')
+          for (char& sign : token) sign = sign == ',' ? '.' : sign;
+        if (std::isfinite(table.columns[column].back())) table.precision[column].add(token);
+      }
+    }
+    table.cell = cells.cells(text.separator());
+    table.skipped_lines = text.skipped_lines();
+    if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");
+    return table;
+  }
+};
+
+const bool delimited_text_registered = record_reader_registry().add(
+    {"delimited_text",
+     "rows of numbers in columns parted by tabs, semicolons, commas or blanks",
+     "",
+     {},
+     {},
+     [](const filters::Options&) { return std::make_unique<DelimitedTextReader>(); }});
+
+}  // namespace
+}  // namespace beamid::experiments

@@ -1,0 +1,157 @@
+// HDF5 files: one- and two-dimensional datasets by their path.
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "experiments/record/files/hdf5/handle.hpp"
+#include "experiments/record/files/hdf5/own_storage.hpp"
+#include "experiments/record/read_apart.hpp"
+#include "experiments/record/record_reader.hpp"
+#include "experiments/text/text_file.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+std::optional<double> number_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return std::nullopt;
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  if (!attribute.open()) return std::nullopt;
+  const Handle space(H5Aget_space(attribute), H5Sclose), type(H5Aget_type(attribute), H5Tclose);
+  const H5T_class_t kind = type.open() ? H5Tget_class(type) : H5T_NO_CLASS;
+  if (!space.open() || H5Sget_simple_extent_npoints(space) != 1 || (kind != H5T_FLOAT && kind != H5T_INTEGER))
+    return std::nullopt;
+  double value = 0.0;
+  if (H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0) return std::nullopt;
+  return value;
+}
+
+std::string text_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return "";
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  if (!attribute.open()) return "";
+  const Handle space(H5Aget_space(attribute), H5Sclose), type(H5Aget_type(attribute), H5Tclose);
+  if (!space.open() || !type.open() || H5Tget_class(type) != H5T_STRING ||
+      H5Sget_simple_extent_npoints(space) != 1)
+    return "";
+  std::string text;
+  if (H5Tis_variable_str(type) > 0) {
+    char* value = nullptr;
+    if (H5Aread(attribute, type, &value) >= 0 && value != nullptr) text = value;
+    if (value != nullptr) H5free_memory(value);
+  } else {
+    constexpr std::size_t longest = 4096;
+    const std::size_t size = H5Tget_size(type);
+    if (size == 0 || size > longest) return "";
+    text.assign(size, '\0');
+    if (H5Aread(attribute, type, text.data()) < 0) return "";
+    text.resize(std::min(text.find('\0'), text.size()));
+  }
+  while (text.ends_with(' ')) text.pop_back();
+  return text;
+}
+
+constexpr const char* sampling[] = {"sampling_rate_hz", "sampling_interval_s", "dt", "fs", "Fs", "Delta_X"};
+
+struct Walk {
+  CollectedSignals& signals;
+  std::exception_ptr failure = nullptr;  // none may pass through HDF5
+};
+
+void take_sampling(Walk& walk, hid_t object, const std::string& path) {
+  for (const char* name : sampling)
+    if (const auto value = number_attribute(object, name)) walk.signals.set(path + "/" + name, *value);
+}
+
+void take_dataset(Walk& walk, hid_t dataset, const std::string& path) {
+  const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
+  if (!type.open() || !space.open()) return;
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) return;
+  take_sampling(walk, dataset, path);
+  const int rank = H5Sget_simple_extent_ndims(space);
+  if (rank < 0 || rank > 2) return;
+  hsize_t extent[2] = {1, 1};
+  H5Sget_simple_extent_dims(space, extent, nullptr);
+  if (extent[0] == 0 || extent[1] == 0) return;
+  require_own_storage(dataset, path, walk.signals.file());
+  walk.signals.announce(path, {extent, extent + std::max(rank, 1)});
+  std::vector<double> values(extent[0] * extent[1]);
+  if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    throw InputError({walk.signals.file()}, fmt::format("'{}' cannot be read; expected numbers", path));
+  std::string unit = text_attribute(dataset, "units");
+  if (unit.empty()) unit = text_attribute(dataset, "unit");
+  const int digits = kind == H5T_FLOAT && H5Tget_size(type) <= 4 ? 7 : 15;
+  if (values.size() == 1)
+    walk.signals.set(path, values[0]);
+  else if (rank == 1 || extent[0] == 1 || extent[1] == 1)
+    walk.signals.add(path, unit, std::move(values), digits);
+  else  // stored row by row: a column of the file is a row of add_matrix()
+    walk.signals.add_matrix(
+        [&](std::size_t k, bool is_row) {
+          return is_row ? fmt::format("{}[:,{}]", path, k - 1) : fmt::format("{}[{},:]", path, k - 1);
+        },
+        unit, values, extent[1], extent[0], digits);
+}
+
+herr_t visit(hid_t root, const char* name, const H5O_info_t* info, void* data) {
+  Walk& walk = *static_cast<Walk*>(data);
+  const std::string path = std::string(name) == "." ? "" : std::string("/") + name;
+  constexpr std::ptrdiff_t deepest = 64;  // each object is sought by its path
+  try {
+    if (std::count(path.begin(), path.end(), '/') > deepest)
+      throw InputError({walk.signals.file()},
+                       fmt::format("groups within groups, more than {}; expected fewer", deepest));
+    const Handle object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
+    if (!object.open()) return 0;
+    if (info->type == H5O_TYPE_DATASET) take_dataset(walk, object, path);
+    if (info->type == H5O_TYPE_GROUP) take_sampling(walk, object, path);
+  } catch (...) {
+    walk.failure = std::current_exception();
+    return 1;
+  }
+  return 0;
+}
+
+class Hdf5Reader final : public RecordReader {
+ public:
+  bool recognises(std::string_view beginning) const override {
+    return beginning.starts_with("\x89HDF\r\n\x1a\n") ||
+           (beginning.size() >= 520 && beginning.substr(512).starts_with("\x89HDF\r\n\x1a\n") &&
+            !beginning.starts_with("MATLAB"));
+  }
+
+  RecordTable read(const std::filesystem::path& path, const RecordFormat& format) const override {
+    const std::string name = path.string();
+    const std::size_t size = count_bytes(path, "an HDF5 file");
+    return read_apart(name, "HDF5", reading_limits(size), collect).table(format);
+  }
+
+ private:
+  static void collect(CollectedSignals& signals) {
+    const std::string& name = signals.file();
+    const Quiet quiet;
+    const Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!file.open()) throw InputError({name}, "cannot be opened by HDF5; expected an undamaged HDF5 file");
+    Walk walk{signals};
+    const herr_t ended = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC);
+    if (walk.failure) std::rethrow_exception(walk.failure);
+    if (ended < 0)
+      throw InputError({name}, "cannot be walked through by HDF5; expected an undamaged HDF5 file");
+  }
+};
+
+const bool hdf5_registered = record_reader_registry().add(
+    {"hdf5",
+     "HDF5 files: one- and two-dimensional datasets by their path, with units and sampling in attributes",
+     "",
+     {},
+     {},
+     [](const filters::Options&) { return std::make_unique<Hdf5Reader>(); }});
+
+}  // namespace
+}  // namespace beamid::experiments

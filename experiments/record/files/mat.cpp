@@ -1,0 +1,182 @@
+// MATLAB files of level 5 and 7.3, through matio.
+#include <fmt/format.h>
+#include <matio.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "experiments/record/files/hdf5/own_storage.hpp"
+#include "experiments/record/read_apart.hpp"
+#include "experiments/record/record_reader.hpp"
+#include "experiments/text/text_file.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+struct Closing {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+
+bool is_numeric(const matvar_t& variable) {
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+    case MAT_C_SINGLE:
+    case MAT_C_INT8:
+    case MAT_C_UINT8:
+    case MAT_C_INT16:
+    case MAT_C_UINT16:
+    case MAT_C_INT32:
+    case MAT_C_UINT32:
+    case MAT_C_INT64:
+    case MAT_C_UINT64:
+      return !variable.isComplex;
+    default:
+      return false;
+  }
+}
+
+template <class Number>
+std::vector<double> widened(const matvar_t& variable, std::size_t count) {
+  const auto* const first = static_cast<const Number*>(variable.data);
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<double>(first[i]);
+  return values;
+}
+
+std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
+  switch (variable.data_type) {
+    case MAT_T_DOUBLE:
+      return widened<double>(variable, count);
+    case MAT_T_SINGLE:
+      return widened<float>(variable, count);
+    case MAT_T_INT8:
+      return widened<std::int8_t>(variable, count);
+    case MAT_T_UINT8:
+      return widened<std::uint8_t>(variable, count);
+    case MAT_T_INT16:
+      return widened<std::int16_t>(variable, count);
+    case MAT_T_UINT16:
+      return widened<std::uint16_t>(variable, count);
+    case MAT_T_INT32:
+      return widened<std::int32_t>(variable, count);
+    case MAT_T_UINT32:
+      return widened<std::uint32_t>(variable, count);
+    case MAT_T_INT64:
+      return widened<std::int64_t>(variable, count);
+    case MAT_T_UINT64:
+      return widened<std::uint64_t>(variable, count);
+    default:
+      return {};
+  }
+}
+
+class MatReader final : public RecordReader {
+ public:
+  bool recognises(std::string_view beginning) const override {
+    return beginning.starts_with("MATLAB 5.0 MAT-file") || beginning.starts_with("MATLAB 7.3 MAT-file");
+  }
+
+  RecordTable read(const std::filesystem::path& path, const RecordFormat& format) const override {
+    const std::string name = path.string();
+    const std::size_t size =
+        count_bytes(path, "a MATLAB file");  // says in the usual words when there is none
+    return read_apart(name, "matio", reading_limits(size), collect).table(format);
+  }
+
+ private:
+  static void collect(CollectedSignals& signals) {
+    const std::string& name = signals.file();
+    Mat_LogInitFunc("beamid", [](int, char*) {});
+    const std::unique_ptr<mat_t, Closing> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
+    if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
+    if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);
+    while (const std::unique_ptr<matvar_t, Closing> found{Mat_VarReadNextInfo(file.get())}) {
+      const bool holds_others = found->class_type == MAT_C_STRUCT || found->class_type == MAT_C_CELL;
+      if (found->name == nullptr || (!is_numeric(*found) && !holds_others)) continue;
+      announce(*found, found->name, signals);
+      Mat_VarReadDataAll(file.get(), found.get());
+      add(*found, found->name, 0, signals);
+    }
+  }
+
+  static std::vector<std::size_t> extent(const matvar_t& variable) {
+    if (variable.dims == nullptr || variable.rank < 1) return {};
+    return {variable.dims, variable.dims + variable.rank};
+  }
+
+  static std::size_t elements(const matvar_t& variable) {
+    std::size_t count = 1;
+    for (const std::size_t size : extent(variable)) count *= size;
+    return count;
+  }
+
+  static void announce(const matvar_t& variable, const std::string& name, CollectedSignals& signals) {
+    signals.announce(name, extent(variable));
+  }
+
+  /// A variable, or whatever lies within it: "data.hammer", "run(2).tip.x", "channel{3}".
+  static void add(matvar_t& variable, const std::string& name, int depth, CollectedSignals& signals) {
+    constexpr int deepest = 64;
+    if (depth > deepest)
+      throw InputError({signals.file()},
+                       fmt::format("structs within structs, more than {}; expected fewer", deepest));
+    if (variable.data == nullptr) return;
+    const std::size_t count = elements(variable);
+    if (variable.class_type == MAT_C_CELL) {
+      for (std::size_t k = 0; k < count; ++k)
+        if (matvar_t* const cell = Mat_VarGetCell(&variable, static_cast<int>(k)))
+          add(*cell, fmt::format("{}{{{}}}", name, k + 1), depth + 1, signals);
+    } else if (variable.class_type == MAT_C_STRUCT) {
+      add_fields(variable, name, count, depth, signals);
+    } else if (is_numeric(variable)) {
+      if (depth > 0) announce(variable, name, signals);
+      add_numbers(variable, name, signals);
+    }
+  }
+
+  static void add_fields(matvar_t& variable, const std::string& name, std::size_t count, int depth,
+                         CollectedSignals& signals) {
+    const unsigned fields = Mat_VarGetNumberOfFields(&variable);
+    char* const* const names = Mat_VarGetStructFieldnames(&variable);
+    for (std::size_t k = 0; k < count; ++k)
+      for (unsigned f = 0; names != nullptr && f < fields; ++f)
+        if (matvar_t* const field = Mat_VarGetStructFieldByIndex(&variable, f, k))
+          add(*field,
+              count == 1 ? fmt::format("{}.{}", name, names[f])
+                         : fmt::format("{}({}).{}", name, k + 1, names[f]),
+              depth + 1, signals);
+  }
+
+  static void add_numbers(const matvar_t& variable, const std::string& name, CollectedSignals& signals) {
+    if (variable.rank != 2 || variable.dims == nullptr) return;
+    const std::size_t rows = variable.dims[0], columns = variable.dims[1], count = rows * columns;
+    if (count == 0 || variable.data_size <= 0 ||
+        variable.nbytes < count * static_cast<std::size_t>(variable.data_size))
+      return;
+    std::vector<double> values = numbers(variable, count);
+    if (values.empty()) return;
+    const int digits = variable.class_type == MAT_C_SINGLE ? 7 : 15;
+    if (count == 1)
+      signals.set(name, values[0]);
+    else if (rows == 1 || columns == 1)
+      signals.add(name, "", std::move(values), digits);
+    else
+      signals.add_matrix(
+          [&](std::size_t k, bool is_row) {
+            return is_row ? fmt::format("{}({},:)", name, k) : fmt::format("{}(:,{})", name, k);
+          },
+          "", values, rows, columns, digits);
+  }
+};
+
+const bool mat_registered = record_reader_registry().add(
+    {"mat",
+     "MATLAB files of level 5 and 7.3: vectors, columns of matrices, fields of structs of any depth, cells",
+     "",
+     {},
+     {},
+     [](const filters::Options&) { return std::make_unique<MatReader>(); }});
+
+}  // namespace
+}  // namespace beamid::experiments

@@ -1,0 +1,33 @@
+// What a report on a record says of it: in words, tables and figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/record/inspect/inspection.hpp"
+
+namespace beamid::experiments {
+
+/// "tip (acceleration)": the name in the file, or its column, with the quantity unless the name tells it.
+std::string title(const InspectedChannel& channel);
+
+/// "m/s2", "as in the file".
+std::string unit_text(const InspectedChannel& channel);
+
+/// Whether it has more rises than a test has hits.
+bool spiky(const InspectedChannel& channel);
+
+/// "2000 samples from 0 to 10 s ... Evenly sampled at 200 Hz."
+std::string sampling_text(const Inspection& found);
+
+/// What is wrong with the record, a sentence each.
+std::vector<std::string> doubts_of(const Inspection& found);
+
+/// The tables `channels` and `events`; the second may have no row.
+Table channel_table(const Inspection& found);
+Table event_table(const Inspection& found);
+
+/// History and spectrum of every channel that moves, four to a figure.
+std::vector<Figure> inspection_figures(const Inspection& found);
+
+}  // namespace beamid::experiments

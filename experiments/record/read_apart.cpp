@@ -1,0 +1,170 @@
+#include "experiments/record/read_apart.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <new>
+
+#include "experiments/record/apart_pipe.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+/// How the child ended its work; the first byte it sends.
+enum class ApartOutcome : char { found = 'f', refused = 'r', no_memory = 'm' };
+
+std::size_t memory_now() {
+  std::ifstream stream("/proc/self/statm");
+  std::size_t pages = 0;
+  stream >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
+  rlimit now{};
+  if (getrlimit(resource, &now) != 0) return;
+  now.rlim_cur = std::min<rlim_t>(soft, now.rlim_max);
+  now.rlim_max = std::min<rlim_t>(hard, now.rlim_max);
+  setrlimit(resource, &now);
+}
+
+[[noreturn]] void work(int descriptor, const std::string& file, const ReadingLimits& limits,
+                       const std::function<void(CollectedSignals&)>& read) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGSEGV, SIGBUS, SIGABRT, SIGXCPU})
+    signal(number, SIG_DFL);
+  if (const int nowhere = open("/dev/null", O_RDWR); nowhere >= 0)
+    for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, standard);
+  const auto seconds = static_cast<std::size_t>(std::ceil(limits.seconds));
+  const std::size_t memory = memory_now() + limits.bytes;
+  limit(RLIMIT_CORE, 0, 0);
+  limit(RLIMIT_CPU, seconds, seconds + 1);
+  limit(RLIMIT_AS, memory, memory);
+  const PipeSender out(descriptor);
+  try {
+    CollectedSignals signals(file, limits.numbers);
+    read(signals);
+    out.number(ApartOutcome::found);
+    out.number(signals.interval());
+    out.text(signals.interval_name());
+    out.number(signals.signals().size());
+    for (const CollectedSignals::Signal& signal : signals.signals()) {
+      out.text(signal.name);
+      out.text(signal.unit);
+      out.number(signal.digits);
+      out.number(signal.values.size());
+      out.bytes(signal.values.data(), signal.values.size() * sizeof(double));
+    }
+  } catch (const std::bad_alloc&) {
+    out.number(ApartOutcome::no_memory);
+  } catch (const std::exception& error) {
+    out.number(ApartOutcome::refused);
+    out.text(error.what());
+  }
+  _exit(0);
+}
+
+/// @returns false where what comes is not whole.
+bool receive(PipeReceiver& in, const ReadingLimits& limits, CollectedSignals& signals) {
+  double interval = 0.0;
+  std::string interval_name;
+  std::size_t count = 0;
+  if (!in.number(interval) || !in.text(interval_name) || !in.number(count)) return false;
+  if (interval > 0) signals.set_interval(interval_name, interval);
+  for (std::size_t k = 0; k < count; ++k) {
+    CollectedSignals::Signal signal;
+    std::size_t size = 0;
+    if (!in.text(signal.name) || !in.text(signal.unit) || !in.number(signal.digits) || !in.number(size) ||
+        size > limits.numbers)
+      return false;
+    signal.values.resize(size);
+    if (!in.bytes(signal.values.data(), size * sizeof(double))) return false;
+    signals.add(std::move(signal.name), std::move(signal.unit), std::move(signal.values), signal.digits);
+  }
+  return true;
+}
+
+/// The error of `what`, which begins with the file's name already.
+InputError refusal(const std::string& file, const std::string& what) {
+  const std::string start = file + ": ";
+  return InputError({file}, what.starts_with(start) ? what.substr(start.size()) : what);
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+}  // namespace
+
+ReadingLimits reading_limits(std::size_t file_bytes) {
+  constexpr std::size_t compression = 1100;  // more than deflate ever reaches
+  constexpr std::size_t most = std::size_t{1} << 27, spare = std::size_t{256} << 20;
+  ReadingLimits limits;
+  limits.numbers = std::min(file_bytes * compression / 4 + 64, std::max(most, file_bytes));
+  limits.seconds = 1.0 + 4.0 * static_cast<double>(file_bytes) / 1e6;
+  limits.bytes = spare + 3 * sizeof(double) * limits.numbers;
+  return limits;
+}
+
+CollectedSignals read_apart(const std::string& file, const std::string& library, const ReadingLimits& limits,
+                            const std::function<void(CollectedSignals&)>& read) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw std::runtime_error("no pipe for a process that reads '" + file + "': " + std::strerror(errno));
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    work(ends[1], file, limits, read);
+  }
+  const int reason = errno;
+  close(ends[1]);
+  // Whoever waits for a disk or for others on the machine takes no processor time.
+  PipeReceiver in(ends[0], SteadyClock::now() +
+                               std::chrono::milliseconds(std::llround(1e3 * (60 + 10 * limits.seconds))));
+  if (child < 0)
+    throw std::runtime_error("no process that reads '" + file + "' can be started: " + std::strerror(reason));
+
+  CollectedSignals signals(file, limits.numbers);
+  ApartOutcome outcome{};
+  std::string message;
+  const bool whole =
+      in.number(outcome) && (outcome == ApartOutcome::found     ? receive(in, limits, signals)
+                             : outcome == ApartOutcome::refused ? in.text(message)
+                                                                : outcome == ApartOutcome::no_memory);
+  if (!whole) kill(child, SIGKILL);
+  const int status = wait_for(child);
+  constexpr const char* expected = "expected an undamaged file";
+  const bool ended_by_limit = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
+  if (in.late() || ended_by_limit)
+    throw InputError({file}, fmt::format("{} has not come to an end with it in {:.0f} s; {}", library,
+                                         std::ceil(limits.seconds), expected));
+  if (!whole)
+    throw InputError(
+        {file},
+        fmt::format("{} crashes on it ({} {}); {}", library, WIFSIGNALED(status) ? "signal" : "exit code",
+                    WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), expected));
+  if (outcome == ApartOutcome::no_memory)
+    throw InputError(
+        {file}, fmt::format("{} needs more than {} MB of memory for it; {}, or one that holds less", library,
+                            limits.bytes >> 20, expected));
+  if (outcome == ApartOutcome::refused) throw refusal(file, message);
+  return signals;
+}
+
+}  // namespace beamid::experiments

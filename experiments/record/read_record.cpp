@@ -1,0 +1,162 @@
+#include "experiments/record/read_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "experiments/record/record_columns.hpp"
+#include "experiments/record/record_places.hpp"
+#include "experiments/record/record_reader.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+/// The stamps of a record in the file's unit, and where they stand.
+struct Stamps {
+  const RecordTable* table;
+  std::optional<RecordColumn> column;
+  const RecordFormat* format;
+
+  const std::vector<double>& values() const { return table->columns[column->index]; }
+  const PrintedPrecision& precision() const { return table->precision[column->index]; }
+  double factor() const { return column->factor; }
+  /// Whether their rounding leaves an interval to be seen.
+  bool show_intervals() const {
+    const double mean = (values().back() - values().front()) / static_cast<double>(values().size() - 1);
+    return std::max(precision().resolution(values().front()), precision().resolution(values().back())) <
+           0.5 * mean;
+  }
+  double rounding(std::size_t sample) const { return precision().resolution(values()[sample]) * factor(); }
+};
+
+/// A file's header rounds its interval.
+void check_interval(double interval, double rate, const std::string& file) {
+  constexpr double tolerated = 0.02;
+  if (!(std::abs(interval * rate - 1) <= tolerated))
+    throw InputError({file},
+                     fmt::format("samples at an interval of {:.6g} s; expected {:.6g} s within 2 %, by "
+                                 "the sampling rate of {:.6g} Hz",
+                                 interval, 1 / rate, rate));
+}
+
+/// Counted at the stated rate from the first stamp, no sample may be half an interval away from its own.
+void check_stamps(const Stamps& stamps, double rate) {
+  const std::vector<double>& times = stamps.values();
+  const std::size_t last = times.size() - 1;
+  for (std::size_t k = 1; k <= last; ++k) {
+    const double stamp = times[k] * stamps.factor(),
+                 counted = times[0] * stamps.factor() + static_cast<double>(k) / rate;
+    if (std::abs(stamp - counted) <= (0.5 / rate + stamps.rounding(k) + stamps.rounding(0)) * (1 + 1e-9))
+      continue;
+    throw InputError(
+        stamps.table->place(k, stamps.column->index),
+        fmt::format(
+            "time {:.9g} s of sample {}, which {:.9g} Hz, as stated, puts at {:.9g} s: the stamps run at "
+            "{:.9g} Hz in the mean; expected them within half an interval. Without a stated rate the stamps "
+            "are taken as they are",
+            stamp, k + 1, rate, counted,
+            static_cast<double>(last) / ((times[last] - times[0]) * stamps.factor())));
+  }
+}
+
+Eigen::VectorXd counted(double start, double interval, std::size_t size) {
+  const auto count = static_cast<Eigen::Index>(size);
+  return start + Eigen::ArrayXd::LinSpaced(count, 0, static_cast<double>(size - 1)) * interval;
+}
+
+/// The instants (N) [s].
+Eigen::VectorXd instants(const Stamps& stamps) {
+  const RecordTable& table = *stamps.table;
+  const std::size_t size = table.rows();
+  const std::optional<double>& rate = stamps.format->sampling_rate;
+  if (!stamps.column) {
+    if (!table.clock) return counted(0, 1 / *rate, size);
+    if (rate) check_interval(table.clock->interval, *rate, table.file);
+    return counted(table.clock->start, rate ? 1 / *rate : table.clock->interval, size);
+  }
+  const std::vector<double>& times = stamps.values();
+  if (rate) {
+    check_stamps(stamps, *rate);
+    return counted(times[0] * stamps.factor(), 1 / *rate, size);
+  }
+  auto fault = find_order_fault(times);
+  if (!fault && !(stamps.format->irregular && stamps.show_intervals()))
+    fault = find_sampling_fault(times, stamps.precision());
+  if (fault) throw InputError(table.place(fault->sample, stamps.column->index), fault->message);
+  return Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(size)) * stamps.factor();
+}
+
+/// How finely the instants were printed [s]; 0 where coarser than half of their interval, which the stamps
+/// then are multiples of.
+double resolution(const Stamps& stamps, const Record& record) {
+  const double printed = std::max(stamps.rounding(0), stamps.rounding(stamps.table->rows() - 1));
+  return printed < 0.5 * record.interval() ? printed : 0.0;
+}
+
+Record cut(const Record& record, const RecordFormat& format, const std::string& file) {
+  try {
+    return record.window(format.window->first, format.window->second);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(format.window_place.file.empty() ? Place{file, 0, 0} : format.window_place,
+                     error.what());
+  }
+}
+
+/// Refuses the first row in which a column that is used holds no finite number, or leaves all such rows out.
+void check_rows(RecordTable& table, const std::vector<std::size_t>& used, bool skip) {
+  std::vector<bool> kept(table.rows(), true);
+  std::vector<std::size_t> lines = table.skipped_lines;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    for (const std::size_t column : used) {
+      if (std::isfinite(table.columns[column][row])) continue;
+      if (!skip) throw table.fault(row, column);
+      if (kept[row]) lines.push_back(row < table.lines.size() ? table.lines[row] : row + 1);
+      kept[row] = false;
+    }
+  std::sort(lines.begin(), lines.end());
+  if (lines.empty()) return;
+  table.remarks.push_back(skipped_text(lines, "is not a row of numbers like the others"));
+  table.keep(kept);
+}
+
+}  // namespace
+
+Record read_record(const std::filesystem::path& file, const RecordFormat& format) {
+  RecordTable table = read_table(file, format);
+  const RecordColumns columns = find_columns(table, format);
+  std::vector<std::size_t> used;
+  if (columns.time) used.push_back(columns.time->index);
+  for (const RecordColumn& column : columns.channels) used.push_back(column.index);
+  check_rows(table, used, format.skip_malformed);
+  if (table.rows() < 2)
+    throw InputError(
+        table.rows() ? table.row_place(table.rows() - 1) : Place{table.file},
+        fmt::format("{} of numbers; expected at least two", table.rows() ? "one row" : "no row"));
+
+  Record record;
+  const Stamps stamps{&table, columns.time, &format};
+  record.time = instants(stamps);
+  record.samples.resize(static_cast<Eigen::Index>(columns.channels.size()),
+                        static_cast<Eigen::Index>(table.rows()));
+  for (std::size_t channel = 0; channel < columns.channels.size(); ++channel) {
+    const RecordColumn& column = columns.channels[channel];
+    const std::vector<double>& values = table.columns[column.index];
+    for (std::size_t row = 0; row < values.size(); ++row)
+      record.samples(static_cast<Eigen::Index>(channel), static_cast<Eigen::Index>(row)) =
+          values[row] * column.factor;
+    record.channels.push_back(column.channel);
+  }
+  record.input_path = format.input;
+  if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
+  record.remarks = table.remarks;
+  record.warnings = table.warnings;
+  std::vector<std::string> names;
+  for (const RecordColumn& column : columns.channels)
+    names.push_back(column.index < table.names.size() ? table.names[column.index] : "");
+  take_places(file, names, record);
+  return format.window ? cut(record, format, table.file) : record;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,142 @@
+#include "experiments/record/record_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/record/units.hpp"
+#include "experiments/text/spelling.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+constexpr const char* in_configuration = "record.channels in the configuration";
+
+std::string column_name_of(const RecordTable& table, std::size_t index) {
+  return index < table.names.size() ? table.names[index] : "";
+}
+
+RecordColumn find_column(const RecordTable& table, const ColumnDescription& wanted) {
+  RecordColumn column{find_index(table, wanted),
+                      wanted.factor,
+                      {wanted.quantity, wanted.name, wanted.position, wanted.distance}};
+  if (!wanted.stated) {
+    const auto meaning = stated_meaning(table, column.index);
+    if (!meaning || !meaning->quantity)
+      throw InputError(
+          Place{table.file, table.header_line, 0},
+          fmt::format("column {} does not say what it measures, and in which unit; expected that "
+                      "in words beside it: a quantity and its unit",
+                      wanted.name.empty() ? std::to_string(wanted.number) : "'" + wanted.name + "'"));
+    column.channel.quantity = *meaning->quantity, column.factor = meaning->factor;
+  }
+  if (column.channel.name.empty()) column.channel.name = column_name_of(table, column.index);
+  if (column.channel.name.empty()) column.channel.name = to_string(column.channel.quantity);
+  return column;
+}
+
+RecordColumns columns_of_header(RecordTable& table) {
+  RecordColumns columns;
+  const Place header{table.file, table.header_line, 0};
+  if (table.names.empty())
+    throw InputError({table.file},
+                     fmt::format("no header; expected one that names every column with its unit ({}), or {}",
+                                 known_column_names(), in_configuration));
+  if (table.names.size() != table.width())
+    throw InputError(header,
+                     fmt::format("a header of {} names for {}; expected one each, with its unit ({}), or {}",
+                                 table.names.size(), count_of_columns(table.width()), known_column_names(),
+                                 in_configuration));
+  std::string unknown;
+  for (std::size_t index = 0; index < table.width(); ++index) {
+    if (table.time == index) continue;
+    const auto meaning = stated_meaning(table, index);
+    if (!meaning && table.units.empty())
+      throw InputError(header, fmt::format("unknown column '{}'; expected names with units ({}), or {}",
+                                           table.names[index], known_column_names(), in_configuration));
+    if (!meaning)
+      unknown +=
+          fmt::format("{}'{}' [{}]", unknown.empty() ? "" : ", ", table.names[index], table.units[index]);
+    else if (meaning->quantity)
+      columns.channels.push_back(
+          {index,
+           meaning->factor,
+           {*meaning->quantity, meaning->label.empty() ? to_string(*meaning->quantity) : meaning->label}});
+    else if (columns.time)
+      throw InputError(header, "two columns of time; expected one");
+    else
+      columns.time = RecordColumn{index, meaning->factor, {}};
+  }
+  if (columns.channels.empty() && !unknown.empty())
+    throw InputError(
+        header, fmt::format("no unit says what is measured: {}; expected {}", unknown, in_configuration));
+  if (columns.channels.empty()) throw InputError(header, "no column but time; expected a measured quantity");
+  if (!unknown.empty())
+    table.remarks.push_back(fmt::format("Left out, as the unit does not tell the quantity: {}.", unknown));
+  return columns;
+}
+
+}  // namespace
+
+std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index) {
+  if (table.time == index) return ColumnMeaning{std::nullopt, "", 1};
+  const auto meaning = parse_column_name(column_name_of(table, index));
+  if (index >= table.units.size()) return meaning;
+  const auto unit = stated_unit(table.units[index]);
+  if (!unit) return meaning;
+  if (!meaning) return ColumnMeaning{unit->quantity, column_name_of(table, index), unit->factor};
+  if (unit->quantity != meaning->quantity || unit->factor != meaning->factor)
+    throw InputError({table.file, table.header_line},
+                     fmt::format("'{}' has the unit '{}'; expected the one of its name", table.names[index],
+                                 table.units[index]));
+  return meaning;
+}
+
+std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted) {
+  const std::vector<std::string>& names = table.names;
+  if (wanted.name.empty()) {
+    const auto index = static_cast<std::size_t>(wanted.number) - 1;
+    if (index >= table.width())
+      throw InputError(table.row_place(0), fmt::format("{}; expected at least {}, the column asked for",
+                                                       count_of_columns(table.width()), wanted.number));
+    return index;
+  }
+  if (names.empty())
+    throw InputError({table.file, 0, 0},
+                     fmt::format("no header; expected one that names the column '{}'", wanted.name));
+  const Place header{table.file, table.header_line, 1};
+  const auto match = std::find(names.begin(), names.end(), wanted.name);
+  if (match == names.end()) {
+    const auto meant = nearest(wanted.name, names);
+    throw InputError(header, fmt::format("no column '{}'{}; the {}: {}", wanted.name,
+                                         meant ? "; did you mean '" + *meant + "'?" : "",
+                                         table.cell ? "header names" : "file holds", joined(names)));
+  }
+  if (std::find(match + 1, names.end(), wanted.name) != names.end())
+    throw InputError(header, fmt::format("several columns '{}'; expected one, or its number", wanted.name));
+  const auto index = static_cast<std::size_t>(match - names.begin());
+  if (index >= table.width())
+    throw InputError(table.row_place(0),
+                     fmt::format("{}; expected {} for the column '{}'", count_of_columns(table.width()),
+                                 index + 1, wanted.name));
+  return index;
+}
+
+RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
+  RecordColumns columns;
+  if (format.channels.empty()) columns = columns_of_header(table);
+  for (const ColumnDescription& wanted : format.channels)
+    columns.channels.push_back(find_column(table, wanted));
+  if (format.time) columns.time = {find_index(table, *format.time), format.time->factor, {}};
+  if (!columns.time && table.time) columns.time = RecordColumn{*table.time, 1, {}};
+  for (std::size_t index = 0; !columns.time && index < std::min(table.names.size(), table.width()); ++index)
+    if (const auto meaning = stated_meaning(table, index); meaning && !meaning->quantity)
+      columns.time = RecordColumn{index, meaning->factor, {}};
+  if (!columns.time && !table.clock && !format.sampling_rate)
+    throw InputError({table.file, 0, 0},
+                     "no times; expected a column time_s, or record.time or record.sampling_rate_hz in the "
+                     "configuration");
+  return columns;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,36 @@
+// Which columns of a file hold a record's time and channels.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "experiments/record/column_name.hpp"
+#include "experiments/record/record_format.hpp"
+#include "experiments/record/record_table.hpp"
+
+namespace beamid::experiments {
+
+struct RecordColumn {
+  std::size_t index = 0;  ///< from 0
+  double factor = 1;      ///< to SI units
+  Channel channel;        ///< of no meaning for time
+};
+
+struct RecordColumns {
+  std::optional<RecordColumn> time;
+  std::vector<RecordColumn> channels;
+};
+
+/// What a column's name says ("acceleration_g"), or the unit that the file gives it.
+/// @throws InputError at the header where they contradict each other.
+std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index);
+
+/// The column that a description names. @throws InputError at the header or the first row.
+std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted);
+
+/// Finds the columns a format names, or, where it names none, those that the file describes itself. In a file
+/// with units those whose unit says nothing are left out, with a remark.
+/// @throws InputError at the header or the first row.
+RecordColumns find_columns(RecordTable& table, const RecordFormat& format);
+
+}  // namespace beamid::experiments

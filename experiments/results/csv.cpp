@@ -1,0 +1,23 @@
+#include "experiments/results/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/text/clean_text.hpp"
+
+namespace beamid::experiments {
+
+std::string csv_field(std::string_view raw) {
+  const std::string text = clean_lines(raw);
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + '"';
+}
+
+std::string csv_field(double value) {
+  return std::isnan(value) ? std::string() : fmt::format("{}", value);
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,161 @@
+#include "experiments/results/mode_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "experiments/results/vtk/nodal_motion.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Vector2d;
+
+struct ModeLine {
+  std::vector<double> x, y;
+
+  void add(const Vector2d& point) {
+    x.push_back(point[0]);
+    y.push_back(point[1]);
+  }
+  void gap() { add(Vector2d::Constant(std::numeric_limits<double>::quiet_NaN())); }
+
+  Curve curve(Colour colour) const {
+    const auto vector = [](const std::vector<double>& values) {
+      return Eigen::VectorXd(
+          Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+    };
+    return {"", vector(x), vector(y), CurveStyle::line, {}, {}, colour};
+  }
+};
+
+// Where the axis of an element goes, from 0 at its first node to 1 at its second: linear along it, Hermite's
+// cubic across it. In the plane (x, z) of NodalMotion.
+class ElementPath {
+ public:
+  ElementPath(const fem::Mesh::Element& element, const Eigen::Matrix3Xd& places, const NodalMotion& motion) {
+    for (const int end : {0, 1}) {
+      const int node = end == 0 ? element.first : element.second;
+      place_[end] = {places(0, node), places(2, node)};
+      moved_[end] = {motion.translation(0, node), motion.translation(2, node)};
+      slope_[end] = -motion.rotation(1, node) * element.length;
+    }
+    const Vector2d along = (place_[1] - place_[0]).normalized();
+    across_ = {-along[1], along[0]};
+  }
+
+  Vector2d place(double s) const { return (1 - s) * place_[0] + s * place_[1]; }
+  Vector2d displacement(double s) const {
+    const double chord = (moved_[1] - moved_[0]).dot(across_);
+    const double start = slope_[0] - chord, end = slope_[1] - chord, t = 1 - s;
+    return t * moved_[0] + s * moved_[1] + (start * s * t * t - end * s * s * t) * across_;
+  }
+
+ private:
+  Vector2d place_[2], moved_[2], across_;
+  double slope_[2];
+};
+
+struct Shape {
+  ModeLine undeformed, deformed;
+};
+
+Shape shape_of(const fem::Mesh& mesh, const Eigen::Matrix3Xd& places, const NodalMotion& motion,
+               double amplitude) {
+  const auto elements = static_cast<int>(mesh.elements.size());
+  const int steps = std::max(1, 400 / elements);
+  Shape shape;
+  for (int e = 0; e < elements; ++e) {
+    const ElementPath path(mesh.elements[e], places, motion);
+    const bool begins = e == 0 || mesh.elements[e - 1].second != mesh.elements[e].first;
+    if (begins && e > 0) shape.undeformed.gap(), shape.deformed.gap();
+    for (int step = begins ? 0 : 1; step <= steps; ++step) {
+      const double s = static_cast<double>(step) / steps;
+      if (step == 0 || step == steps) shape.undeformed.add(path.place(s));
+      shape.deformed.add(path.place(s) + amplitude * path.displacement(s));
+    }
+  }
+  return shape;
+}
+
+// Between few nodes the curve goes beyond the largest nodal deflection.
+void scale(std::vector<double>& deflections) {
+  double largest = 0.0;
+  for (const double w : deflections) largest = std::max(largest, std::abs(w));
+  if (largest > 0.0)
+    for (double& w : deflections) w /= largest;
+}
+
+bool is_frame(const fem::StructuralSystem& system) {
+  return std::any_of(
+      system.coordinates.begin(), system.coordinates.end(),
+      [](const fem::Coordinate& coordinate) { return coordinate.kind == fem::Coordinate::Kind::axial; });
+}
+
+std::string mode_figure_title(Eigen::Index mode, double frequency_hz) {
+  if (frequency_hz == 0.0) return fmt::format("mode {}, rigid body", mode + 1);
+  const int decimals = std::clamp(4 - static_cast<int>(std::floor(std::log10(frequency_hz))), 0, 9);
+  return fmt::format("mode {}, {:.{}f} Hz", mode + 1, frequency_hz, decimals);
+}
+
+// Axes of a frame: the same scale along both in a plot of the size [px] that is left of a panel, with room
+// for what moves out of it.
+std::pair<Axis, Axis> frame_axes(const Eigen::Matrix3Xd& places, double size, double width, double height) {
+  const double x_middle = 0.5 * (places.row(0).maxCoeff() + places.row(0).minCoeff());
+  const double z_middle = 0.5 * (places.row(2).maxCoeff() + places.row(2).minCoeff());
+  const double x_span = places.row(0).maxCoeff() - places.row(0).minCoeff() + 0.3 * size;
+  const double z_span = places.row(2).maxCoeff() - places.row(2).minCoeff() + 0.3 * size;
+  const double scale = std::max(x_span / width, z_span / height);  // [m/px]
+  const auto range = [&](double middle, double pixels) {
+    return std::pair{middle - 0.5 * scale * pixels, middle + 0.5 * scale * pixels};
+  };
+  return {{"x [m]", false, range(x_middle, width)}, {"y [m]", false, range(z_middle, height)}};
+}
+
+void check_mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
+                       const Eigen::VectorXd& frequencies_hz) {
+  if (shapes.rows() != system.size() || shapes.cols() != frequencies_hz.size() || shapes.cols() == 0)
+    throw std::invalid_argument(
+        fmt::format("mode shapes are {} x {}; expected {} x {}, a column for each frequency, one at least",
+                    shapes.rows(), shapes.cols(), system.size(), frequencies_hz.size()));
+}
+
+}  // namespace
+
+Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
+                   const Eigen::VectorXd& frequencies_hz) {
+  check_mode_figure(system, shapes, frequencies_hz);
+  const Eigen::Matrix3Xd places = nodal_places(system);
+  const bool frame = is_frame(system);
+  const auto modes = static_cast<int>(std::min(shapes.cols(), most_drawn_modes));
+  Figure figure;
+  figure.name = "mode_shapes";
+  figure.columns = modes == 1 ? 1 : frame || modes > 8 ? std::min(modes, 3) : 2;
+  figure.rows = (modes + figure.columns - 1) / figure.columns;
+  figure.width = modes == 1 ? 500 : frame || modes > 8 ? 1000 : 800;
+  const int row_height = frame ? 340 : 240;
+  figure.height = figure.rows * row_height;
+
+  const Eigen::Vector3d extent = places.rowwise().maxCoeff() - places.rowwise().minCoeff();
+  const double size = extent.maxCoeff();
+  std::pair<Axis, Axis> axes{{"x [m]", false, std::pair{places.row(0).minCoeff(), places.row(0).maxCoeff()}},
+                             {"deflection", false, std::pair{-1.15, 1.15}}};
+  if (frame) axes = frame_axes(places, size, figure.width / figure.columns - 101.0, row_height - 98.0);
+  for (int mode = 0; mode < modes; ++mode) {
+    const NodalMotion motion = scaled_mode(system, shapes.col(mode));
+    Shape shape = shape_of(system.mesh, places, motion, frame ? size / 8 : 1.0);
+    if (!frame) scale(shape.deformed.y);
+    figure.panels.push_back({mode_figure_title(mode, frequencies_hz[mode]),
+                             axes.first,
+                             axes.second,
+                             {shape.undeformed.curve(Colour::grey), shape.deformed.curve(Colour::blue)},
+                             Legend::none});
+  }
+  return figure;
+}
+
+}  // namespace beamid::experiments

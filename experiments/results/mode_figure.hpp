@@ -1,0 +1,27 @@
+// Mode shapes as a figure for a paper.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "experiments/results/figure.hpp"
+#include "fem/structural_system.hpp"
+
+namespace beamid::experiments {
+
+/// Most modes in one figure.
+inline constexpr Eigen::Index most_drawn_modes = 12;
+
+/// The figure "mode_shapes": one panel for each of the first 12 modes, entitled "mode 1, 4.1455 Hz", with the
+/// undeformed structure as a thin line.
+///
+/// A beam's deflection, largest 1, is drawn over its length; a frame in its own plane, moved by an eighth of
+/// its size. Between nodes the curve is the cubic of their deflections and rotations.
+///
+/// @param system a system of fem::assemble (n coordinates).
+/// @param shapes (n x k), one mode per column.
+/// @param frequencies_hz (k) [Hz]; 0: a rigid-body mode.
+/// @throws std::invalid_argument on other sizes, without any mode, and when the system has no mesh.
+Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
+                   const Eigen::VectorXd& frequencies_hz);
+
+}  // namespace beamid::experiments

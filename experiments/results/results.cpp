@@ -1,0 +1,144 @@
+#include "experiments/results/results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "experiments/results/library_versions.hpp"
+#include "experiments/results/report_page.hpp"
+#include "experiments/results/text.hpp"
+#include "experiments/results/vtk/drawing.hpp"
+#include "experiments/text/clean_text.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int schema_version = 1;
+
+// Replaces what is not finite by null and says where.
+void make_finite(Json& json, const std::string& place, Json& warnings) {
+  if (json.is_number_float() && !std::isfinite(json.get<double>())) {
+    warnings.push_back(fmt::format("{} is {}", place, json.get<double>()));
+    json = nullptr;
+  } else if (json.is_object()) {
+    for (auto&& [key, value] : json.items())
+      make_finite(value, place.empty() ? key : place + "." + key, warnings);
+  } else if (json.is_array()) {
+    for (std::size_t i = 0; i < json.size(); ++i)
+      make_finite(json[i], fmt::format("{}[{}]", place, i), warnings);
+  }
+}
+
+std::string text_of(const Json& json) {
+  // Texts from outside, such as channel names, need not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::vector<std::string> result_files_of(const Results& results) {
+  std::vector<std::string> files{"report.html", "results.json", "timing.json"};
+  for (const auto& part : results.report)
+    if (const auto* table = std::get_if<Table>(&part)) files.push_back(table->name + ".csv");
+  for (const Figure& figure : results.figures)
+    for (const std::string& file : files_of(figure)) files.push_back(file);
+  for (const Attachment& attachment : results.attachments)
+    files.insert(files.end(), attachment.files.begin(), attachment.files.end());
+  std::sort(files.begin(), files.end());
+  if (const auto twice = std::adjacent_find(files.begin(), files.end()); twice != files.end())
+    throw std::invalid_argument("two of the results are to be written as '" + *twice + "'");
+  return files;
+}
+
+// What gnuplot said to those it did not draw. One that is missing or hangs is not asked again.
+std::vector<std::string> draw_all(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+  std::vector<std::string> failures;
+  for (const Figure& figure : figures) {
+    try {
+      draw(figure, folder);
+    } catch (const NotDrawn& failure) {
+      failures.emplace_back(failure.what());
+      if (failure.hopeless()) break;
+    }
+  }
+  return failures;
+}
+
+// "files" names what is there, "warnings" why a picture is not.
+void tell_undrawn(Json& json, const std::vector<std::string>& failures, const std::filesystem::path& folder) {
+  Json files = Json::array();
+  for (const auto& file : json["files"]) {
+    const std::filesystem::path path = file.get<std::string>();
+    const bool picture = path.extension() == ".svg" || path.extension() == ".png";
+    if (!picture || std::filesystem::exists(folder / path)) files.push_back(file);
+  }
+  json.erase("files");
+  for (const std::string& failure : failures) json["warnings"].push_back(failure);
+  json["files"] = files;
+}
+
+}  // namespace
+
+Json to_json(const Results& results) {
+  Json json;
+  json["schema_version"] = schema_version;
+  json["program"] = "beamid";
+  json["version"] = BEAMID_VERSION;
+  json["command"] = results.command;
+  json["seed"] = results.seed ? Json(*results.seed) : Json(nullptr);
+  json["configuration"] = results.configuration;
+  for (const auto& [key, value] : results.values.items()) {
+    if (json.contains(key) || key == "warnings" || key == "files")
+      throw std::invalid_argument("result '" + key +
+                                  "': every results.json has a key of this name; expected another");
+    json[key] = value;
+  }
+  Json warnings = Json::array();
+  make_finite(json, "", warnings);
+  if (!warnings.empty()) json["warnings"] = warnings;
+  json["files"] = result_files_of(results);
+  return json;
+}
+
+void write(const Results& results, ResultDirectory& directory) {
+  Json json = to_json(results);
+  for (const auto& part : results.report)
+    if (const auto* table = std::get_if<Table>(&part)) directory.write(table->name + ".csv", to_csv(*table));
+  for (const Figure& figure : results.figures) write_data(figure, directory.path());
+  if (const auto failures = draw_all(results.figures, directory.path()); !failures.empty())
+    tell_undrawn(json, failures, directory.path());
+  directory.write("results.json", text_of(json));
+  for (const Attachment& attachment : results.attachments) attachment.write(directory.path());
+  directory.write("report.html", report_page({report_section(results, directory.path())}));
+  Json timing;
+  timing["schema_version"] = schema_version;
+  for (const auto& [what, seconds] : results.timing) timing[what + "_s"] = seconds;
+  for (const auto& [what, version] : library_versions()) timing["made_with"][what] = version;
+  directory.write("timing.json", text_of(timing));
+}
+
+void print(std::ostream& terminal, const Results& results) {
+  std::ostringstream stream;
+  bool first = true;
+  for (const auto& part : results.report) {
+    if (!std::exchange(first, false)) stream << '\n';
+    if (const auto* heading = std::get_if<Heading>(&part)) {
+      stream << heading->text << '\n'
+             << std::string(std::min(width_of(heading->text), page_width), '=') << '\n';
+    } else if (const auto* paragraph = std::get_if<Paragraph>(&part)) {
+      for (const std::string& line : wrapped(paragraph->text)) stream << line << '\n';
+    } else {
+      print(stream, std::get<Table>(part));
+    }
+  }
+  terminal << clean_lines(stream.str());  // names from files may not command a terminal
+}
+
+void print_json(std::ostream& stream, const Results& results) {
+  stream << text_of(to_json(results));
+}
+
+}  // namespace beamid::experiments

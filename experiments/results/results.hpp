@@ -1,0 +1,74 @@
+// What a command found: printed for a person, written as files for programs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "experiments/results/figure.hpp"
+#include "experiments/results/result_directory.hpp"
+#include "experiments/results/table.hpp"
+
+namespace beamid::experiments {
+
+/// A line that opens a section on the terminal.
+struct Heading {
+  std::string text;
+};
+
+/// Text for the terminal, wrapped when printed.
+struct Paragraph {
+  std::string text;
+};
+
+/// Files that none of the other parts describes, such as meshes.
+struct Attachment {
+  std::vector<std::string> files;                           ///< their names
+  std::function<void(const std::filesystem::path&)> write;  ///< writes them into a folder
+};
+
+struct Results {
+  std::string command;                ///< "paper", "identify"
+  std::string command_line;           ///< what repeats it, "beamid identify ..."; empty: not known
+  std::optional<std::uint64_t> seed;  ///< null where nothing is random
+  nlohmann::ordered_json configuration = nlohmann::ordered_json::object();  ///< all of it, defaults included
+  nlohmann::ordered_json values = nlohmann::ordered_json::object();  ///< SI units as suffixes of the keys
+  std::vector<std::variant<Heading, Paragraph, Table>> report;       ///< in the terminal's order
+  std::vector<Figure> figures;
+  std::vector<Attachment> attachments;
+  std::vector<std::pair<std::string, double>>
+      timing;  ///< what took how long [s]; "filter" becomes "filter_s"
+
+  void heading(std::string text) { report.emplace_back(Heading{std::move(text)}); }
+  void paragraph(std::string text) { report.emplace_back(Paragraph{std::move(text)}); }
+  void table(Table table) { report.emplace_back(std::move(table)); }
+};
+
+/// The contents of results.json: schema_version, program, version, command, seed, configuration, then the
+/// values' keys, then "files", the names of all files that write() makes.
+///
+/// JSON knows no number that is not finite: one becomes null, and "warnings" then names its place and what it
+/// was, "beams[0].frequency_hz is nan".
+/// @throws std::invalid_argument when a value's key is one of those named here.
+nlohmann::ordered_json to_json(const Results& results);
+
+/// Writes results.json, each table as NAME.csv, figures, attachments, report.html (report_page.hpp) and
+/// timing.json, the only file that depends on the clock.
+/// @throws std::invalid_argument when two files have the same name.
+/// @throws std::runtime_error when a file cannot be written or a figure not drawn.
+void write(const Results& results, ResultDirectory& directory);
+
+/// Headings, paragraphs and tables in their order, at most page_width columns wide.
+void print(std::ostream& stream, const Results& results);
+
+/// results.json as it would be written.
+void print_json(std::ostream& stream, const Results& results);
+
+}  // namespace beamid::experiments

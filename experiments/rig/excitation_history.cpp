@@ -1,0 +1,179 @@
+#include "experiments/rig/excitation_history.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "experiments/record/read_record.hpp"
+#include "experiments/text/method_choice.hpp"
+#include "fem/modes.hpp"
+#include "fem/stiffness_solver.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+using Kind = Excitation::Kind;
+using std::numbers::pi;
+
+struct Case {
+  const Excitation& excitation;
+  const fem::StructuralSystem& system;
+  Index input;
+  const fem::TimeGrid& grid;
+  const std::filesystem::path& folder;
+
+  double time(Index k) const { return static_cast<double>(k) * grid.interval; }
+};
+
+// The shape scaled to 1 at the point: of a static force there, or of a mode.
+VectorXd shape(const Case& c) {
+  if (!c.excitation.mode) {
+    try {
+      return fem::static_shape(c.system, c.input, c.input);
+    } catch (const std::runtime_error& error) {  // nothing holds the beam
+      const std::string reason =
+          std::string("no static shape to be released from: ") + error.what() +
+          "; expected a beam that is held, or another kind of excitation, as 'impulse' or 'free' with a mode";
+      if (c.excitation.place.file.empty()) throw std::invalid_argument(reason);
+      throw InputError(c.excitation.place, reason);
+    }
+  }
+  const Index mode = *c.excitation.mode;
+  if (mode > c.system.size())
+    throw InputError(c.excitation.place,
+                     fmt::format("excitation.mode is {}; expected 1 to {}", mode, c.system.size()));
+  const VectorXd found = fem::modes(c.system, mode).shape.col(mode - 1);
+  const double there = (c.system.outputs.row(c.input) * found)(0);
+  if (std::abs(there) < 1e-9 * (c.system.outputs * found).cwiseAbs().maxCoeff() || there == 0.0)
+    throw InputError(
+        c.excitation.place,
+        fmt::format("mode {} does not move the excitation's point; expected another position_m", mode));
+  return found / there;
+}
+
+VectorXd sine(const Case& c, std::vector<std::string>& notes) {
+  const double turn = 2.0 * pi * c.excitation.frequency_hz;
+  // A sine drawn through samples is too small by (omega dt)^2 / 12.
+  if (const double loss = std::pow(turn * c.grid.interval, 2) / 12.0; loss > 1e-3)
+    notes.push_back(fmt::format(
+        "The excitation of {:g} Hz has {:.1f} steps a period: drawn straight from step to step it is {:.1f} "
+        "% too small. More steps_per_sample, or a higher sampling_rate_hz, help.",
+        c.excitation.frequency_hz, 1.0 / (c.excitation.frequency_hz * c.grid.interval), 100.0 * loss));
+  return VectorXd::NullaryExpr(c.grid.samples,
+                               [&](Index k) { return c.excitation.amplitude * std::sin(turn * c.time(k)); });
+}
+
+void check_duration(const Case& c) {
+  const double steps = c.excitation.duration / c.grid.interval;
+  if (steps < 4.0)
+    throw InputError(
+        c.excitation.place,
+        fmt::format("excitation.duration_s is {:g}, {:.3g} steps of {:g} s; expected at least 4 (raise "
+                    "simulation.steps_per_sample or sampling_rate_hz), or 0 for an instant",
+                    c.excitation.duration, steps, c.grid.interval));
+}
+
+// A half sine whose samples, joined by straight lines, carry the momentum exactly.
+VectorXd half_sine(const Case& c) {
+  check_duration(c);
+  VectorXd force = VectorXd::NullaryExpr(c.grid.samples, [&](Index k) {
+    return c.time(k) < c.excitation.duration ? std::sin(pi * c.time(k) / c.excitation.duration) : 0.0;
+  });
+  return c.excitation.momentum / (force.sum() * c.grid.interval) * force;
+}
+
+// A hand that lets go: from the force that holds the deflection down to nothing, along half a cosine.
+VectorXd let_go(const Case& c, double deflection) {
+  check_duration(c);
+  const double duration = c.excitation.duration,
+               force = deflection * fem::static_stiffness(c.system, c.input, c.input);
+  return VectorXd::NullaryExpr(c.grid.samples, [&](Index k) {
+    return c.time(k) < duration ? 0.5 * force * (1.0 + std::cos(pi * c.time(k) / duration)) : 0.0;
+  });
+}
+
+// Linear between the file's rows, nothing before and after them.
+VectorXd from_file(const Case& c, Quantity quantity, std::vector<std::string>& notes) {
+  const std::filesystem::path file = c.folder / *c.excitation.file;
+  const Record record = read_record(file);
+  const VectorXd values = at_place({file.string()}, [&] { return record.channel(quantity); });
+  const double begin = record.time[0], end = record.time[record.size() - 1];
+  if (begin > 0.0 || end < c.time(c.grid.samples - 1))
+    notes.push_back(fmt::format("{} runs from {:g} to {:g} s; outside it the excitation is zero.",
+                                file.filename().string(), begin, end));
+  Index row = 0;
+  return VectorXd::NullaryExpr(c.grid.samples, [&](Index k) {
+    const double t = c.time(k);
+    if (t < begin || t > end) return 0.0;
+    while (row + 2 < record.size() && record.time[row + 1] <= t) ++row;
+    const double part = (t - record.time[row]) / (record.time[row + 1] - record.time[row]);
+    return values[row] + part * (values[row + 1] - values[row]);
+  });
+}
+
+VectorXd struck(const Case& c) {
+  const fem::SparseMatrix mass = c.system.mass;
+  const Eigen::SimplicialLDLT<fem::SparseMatrix> solver(mass);
+  if (solver.info() != Eigen::Success)
+    throw InputError(c.excitation.place, "the mass matrix is singular; expected duration_s of the pulse");
+  return solver.solve(VectorXd(c.excitation.momentum * c.system.inputs.col(c.input)));
+}
+
+void set_input(const Case& c, Index input, const VectorXd& history, ExcitationHistory& result) {
+  result.loading.inputs = Eigen::MatrixXd::Zero(c.system.inputs.cols(), c.grid.samples);
+  result.loading.inputs.row(input) = history.transpose();
+}
+
+}  // namespace
+
+ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSystem& system, Index input,
+                         const fem::TimeGrid& grid, const std::filesystem::path& folder) {
+  constexpr double study_deflection = 0.012;  // of the study's tests [m]
+  const Case c{excitation, system, input, grid, folder};
+  ExcitationHistory result;
+  switch (excitation.kind) {
+    case Kind::release: {
+      const double deflection = excitation.deflection.value_or(study_deflection);
+      result.loading.initial_displacement = deflection * shape(c);
+      if (excitation.duration > 0.0) set_input(c, input, let_go(c, deflection), result);
+      break;
+    }
+    case Kind::free: {
+      if (excitation.deflection.value_or(0.0) == 0.0 && excitation.velocity == 0.0)
+        throw InputError(
+            excitation.place,
+            "an excitation of kind \"none\" moves nothing; expected deflection_m or velocity_m_per_s");
+      const VectorXd unit = shape(c);
+      result.loading.initial_displacement = excitation.deflection.value_or(0.0) * unit;
+      result.loading.initial_velocity = excitation.velocity * unit;
+      break;
+    }
+    case Kind::step:
+      set_input(c, input, VectorXd::Constant(grid.samples, excitation.force), result);
+      break;
+    case Kind::impulse:
+      if (excitation.duration > 0.0)
+        set_input(c, input, half_sine(c), result);
+      else
+        result.loading.initial_velocity = struck(c);
+      break;
+    case Kind::harmonic:
+      set_input(c, input, sine(c, result.notes), result);
+      break;
+    case Kind::table:
+      set_input(c, input, from_file(c, Quantity::force, result.notes), result);
+      break;
+    case Kind::base:
+      result.base_acceleration =
+          excitation.file ? from_file(c, Quantity::acceleration, result.notes) : sine(c, result.notes);
+      set_input(c, system.inputs.cols() - 1, result.base_acceleration, result);
+      break;
+  }
+  return result;
+}
+
+}  // namespace beamid::experiments

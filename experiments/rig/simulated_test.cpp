@@ -1,0 +1,250 @@
+#include "experiments/rig/simulated_test.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/rig/excitation_history.hpp"
+#include "experiments/signal/cubic_spline.hpp"
+#include "experiments/signal/random.hpp"
+#include "fem/gauge_row.hpp"
+#include "fem/modes.hpp"
+#include "fem/parametric_system.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+std::vector<Sensor> default_sensors() {
+  return {{"", {}, Quantity::displacement, 0.0}, {"", {}, Quantity::acceleration, 0.0}};
+}
+
+std::vector<Index> evenly_spread(int count, Index samples) {
+  std::vector<Index> frames;
+  const Index kept = std::min<Index>(count, samples);
+  for (Index i = 0; i < kept; ++i) frames.push_back(kept == 1 ? 0 : i * (samples - 1) / (kept - 1));
+  return frames;
+}
+
+VectorXd clean_history(const SimulatedTest& test, Quantity quantity, Index output, const VectorXd& base) {
+  const fem::Response& r = test.response;
+  if (quantity == Quantity::displacement || quantity == Quantity::strain) return r.displacement.row(output);
+  if (quantity == Quantity::velocity) return r.velocity.row(output);
+  VectorXd acceleration = r.acceleration.row(output);
+  if (base.size() > 0) acceleration += base;
+  return acceleration;
+}
+
+// An output row for every strain gauge, -c w'' at its node, behind those of the points.
+void add_gauges(const fem::Beam& beam, SimulatedTest& test, std::vector<Index>& outputs) {
+  for (std::size_t i = 0; i < test.sensors.size(); ++i) {
+    const Sensor& sensor = test.sensors[i];
+    if (sensor.quantity != Quantity::strain) continue;
+    fem::StructuralSystem& system = test.system;
+    outputs[i] = system.outputs.rows();
+    const Eigen::MatrixXd gauge =
+        -sensor.distance * Eigen::MatrixXd(fem::gauge_row(system, beam, *sensor.position));
+    Eigen::MatrixXd rows(system.outputs.rows() + 1, system.size());
+    rows << Eigen::MatrixXd(system.outputs), gauge;
+    system.outputs = rows.sparseView();
+    system.output_names.push_back(sensor.name + "_strain");
+  }
+}
+
+// Modes below half the sampling rate: what an instrument's anti-aliasing filter lets through. One above
+// appears in the record at another frequency.
+struct Audible {
+  Index count = 0;       ///< 200 at most
+  double next_hz = 0.0;  ///< frequency of the first above; 0: there is none
+};
+
+Audible audible_modes(const fem::StructuralSystem& system, double limit_hz) {
+  constexpr Index most = 200;
+  for (Index few = std::min<Index>(system.size(), 25);;
+       few = std::min(2 * few, std::min(system.size(), most))) {
+    const VectorXd frequency = fem::modes(system, few).frequency_hz();
+    const Index below = (frequency.array() < limit_hz).count();
+    if (below < few) return {below, frequency[below]};
+    if (few == std::min(system.size(), most)) return {few, 0.0};
+  }
+}
+
+/// The modal method gets as many modes as the record can show, unless told; with the others a note says what
+/// is heard.
+fem::ResponseMethod completed(const Simulation& settings, SimulatedTest& test) {
+  fem::ResponseMethod method = settings.method;
+  const double limit = 0.5 * settings.sampling_rate;
+  const Audible audible = audible_modes(test.system, limit);
+  if (audible.count == 0 && audible.next_hz > 0.0)
+    test.notes.push_back(fmt::format(
+        "ALIASED: no mode lies below half the sampling rate, {:g} Hz. The first, at {:.5g} Hz, appears in "
+        "the "
+        "record at {:.5g} Hz.",
+        limit, audible.next_hz, std::abs(std::remainder(audible.next_hz, settings.sampling_rate))));
+  if (method.name == "modal" && !method.options.contains("modes") && audible.count > 0) {
+    method.options["modes"] = static_cast<double>(audible.count);
+    test.notes.push_back(fmt::format("{} of {} modes {} used: {}. simulation.modes sets another number.",
+                                     audible.count, test.system.size(), audible.count == 1 ? "is" : "are",
+                                     audible.next_hz > 0.0
+                                         ? fmt::format("{} below {:g} Hz, half the sampling rate",
+                                                       audible.count == 1 ? "the one" : "those", limit)
+                                         : "the lowest"));
+  } else if (method.name == "modal" && !method.options.contains("modes")) {
+    method.options["modes"] = 1.0;
+  } else if (audible.count > 0 && audible.next_hz > 0.0 &&
+             (method.name != "modal" || method.options["modes"] == 0.0 ||
+              method.options["modes"] > static_cast<double>(audible.count))) {
+    test.notes.push_back(fmt::format(
+        "Half the sampling rate is {:g} Hz, the frequency of mode {} is {:.5g} Hz: this mode and those "
+        "above it appear in the record at other frequencies.",
+        limit, audible.count + 1, audible.next_hz));
+  }
+  return method;
+}
+
+// A field of so many numbers at all frames together fits into the memory of any machine.
+int affordable_frames(int frames, Index coordinates, std::vector<std::string>& notes) {
+  constexpr double most_numbers = 2e7;
+  const int affordable = static_cast<int>(most_numbers / static_cast<double>(coordinates));
+  if (frames <= affordable) return frames;
+  notes.push_back(
+      fmt::format("{} of the {} pictures of the whole beam are kept: more would not fit into memory.",
+                  affordable, frames));
+  return affordable;
+}
+
+/// When the logger samples: `count` samples during the motion, and those before it.
+struct SampleClock {
+  VectorXd time;       ///< (N) [s], from 0
+  double event = 0.0;  ///< the motion's t = 0 on this clock [s]
+  Index before = 0;    ///< samples before it
+  bool even = true;
+};
+
+SampleClock clock_of(const Acquisition& acquisition, const Simulation& settings, Index count) {
+  SampleClock clock;
+  clock.before = static_cast<Index>(std::llround(acquisition.pretrigger * settings.sampling_rate));
+  clock.event = static_cast<double>(clock.before) / settings.sampling_rate;
+  clock.time = sample_instants(acquisition, clock.before + count, settings.sampling_rate, settings.seed);
+  clock.even = !(acquisition.jitter > 0);
+  return clock;
+}
+
+/// True readings (N) at the clock's instants from those at the steps of the integration. Before the motion
+/// the beam is held where it starts: only displacements and strains show that.
+VectorXd readings_at(const SampleClock& clock, const VectorXd& step_time, const VectorXd& values, Index steps,
+                     Quantity quantity) {
+  const bool held = quantity == Quantity::displacement || quantity == Quantity::strain;
+  VectorXd readings = VectorXd::Constant(clock.time.size(), held ? values[0] : 0.0);
+  if (clock.even) {
+    const Index count = clock.time.size() - clock.before;
+    readings.tail(count) = values(Eigen::seqN(Index{0}, count, steps));
+    return readings;
+  }
+  const CubicSpline spline(step_time, values);
+  const double last = step_time[step_time.size() - 1];
+  for (Index k = 0; k < readings.size(); ++k)
+    if (const double t = clock.time[k] - clock.event; t >= 0) readings[k] = spline(std::min(t, last));
+  return readings;
+}
+
+/// The force at the samples as one more channel of the record: a measured test has its force, too. Without it
+/// a forced motion would be taken for a free decay.
+void add_force(SimulatedTest& test, const SampleClock& clock, const VectorXd& force, Index steps,
+               double length) {
+  constexpr double visible = 1e-3;  // of the force's root mean square
+  const Index samples = clock.time.size() - clock.before;
+  const VectorXd sampled = force(Eigen::seqN(Index{0}, samples, steps));
+  VectorXd missed = VectorXd::Zero(force.size());
+  for (Index k = 0; steps > 1 && k + 1 < force.size(); ++k) {
+    const double part = static_cast<double>(k % steps) / static_cast<double>(steps);
+    missed[k] = force[k] - (1.0 - part) * sampled[k / steps] - part * sampled[k / steps + 1];
+  }
+  if (const double loss = missed.norm(); loss > visible * force.norm())
+    test.notes.push_back(
+        fmt::format("Between the samples the force moves off the straight line by {:.2g} % of its size: an "
+                    "identification that takes the recorded force for straight is wrong by as much. A higher "
+                    "sampling_rate_hz helps.",
+                    100.0 * loss / force.norm()));
+  test.record.samples.conservativeResize(test.record.samples.rows() + 1, Eigen::NoChange);
+  test.record.samples.bottomRows(1) =
+      readings_at(clock, test.response.time, force, steps, Quantity::force).transpose();
+  const double position = *test.excitation.position;
+  test.record.channels.push_back({Quantity::force, name_of_place(position, length), position, 0.0});
+  test.record.input_path = InputPath::linear;
+}
+
+}  // namespace
+
+SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path& folder, int frames,
+                       const Progress& progress, const Acquisition& acquisition) {
+  const Simulation& settings = experiment.simulation;
+  SimulatedTest test;
+  test.sensors = experiment.sensors.empty() ? default_sensors() : experiment.sensors;
+  test.excitation = experiment.excitation;
+  test.acquisition = acquisition;
+  BeamPoints points(experiment.beam);
+  std::vector<Index> outputs;
+  std::vector<double> gauges;
+  for (Sensor& sensor : test.sensors) {
+    if (sensor.quantity == Quantity::strain) {
+      gauges.push_back(*sensor.position);
+      outputs.push_back(-1);
+      if (sensor.name.empty()) sensor.name = name_of_place(*sensor.position, experiment.beam.length());
+      continue;
+    }
+    outputs.push_back(points.add(sensor.position));
+    sensor.position = points[outputs.back()].position;
+    if (sensor.name.empty()) sensor.name = points[outputs.back()].name;
+  }
+  const Index input = points.add(test.excitation.position);
+  test.excitation.position = points[input].position;
+  progress("assembling");
+  test.system = fem::assemble(fem::with_nodes(experiment.beam, gauges), experiment.elements, points.all());
+  add_gauges(experiment.beam, test, outputs);
+
+  constexpr int fewest_between_stamps = 8;
+  const int steps = acquisition.jitter > 0 ? std::max(settings.steps_per_sample, fewest_between_stamps)
+                                           : settings.steps_per_sample;
+  const auto samples = static_cast<Index>(std::llround(settings.duration * settings.sampling_rate)) + 1;
+  fem::TimeGrid grid{1.0 / (settings.sampling_rate * steps), (samples - 1) * steps + 1, {}};
+  ExcitationHistory history = excite(test.excitation, test.system, input, grid, folder);
+  test.notes = std::move(history.notes);
+  for (const Index sample : evenly_spread(affordable_frames(frames, test.system.size(), test.notes), samples))
+    grid.frames.push_back(sample * steps);
+  test.step = grid.interval;
+  progress("modes");
+  test.method = completed(settings, test);
+  progress("integrating");
+  test.response = fem::respond(test.system, experiment.damping, history.loading, grid, test.method);
+  for (const std::string& remark : test.response.remarks) test.notes.push_back(remark);
+
+  const SampleClock clock = clock_of(acquisition, settings, samples);
+  test.record.time = clock.time;
+  test.record.samples.resize(static_cast<Index>(test.sensors.size()), clock.time.size());
+  for (std::size_t i = 0; i < test.sensors.size(); ++i) {
+    const Sensor& sensor = test.sensors[i];
+    const VectorXd values = clean_history(test, sensor.quantity, outputs[i], history.base_acceleration),
+                   readings = readings_at(clock, test.response.time, values, steps, sensor.quantity);
+    VectorXd noise = VectorXd::Zero(readings.size());
+    if (sensor.noise > 0.0) noise = sensor.noise * standard_normal(readings.size(), settings.seed, i);
+    constexpr std::size_t rattle_stream = 1000;
+    test.record.samples.row(static_cast<Index>(i)) =
+        shown_readings(acquisition.of(i), clock.time, readings, noise, settings.seed, rattle_stream + i)
+            .transpose();
+    test.record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance});
+  }
+  if (history.base_acceleration.size() > 0)
+    test.record.warnings.push_back(
+        "The base moves, which the record does not hold: an identification takes this motion for a free "
+        "decay.");
+  else if (acquisition.force && test.excitation.kind != Excitation::Kind::release &&
+           history.loading.inputs.size() > 0)
+    add_force(test, clock, history.loading.inputs.row(input), steps, experiment.beam.length());
+  lose_samples(acquisition, test.record, settings.seed);
+  return test;
+}
+
+}  // namespace beamid::experiments

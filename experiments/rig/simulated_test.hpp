@@ -1,0 +1,37 @@
+// The virtual test rig: a beam, an excitation, sensors.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/config/experiment.hpp"
+#include "experiments/models/beam_points.hpp"
+#include "experiments/rig/acquisition.hpp"
+#include "experiments/text/progress.hpp"
+#include "fem/response/response.hpp"
+
+namespace beamid::experiments {
+
+struct SimulatedTest {
+  fem::StructuralSystem system;
+  fem::Response response;       ///< at every step; fields at the frames
+  std::vector<Sensor> sensors;  ///< names and positions filled in
+  Record record;                ///< what the sensors show, noise and defects included; behind them the force
+  Acquisition acquisition;      ///< what was done to them
+  Excitation excitation;        ///< position and deflection filled in
+  fem::ResponseMethod method;   ///< its number of modes filled in
+  double step = 0.0;            ///< of the integration [s]
+  std::vector<std::string> notes;  ///< what a reader should know, a sentence each
+};
+
+/// @param folder in which the excitation's file is looked for.
+/// @param frames pictures of the whole beam to keep.
+/// @param acquisition what sensors and logger do to the readings; nothing unless given. Between the steps of
+/// the integration readings run along a cubic spline: with a jitter it takes at least eight steps per sample.
+/// @throws InputError as excite(); std::invalid_argument when the method cannot treat the beam or its
+/// damping.
+SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path& folder, int frames,
+                       const Progress& progress, const Acquisition& acquisition = {});
+
+}  // namespace beamid::experiments

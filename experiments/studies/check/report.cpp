@@ -1,0 +1,285 @@
+#include "experiments/studies/check/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/config/beam_description.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+using Json = nlohmann::ordered_json;
+
+constexpr Index most_shown = 6;  // modes with a column of their own
+constexpr std::size_t most_pairs = 8;
+
+std::string label(const ModelCheck& check, const CheckedMode& mode) {
+  return check.structures.size() > 1
+             ? fmt::format("{} mode {}", check.structures[mode.structure].name, mode.number)
+             : fmt::format("mode {}", mode.number);
+}
+
+Table mode_table(const ModelCheck& check) {
+  Table table{"modes", "Predicted and identified"};
+  if (check.structures.size() > 1) table.column({"structure", "structure"});
+  table.column({"mode", "mode", "{:.0f}"})
+      .column({"predicted [Hz]", "predicted_hz", "{:.3f}"})
+      .column({"identified [Hz]", "identified_hz", "{:.3f}"})
+      .column({"95 % +- [Hz]", "half_interval_hz", "{:.2g}"})
+      .column({"difference [%]", "difference_percent", "{:+.2f}"});
+  const bool damped = std::any_of(check.modes.begin(), check.modes.end(), [](const CheckedMode& m) {
+    return std::isfinite(m.predicted_damping_ratio);
+  });
+  const bool shaped = std::any_of(check.modes.begin(), check.modes.end(),
+                                  [](const CheckedMode& m) { return std::isfinite(m.assurance); });
+  if (damped) table.column({"predicted damping ratio [%]", "predicted_damping_ratio_percent", "{:.3f}"});
+  table.column({"damping ratio [%]", "damping_ratio_percent", "{:.3f}"})
+      .column({"95 % +- [%]", "damping_ratio_half_interval_percent", "{:.2g}"});
+  if (shaped) table.column({"MAC", "mac", "{:.3f}"});
+  for (const CheckedMode& mode : check.modes) {
+    std::vector<Cell> row;
+    if (check.structures.size() > 1) row.emplace_back(check.structures[mode.structure].name);
+    row.insert(row.end(), {static_cast<double>(mode.number), mode.predicted_hz, mode.identified.frequency_hz,
+                           1.96 * mode.identified.frequency_deviation_hz,
+                           100 * (mode.identified.frequency_hz / mode.predicted_hz - 1)});
+    if (damped) row.emplace_back(100 * mode.predicted_damping_ratio);
+    row.insert(row.end(),
+               {100 * mode.identified.damping_ratio, 196 * mode.identified.damping_ratio_deviation});
+    if (shaped) row.emplace_back(mode.assurance);
+    table.row(std::move(row));
+  }
+  return table;
+}
+
+Table effect_table(const ModelCheck& check) {
+  const Index shown = std::min(check.effect.rows(), most_shown);
+  Table table{"effects", "What a change does to the frequencies [%]"};
+  table.column({"candidate", "candidate"}).column({"change", "change"});
+  for (Index i = 0; i < shown; ++i)
+    table.column({label(check, check.modes[i]), fmt::format("effect_{}_percent", i + 1), "{:+.2f}"});
+  for (std::size_t c = 0; c < check.candidates.size(); ++c) {
+    const Candidate& candidate = check.candidates[c];
+    std::vector<Cell> row{
+        candidate.name,
+        fmt::format("{:+.3g} {}", (candidate.unit == "%" ? 100 : 1) * candidate.scale, candidate.unit)};
+    for (Index i = 0; i < shown; ++i) row.emplace_back(100 * check.effect(i, static_cast<Index>(c)));
+    table.row(std::move(row));
+  }
+  table.note = "To first order, each for the largest change that careful work may get wrong.";
+  return table;
+}
+
+/// Candidate, change and half of its 95 % interval.
+std::vector<Cell> change_cells(const ModelCheck& check, const Explanation& e, std::size_t i) {
+  const Candidate& c = check.candidates[e.candidates[i]];
+  const double shown = c.unit == "%" ? 100 : 1;
+  if (e.at_limit[i])
+    return {c.name, fmt::format("{:+.3g} {}", shown * e.change[i], c.unit), std::string("limit")};
+  return {c.name, fmt::format("{:+.3g} {}", shown * e.change[i], c.unit),
+          fmt::format("{:.2g}", 1.96 * shown * e.deviation[i])};
+}
+
+std::string verdict_text(const Explanation& e) {
+  std::string text = to_string(e.verdict);
+  if (e.verdict == Explanation::Verdict::leaves_much && !e.plausible) text += ", implausible";
+  return text;
+}
+
+double left_percent(const Explanation& e) {
+  return 100 * e.left.norm() / std::sqrt(static_cast<double>(e.left.size()));
+}
+
+Table single_table(const ModelCheck& check) {
+  Table table{"single_changes", "One change alone"};
+  table.column({"candidate", "candidate"}).column({"change", "change"}).column({"95 % +-", "half_interval"});
+  if (check.structures.size() == 1) table.column({"would be", "value"});
+  if (!check.right)
+    table.column({"left [%]", "left_percent", "{:.2f}"})
+        .column({"chi^2", "chi_square", "{:.3g}"})
+        .column({"verdict", "verdict"});
+  for (const Explanation& e : check.single) {
+    std::vector<Cell> row = change_cells(check, e, 0);
+    const Candidate& c = check.candidates[e.candidates[0]];
+    if (check.structures.size() == 1)
+      row.emplace_back(
+          fmt::format("{:.4g} {}", c.value(check.structures[0].beam, e.change[0]), c.value_unit));
+    if (!check.right) row.insert(row.end(), {left_percent(e), e.chi_square, verdict_text(e)});
+    table.row(std::move(row));
+  }
+  table.note = check.right ? "limit: would go on, were it possible."
+                           : "left: root mean square of what remains; limit: would go on, were it possible.";
+  return table;
+}
+
+Table pair_table(const ModelCheck& check) {
+  Table table{"pairs", "Two changes together"};
+  table.column({"pair", "pair", "{:.0f}"})
+      .column({"candidate", "candidate"})
+      .column({"change", "change"})
+      .column({"95 % +-", "half_interval"})
+      .column({"left [%]", "left_percent", "{:.2f}"})
+      .column({"correlation", "correlation", "{:+.3f}"})
+      .column({"verdict", "verdict"});
+  for (std::size_t k = 0; k < std::min(most_pairs, check.pairs.size()); ++k) {
+    const Explanation& e = check.pairs[k];
+    for (std::size_t i = 0; i < 2; ++i) {
+      std::vector<Cell> row{static_cast<double>(k + 1)};
+      for (Cell& cell : change_cells(check, e, i)) row.push_back(std::move(cell));
+      row.insert(row.end(), {left_percent(e), e.correlation, verdict_text(e)});
+      table.row(std::move(row));
+    }
+  }
+  if (check.pairs.size() > most_pairs)
+    table.note =
+        fmt::format("The {} best of {}; all of them in results.json.", most_pairs, check.pairs.size());
+  return table;
+}
+
+Curve points(const ModelCheck& check, const std::string& name, const VectorXd& left, double shift,
+             Colour colour) {
+  const auto n = static_cast<Index>(check.modes.size());
+  VectorXd half(n);
+  for (Index i = 0; i < n; ++i) {
+    const ObservedMode& mode = check.modes[i].identified;
+    const double own =
+        std::isfinite(mode.frequency_deviation_hz) ? mode.frequency_deviation_hz / mode.frequency_hz : 0;
+    half[i] = 196 * std::hypot(own, check.settings.model_error);
+  }
+  const VectorXd percent = 100 * left;
+  Curve curve{name,           VectorXd::LinSpaced(n, 1, static_cast<double>(n)).array() + shift,
+              percent,        CurveStyle::points,
+              percent - half, percent + half};
+  curve.colour = colour;
+  return curve;
+}
+
+Figure figure_of(const ModelCheck& check) {
+  const auto n = static_cast<Index>(check.modes.size());
+  std::string order;
+  for (Index i = 0; i < n; ++i)
+    order += fmt::format("{}{}: {}", i > 0 ? ", " : "", i + 1, label(check, check.modes[i]));
+  Panel panel{n <= 4 ? order : "",
+              {"frequency, in the order of the table"},
+              {"identified against predicted [%]"},
+              {}};
+  VectorXd described(n);
+  for (Index i = 0; i < n; ++i) described[i] = check.modes[i].difference();
+  panel.curves.push_back({"",
+                          Eigen::Vector2d(0.5, static_cast<double>(n) + 0.5),
+                          Eigen::Vector2d(0, 0),
+                          CurveStyle::dashed,
+                          {},
+                          {},
+                          Colour::grey});
+  panel.curves.push_back(points(check, "as described", described, -0.12, Colour::black));
+  const auto named = [&](const Explanation& e) {
+    std::string name = "with another " + check.candidates[e.candidates[0]].name;
+    if (e.candidates.size() > 1) name += " and " + check.candidates[e.candidates[1]].name;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+  };
+  if (!check.right && !check.single.empty())
+    panel.curves.push_back(points(check, named(check.single[0]), check.single[0].left, 0, Colour::blue));
+  if (!check.right && !check.pairs.empty())
+    panel.curves.push_back(
+        points(check, named(check.pairs[0]), check.pairs[0].left, 0.12, Colour::vermillion));
+  panel.x_axis.range = {0.5, static_cast<double>(n) + 0.5};
+  return {"model_check", {panel}};
+}
+
+Json model_check_values_of(const ModelCheck& check, const Explanation& e) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < e.candidates.size(); ++i) {
+    const Candidate& c = check.candidates[e.candidates[i]];
+    json["changes"].push_back({{"candidate", c.name},
+                               {"unit", c.unit == "%" ? "1" : c.unit},
+                               {"estimate", e.change[i]},
+                               {"standard_deviation", e.deviation[i]},
+                               {"lower_95", e.lower_95(i)},
+                               {"upper_95", e.upper_95(i)},
+                               {"at_limit", static_cast<bool>(e.at_limit[i])}});
+  }
+  if (e.candidates.size() > 1) json["correlation"] = e.correlation;
+  json["chi_square"] = e.chi_square;
+  json["left"] = std::vector<double>(e.left.begin(), e.left.end());
+  json["verdict"] = to_string(e.verdict);
+  return json;
+}
+
+void fill(const ModelCheck& check, Results& results) {
+  results.configuration["model_error"] = check.settings.model_error;
+  for (const CheckedStructure& structure : check.structures)
+    results.configuration["structures"].push_back(
+        {{"name", structure.name}, {"beam", describe(structure.beam, structure.elements)}});
+  Json& json = results.values;
+  json["status"] = check.right ? "agrees" : "differs";
+  json["chi_square"] = check.chi_square;
+  for (const CheckedMode& mode : check.modes)
+    json["modes"].push_back({{"structure", check.structures[mode.structure].name},
+                             {"mode", mode.number},
+                             {"predicted_hz", mode.predicted_hz},
+                             {"identified_hz", mode.identified.frequency_hz},
+                             {"identified_standard_deviation_hz", mode.identified.frequency_deviation_hz},
+                             {"predicted_damping_ratio", mode.predicted_damping_ratio},
+                             {"damping_ratio", mode.identified.damping_ratio},
+                             {"damping_ratio_standard_deviation", mode.identified.damping_ratio_deviation},
+                             {"mac", mode.assurance},
+                             {"far", mode.far}});
+  for (const Candidate& c : check.candidates) {
+    Json candidate{{"name", c.name},
+                   {"unit", c.unit == "%" ? "1" : c.unit},
+                   {"plausible", {c.plausible_lower, c.plausible_upper}}};
+    json["candidates"].push_back(candidate);
+  }
+  for (const Explanation& e : check.single) json["single_changes"].push_back(model_check_values_of(check, e));
+  for (const Explanation& e : check.pairs) json["pairs"].push_back(model_check_values_of(check, e));
+  json["contradictions"] = check.contradictions;
+  json["conclusions"] = conclusions(check);
+  for (const CheckedStructure& structure : check.structures)
+    for (const std::string& warning : structure.warnings) json["record_warnings"].push_back(warning);
+}
+
+}  // namespace
+
+Results report(const ModelCheck& check) {
+  Results results;
+  results.command = "check";
+  fill(check, results);
+  results.heading("The model against the modes identified");
+  for (const CheckedStructure& structure : check.structures)
+    for (const std::string& warning : structure.warnings) results.paragraph(warning);
+  for (const std::string& sentence : check.contradictions) results.paragraph(sentence);
+  for (const CheckedMode& mode : check.modes)
+    if (mode.far)
+      results.paragraph(fmt::format(
+          "The identified mode at {:.4g} Hz is taken for {}, {:+.0f} % from its prediction, since none is "
+          "nearer.",
+          mode.identified.frequency_hz, label(check, mode),
+          100 * (mode.identified.frequency_hz / mode.predicted_hz - 1)));
+  results.table(mode_table(check));
+  if (!check.strays.empty()) {
+    std::string text;
+    for (const auto& [structure, mode] : check.strays)
+      text += fmt::format("{}{:.4g} Hz{}", text.empty() ? "" : ", ", mode.frequency_hz,
+                          check.structures.size() > 1 ? " of " + check.structures[structure].name : "");
+    results.paragraph("Identified modes without a predicted counterpart, left out: " + text +
+                      ". A neighbour of the beam, motion in another plane, or no mode at all.");
+  }
+  results.paragraph(
+      fmt::format("Each predicted frequency is trusted to {:.2g} % (one standard deviation, --model-error) "
+                  "beside what the "
+                  "record leaves open.",
+                  100 * check.settings.model_error));
+  results.heading("What would explain the difference");
+  for (const std::string& sentence : conclusions(check)) results.paragraph(sentence);
+  results.table(single_table(check));
+  if (!check.right && !check.pairs.empty()) results.table(pair_table(check));
+  results.table(effect_table(check));
+  results.figures.push_back(figure_of(check));
+  return results;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,15 @@
+// A model check as a user sees it.
+#pragma once
+
+#include "experiments/identify/model_check/model_check.hpp"
+#include "experiments/results/results.hpp"
+
+namespace beamid::experiments {
+
+/// Tables of modes, of what candidates do, of what explains; words, a figure, results.json.
+Results report(const ModelCheck& check);
+
+/// "Neither ... alone": what the data say about the candidates, a sentence each.
+std::vector<std::string> conclusions(const ModelCheck& check);
+
+}  // namespace beamid::experiments

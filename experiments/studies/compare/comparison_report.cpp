@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/config/channel_places.hpp"
+#include "experiments/config/description.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/record_inputs.hpp"
+#include "experiments/studies/compare/comparison_figures.hpp"
+#include "experiments/studies/compare/comparison_report.hpp"
+#include "experiments/studies/compare/comparison_words.hpp"
+#include "experiments/studies/identify/diagnostics_report.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index;
+using Json = nlohmann::ordered_json;
+
+double or_nan(const std::optional<double>& value) {
+  return value.value_or(std::nan(""));
+}
+
+Table run_table(const Comparison& comparison) {
+  Table table{"runs", ""};
+  table.column({"reduction", "reduction"})
+      .column({"filter", "filter"})
+      .column({"discretisation", "discretisation"})
+      .column({"r", "coordinates", "{:.0f}"})
+      .column({"O/F", "observed_per_freedom", "{:.3g}"})
+      .column({"f1 [Hz]", "frequency_hz", "{:.4f}"})
+      .column({"response error [%]", "response_error_percent", "{:.3g}"})
+      .column({"status", "status"});
+  for (const ComparedRun& run : comparison.runs) {
+    table.row({run.reduction, run.filter, run.discretisation, static_cast<double>(run.coordinates),
+               run.observed_per_freedom, or_nan(run.frequency_hz),
+               run.reproduced.size() > 0 ? run.response_error_percent : std::nan(""), to_string(run.status)});
+  }
+  table.note =
+      "r: coordinates of the model. O/F: observed histories per degree of freedom. Response error: "
+      "what the best motion of the model with these parameters leaves of the record.";
+  return table;
+}
+
+// One parameter over all runs.
+Table parameter_table(const Comparison& comparison, const std::string& name) {
+  Table table{"parameter_" + name, ""};
+  std::string unit;
+  std::optional<double> truth;
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters)
+      if (p.estimate.name == name) {
+        unit = p.estimate.unit;
+        truth = p.truth;
+      }
+  table.title = fmt::format("{}{}{}", name, unit.empty() ? "" : " [" + unit + "]",
+                            truth && std::isfinite(*truth) ? fmt::format(", truly {:.6g}", *truth) : "");
+  table.column({"run", "run"})
+      .column({"estimate", "estimate", "{:.6g}"})
+      .column({"95 % from", "lower_95", "{:.6g}"})
+      .column({"to", "upper_95", "{:.6g}"});
+  if (truth) table.column({"error [%]", "error_percent", "{:+.4g}"});
+  table.column({"deviation [%]", "deviation_percent", "{:.2g}"})
+      .column({"deviation / bound", "bound_ratio", "{:.3f}"});
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters)
+      if (p.estimate.name == name && run.status == ComparedRun::Status::converged) {
+        std::vector<Cell> row{name_of(comparison, run), p.estimate.value, p.estimate.lower_95,
+                              p.estimate.upper_95};
+        if (truth) row.emplace_back(or_nan(p.error_percent()));
+        row.insert(row.end(),
+                   {100.0 * p.estimate.deviation / std::abs(p.estimate.value), or_nan(p.bound_ratio())});
+        table.row(row);
+      }
+  return table;
+}
+
+std::vector<std::string> parameter_names(const Comparison& comparison) {
+  std::vector<std::string> names;
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters)
+      if (std::find(names.begin(), names.end(), p.estimate.name) == names.end())
+        names.push_back(p.estimate.name);
+  return names;
+}
+
+Json optional_number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json comparison_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
+  Json json{{"reduction", run.reduction},
+            {"filter", run.filter},
+            {"discretisation", run.discretisation},
+            {"status", to_string(run.status)}};
+  if (!run.reason.empty()) json["reason"] = run.reason;
+  if (!run.step_cause.empty()) json["step_cause"] = run.step_cause;
+  json["events"] = experiments::values(run.run.events);
+  if (run.diagnostics) json["diagnostics"] = experiments::values(*run.diagnostics, outputs);
+  json["coordinates"] = run.coordinates;
+  json["observed_per_freedom"] = run.observed_per_freedom;
+  json["parameters"] = Json::object();
+  for (const ComparedParameter& p : run.parameters)
+    json["parameters"][p.estimate.name] = {{"unit", p.estimate.unit},
+                                           {"estimate", p.estimate.value},
+                                           {"standard_deviation", p.estimate.deviation},
+                                           {"lower_95", p.estimate.lower_95},
+                                           {"upper_95", p.estimate.upper_95},
+                                           {"true_value", optional_number(p.truth)},
+                                           {"error_percent", optional_number(p.error_percent())},
+                                           {"bound", optional_number(p.bound)},
+                                           {"bound_ratio", optional_number(p.bound_ratio())}};
+  if (run.reproduced.size() == 0) return json;
+  json["response_error_percent"] = run.response_error_percent;
+  json["frequency_hz"] = optional_number(run.frequency_hz);
+  json["noise"] = std::vector<double>(run.noise.begin(), run.noise.end());
+  json["log_likelihood"] = run.run.log_likelihood;
+  json["mean_normalised_square"] = run.run.normalised_squares.mean();
+  json["remarks"] = run.remarks;
+  return json;
+}
+
+}  // namespace
+
+Results report(const Experiment& experiment, const Comparison& comparison) {
+  const Record& record = comparison.compared.record;
+  Results results;
+  results.command = "compare";
+  if (comparison.compared.truth) results.seed = comparison.compared.truth->simulation.seed;
+  results.configuration = describe(experiment);
+  results.configuration["model"] = experiment.model.name;
+  results.configuration["passes"] = experiment.passes;
+  if (comparison.compared.truth) results.configuration["truth"] = describe(*comparison.compared.truth);
+  results.values = {{"record", comparison.compared.name},
+                    {"samples", record.size()},
+                    {"sampling_rate_hz", 1.0 / record.interval()},
+                    {"channels", channel_values(record)},
+                    {"record_warnings", Json::array()},
+                    {"runs", Json::array()}};
+  const std::optional<RecordInputs> inputs = record_inputs(record);
+  if (inputs) results.values["inputs_between_samples"] = to_string(inputs->path);
+  for (const auto* list : {&record.warnings, &comparison.warnings})
+    for (const std::string& warning : *list) results.values["record_warnings"].push_back(warning);
+  std::vector<std::string> outputs;
+  for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
+  for (const ComparedRun& run : comparison.runs)
+    results.values["runs"].push_back(comparison_values(run, outputs));
+
+  results.heading(experiment.title.empty() ? "Reduced against continuum" : experiment.title);
+  for (const std::string& warning : record.warnings) results.paragraph(warning);
+  for (const std::string& warning : comparison.warnings) results.paragraph(warning);
+  results.paragraph(
+      fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} passes.{}",
+                  comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],
+                  1.0 / record.interval(), channels_text(record), experiment.model.name, experiment.passes,
+                  inputs ? " " + words(*inputs) : ""));
+  results.table(run_table(comparison));
+  for (const std::string& name : parameter_names(comparison))
+    results.table(parameter_table(comparison, name));
+  for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
+  add_notes(results, comparison.compared.notes);
+  results.figures = figures(comparison);
+  for (const ComparedRun& run : comparison.runs) {
+    const std::string name = fmt::format("{} {} {}", run.reduction, run.filter, run.discretisation);
+    results.timing.emplace_back(name + " filter", run.seconds);
+    results.timing.emplace_back(name + " reproduction_and_bound", run.response_seconds);
+  }
+  return results;
+}
+
+}  // namespace beamid::experiments

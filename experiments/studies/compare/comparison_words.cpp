@@ -1,0 +1,261 @@
+#include "experiments/studies/compare/comparison_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/studies/compare/comparison_figures.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// "bending_stiffness -2.72 % (interval +-0.01 %)", or how far from the reference where there is no truth.
+std::string parameter_text(const ComparedRun& run, const ComparedRun& reference, std::size_t j) {
+  const ComparedParameter& p = run.parameters[j];
+  const Estimate& e = p.estimate;
+  const double half = 100.0 * quantile_95 * e.deviation / std::abs(e.value);
+  if (const auto error = p.error_percent())
+    return fmt::format("{} {:+.3g} % (interval +-{:.2g} %)", e.name, *error, half);
+  const std::string text = fmt::format("{} {:.5g}{}{} (interval +-{:.2g} %)", e.name, e.value,
+                                       e.unit.empty() ? "" : " ", e.unit, half);
+  if (&run == &reference) return text;
+  const double other = reference.parameters[j].estimate.value;
+  return text + fmt::format(", {:+.3g} % from the reference", 100.0 * (e.value / other - 1.0));
+}
+
+std::string run_text(const Comparison& comparison, const ComparedRun& run, const ComparedRun& reference) {
+  const bool alone = comparison.runs.size() == 1;
+  std::string text = fmt::format("{}{} ({} coordinate{}): ", name_of(comparison, run),
+                                 &run == &reference && !alone ? ", the reference" : "", run.coordinates,
+                                 run.coordinates == 1 ? "" : "s");
+  for (std::size_t j = 0; j < run.parameters.size(); ++j)
+    text += (j ? "; " : "") + parameter_text(run, reference, j);
+  return text + fmt::format(". It leaves {:.3g} % of the record.", run.response_error_percent);
+}
+
+// Whether a run says anything of its model.
+bool is_sound(const ComparedRun& run) {
+  return run.status == ComparedRun::Status::converged && run.step_cause.empty();
+}
+
+// An error many times its own deviation is not noise: the model is at fault.
+std::string bias_text(const Comparison& comparison) {
+  constexpr double surely = 4.0;
+  std::string biased;
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters)
+      if (is_sound(run) && p.truth && std::abs(p.estimate.value - *p.truth) > surely * p.estimate.deviation)
+        biased += fmt::format("{}{} of {} ({:.0f} standard deviations)", biased.empty() ? "" : ", ",
+                              p.estimate.name, name_of(comparison, run),
+                              std::abs(p.estimate.value - *p.truth) / p.estimate.deviation);
+  if (biased.empty()) return {};
+  return "Outside their own intervals: " + biased +
+         ": an error of the model or of its discretisation, which no interval of a filter shows.";
+}
+
+// "modal_truncation" of "modal_truncation:modes=3".
+std::string method_of(const ComparedRun& run) {
+  return run.reduction.substr(0, run.reduction.find(':'));
+}
+
+// Whether a smaller model, otherwise identified alike, leaves less of the record: impossible on the right
+// branch where the larger one can move in all the shapes of the smaller, as of the same method, or as the
+// mesh.
+bool worse_than_smaller(const Comparison& comparison, const ComparedRun& run) {
+  constexpr double clearly = 1.25;
+  return std::any_of(comparison.runs.begin(), comparison.runs.end(), [&](const ComparedRun& smaller) {
+    const bool nested = run.reduction == "none" || method_of(smaller) == method_of(run);
+    return nested && smaller.status == ComparedRun::Status::converged &&
+           smaller.coordinates < run.coordinates && smaller.filter == run.filter &&
+           smaller.discretisation == run.discretisation &&
+           clearly * smaller.response_error_percent < run.response_error_percent;
+  });
+}
+
+// What a discretisation does by itself explains all else that is seen of its run.
+std::string step_text(const Comparison& comparison) {
+  std::string text;
+  for (const ComparedRun& run : comparison.runs)
+    if (!run.step_cause.empty())
+      text += fmt::format("{}{}: {}", text.empty() ? "" : " ", name_of(comparison, run), run.step_cause);
+  return text;
+}
+
+// A model that leaves much of the record is blind to some of its modes, or the filter has settled on a wrong
+// branch: both are told from each other by what a larger model leaves.
+std::string misfit_text(const Comparison& comparison) {
+  constexpr double much = 20.0;
+  std::string poor, wrong;
+  for (const ComparedRun& run : comparison.runs) {
+    if (!is_sound(run)) continue;
+    const bool worse = worse_than_smaller(comparison, run);
+    if (!worse && run.response_error_percent <= much) continue;
+    std::string& list = worse ? wrong : poor;
+    list += fmt::format("{}{} ({:.3g} %)", list.empty() ? "" : ", ", name_of(comparison, run),
+                        run.response_error_percent);
+  }
+  std::string text;
+  if (!poor.empty())
+    text = "Large residual: much of the record is left by " + poor +
+           ". The model lacks modes that the record has, or the filter has settled on a wrong answer. If a "
+           "larger "
+           "model leaves as much, start from nearer initial estimates or smaller deviations.";
+  if (!wrong.empty())
+    text += (text.empty() ? "" : " ") + std::string("More of the record than a smaller model is left by ") +
+            wrong +
+            ": the filter has settled on a wrong answer. Start from nearer initial estimates or smaller "
+            "deviations.";
+  return text;
+}
+
+// Why a deviation is smaller than the record allows.
+std::string why_surer(const Comparison& comparison, const ComparedRun& run) {
+  constexpr double clearly = 0.8;
+  if (run.filter.starts_with("particle"))
+    return "its particles have collapsed onto a few values, so that neither estimate nor deviation counts: "
+           "use "
+           "a filter of the Kalman family";
+  if (run.remarks.size() > run.run.remarks.size()) return "its estimate has not settled";
+  if (comparison.compared.sensor_noise.size() > 0)
+    for (Eigen::Index i = 0; i < run.noise.size(); ++i)
+      if (run.noise[i] < clearly * run.noise_left[i])
+        return fmt::format("[noise] assumes {:.2g} of what the motion leaves of the record",
+                           run.noise[i] / run.noise_left[i]);
+  return "the filter was linearised too far from its estimate: filter more often ([compare] passes), or "
+         "start "
+         "from nearer initial estimates";
+}
+
+// A deviation below the bound, by more than what was known beforehand explains.
+std::string surer_text(const Comparison& comparison) {
+  constexpr double clearly = 0.8;
+  std::string text;
+  for (const ComparedRun& run : comparison.runs) {
+    std::string surer;
+    for (const ComparedParameter& p : run.parameters) {
+      if (!is_sound(run) || !p.bound) continue;
+      const double least = 1.0 / std::hypot(1.0 / *p.bound, 1.0 / p.estimate.prior_deviation);
+      if (p.estimate.deviation < clearly * least)
+        surer += fmt::format("{}{} {:.2g}", surer.empty() ? "" : ", ", p.estimate.name,
+                             p.estimate.deviation / least);
+    }
+    if (!surer.empty())
+      text +=
+          fmt::format("{}Overconfident: standard deviations of {}, as parts of the Cramer-Rao bound: {}; {}.",
+                      text.empty() ? "" : " ", name_of(comparison, run), surer, why_surer(comparison, run));
+  }
+  return text;
+}
+
+// What runs say of themselves beyond the remarks of their filters.
+std::string own_remarks(const Comparison& comparison) {
+  std::string text;
+  for (const ComparedRun& run : comparison.runs)
+    for (std::size_t i = run.run.remarks.size(); i < run.remarks.size(); ++i)
+      text += fmt::format("{}{}: {}", text.empty() ? "" : " ", name_of(comparison, run), run.remarks[i]);
+  return text;
+}
+
+// By the work of a step: linearised once, several times, or many points moved.
+int cost_rank(const ComparedRun& run) {
+  const std::string name = run.filter.substr(0, run.filter.find(':'));
+  int rank = 6;
+  for (const char* const kind : {"particle", "enkf", "ukf", "ckf", "iekf", "ekf"}) {
+    if (name.find(kind) != std::string::npos) return rank;
+    --rank;
+  }
+  return rank;
+}
+
+/// Largest difference of a parameter, in the deviations of the first run.
+double apart(const ComparedRun& one, const ComparedRun& other) {
+  double largest = 0.0;
+  for (std::size_t j = 0; j < one.parameters.size(); ++j)
+    largest =
+        std::max(largest, std::abs(one.parameters[j].estimate.value - other.parameters[j].estimate.value) /
+                              one.parameters[j].estimate.deviation);
+  return largest;
+}
+
+// Filters that answer alike on the same model need not all be run.
+std::string agreement_text(const Comparison& comparison) {
+  constexpr double alike = 0.2;
+  std::string text;
+  for (const ComparedRun& run : comparison.runs) {
+    std::string others;
+    double largest = 0.0;
+    for (const ComparedRun& other : comparison.runs)
+      if (is_sound(run) && is_sound(other) && other.reduction == run.reduction &&
+          other.discretisation == run.discretisation && other.parameters.size() == run.parameters.size() &&
+          cost_rank(other) > cost_rank(run) && apart(run, other) < alike) {
+        others += (others.empty() ? "" : ", ") + other.filter;
+        largest = std::max(largest, apart(run, other));
+      }
+    if (others.empty()) continue;
+    const std::string filter = run.filter;
+    text += fmt::format(
+        "{}{}: {} agrees with {} within {:.1g} standard deviations and is the cheaper one: it is enough "
+        "here.",
+        text.empty() ? "" : " ", name_of(comparison, run), filter, others, std::max(largest, 0.01));
+  }
+  return text;
+}
+
+// How far the best model is from a sensor's own noise, where that is known.
+std::string excess_text(const Comparison& comparison, const ComparedRun& reference) {
+  constexpr double far = 2.0;
+  const Eigen::VectorXd& sensors = comparison.compared.sensor_noise;
+  double excess = 0.0;
+  const std::vector<Eigen::Index> channels = output_channels(comparison.compared.record);
+  for (std::size_t i = 0; i < channels.size() && sensors.size() > 0; ++i)
+    if (const double own = sensors[channels[i]]; own > 0.0)
+      excess = std::max(excess, reference.noise[static_cast<Eigen::Index>(i)] / own);
+  if (excess < far) return {};
+  return fmt::format(
+      "Even the reference leaves {:.3g} times the noise of a sensor: there is motion in the record "
+      "that no model of this comparison has, or the reference is wrong.",
+      excess);
+}
+
+}  // namespace
+
+const ComparedRun* reference_run(const Comparison& comparison) {
+  const ComparedRun* best = nullptr;
+  for (const ComparedRun& run : comparison.runs) {
+    if (run.status != ComparedRun::Status::converged) continue;
+    const bool whole = run.reduction == "none";
+    if (!best || (whole && best->reduction != "none") ||
+        (whole == (best->reduction == "none") && run.coordinates > best->coordinates))
+      best = &run;
+  }
+  return best;
+}
+
+std::vector<std::string> words(const Comparison& comparison) {
+  const ComparedRun* reference = reference_run(comparison);
+  std::vector<std::string> paragraphs;
+  if (reference)
+    paragraphs.push_back(run_text(comparison, *reference, *reference));
+  else
+    paragraphs.push_back("No run converged.");
+  for (const ComparedRun& run : comparison.runs) {
+    if (&run == reference) continue;
+    if (run.status != ComparedRun::Status::converged)
+      paragraphs.push_back(
+          fmt::format("{}: {}, {}.", name_of(comparison, run), to_string(run.status), run.reason));
+    else if (run.parameters.size() == reference->parameters.size())
+      paragraphs.push_back(run_text(comparison, run, *reference));
+  }
+  std::vector<std::string> remarks{step_text(comparison)};
+  if (reference)
+    remarks.insert(remarks.end(), {bias_text(comparison), misfit_text(comparison), surer_text(comparison),
+                                   own_remarks(comparison), excess_text(comparison, *reference),
+                                   agreement_text(comparison)});
+  for (const std::string& text : remarks)
+    if (!text.empty()) paragraphs.push_back(text);
+  return paragraphs;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,192 @@
+#include "experiments/studies/continuum/frequency_responses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "fem/modes.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXcd, Eigen::VectorXd;
+using ResponseKind = FrequencyResponseSettings::Kind;
+
+// Laws of ratios have no sparse matrix, and no direct form.
+std::string method_for(const fem::DampingLaw& law) {
+  const auto* caughey = std::get_if<fem::CaugheyDamping>(&law);
+  const bool full =
+      std::holds_alternative<fem::ModalDamping>(law) || (caughey && caughey->anchors.size() > 2);
+  return full ? "modal" : "direct";
+}
+
+bool is_damped(const fem::DampingLaw& law, const fem::StructuralSystem& system,
+               const VectorXd& frequency_hz) {
+  if (system.damping.nonZeros() > 0) return true;
+  const VectorXd ratios = fem::damping_ratios(law, 2.0 * std::numbers::pi * frequency_hz);
+  return (ratios.array() > 0.0).any();
+}
+
+VectorXd grid(const FrequencyResponseSettings& settings, const VectorXd& natural, Index rigid) {
+  const double first = natural[std::min(rigid, natural.size() - 1)];
+  const double third = natural[std::min(rigid + 2, natural.size() - 1)];
+  const double from =
+      settings.from_hz.value_or(std::min(first / 5.0, settings.to_hz.value_or(INFINITY) / 5.0));
+  const double to = settings.to_hz.value_or(std::max(1.2 * third, 5.0 * from));
+  const double last = settings.points - 1;
+  return VectorXd::NullaryExpr(settings.points, [&](Index i) {
+    const double part = static_cast<double>(i) / last;
+    if (part == 1.0) return to;
+    return settings.logarithmic ? from * std::pow(to / from, part) : from + part * (to - from);
+  });
+}
+
+class Solver {
+ public:
+  Solver(const Experiment& experiment, const fem::StructuralSystem& system,
+         const fem::FrequencyResponseMethod& method)
+      : damping_(experiment.damping),
+        kind_(experiment.frequency_response.kind),
+        system_(system),
+        method_(method) {}
+
+  Eigen::MatrixXcd operator()(const VectorXd& frequency_hz,
+                              const std::vector<fem::InputOutput>& pairs) const {
+    Eigen::MatrixXcd all = fem::receptances(system_, damping_, frequency_hz, pairs, method_);
+    for (Index i = 0; i < all.cols(); ++i) {
+      if (kind_ == ResponseKind::mobility) all.col(i) = fem::mobility(frequency_hz, all.col(i)).eval();
+      if (kind_ == ResponseKind::accelerance) all.col(i) = fem::accelerance(frequency_hz, all.col(i)).eval();
+    }
+    return all;
+  }
+
+  // Between two frequencies, by closing in on the extremum among nine in between.
+  Extremum refined(double from, double to, bool largest, const fem::InputOutput& pair) const {
+    constexpr int rounds = 7, inside = 9;
+    Extremum found;
+    for (int round = 0; round < rounds; ++round) {
+      const VectorXd frequency = VectorXd::LinSpaced(inside + 2, from, to).segment(1, inside);
+      const VectorXcd response = (*this)(frequency, {pair}).col(0);
+      Index at = 0;
+      largest ? response.cwiseAbs().maxCoeff(&at) : response.cwiseAbs().minCoeff(&at);
+      found.frequency_hz = frequency[at];
+      found.response = response[at];
+      const double step = (to - from) / (inside + 1);
+      from = frequency[at] - step;
+      to = frequency[at] + step;
+    }
+    if (!largest) found.kind = Extremum::Kind::minimum;
+    return found;
+  }
+
+  /// Displacement per force, of any kind of response.
+  std::complex<double> receptance(double frequency_hz, std::complex<double> response) const {
+    const std::complex<double> rate(0.0, 2.0 * std::numbers::pi * frequency_hz);
+    return kind_ == ResponseKind::receptance ? response
+           : kind_ == ResponseKind::mobility ? response / rate
+                                             : response / (rate * rate);
+  }
+
+ private:
+  const fem::DampingLaw& damping_;
+  ResponseKind kind_;
+  const fem::StructuralSystem& system_;
+  const fem::FrequencyResponseMethod& method_;
+};
+
+// Which minima are anti-resonances: those where the response has turned its sign by the next resonance. Below
+// a resonance of residue r the receptance has the sign of r, at it -i r, above it -r.
+void tell_anti_resonances(const FrequencyResponses& all, const PairResponse& pair, const Solver& solver,
+                          std::vector<Extremum>& extrema) {
+  const Index last = all.frequency_hz.size() - 1;
+  const auto residue = [&](const Extremum& e) {
+    return -solver.receptance(e.frequency_hz, e.response).imag();
+  };
+  const auto in_phase = [&](Index i) {
+    return solver.receptance(all.frequency_hz[i], pair.response[i]).real();
+  };
+  for (std::size_t i = 0; i < extrema.size(); ++i) {
+    if (extrema[i].kind != Extremum::Kind::minimum) continue;
+    const double before = i > 0 ? -residue(extrema[i - 1]) : in_phase(0);
+    const double after = i + 1 < extrema.size() ? residue(extrema[i + 1]) : in_phase(last);
+    if (before * after < 0.0) extrema[i].kind = Extremum::Kind::anti_resonance;
+  }
+}
+
+std::vector<Extremum> extrema(const FrequencyResponses& all, const PairResponse& pair, const Solver& solver,
+                              const fem::InputOutput& numbers, bool damped) {
+  std::vector<Extremum> found;
+  const VectorXd size = pair.response.cwiseAbs();
+  const VectorXd& f = all.frequency_hz;
+  for (Index i = 1; i + 1 < size.size(); ++i) {
+    const bool largest = size[i] > size[i - 1] && size[i] >= size[i + 1];
+    const bool smallest = size[i] < size[i - 1] && size[i] <= size[i + 1];
+    if (smallest || (largest && damped))
+      found.push_back(solver.refined(f[i - 1], f[i + 1], largest, numbers));
+    const bool turns = (pair.response[i - 1] * std::conj(pair.response[i + 1])).real() < 0.0;
+    if (smallest && turns) found.back().kind = Extremum::Kind::anti_resonance;
+    if (!largest || damped) continue;
+    // The response is infinite at the natural frequency itself.
+    for (const double natural : all.natural_frequencies_hz)
+      if (f[i - 1] <= natural && natural <= f[i + 1])
+        found.push_back({Extremum::Kind::resonance, natural, std::numeric_limits<double>::infinity()});
+  }
+  if (damped) tell_anti_resonances(all, pair, solver, found);
+  return found;
+}
+
+}  // namespace
+
+const char* to_string(Extremum::Kind kind) {
+  return kind == Extremum::Kind::resonance        ? "resonance"
+         : kind == Extremum::Kind::anti_resonance ? "anti-resonance"
+                                                  : "minimum";
+}
+
+FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Progress& progress) {
+  constexpr Index most_natural = 200;
+  const FrequencyResponseSettings& settings = experiment.frequency_response;
+  FrequencyResponses all;
+  BeamPoints points(experiment.beam);
+  std::vector<fem::InputOutput> numbers;
+  for (const PointPair& pair : settings.pairs.empty() ? std::vector<PointPair>(1) : settings.pairs) {
+    const Index input = points.add(pair.input);
+    numbers.push_back({input, points.add(pair.output)});
+  }
+  progress("assembling");
+  all.system = fem::assemble(experiment.beam, experiment.elements, points.all());
+  progress("modes");
+  fem::Modes modes = fem::modes(all.system, std::min<Index>(20, all.system.size()));
+  const Index rigid = modes.rigid;
+  all.frequency_hz = grid(settings, modes.frequency_hz(), rigid);
+  const double end = all.frequency_hz[all.frequency_hz.size() - 1];
+  if (modes.frequency_hz().maxCoeff() < end && modes.size() < std::min(most_natural, all.system.size()))
+    modes = fem::modes(all.system, std::min(most_natural, all.system.size()));
+  const VectorXd natural = modes.frequency_hz();
+  all.natural_frequencies_hz = natural.head((natural.array() <= end).count());
+
+  all.method = settings.method;
+  if (all.method.name.empty()) all.method.name = method_for(experiment.damping);
+  progress("frequency responses");
+  const Solver solver(experiment, all.system, all.method);
+  const Eigen::MatrixXcd responses = solver(all.frequency_hz, numbers);
+  const bool damped = is_damped(experiment.damping, all.system, natural.tail(natural.size() - rigid));
+  if (!damped) all.notes.emplace_back("Without damping resonances are infinite, at the natural frequencies.");
+  progress("resonances");
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const fem::Point &input = points[numbers[i].input], &output = points[numbers[i].output];
+    PairResponse pair{input,
+                      output,
+                      input.name == output.name ? input.name : input.name + " to " + output.name,
+                      responses.col(static_cast<Index>(i)),
+                      {}};
+    pair.extrema = extrema(all, pair, solver, numbers[i], damped);
+    all.pairs.push_back(std::move(pair));
+  }
+  return all;
+}
+
+}  // namespace beamid::experiments

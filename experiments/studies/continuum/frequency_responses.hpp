@@ -1,0 +1,47 @@
+// Frequency responses between points of a beam, with their resonances and anti-resonances.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "experiments/config/experiment.hpp"
+#include "experiments/models/beam_points.hpp"
+#include "experiments/text/progress.hpp"
+#include "fem/assembly.hpp"
+
+namespace beamid::experiments {
+
+/// A largest or smallest magnitude between two of the grid's frequencies, refined.
+struct Extremum {
+  /// An anti-resonance turns the sign of the response; a minimum does not.
+  enum class Kind { resonance, anti_resonance, minimum };
+  Kind kind = Kind::resonance;
+  double frequency_hz = 0.0;
+  std::complex<double> response;  ///< infinite at a resonance without damping
+};
+
+const char* to_string(Extremum::Kind kind);
+
+struct PairResponse {
+  fem::Point input, output;
+  std::string name;               ///< "tip", "tip_root": input, output
+  Eigen::VectorXcd response;      ///< at the grid's frequencies, of the kind asked for
+  std::vector<Extremum> extrema;  ///< frequencies ascending
+};
+
+struct FrequencyResponses {
+  fem::StructuralSystem system;
+  Eigen::VectorXd frequency_hz;            ///< the grid
+  Eigen::VectorXd natural_frequencies_hz;  ///< of the undamped modes up to the grid's end, 200 at most
+  fem::FrequencyResponseMethod method;     ///< as used
+  std::vector<PairResponse> pairs;
+  std::vector<std::string> notes;
+};
+
+/// @throws std::invalid_argument when a point cannot move or the method cannot treat the damping;
+/// std::runtime_error where an undamped structure resonates at a frequency asked for.
+FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Progress& progress);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,218 @@
+#include "experiments/studies/continuum/simulation_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/config/channel_places.hpp"
+#include "experiments/config/description.hpp"
+#include "experiments/record/column_name.hpp"
+#include "experiments/record/record_places.hpp"
+#include "experiments/record/units.hpp"
+#include "experiments/record/write_record.hpp"
+#include "experiments/results/file.hpp"
+#include "experiments/results/vtk/field_history.hpp"
+#include "experiments/signal/amplitude_spectrum.hpp"
+#include "experiments/signal/spectrum.hpp"
+#include "experiments/studies/continuum/acquisition_text.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+using Json = nlohmann::ordered_json;
+
+/// What one channel of the record shows.
+struct HistoryPeak {
+  double value = 0.0, time = 0.0, root_mean_square = 0.0, frequency_hz = std::nan("");
+};
+
+HistoryPeak peak_of(const SimulatedTest& test, Index channel) {
+  const Record& record = test.record;
+  const VectorXd signal = record.samples.row(channel);
+  Index at = 0;
+  HistoryPeak peak;
+  peak.value = signal.cwiseAbs().maxCoeff(&at);
+  peak.time = record.time[at];
+  peak.root_mean_square = std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
+  if (test.acquisition.even() && signal.size() >= 16 && signal.maxCoeff() > signal.minCoeff())
+    peak.frequency_hz = strongest_frequency(signal, record.interval());
+  return peak;
+}
+
+Table sensor_table(const SimulatedTest& test) {
+  Table table{"sensors", ""};
+  table.column({"sensor", "sensor"})
+      .column({"quantity", "quantity"})
+      .column({"at [m]", "position_m", "{:g}"})
+      .column({"unit", "unit"})
+      .column({"peak", "peak", "{:.6g}"})
+      .column({"at [s]", "time_of_peak_s", "{:g}"})
+      .column({"rms", "root_mean_square", "{:.6g}"})
+      .column({"strongest f [Hz]", "strongest_frequency_hz", "{:.6g}"})
+      .column({"noise", "noise", "{:g}"});
+  for (std::size_t i = 0; i < test.sensors.size(); ++i) {
+    const Sensor& sensor = test.sensors[i];
+    const HistoryPeak peak = peak_of(test, static_cast<Index>(i));
+    table.row({sensor.name, to_string(sensor.quantity), *sensor.position, si_unit(sensor.quantity),
+               peak.value, peak.time, peak.root_mean_square, peak.frequency_hz, sensor.noise});
+  }
+  return table;
+}
+
+std::string excitation_text(const SimulatedTest& test) {
+  using Kind = Excitation::Kind;
+  const Excitation& e = test.excitation;
+  const std::string where = fmt::format("at {:g} m", *e.position);
+  switch (e.kind) {
+    case Kind::release:
+      return fmt::format(
+          "{} a static deflection of {:g} m {}.",
+          e.duration > 0.0 ? fmt::format("Let go within {:g} s from", e.duration) : "Released from",
+          e.deflection.value_or(0.012), where);
+    case Kind::free:
+      return fmt::format("Set free with {:g} m and {:g} m/s {}, in {}.", e.deflection.value_or(0.0),
+                         e.velocity, where, e.mode ? fmt::format("mode {}", *e.mode) : "the static shape");
+    case Kind::step:
+      return fmt::format("A force of {:g} N {} from t = 0 on.", e.force, where);
+    case Kind::impulse:
+      return fmt::format(
+          "An impulse of {:g} N s {}, {}.", e.momentum, where,
+          e.duration > 0.0 ? fmt::format("half a sine of {:g} s", e.duration) : "in an instant");
+    case Kind::harmonic:
+      return fmt::format("A force of {:g} N at {:g} Hz {}.", e.amplitude, e.frequency_hz, where);
+    case Kind::table:
+      return fmt::format("The force of {} {}.", *e.file, where);
+    case Kind::base:
+      break;
+  }
+  return e.file ? fmt::format("The base accelerated as in {}.", *e.file)
+                : fmt::format("The base accelerated by {:g} m/s2 at {:g} Hz.", e.amplitude, e.frequency_hz);
+}
+
+Json describe_excitation(const Excitation& e) {
+  using Kind = Excitation::Kind;
+  Json json{{"kind", to_string(e.kind)}};
+  if (e.kind != Kind::base) json["position_m"] = *e.position;
+  if (e.kind == Kind::release) json["deflection_m"] = e.deflection.value_or(0.012);
+  if (e.kind == Kind::release && e.duration > 0.0) json["duration_s"] = e.duration;
+  if (e.kind == Kind::free) {
+    json["deflection_m"] = e.deflection.value_or(0.0);
+    json["velocity_m_per_s"] = e.velocity;
+    if (e.mode) json["mode"] = *e.mode;
+  }
+  if (e.kind == Kind::step) json["force_n"] = e.force;
+  if (e.kind == Kind::impulse) json.update({{"momentum_n_s", e.momentum}, {"duration_s", e.duration}});
+  if (e.file) json["file"] = *e.file;
+  if (!e.file && (e.kind == Kind::harmonic || e.kind == Kind::base)) {
+    json[e.kind == Kind::base ? "amplitude_m_per_s2" : "amplitude_n"] = e.amplitude;
+    json["frequency_hz"] = e.frequency_hz;
+  }
+  return json;
+}
+
+Json simulation_values(const Experiment& experiment, const SimulatedTest& test) {
+  const Simulation& settings = experiment.simulation;
+  Json json{{"samples", test.record.size()},
+            {"sampling_rate_hz", settings.sampling_rate},
+            {"duration_s", test.record.time[test.record.size() - 1]},
+            {"method", settings.method.name},
+            {"steps", test.response.time.size() - 1},
+            {"time_step_s", test.step},
+            {"elements", test.system.mesh.elements.size()},
+            {"degrees_of_freedom", test.system.size()},
+            {"frames", test.response.frames.size()},
+            {"sensors", Json::array()},
+            {"channels", channel_values(test.record)}};
+  const std::vector<std::string> columns = column_names(test.record);
+  for (std::size_t i = 0; i < test.sensors.size(); ++i) {
+    const Sensor& sensor = test.sensors[i];
+    const std::string unit = "_" + units(sensor.quantity).front().suffix;
+    const HistoryPeak peak = peak_of(test, static_cast<Index>(i));
+    json["sensors"].push_back({{"name", sensor.name},
+                               {"column", columns[i + 1]},
+                               {"quantity", to_string(sensor.quantity)},
+                               {"position_m", *sensor.position},
+                               {"noise" + unit, sensor.noise},
+                               {"peak" + unit, peak.value},
+                               {"time_of_peak_s", peak.time},
+                               {"root_mean_square" + unit, peak.root_mean_square},
+                               {"strongest_frequency_hz", number_or_null(peak.frequency_hz)}});
+  }
+  return json;
+}
+
+// History above, spectrum below.
+Figure sensor_figure(const SimulatedTest& test, std::size_t i, const std::string& name) {
+  const Sensor& sensor = test.sensors[i];
+  const VectorXd signal = test.record.samples.row(static_cast<Index>(i));
+  const std::string label = fmt::format("{} [{}]", to_string(sensor.quantity), si_unit(sensor.quantity));
+  Figure figure{name, {}, 2, 1};
+  Panel history{sensor.name, {"time [s]"}, {label}, {}, Legend::none};
+  history.curves = {{"", test.record.time, signal}};
+  Panel spectrum{"",
+                 {"frequency [Hz]"},
+                 {"amplitude [" + std::string(si_unit(sensor.quantity)) + "]", true},
+                 {},
+                 Legend::none};
+  const AmplitudeSpectrum found = amplitude_spectrum(signal, test.record.interval());
+  const double highest = found.amplitude.maxCoeff();
+  const VectorXd shown = (found.amplitude.array() > 1e-8 * highest).select(found.amplitude, std::nan(""));
+  spectrum.curves = {{"", found.frequency_hz, shown}};
+  figure.panels = {history};
+  if (highest > 0.0 && test.acquisition.even())
+    figure.panels.push_back(spectrum);
+  else
+    figure.rows = 1;
+  return figure;
+}
+
+}  // namespace
+
+Results report(const Experiment& experiment, const std::shared_ptr<const SimulatedTest>& test, bool surface) {
+  const Simulation& settings = experiment.simulation;
+  Results results;
+  results.command = "simulate";
+  results.seed = settings.seed;
+  results.configuration = describe(experiment);
+  results.configuration["excitation"] = describe_excitation(test->excitation);
+  results.configuration["simulation"] = {{"method", settings.method.name},
+                                         {"duration_s", settings.duration},
+                                         {"sampling_rate_hz", settings.sampling_rate},
+                                         {"steps_per_sample", settings.steps_per_sample}};
+  for (const auto& [option, value] : test->method.options)
+    results.configuration["simulation"][option] = value;
+  describe(test->acquisition, results.configuration);
+  results.values = simulation_values(experiment, *test);
+  results.heading(experiment.title.empty() ? "Simulated response" : experiment.title);
+  results.paragraph(
+      beam_text(experiment.beam, static_cast<int>(test->system.mesh.elements.size()), test->system.size()));
+  results.paragraph(fmt::format("{} Damping: {}. Method {}: {} steps of {:g} s; {} samples at {:g} Hz.",
+                                excitation_text(*test), fem::name(experiment.damping), settings.method.name,
+                                test->response.time.size() - 1, test->step, test->record.size(),
+                                settings.sampling_rate));
+  results.table(sensor_table(*test));
+  if (const std::string text = acquisition_text(*test); !text.empty()) results.paragraph(text);
+  if (test->record.channels.size() > test->sensors.size())
+    results.paragraph("The record holds the force, too: " + channel_text(test->record.channels.back()) + ".");
+  add_notes(results, test->notes);
+
+  results.attachments.push_back({{"record.csv", "record.toml"}, [test](const std::filesystem::path& folder) {
+                                   write_record(test->record, folder / "record.csv");
+                                   write_file(folder / "record.toml",
+                                              places_text(test->record, "record.csv"));
+                                 }});
+  const std::vector<std::string> columns = column_names(test->record);
+  for (std::size_t i = 0; i < test->sensors.size(); ++i)
+    results.figures.push_back(sensor_figure(*test, i, columns[i + 1]));
+  if (!test->response.frames.empty())
+    results.attachments.push_back(
+        {field_history_files(static_cast<Index>(test->response.frames.size())),
+         [test, beam = experiment.beam, surface](const std::filesystem::path& folder) {
+           write_field_history(folder, Picture(beam, test->system, surface), test->response);
+         }});
+  return results;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,31 @@
+// Whether one damping law holds in several records.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/identify/damping_law/damping_law.hpp"
+#include "experiments/studies/damping/report.hpp"
+
+namespace beamid::experiments {
+
+struct StudiedRecord {
+  std::string name;
+  Record record;
+  DampingLawStudy study;
+};
+
+/// The law that one record supports against the sections of another, at amplitudes that both show.
+struct ComparedLaw {
+  std::size_t law = 0, sections = 0;  ///< records
+  LawMisfit misfit;                   ///< not tested where they have no amplitude in common
+};
+
+/// Every record's law against every other record's sections. Both records' noise counts: the variance of a
+/// section is its own and that of a section of the law's record at the same amplitude.
+std::vector<ComparedLaw> compared_laws(const std::vector<StudiedRecord>& records);
+
+/// Tables, words and results.json keys of `beamid identify A B ... --damping-law`.
+Results report(const Experiment& experiment, const std::vector<StudiedRecord>& records);
+
+}  // namespace beamid::experiments

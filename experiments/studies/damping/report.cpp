@@ -1,0 +1,289 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/config/description.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/record_inputs.hpp"
+#include "experiments/studies/damping/report.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+using Json = nlohmann::ordered_json;
+
+const char* title_of(const std::string& law) {
+  return law == "viscous"     ? "viscous"
+         : law == "coulomb"   ? "viscous and Coulomb"
+         : law == "quadratic" ? "viscous and quadratic"
+                              : "viscous, Coulomb and quadratic";
+}
+
+// How large a difference of BIC is, in the words of [kass1995].
+const char* strength(double difference) {
+  return difference > 10.0  ? "very strong"
+         : difference > 6.0 ? "strong"
+         : difference > 2.0 ? "positive"
+                            : "hardly any";
+}
+
+double least_bic(const DampingLawStudy& study) {
+  double least = study.supported().bic;
+  for (const FittedLaw& law : study.laws)
+    if (law.possible) least = std::min(least, law.bic);
+  return least;
+}
+
+Table law_table(const DampingLawStudy& study) {
+  Table table{"damping_laws", "Damping laws"};
+  table.column({"law", "law"})
+      .column({"unknowns", "unknowns", "{:.0f}"})
+      .column({"log-likelihood", "log_likelihood", "{:.2f}"})
+      .column({"AIC above the least", "aic_above", "{:.2f}"})
+      .column({"BIC above the least", "bic_above", "{:.2f}"})
+      .column({"remark", "remark"});
+  const double bic = least_bic(study);
+  double aic = study.supported().aic;
+  for (const FittedLaw& law : study.laws)
+    if (law.possible) aic = std::min(aic, law.aic);
+  for (const FittedLaw& law : study.laws) {
+    const std::string remark = &law == &study.supported() ? (study.named ? "as asked" : "supported")
+                               : law.possible             ? ""
+                                                          : law.reason;
+    table.row({title_of(law.name), static_cast<double>(law.unknowns), law.log_likelihood, law.aic - aic,
+               law.bic - bic, remark});
+  }
+  table.note =
+      "All laws have a cubic spring beside the linear one, and the same noise. Least: among the laws that "
+      "are "
+      "possible.";
+  return table;
+}
+
+Table estimate_table(const DampingLawStudy& study) {
+  Table table{"damping_law_parameters", "Parameters"};
+  table.column({"law", "law"})
+      .column({"parameter", "parameter"})
+      .column({"unit", "unit"})
+      .column({"estimate", "estimate", "{:.5g}"})
+      .column({"95 % from", "lower_95", "{:.5g}"})
+      .column({"to", "upper_95", "{:.5g}"});
+  for (const FittedLaw& law : study.laws)
+    for (const Estimate& e : law.estimates)
+      table.row({law.name, e.name, e.unit, e.value, e.lower_95, e.upper_95});
+  table.note = fmt::format(
+      "Forces and stiffnesses are those of one coordinate of mass {:.4f} kg at the first sensor; a mass "
+      "wrong "
+      "by 1 % makes them wrong by 1 %.",
+      study.supported().model.equivalent_mass);
+  return table;
+}
+
+Table amplitude_table(const DampingLawStudy& study) {
+  Table table{"damping_by_amplitude", "Frequency and damping ratio by amplitude"};
+  table.column({"amplitude [mm]", "amplitude_mm", "{:.4g}"});
+  for (const FittedLaw& law : study.laws)
+    if (law.state.size() > 0) table.column({"ratio, " + law.name, "damping_ratio_" + law.name, "{:.5f}"});
+  table.column({"frequency [Hz]", "frequency_hz", "{:.4f}"});
+  const double ratio = study.last_amplitude / study.first_amplitude;
+  for (int i = 0; i <= 4; ++i) {
+    const double a = study.first_amplitude * std::pow(ratio, 0.25 * i);
+    std::vector<Cell> row{1e3 * a};
+    for (const FittedLaw& law : study.laws)
+      if (law.state.size() > 0) row.emplace_back(law.damping_ratio(a));
+    row.emplace_back(study.supported().frequency_hz(a));
+    table.row(row);
+  }
+  table.note =
+      fmt::format("Of the viscous damping that dissipates as much in a cycle. Frequency by the law {}.",
+                  study.supported().name);
+  return table;
+}
+
+std::string verdict(const DampingLawStudy& study) {
+  const FittedLaw& best = study.supported();
+  if (study.named)
+    return fmt::format("As asked: {} damping{}.", title_of(best.name),
+                       best.possible ? "" : ", which this record does not support: " + best.reason);
+  if (!best.possible) return "The record determines none of the laws: " + best.reason + ".";
+  double second = std::nan("");
+  std::string other;
+  for (const FittedLaw& law : study.laws)
+    if (&law != &best && law.possible && !(law.bic - best.bic > second)) {
+      second = law.bic - best.bic;
+      other = title_of(law.name);
+    }
+  constexpr double hardly = 2.0;  // of BIC
+  std::string text =
+      fmt::format("The record {} {} damping", second < hardly ? "leans to" : "supports", title_of(best.name));
+  if (std::isfinite(second))
+    text +=
+        fmt::format(": {} evidence against {}, whose BIC is {:.1f} higher", strength(second), other, second);
+  text += ".";
+  for (const FittedLaw& law : study.laws) {
+    if (law.possible || law.state.size() == 0 || law.bic > best.bic - hardly) continue;
+    text += fmt::format(
+        " Likelier, but impossible, is {} damping (BIC {:.1f} lower; {}): the true law is none of these, and "
+        "the estimates are those of the nearest.",
+        title_of(law.name), best.bic - law.bic, law.reason);
+    break;
+  }
+  if (best.name == "viscous")
+    text += " Neither friction nor quadratic damping makes the record likely enough to pay for itself.";
+  text += fmt::format(
+      " From {:.3g} to {:.3g} mm the damping ratio goes from {:.5f} to {:.5f} and the frequency from {:.4f} "
+      "to {:.4f} Hz.",
+      1e3 * study.first_amplitude, 1e3 * study.last_amplitude, best.damping_ratio(study.first_amplitude),
+      best.damping_ratio(study.last_amplitude), best.frequency_hz(study.first_amplitude),
+      best.frequency_hz(study.last_amplitude));
+  return text;
+}
+
+// Whether the best of the laws is good enough.
+std::string fit_words(const DampingLawStudy& study) {
+  const LawMisfit& misfit = study.misfit;
+  if (!misfit.tested)
+    return fmt::format(
+        "Whether any of these laws fits cannot be tested: {} section{} of the decay that share no sample, "
+        "too "
+        "few for a law of {} unknowns.",
+        misfit.sections, misfit.sections == 1 ? "" : "s", study.supported().model.unknowns.size());
+  const std::string size = fmt::format(
+      "chi^2 {:.3g} of {} degrees of freedom in {} sections of the decay, the damping ratio "
+      "{:+.2g} % off at {:.3g} mm",
+      misfit.chi_square, misfit.freedom, misfit.sections, 100.0 * misfit.largest, 1e3 * misfit.at_amplitude);
+  if (!misfit.lacks) return "The law fits sections of the decay: " + size + " at most.";
+  return fmt::format(
+      "Lack of fit: {} damping does not describe this decay ({}). It is the nearest of these laws, its "
+      "intervals are {:.2g} times too narrow for what is left, and nothing follows from it beyond {:.3g} to "
+      "{:.3g} mm.",
+      title_of(study.supported().name), size,
+      std::sqrt(misfit.chi_square / static_cast<double>(misfit.freedom)), 1e3 * study.last_amplitude,
+      1e3 * study.first_amplitude);
+}
+
+Curve section_curve(const DampingLawStudy& study) {
+  const auto count = static_cast<Index>(study.sections.size());
+  VectorXd a(count), xi(count), half(count);
+  for (Index i = 0; i < count; ++i) {
+    const AmplitudePoint& section = study.sections[static_cast<std::size_t>(i)];
+    a[i] = 1e3 * section.amplitude;
+    xi[i] = 100.0 * section.damping_ratio;
+    half[i] = 196.0 * section.damping_ratio_deviation;
+  }
+  return {"sections of the decay", a, xi, CurveStyle::points, xi - half, xi + half};
+}
+
+Figure figure(const Record& record, const DampingLawStudy& study) {
+  Panel ratios{"damping ratio by amplitude", {"amplitude [mm]", true}, {"damping ratio [%]"}, {}};
+  constexpr Index points = 60;
+  for (const FittedLaw& law : study.laws) {
+    if (law.state.size() == 0) continue;
+    VectorXd a(points), xi(points);
+    for (Index i = 0; i < points; ++i) {
+      const double part = static_cast<double>(i) / (points - 1);
+      a[i] = study.first_amplitude * std::pow(study.last_amplitude / study.first_amplitude, part);
+      xi[i] = 100.0 * law.damping_ratio(a[i]);
+    }
+    const bool chosen = &law == &study.supported();
+    ratios.curves.push_back(
+        {title_of(law.name), 1e3 * a, xi, chosen ? CurveStyle::line : CurveStyle::dashed});
+  }
+  if (!study.sections.empty()) ratios.curves.push_back(section_curve(study));
+  const Channel& channel = record.channels[output_channels(record)[0]];
+  Panel left{"what the laws leave of the record",
+             {"time [s]"},
+             {fmt::format("{} [{}]", to_string(channel.quantity), si_unit(channel.quantity))},
+             {}};
+  for (const FittedLaw* law : {&study.laws.front(), &study.supported()})
+    if (law->left.size() > 0 && (left.curves.empty() || law != &study.laws.front()))
+      left.curves.push_back({title_of(law->name), study.time, law->left.row(0)});
+  return {"damping_law", {ratios, left}, 2, 1};
+}
+
+Json damping_law_values(const FittedLaw& law) {
+  Json json{{"law", law.name},
+            {"possible", law.possible},
+            {"remark", law.reason},
+            {"unknowns", law.unknowns},
+            {"log_likelihood", law.log_likelihood},
+            {"aic", law.aic},
+            {"bic", law.bic},
+            {"parameters", Json::object()}};
+  for (const Estimate& e : law.estimates)
+    json["parameters"][e.name] = {{"unit", e.unit},
+                                  {"estimate", e.value},
+                                  {"standard_deviation", e.deviation},
+                                  {"lower_95", e.lower_95},
+                                  {"upper_95", e.upper_95}};
+  return json;
+}
+
+}  // namespace
+
+std::string law_words(const DampingLawStudy& study) {
+  return study.misfit.lacks ? fit_words(study) + " " + verdict(study)
+                            : verdict(study) + " " + fit_words(study);
+}
+
+Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
+               const DampingLawStudy& study) {
+  Results results;
+  results.command = "identify";
+  results.configuration = describe(experiment);
+  results.configuration["damping_law"] = study.named ? study.supported().name : "auto";
+  results.values = {{"record", record_name},
+                    {"samples", record.size()},
+                    {"sampling_rate_hz", 1.0 / record.interval()},
+                    {"samples_used", study.samples.cols()},
+                    {"decimation", study.decimation},
+                    {"noise", std::vector<double>(study.noise.begin(), study.noise.end())},
+                    {"friction_velocity_m_per_s", study.friction_velocity},
+                    {"first_amplitude_m", study.first_amplitude},
+                    {"last_amplitude_m", study.last_amplitude},
+                    {"supported", study.supported().name},
+                    {"lack_of_fit",
+                     {{"tested", study.misfit.tested},
+                      {"lacks", study.misfit.lacks},
+                      {"sections", study.misfit.sections},
+                      {"freedom", study.misfit.freedom},
+                      {"chi_square", study.misfit.chi_square},
+                      {"largest_relative_damping_ratio", study.misfit.largest}}},
+                    {"laws", Json::array()}};
+  for (const FittedLaw& law : study.laws) results.values["laws"].push_back(damping_law_values(law));
+  results.heading(experiment.title.empty() ? record_name : experiment.title);
+  for (const std::string& warning : study.warnings) results.paragraph(warning);
+  results.paragraph(fmt::format(
+      "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz; mode at {:.4f} Hz. Low-passed and decimated by "
+      "{} to {} samples for the fits.",
+      record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
+      study.modal.frequency_hz, study.decimation, study.samples.cols()));
+  for (const std::string& remark : study.remarks) results.paragraph(remark);
+  if (const auto inputs = record_inputs(record)) {
+    results.values["inputs_between_samples"] = to_string(inputs->path);
+    results.paragraph(words(*inputs));
+  }
+  if (study.misfit.lacks) results.paragraph(fit_words(study));
+  results.paragraph(verdict(study));
+  if (!study.misfit.lacks) results.paragraph(fit_words(study));
+  results.table(law_table(study));
+  results.table(estimate_table(study));
+  results.table(amplitude_table(study));
+  const Channel& channel = record.channels[output_channels(record)[0]];
+  results.paragraph(fmt::format(
+      "Noise assumed of {}: {:.4g} {}, as dense as what the richest law leaves near the mode. The sign of "
+      "the "
+      "velocity is smoothed over {:.3g} m/s.",
+      to_string(channel.quantity), study.noise[0], si_unit(channel.quantity), study.friction_velocity));
+  for (const CompanionMode& mode : study.modal.companions)
+    results.paragraph(fmt::format(
+        "Beside the mode there is another at {:.2f} Hz with {:.0f} % of its amplitude; a law of one "
+        "mode may take its beat for damping.",
+        mode.frequency_hz, 100.0 * mode.amplitude / study.modal.amplitude));
+  results.figures.push_back(figure(record, study));
+  return results;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,143 @@
+#include "experiments/studies/efficiency/interval_coverage.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "experiments/identify/higher_modes.hpp"
+#include "experiments/identify/record_identification.hpp"
+#include "experiments/models/estimates.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
+#include "experiments/signal/random.hpp"
+#include "fem/assembly.hpp"
+#include "fem/modes.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+constexpr double coverage_samples_per_cycle = 60, corner = 1.5;
+
+/// A steel cantilever of 0.6 m, 30 mm x 4 mm, with 0.2 kg at its tip.
+Experiment covered_experiment() {
+  Experiment experiment;
+  fem::Section section;
+  section.bending_stiffness = 210e9 * fem::rectangle_second_moment(0.03, 0.004);
+  section.mass_per_length = 7850 * 0.03 * 0.004;
+  experiment.beam.segments = {{0.6, section}};
+  experiment.beam.supports = {{0.0}};
+  experiment.beam.bodies = {{0.6, 0.2}};
+  experiment.elements = 8;
+  return experiment;
+}
+
+/// Of its first mode [Hz].
+double covered_frequency() {
+  static const double frequency = [] {
+    const Experiment experiment = covered_experiment();
+    return fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+  }();
+  return frequency;
+}
+
+/// Gaussian noise (N) of deviation one. A density of 1/f from first-order low-passes two octaves apart.
+VectorXd noise_of(NoiseColour colour, Index count, double cycles_per_sample, std::uint64_t seed) {
+  constexpr Index settle = 4000;
+  const auto low_passed = [&](double frequency, std::uint64_t stream) {
+    const double keep = std::exp(-2 * std::numbers::pi * frequency * cycles_per_sample);
+    VectorXd noise = standard_normal(count + settle, seed, stream);
+    for (Index k = 1; k < noise.size(); ++k)
+      noise[k] = keep * noise[k - 1] + std::sqrt(1 - keep * keep) * noise[k];
+    return VectorXd(noise.tail(count));
+  };
+  if (colour == NoiseColour::low_passed) return low_passed(corner, 0);
+  VectorXd noise = standard_normal(count, seed, 0);
+  if (colour == NoiseColour::white) return noise;
+  constexpr int octave_pairs = 5;
+  VectorXd flicker = VectorXd::Zero(count);
+  for (int i = 0; i < octave_pairs; ++i)
+    flicker += low_passed(std::pow(4.0, i - 2), static_cast<std::uint64_t>(i + 1));
+  return std::sqrt(0.5) * (noise + flicker / std::sqrt(static_cast<double>(octave_pairs)));
+}
+
+using Errors = std::array<double, 2>;  // of frequency and damping ratio, over the deviations told
+
+std::optional<Errors> errors_of(const RecordIdentification& found, double frequency, double damping_ratio) {
+  const Identification& i = found.identification;
+  if (i.run.failure) return {};
+  return Errors{
+      (i.found.frequency_hz() - frequency) / (found.frequency_factor() * i.frequency_deviation_hz),
+      (i.found.damping_ratio() - damping_ratio) / (found.damping_factor() * i.damping_ratio_deviation)};
+}
+
+CoverageCase summary(NoiseColour colour, const std::vector<std::optional<Errors>>& errors) {
+  CoverageCase one{colour, static_cast<int>(errors.size()), 0, {}, {}, {}};
+  for (const auto& error : errors) {
+    one.failed += !error;
+    for (std::size_t q = 0; error && q < error->size(); ++q) {
+      one.inside[q] += std::abs((*error)[q]) < quantile_95;
+      one.mean[q] += (*error)[q] / one.runs;
+      one.mean_square[q] += (*error)[q] * (*error)[q] / one.runs;
+    }
+  }
+  return one;
+}
+
+}  // namespace
+
+const char* to_string(NoiseColour colour) {
+  switch (colour) {
+    case NoiseColour::white:
+      return "white";
+    case NoiseColour::low_passed:
+      return "low-passed";
+    default:
+      return "white and 1/f";
+  }
+}
+
+Record covered_record(const CoverageSettings& settings, NoiseColour colour, std::uint64_t seed) {
+  const double frequency = covered_frequency(), dt = 1 / (coverage_samples_per_cycle * frequency);
+  const auto count = static_cast<Index>(std::lround(settings.cycles * coverage_samples_per_cycle));
+  Record record;
+  record.channels = {{Quantity::acceleration, "tip"}};
+  record.time = VectorXd::LinSpaced(count, 0.0, dt * static_cast<double>(count - 1));
+  record.samples = settings.noise * noise_of(colour, count, 1 / coverage_samples_per_cycle, seed).transpose();
+  const std::array<double, 3> amplitudes{1, settings.higher[0], settings.higher[1]}, multiples{1, 8.3, 24.1};
+  for (std::size_t m = 0; m < 3; ++m) {
+    const double ratio = m == 0 ? settings.damping_ratio : settings.damping_ratio / 2,
+                 w = 2 * std::numbers::pi * frequency * multiples[m];
+    const std::complex<double> rate = w * std::complex<double>(-ratio, std::sqrt(1 - ratio * ratio)),
+                               start = std::polar(amplitudes[m], 0.7 + static_cast<double>(m));
+    for (Index k = 0; k < count; ++k)
+      record.samples(0, k) += (start * std::exp(rate * record.time[k])).real();
+  }
+  return record;
+}
+
+Coverage interval_coverage(const CoverageSettings& settings, const Progress& progress) {
+  if (settings.runs < 2)
+    throw std::invalid_argument("coverage: " + std::to_string(settings.runs) + " runs; expected at least 2");
+  const Experiment experiment = covered_experiment();
+  const double frequency = covered_frequency();
+  Coverage result{settings, {}};
+  for (const NoiseColour colour : settings.colours) {
+    progress(std::string("intervals in noise that is ") + to_string(colour));
+    std::vector<std::optional<Errors>> errors(static_cast<std::size_t>(settings.runs));
+    tbb::parallel_for(0, settings.runs, [&](int run) {
+      Record record = covered_record(settings, colour, settings.seed + static_cast<std::uint64_t>(run));
+      if (const auto step = step_against_higher_modes(experiment, record)) record = prepare(record, {*step});
+      errors[static_cast<std::size_t>(run)] =
+          errors_of(identify_record(experiment, record), frequency, settings.damping_ratio);
+    });
+    result.cases.push_back(summary(colour, errors));
+  }
+  return result;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/identify/joint_words.hpp"
+#include "experiments/studies/identify/joint_comparison_report.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+using Json = nlohmann::ordered_json;
+
+bool converged(const Comparison& one) {
+  return one.runs.at(0).status == ComparedRun::Status::converged;
+}
+
+std::string shown_joint(double value, const Estimate& by) {
+  constexpr double large = 1e5, small = 1e-3;
+  const double half = 0.5 * (by.upper_95 - by.lower_95);
+  if (std::abs(value) > large || std::abs(value) < small) return fmt::format("{:.6g}", value);
+  return fmt::format("{:.{}f}", value, shown_decimals(half));
+}
+
+Table table_of(const JointComparison& joint, std::size_t which) {
+  const Estimate& all = joint.parameters[which];
+  Table table{"parameter_" + all.name, all.name + (all.unit.empty() ? "" : " [" + all.unit + "]")};
+  table.column({"record", "record"})
+      .column({"window [s]", "window_s"})
+      .column({"estimate", "estimate"})
+      .column({"95 % from", "lower_95"})
+      .column({"to", "upper_95"});
+  const auto row = [&](const std::string& record, const std::string& window, const Estimate& e) {
+    table.row(
+        {record, window, shown_joint(e.value, e), shown_joint(e.lower_95, e), shown_joint(e.upper_95, e)});
+  };
+  for (const Comparison& one : joint.records) {
+    const VectorXd& time = one.compared.record.time;
+    if (converged(one))
+      row(one.compared.name, fmt::format("{:.4g} to {:.4g}", time[0], time[time.size() - 1]),
+          one.runs[0].parameters.at(which).estimate);
+  }
+  row("all together", "", all);
+  if (all.nuisance) table.note = "Not asked about: known beforehand to some accuracy, which counts once.";
+  return table;
+}
+
+Panel panel_of(const JointComparison& joint, std::size_t which) {
+  const Estimate& all = joint.parameters[which];
+  std::vector<double> number, value, lower, upper;
+  for (std::size_t r = 0; r < joint.records.size(); ++r) {
+    if (!converged(joint.records[r])) continue;
+    const Estimate& e = joint.records[r].runs[0].parameters.at(which).estimate;
+    number.push_back(static_cast<double>(r) + 1);
+    value.push_back(e.value);
+    lower.push_back(e.lower_95);
+    upper.push_back(e.upper_95);
+  }
+  const auto vector = [](const std::vector<double>& values) {
+    return VectorXd(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
+  };
+  const Eigen::Vector2d ends(0.5, static_cast<double>(joint.records.size()) + 0.5);
+  const auto level = [](double height) { return VectorXd(Eigen::Vector2d::Constant(height)); };
+  Panel panel{
+      "", {"record, in the order given"}, {all.name + (all.unit.empty() ? "" : " [" + all.unit + "]")}, {}};
+  panel.curves = {{"all together, 95 %",
+                   ends,
+                   {},
+                   CurveStyle::band,
+                   level(all.lower_95),
+                   level(all.upper_95),
+                   Colour::grey},
+                  {"all together", ends, level(all.value), CurveStyle::dashed, {}, {}, Colour::black},
+                  {"each record, 95 %", vector(number), vector(value), CurveStyle::points, vector(lower),
+                   vector(upper), Colour::blue}};
+  panel.x_axis.range = {ends[0], ends[1]};
+  panel.legend = Legend::none;
+  return panel;
+}
+
+Json joint_comparison_values_of(const JointComparison& joint, const std::vector<std::string>& names) {
+  const auto values = [](const Estimate& e) {
+    return Json{{"unit", e.unit},
+                {"estimate", e.value},
+                {"standard_deviation", e.deviation},
+                {"lower_95", e.lower_95},
+                {"upper_95", e.upper_95}};
+  };
+  Json json{{"status", "converged"}};
+  for (const Estimate& e : joint.parameters) json["parameters"][e.name] = values(e);
+  json["agreement"] = agreement_values(joint.estimate, names);
+  for (const Comparison& one : joint.records) {
+    Json record{{"record", one.compared.name}, {"status", to_string(one.runs.at(0).status)}};
+    if (!one.runs[0].reason.empty()) record["reason"] = one.runs[0].reason;
+    for (const ComparedParameter& p : one.runs[0].parameters)
+      record["parameters"][p.estimate.name] = values(p.estimate);
+    json["records"].push_back(std::move(record));
+  }
+  return json;
+}
+
+}  // namespace
+
+Results report(const Experiment& experiment, const JointComparison& joint) {
+  std::vector<std::string> names;
+  for (const Estimate& e : joint.parameters) names.push_back(e.name);
+  Results results;
+  results.command = "identify";
+  results.configuration = report(experiment, joint.records[0]).configuration;
+  for (const Comparison& one : joint.records) results.configuration["records"].push_back(one.compared.name);
+  results.values = joint_comparison_values_of(joint, names);
+  results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
+                                           : experiment.title);
+  results.paragraph(fmt::format(
+      "{} records of one structure, each with its own start, noise and window; {} on {}, reduction {}.",
+      joint.records.size(), joint.records[0].runs[0].filter, experiment.model.name,
+      joint.records[0].runs[0].reduction));
+  Figure figure{"agreement", {}, 0, 1};
+  constexpr std::size_t most_panels = 4;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    results.table(table_of(joint, j));
+    if (j < most_panels) figure.panels.push_back(panel_of(joint, j));
+  }
+  figure.rows = static_cast<int>(figure.panels.size());
+  figure.panels.back().legend = Legend::below;
+  results.figures = {figure};
+  results.paragraph(agreement_words(joint.estimate, names));
+  for (const Comparison& one : joint.records)
+    if (!converged(one))
+      results.paragraph(fmt::format("{} is left out: {}.", one.compared.name, one.runs[0].reason));
+  return results;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,225 @@
+#include "experiments/studies/identify/record_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/config/channel_places.hpp"
+#include "experiments/models/discretisation_bias.hpp"
+#include "experiments/studies/identify/diagnostics_report.hpp"
+#include "experiments/studies/identify/record_figures.hpp"
+#include "experiments/studies/identify/record_values.hpp"
+#include "experiments/studies/identify/smoothed_history.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// Decimals that show two significant digits of a standard deviation.
+int decimals(double deviation) {
+  if (!(deviation > 0.0) || !std::isfinite(deviation)) return 6;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 12);
+}
+
+Table parameter_table(const RecordIdentification& found) {
+  Table table{"parameters", ""};
+  table.column({"", "parameter"})
+      .column({"estimate", "estimate", "{}"})
+      .column({"95 % from", "lower_95", "{}"})
+      .column({"to", "upper_95", "{}"})
+      .column({"modal analysis", "modal_analysis", "{}"})
+      .column({"difference [%]", "difference_percent", "{:+.3f}"});
+  const bool batch = found.batch && found.batch->identification;
+  std::vector<Parameter> together;
+  if (batch) {
+    table.column({"batch estimate", "batch_estimate"})
+        .column({"batch 95 % from", "batch_lower_95"})
+        .column({"batch to", "batch_upper_95"});
+    together = parameters(found, *found.batch->identification);
+  }
+  for (const Parameter& p : parameters(found)) {
+    const int digits = decimals(p.shown * p.deviation);
+    const auto shown = [&](double value) { return fmt::format("{:.{}f}", p.shown * value, digits); };
+    std::vector<Cell> cells{p.name,
+                            shown(p.estimate),
+                            shown(p.lower_95()),
+                            shown(p.upper_95()),
+                            std::isfinite(p.modal) ? shown(p.modal) : "-",
+                            percent(p.estimate, p.modal)};
+    if (batch) {
+      const Parameter& b = together[table.rows()];
+      for (const double value : {b.estimate, b.lower_95(), b.upper_95()}) cells.emplace_back(shown(value));
+    }
+    table.row(cells);
+  }
+  table.note = fmt::format(
+      "Intervals take the mass as known: Meq = {:.4f} kg; a mass wrong by 1 % makes K and C wrong by 1 %. "
+      "Modal analysis: eigensystem realisation polished by least squares, without the beam.",
+      found.identification.found.mass);
+  return table;
+}
+
+// "the damping ratio from 1.45 to 1.28 %", or what else varies from the first to the last section.
+std::string variation_text(const AmplitudeSections& by) {
+  const auto ends = [](const SectionTrend& trend, double factor) {
+    return fmt::format("from {:.5g} to {:.5g}", factor * trend.values[0],
+                       factor * trend.values[trend.values.size() - 1]);
+  };
+  std::string text;
+  if (by.damping.varies()) text = "the damping ratio goes " + ends(by.damping, 100.0) + " %";
+  if (by.frequency.varies())
+    text += (text.empty() ? "the frequency goes " : ", the frequency ") + ends(by.frequency, 1.0) + " Hz";
+  return text;
+}
+
+// What the motion is that the model does not have, as far as a test tells.
+std::string unmodelled_text(const RecordIdentification& found) {
+  const AmplitudeSections& by = found.sections;
+  if (by.damping.varies() || by.frequency.varies())
+    return fmt::format(
+        ". With the amplitude {} (fits in {} sections): the filter's intervals are too short for that, and "
+        "are "
+        "widened to hold the values of 95 % of the decay, by {:.3g} for frequency and K, {:.3g} for damping",
+        variation_text(by), by.sections.size(), found.frequency_factor(), found.damping_factor());
+  if (!found.modal.companions.empty() && found.modal_failure.empty()) {
+    const double off = std::abs(found.identification.found.damping_ratio() - found.modal.damping_ratio) /
+                       (quantile_95 * found.damping_factor() * found.identification.damping_ratio_deviation);
+    return fmt::format(
+        ". The record holds another mode: the modal analysis, which fits both, differs by {:.2g} of the "
+        "interval "
+        "of the damping ratio",
+        off);
+  }
+  return ". The record holds motion that the model does not have; what of it lies near the mode is counted "
+         "in the "
+         "intervals";
+}
+
+std::string verdict(const RecordIdentification& found) {
+  const filters::InnovationConsistency& c = *found.consistency;
+  if (c.white() && c.size_is_steady())
+    return found.judgement.messages.empty()
+               ? "white and of steady size, as they should be"
+               : "white and of steady size, as they also are with a wrong discretisation or mass";
+  if (c.windows.maxCoeff() < c.window_lower_95)
+    return "smaller all along than they should be. The noise assumed is larger than the record's, and the "
+           "intervals are too wide";
+  const char* what = c.white()            ? "white, but their size changes along the record"
+                     : c.size_is_steady() ? "of steady size, but not white"
+                                          : "neither white nor of steady size";
+  return what + unmodelled_text(found);
+}
+
+std::string consistency_text(const RecordIdentification& found) {
+  if (!found.consistency) return "The record is too short to test the innovations.";
+  const auto& c = *found.consistency;
+  return fmt::format(
+      "Innovations: mean normalised square {:.3f} (95 % of consistent filters: {:.3f} to {:.3f}), over ten "
+      "windows {:.2f} to {:.2f} ({:.2f} to {:.2f}), correlation of successive ones {:+.2f}, Ljung-Box p = "
+      "{:.2g}: {}.",
+      c.mean_normalised_square, c.lower_95, c.upper_95, c.windows.minCoeff(), c.windows.maxCoeff(),
+      c.window_lower_95, c.window_upper_95, c.lag_one_correlation, c.whiteness_p_value, verdict(found));
+}
+
+std::string noise_source(const RecordIdentification& found, Eigen::Index i) {
+  if (!found.noise_from_record[static_cast<std::size_t>(i)]) return "as configured";
+  if (found.noise_method == "before_event") return "as before the first event";
+  if (found.noise_method == "likelihood") {
+    const bool known = found.noise_relative_deviation.size() > 0;
+    return known && std::isfinite(found.noise_relative_deviation[i])
+               ? fmt::format("the likeliest, known to {:.2g} %", 100 * found.noise_relative_deviation[i])
+               : "the likeliest";
+  }
+  return found.modal_failure.empty() ? "all that the modal analysis leaves of the record"
+                                     : "all that the filter's own motion leaves of the record";
+}
+
+std::string batch_text(const RecordIdentification& found) {
+  const filters::BatchEstimate& estimate = found.batch->estimate;
+  std::string text =
+      "Batch: output-error maximum likelihood, all samples at once, without prior; intervals as the "
+      "filter's.";
+  if (estimate.status != filters::BatchStatus::converged)
+    text += " It did not converge: " + estimate.reason + ".";
+  return text;
+}
+
+std::string noise_text(const Record& record, const RecordIdentification& found) {
+  std::string text = "Noise (standard deviation):";
+  for (Eigen::Index i = 0; i < found.noise_deviation.size(); ++i)
+    text +=
+        fmt::format("{} {} {:.4g} {}, {}", i ? ";" : "", to_string(record.channels[i].quantity),
+                    found.noise_deviation[i], si_unit(record.channels[i].quantity), noise_source(found, i));
+  text += ".";
+  const NoiseNearMode& near = found.near_mode;
+  const double density = near.deviation / found.noise_deviation[0];
+  text += fmt::format(
+      " At the mode it is as dense as white noise of {:.2f} times that, by {} lines of the spectrum: "
+      "intervals are the filter's{}.",
+      density, near.lines,
+      found.interval_factor > 1.0 ? fmt::format(" times {:.2f}", found.interval_factor) : "");
+  constexpr double few = 10;
+  if (near.freedom < few)
+    text += fmt::format(
+        " That is few: the density is known to {:.0f} % only, and longer records would have shorter and "
+        "surer intervals.",
+        100.0 * std::sqrt(2.0 / near.freedom));
+  return text;
+}
+
+std::string companion_text(const RecordIdentification& found) {
+  std::string text;
+  for (const CompanionMode& mode : found.modal.companions)
+    text += fmt::format(
+        "{}Beside the mode there is another at {:.2f} Hz with {:.0f} % of its amplitude. A model of one "
+        "mode takes its decay and beat for damping: trust the modal analysis, which fits both, or a window "
+        "where it has died out.",
+        text.empty() ? "" : " ", mode.frequency_hz, 100.0 * mode.amplitude / found.modal.amplitude);
+  return text;
+}
+
+}  // namespace
+
+Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
+               const RecordIdentification& found) {
+  Results results;
+  results.command = "identify";
+  results.configuration = configuration(experiment, record, found, record_name);
+  results.values = values(found, record);
+  const Record placed = with_places(record, experiment);
+  results.values["channels"] = channel_values(placed);
+  results.heading(experiment.title.empty() ? record_name : experiment.title);
+  for (const std::string& text : found.judgement.messages) results.paragraph(text);
+  results.paragraph(fmt::format(
+      "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
+      record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
+      experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes()));
+  if (record.channels.size() > 1 ||
+      *placed.channels[0].position != fem::natural_point(experiment.beam).position)
+    results.paragraph("Stiffness, damping and mass are those of the motion at the first channel of " +
+                      channels_text(placed) + ".");
+  if (found.identification.run.failure) return results;
+  results.table(parameter_table(found));
+  if (found.batch) results.paragraph(batch_text(found));
+  results.paragraph(consistency_text(found));
+  const std::vector<std::string> names = record.channel_names();
+  if (found.diagnostics) results.paragraph(words(*found.diagnostics, names));
+  if (const std::string text = words(found.identification.run.events); !text.empty())
+    results.paragraph("The filter had trouble (--on-failure says what it then does). " + text);
+  results.paragraph(noise_text(record, found));
+  results.paragraph(fmt::format(
+      "The finite-element beam as described has its first mode at {:.3f} Hz; the record's is {:+.1f} % "
+      "from it.",
+      found.beam_frequency_hz, percent(found.identification.found.frequency_hz(), found.beam_frequency_hz)));
+  if (const std::string text = companion_text(found); !text.empty()) results.paragraph(text);
+  results.figures = figures(record, found);
+  if (found.diagnostics)
+    for (Figure& figure : figures(*found.diagnostics, names)) results.figures.push_back(std::move(figure));
+  if (!found.smoothed.empty()) {
+    results.figures.push_back(smoothed_figure(record, found));
+    results.attachments.push_back(smoothed_history(record, found));
+  }
+  return results;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,19 @@
+// Modal masses from a hammer's impulse, as a user sees them.
+#pragma once
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "experiments/record/record.hpp"
+#include "experiments/results/results.hpp"
+
+namespace beamid::experiments {
+
+/// A table `hammer_mass` and `hammer_mass` of results.json, one row for each mode and record:
+/// hammer_mass.hpp. Nothing where no record has a force with a hit.
+/// @param rates of the modes of each record [rad/s]
+void tell_masses(const std::vector<std::string>& names, const std::vector<Record>& records,
+                 const std::vector<std::vector<std::complex<double>>>& rates, Results& results);
+
+}  // namespace beamid::experiments

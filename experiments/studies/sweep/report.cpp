@@ -1,0 +1,245 @@
+#include "experiments/studies/sweep/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "experiments/config/description.hpp"
+#include "experiments/results/file.hpp"
+#include "experiments/sweep/hdf5_table.hpp"
+#include "experiments/text/words.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// How the ways to identify differ at one point: what differs between points is a key of theirs.
+std::vector<std::pair<const char*, std::string PointStatistics::*>> differing(
+    const std::vector<PointStatistics>& all) {
+  std::vector<std::pair<const char*, std::string PointStatistics::*>> kept;
+  for (const auto& one :
+       {std::pair("reduction", &PointStatistics::reduction), std::pair("filter", &PointStatistics::filter),
+        std::pair("discretisation", &PointStatistics::discretisation)})
+    if (std::adjacent_find(all.begin(), all.end(), [&](const auto& entry, const auto& next) {
+          return entry.point == next.point && entry.*one.second != next.*one.second;
+        }) != all.end())
+      kept.push_back(one);
+  return kept;
+}
+
+/// An end of its interval; that of none or of all is exact, not to rounding.
+Cell sweep_percent(const filters::Proportion& proportion, double filters::Proportion::*bound) {
+  if (proportion.runs == 0) return std::nan("");
+  if (proportion.count == 0 && bound == &filters::Proportion::lower_95) return 0.0;
+  if (proportion.count == proportion.runs && bound == &filters::Proportion::upper_95) return 100.0;
+  return 100.0 * proportion.*bound;
+}
+
+Cell sweep_percent(const filters::Proportion& proportion) {
+  return proportion.runs > 0 ? 100.0 * proportion.value() : std::nan("");
+}
+
+bool is_drawn(const VariedKey& key) {
+  return key.law != VariedKey::Law::grid;
+}
+
+Table table_of(const SweepPlan& plan, const std::vector<PointStatistics>& all, const std::string& parameter) {
+  Table table{"summary", "What no run has found"};
+  if (!parameter.empty()) table = {"summary_" + parameter, parameter};
+  for (const VariedKey& key : plan.varied)
+    if (!is_drawn(key)) table.column({key.key.substr(key.key.rfind('.') + 1), key.key, "{:.6g}"});
+  const auto ways = differing(all);
+  for (const auto& [name, member] : ways) table.column({name, name});
+  const bool truth = std::any_of(all.begin(), all.end(), [&](const PointStatistics& one) {
+    return one.parameter == parameter && one.coverage.runs > 0;
+  });
+  table.column({"runs", "runs", "{:g}"});
+  if (!truth) table.column({"mean", "mean_estimate", "{:.6g}"});
+  if (truth)
+    table.column({"bias [%]", "bias_percent", "{:+.3g}"})
+        .column({"+-", "bias_standard_error_percent", "{:.2g}"})
+        .column({"rms [%]", "rms_error_percent", "{:.3g}"})
+        .column({"rms / bound", "rms_over_bound", "{:.3f}"})
+        .column({"in the 95 % interval [%]", "coverage_percent", "{:.1f}"})
+        .column({"from", "coverage_lower_95_percent", "{:.1f}"})
+        .column({"to", "coverage_upper_95_percent", "{:.1f}"});
+  table.column({"diverged [%]", "divergence_percent", "{:.1f}"})
+      .column({"from", "divergence_lower_95_percent", "{:.1f}"})
+      .column({"to", "divergence_upper_95_percent", "{:.1f}"})
+      .column({"no run", "refused_or_failed", "{:g}"});
+  for (const PointStatistics& one : all) {
+    if (one.parameter != parameter) continue;
+    std::vector<Cell> row;
+    const auto values = values_of_point(plan, one.point);
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      if (is_drawn(plan.varied[j])) continue;
+      const double* const number = std::get_if<double>(&values[j]);
+      row.push_back(number ? Cell(*number) : Cell(word_of(values[j])));
+    }
+    for (const auto& [name, member] : ways) row.emplace_back(one.*member);
+    using P = filters::Proportion;
+    row.emplace_back(static_cast<double>(one.converged + one.diverged));
+    if (!truth) row.emplace_back(one.mean);
+    if (truth)
+      row.insert(row.end(), {one.bias_percent, one.bias_percent_error, one.rms_percent, one.rms_over_bound,
+                             sweep_percent(one.coverage), sweep_percent(one.coverage, &P::lower_95),
+                             sweep_percent(one.coverage, &P::upper_95)});
+    row.insert(row.end(), {sweep_percent(one.divergence), sweep_percent(one.divergence, &P::lower_95),
+                           sweep_percent(one.divergence, &P::upper_95), static_cast<double>(one.unusable)});
+    table.row(row);
+  }
+  return table;
+}
+
+Json json_of(const filters::Proportion& proportion) {
+  if (proportion.runs == 0) return nullptr;
+  return {{"count", proportion.count},
+          {"runs", proportion.runs},
+          {"share", proportion.value()},
+          {"lower_95", proportion.lower_95},
+          {"upper_95", proportion.upper_95}};
+}
+
+Json json_of(const SweepPlan& plan, const PointStatistics& one) {
+  Json json{{"point", one.point}};
+  const auto values = values_of_point(plan, one.point);
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    const double* const number = std::get_if<double>(&values[j]);
+    json[plan.varied[j].key] = number ? Json(*number) : Json(word_of(values[j]));
+  }
+  json.update({{"reduction", one.reduction},
+               {"filter", one.filter},
+               {"discretisation", one.discretisation},
+               {"parameter", one.parameter},
+               {"unit", one.unit},
+               {"converged", one.converged},
+               {"diverged", one.diverged},
+               {"refused_or_failed", one.unusable}});
+  for (const auto& [key, value] :
+       {std::pair("mean", one.mean), std::pair("bias", one.bias), std::pair("rms_error", one.rms),
+        std::pair("bias_percent", one.bias_percent),
+        std::pair("bias_standard_error_percent", one.bias_percent_error),
+        std::pair("rms_error_percent", one.rms_percent), std::pair("bound_percent", one.bound_percent),
+        std::pair("rms_over_bound", one.rms_over_bound)})
+    json[key] = number_or_null(value);
+  json["coverage"] = json_of(one.coverage);
+  json["divergence"] = json_of(one.divergence);
+  return json;
+}
+
+/// The first reason of each kind of trouble.
+std::vector<std::string> troubles(const std::vector<SweepRow>& rows) {
+  std::vector<std::string> found;
+  for (const std::string kind : {"failed", "refused", "diverged"}) {
+    std::set<std::size_t> cases;
+    const SweepRow* first = nullptr;
+    for (const SweepRow& row : rows)
+      if (row.status == kind) {
+        if (!first) first = &row;
+        cases.insert(row.number);
+      }
+    if (first)
+      found.push_back(fmt::format("{} {} {}; the first, case {}: {}", cases.size(),
+                                  cases.size() == 1 ? "case" : "cases", kind, first->number, first->reason));
+  }
+  return found;
+}
+
+/// What a ratio below 1 means: chance, as far as that goes, or information that the bound does not count.
+std::string below_bound_text(const SweepPlan& plan, const std::vector<PointStatistics>& all) {
+  constexpr std::size_t shown = 4;
+  constexpr double surely = 3.0;  // standard deviations: one row of hundreds by chance
+  std::string chance, beyond;
+  std::size_t count = 0;
+  for (const PointStatistics& one : all) {
+    if (!(one.rms_over_bound < 1.0)) continue;
+    const double least = 1.0 - surely / std::sqrt(2.0 * one.converged);
+    if (one.rms_over_bound >= least && chance.empty())
+      chance = fmt::format("rms / bound is 1 at best; with {} runs values down to {:.3f} are chance.",
+                           one.converged, std::max(0.0, least));
+    if (one.rms_over_bound >= least || ++count > shown) continue;
+    const std::string name = name_of(plan, all, one, plan.varied.size());
+    beyond += fmt::format("{}{} {:.3g}{}", beyond.empty() ? "" : ", ", one.parameter, one.rms_over_bound,
+                          name.empty() ? "" : " at " + name);
+  }
+  if (beyond.empty()) return chance;
+  if (count > shown) beyond += fmt::format(" and {} more", count - shown);
+  return fmt::format(
+      "{}{}Errors below the Cramer-Rao bound, rms / bound: {}. No unbiased estimate from the records alone "
+      "can do "
+      "that: the initial estimates, which are information that the bound leaves out, are at or near the "
+      "truth. "
+      "Such rows say nothing of how good the filter is.",
+      chance, chance.empty() ? "" : " ", beyond);
+}
+
+std::string plan_text(const SweepPlan& plan) {
+  std::string keys;
+  for (const VariedKey& key : plan.varied) keys += (keys.empty() ? "" : "; ") + key.text;
+  return fmt::format("{} cases: {} {}{} x {} {} from {} on. {}", plan.cases(), plan.points(),
+                     plan.points() == 1 ? "point" : "points",
+                     plan.samples > 1 ? fmt::format(" x {} samples", plan.samples) : "", plan.seeds,
+                     plan.seeds == 1 ? "seed" : "seeds", plan.seed,
+                     keys.empty() ? "Nothing varies but the noise." : "Varied: " + keys);
+}
+
+}  // namespace
+
+std::string name_of(const SweepPlan& plan, const std::vector<PointStatistics>& all,
+                    const PointStatistics& one, std::size_t but) {
+  std::string name;
+  const auto add = [&](const std::string& part) { name += (name.empty() ? "" : ", ") + part; };
+  const auto values = values_of_point(plan, one.point);
+  for (std::size_t j = 0; j < values.size(); ++j)
+    if (j != but && !is_drawn(plan.varied[j]))
+      add(plan.varied[j].key.substr(plan.varied[j].key.rfind('.') + 1) + " = " + word_of(values[j]));
+  for (const auto& [key, member] : differing(all)) add(one.*member);
+  return name;
+}
+
+Results report(const Json& manifest, const SweepPlan& plan, std::vector<SweepRow> rows) {
+  const auto kept = std::make_shared<const std::vector<SweepRow>>(std::move(rows));
+  const std::vector<PointStatistics> all = statistics(plan, *kept);
+  Results results;
+  results.command = "sweep";
+  results.seed = plan.seed;
+  for (const auto& [key, value] : manifest.items())
+    if (key != "program" && key != "version" && key != "shard") results.configuration[key] = value;
+  results.heading("Sweep");
+  results.paragraph(plan_text(plan));
+  if (const Json& shard = manifest["shard"]; shard["count"] != 1)
+    results.paragraph(
+        fmt::format("Shard {} of {}: `beamid sweep --merge` joins them; below is this one alone.",
+                    shard["index"].dump(), shard["count"].dump()));
+  std::vector<std::string> parameters;
+  for (const PointStatistics& one : all)
+    if (std::find(parameters.begin(), parameters.end(), one.parameter) == parameters.end())
+      parameters.push_back(one.parameter);
+  for (const std::string& parameter : parameters) results.table(table_of(plan, all, parameter));
+  results.paragraph(
+      "Errors are estimate - truth, relative to the truth, of the runs that converged. Bound: Cramer-Rao. "
+      "Intervals of the shares: Wilson, 95 %.");
+  if (const std::string text = below_bound_text(plan, all); !text.empty()) results.paragraph(text);
+  for (const std::string& trouble : troubles(*kept)) results.paragraph(trouble);
+  results.values["cases"] = plan.cases();
+  results.values["points"] = Json::array();
+  for (const PointStatistics& one : all) results.values["points"].push_back(json_of(plan, one));
+  results.figures = figures(plan, *kept, all);
+  results.attachments.push_back({{"cases.csv", "cases.h5", "manifest.json"},
+                                 [kept, plan, manifest](const std::filesystem::path& folder) {
+                                   std::string text = header_line(plan);
+                                   for (const SweepRow& row : *kept) text += to_line(row);
+                                   write_file(folder / "cases.csv", text);
+                                   write_hdf5(plan, *kept, folder / "cases.h5");
+                                   write_file(
+                                       folder / "manifest.json",
+                                       manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+                                 }});
+  return results;
+}
+
+}  // namespace beamid::experiments

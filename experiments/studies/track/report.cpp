@@ -1,0 +1,204 @@
+#include "experiments/studies/track/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/models/estimates.hpp"
+#include "experiments/results/csv.hpp"
+#include "experiments/results/file.hpp"
+#include "experiments/studies/track/figure.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Eigen::Index;
+
+// Decimals that show two digits of a deviation.
+std::string shown(double value, double deviation) {
+  if (!(deviation > 0.0) || !std::isfinite(deviation)) return fmt::format("{:.4g}", value);
+  return fmt::format("{:.{}f}", value,
+                     std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 9));
+}
+
+Table plateau_table(const Tracking& found) {
+  Table table{"plateaus", "Plateaus"};
+  table.column({"plateau", "plateau", "{:.0f}"})
+      .column({"from [s]", "from_s", "{:.3f}"})
+      .column({"to [s]", "to_s", "{:.3f}"})
+      .column({"f [Hz]", "frequency_hz"})
+      .column({"95 % +-", "frequency_half_interval_hz"})
+      .column({"damping ratio [%]", "damping_ratio_percent"})
+      .column({"95 % +- ", "damping_ratio_half_interval_percent"})
+      .column({"K / K1", "relative_stiffness", "{:.4f}"})
+      .column({"modal analysis [Hz]", "modal_frequency_hz", "{:.3f}"})
+      .column({"and [%]", "modal_damping_ratio_percent", "{:.3f}"})
+      .column({"walk [1/sqrt(s)]", "walk_per_sqrt_s", "{:.2g}"});
+  for (std::size_t i = 0; i < found.plateaus.size(); ++i) {
+    const Plateau& p = found.plateaus[i];
+    const double ratio = p.frequency_hz / found.plateaus.front().frequency_hz;
+    const double f = quantile_95 * p.frequency_deviation_hz,
+                 d = 100 * quantile_95 * p.damping_ratio_deviation;
+    table.row({static_cast<double>(i + 1), p.from, p.to, shown(p.frequency_hz, f), shown(f, f),
+               shown(100 * p.damping_ratio, d), shown(d, d), ratio * ratio, p.modal_frequency_hz,
+               100 * p.modal_damping_ratio, p.walk});
+  }
+  table.note =
+      "Frequency and damping ratio are means over the plateau; intervals know the wandering within it and, "
+      "beyond "
+      "three deviations, the distance from the modal analysis, which takes the plateau for a free decay. A "
+      "damping "
+      "ratio below zero: the motion grew. K1 is the stiffness on the first plateau, the mass being the same.";
+  return table;
+}
+
+Table change_table(const std::vector<PlateauChange>& between) {
+  Table table{"changes", "Changes"};
+  table.column({"after [s]", "from_s", "{:.3f}"})
+      .column({"before [s]", "to_s", "{:.3f}"})
+      .column({"stiffness by [%]", "stiffness_percent"})
+      .column({"95 % +- [%]", "stiffness_half_interval_percent"})
+      .column({"of", "of"});
+  for (const PlateauChange& change : between) {
+    const double half = 100 * quantile_95 * change.stiffness_deviation;
+    table.row({change.from, change.to, shown(100 * change.stiffness, half), shown(half, half),
+               std::string(change.of_stiffness() ? "stiffness" : "motion only")});
+  }
+  return table;
+}
+
+Attachment history(const Tracking& found) {
+  std::vector<Index> plateau(static_cast<std::size_t>(found.time.size()), 0);
+  for (std::size_t i = 0; i < found.plateaus.size(); ++i)
+    std::fill(plateau.begin() + found.plateaus[i].first, plateau.begin() + found.plateaus[i].last + 1,
+              static_cast<Index>(i + 1));
+  std::string text =
+      "time_s,signal,frequency_hz,frequency_lower_95_hz,frequency_upper_95_hz,damping_ratio,"
+      "damping_ratio_deviation,plateau\n";
+  for (Index k = 0; k < found.time.size(); ++k) {
+    const double f = found.frequency_hz[k], wide = std::exp(quantile_95 * found.frequency_deviation[k]);
+    for (const double value : {found.time[k], found.signal[k], f, f / wide, f * wide, found.damping_ratio[k],
+                               found.damping_ratio_deviation[k]})
+      text += csv_field(value) + ",";
+    text += std::to_string(plateau[static_cast<std::size_t>(k)]) + "\n";
+  }
+  return {{"history.csv"},
+          [text](const std::filesystem::path& folder) { write_file(folder / "history.csv", text); }};
+}
+
+// Modes that beat with the one that is followed.
+std::string companions(const Tracking& found) {
+  std::string list;
+  for (std::size_t i = 0; i < found.plateaus.size(); ++i) {
+    std::string modes;
+    for (const double f : found.plateaus[i].companions_hz)
+      modes += fmt::format("{}{:.1f}", modes.empty() ? "" : ", ", f);
+    if (!modes.empty()) list += fmt::format("{}{} Hz on plateau {}", list.empty() ? "" : "; ", modes, i + 1);
+  }
+  if (list.empty()) return {};
+  return "Other modes ring beside it: " + list +
+         ". The history of frequency and damping ratio shows the beat with them; the mean over a plateau "
+         "does not, but "
+         "for its ends.";
+}
+
+Json interval(double estimate, double deviation) {
+  return {{"estimate", estimate},
+          {"standard_deviation", deviation},
+          {"lower_95", estimate - quantile_95 * deviation},
+          {"upper_95", estimate + quantile_95 * deviation}};
+}
+
+Json tracking_values(const Tracking& found, const std::vector<PlateauChange>& between) {
+  Json json{{"band_hz", {found.band_hz.first, found.band_hz.second}},
+            {"history_interval_s", found.interval},
+            {"noise_si", found.noise},
+            {"alarm_threshold", found.threshold},
+            {"alarm_samples", found.test_samples}};
+  json["alarms_s"] = Json::array();
+  for (const Index k : found.alarms) json["alarms_s"].push_back(found.time[k]);
+  json["plateaus"] = json["changes"] = Json::array();
+  for (const Plateau& p : found.plateaus) {
+    json["plateaus"].push_back({{"window_s", {p.from, p.to}},
+                                {"frequency_hz", interval(p.frequency_hz, p.frequency_deviation_hz)},
+                                {"damping_ratio", interval(p.damping_ratio, p.damping_ratio_deviation)},
+                                {"modal_frequency_hz", p.modal_frequency_hz},
+                                {"modal_damping_ratio", p.modal_damping_ratio},
+                                {"companions_hz", p.companions_hz},
+                                {"amplitude_si", {p.amplitude_from, p.amplitude_to}},
+                                {"noise_si", p.noise},
+                                {"walk_per_sqrt_s", p.walk},
+                                {"force_si", p.force}});
+    Json& noise = json["plateaus"].back()["noise_relative_deviation"];
+    if (std::isfinite(p.noise_relative_deviation)) noise = p.noise_relative_deviation;
+  }
+  for (const PlateauChange& change : between)
+    json["changes"].push_back(
+        {{"window_s", {change.from, change.to}},
+         {"relative_stiffness_change", interval(change.stiffness, change.stiffness_deviation)},
+         {"of", change.of_stiffness() ? "stiffness" : "motion"}});
+  return json;
+}
+
+}  // namespace
+
+bool PlateauChange::of_stiffness() const {
+  return std::abs(stiffness) > 3.0 * stiffness_deviation;
+}
+
+std::vector<PlateauChange> changes(const Tracking& found) {
+  std::vector<PlateauChange> result;
+  for (std::size_t i = 1; i < found.plateaus.size(); ++i) {
+    const Plateau &before = found.plateaus[i - 1], &after = found.plateaus[i];
+    const double ratio = std::pow(after.frequency_hz / before.frequency_hz, 2);
+    const double deviation = 2.0 * ratio *
+                             std::hypot(after.frequency_deviation_hz / after.frequency_hz,
+                                        before.frequency_deviation_hz / before.frequency_hz);
+    result.push_back({before.to, after.from, ratio - 1.0, deviation});
+  }
+  return result;
+}
+
+Results report(const TrackSettings& settings, const Record& record, const Channel& channel,
+               const std::string& record_name, const Tracking& found) {
+  const std::vector<PlateauChange> between = changes(found);
+  Results results;
+  results.command = "track";
+  results.configuration = {{"record", record_name},
+                           {"channel", channel.name},
+                           {"quantity", to_string(channel.quantity)},
+                           {"sampling_rate_hz", 1.0 / record.interval()},
+                           {"band_hz", {found.band_hz.first, found.band_hz.second}},
+                           {"false_alarms", settings.false_alarms},
+                           {"shortest_cycles", settings.shortest_cycles}};
+  results.configuration["walk_per_sqrt_s"] = settings.walk ? Json(*settings.walk) : Json("likelihood");
+  results.values = tracking_values(found, between);
+  results.heading(record_name);
+  results.paragraph(
+      fmt::format("{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. One mode from {:.4g} to {:.4g} Hz "
+                  "({}) is followed at "
+                  "{:.1f} Hz; its stiffness and damping wander {}.",
+                  record_name, record.size(), record.time[0], record.time[record.size() - 1],
+                  1.0 / record.interval(), found.band_hz.first, found.band_hz.second,
+                  settings.band_hz ? "as told" : "from the record", 1.0 / found.interval,
+                  settings.walk ? fmt::format("by {:g} per square root of a second, as told", *settings.walk)
+                                : std::string("as much as is likeliest on each plateau")));
+  results.table(plateau_table(found));
+  if (const std::string text = companions(found); !text.empty()) results.paragraph(text);
+  if (!between.empty()) results.table(change_table(between));
+  results.paragraph(fmt::format(
+      "{} alarms: the squares of {} innovations in succession above {:.1f}, which in a record without "
+      "changes and "
+      "with white noise of {:.3g} {} happens with a probability below {:g}. Alarms nearer to each other than "
+      "{:g} "
+      "cycles belong to one change; while it lasts the band of history.csv is what so few samples tell.",
+      found.alarms.size(), found.test_samples, found.threshold, found.noise, si_unit(channel.quantity),
+      settings.false_alarms, settings.shortest_cycles));
+  results.figures.push_back(tracking_figure(found, channel));
+  results.attachments.push_back(history(found));
+  return results;
+}
+
+}  // namespace beamid::experiments

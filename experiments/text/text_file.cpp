@@ -1,0 +1,70 @@
+#include "experiments/text/text_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "experiments/text/input_error.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+bool is_binary(char byte) {
+  return byte >= 0 && byte < '\t';
+}
+
+}  // namespace
+
+std::ifstream open_input(const std::filesystem::path& file, const std::string& expected) {
+  const Place place{file.string(), 0, 0};
+  std::error_code failure;
+  const std::filesystem::file_status status = std::filesystem::status(file, failure);
+  if (!std::filesystem::exists(status)) throw InputError(place, "no such file; expected " + expected);
+  if (std::filesystem::is_directory(status)) throw InputError(place, "a directory; expected " + expected);
+  if (std::filesystem::is_character_file(status)) throw InputError(place, "a device; expected " + expected);
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(place, "cannot be opened; expected " + expected + " that may be read");
+  return stream;
+}
+
+std::string read_bytes(const std::filesystem::path& file, const std::string& expected) {
+  std::ifstream stream = open_input(file, expected);
+  std::string bytes;
+  for (std::vector<char> part(1 << 16); stream;) {
+    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+    bytes.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) throw InputError({file.string()}, "cannot be read to its end; expected " + expected);
+  if (bytes.empty()) throw InputError({file.string()}, "an empty file; expected " + expected);
+  return bytes;
+}
+
+std::size_t count_bytes(const std::filesystem::path& file, const std::string& expected) {
+  std::ifstream stream = open_input(file, expected);
+  stream.seekg(0, std::ios::end);
+  const std::streamoff size = stream.tellg();
+  if (!stream || size < 0)
+    throw InputError({file.string()}, "cannot be read to its end; expected " + expected);
+  if (size == 0) throw InputError({file.string()}, "an empty file; expected " + expected);
+  return static_cast<std::size_t>(size);
+}
+
+std::string read_text(const std::filesystem::path& file, const std::string& expected) {
+  const Place place{file.string(), 0, 0};
+  std::string text = read_bytes(file, expected);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.empty()) throw InputError(place, "an empty file; expected " + expected);
+  if (const auto byte = std::find_if(text.begin(), text.end(), is_binary); byte != text.end()) {
+    const auto line = std::count(text.begin(), byte, '\n') + 1;
+    const std::size_t before = text.rfind('\n', static_cast<std::size_t>(byte - text.begin()));
+    const std::size_t start = before == std::string::npos ? 0 : before + 1;
+    throw InputError({place.file, static_cast<std::size_t>(line),
+                      static_cast<std::size_t>(byte - text.begin()) - start + 1},
+                     "a binary byte (" + std::to_string(static_cast<int>(*byte)) + "); expected " + expected +
+                         " in ASCII or UTF-8");
+  }
+  return text;
+}
+
+}  // namespace beamid::experiments

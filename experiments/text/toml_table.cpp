@@ -1,0 +1,223 @@
+#include "experiments/text/toml_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "experiments/text/text_file.hpp"
+#include "experiments/text/toml_node.hpp"
+
+namespace beamid::experiments {
+
+std::string found(const toml::node& node) {
+  constexpr std::size_t longest = 40;
+  if (const auto* text = node.as_string())
+    return fmt::format("the text \"{}\"",
+                       text->get().size() > longest ? text->get().substr(0, longest) + "..." : text->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  if (const auto* array = node.as_array()) return fmt::format("an array of {}", array->size());
+  return node.is_table() ? "a table" : "a date or time";
+}
+
+namespace {
+
+/// toml++ builds and destroys dotted keys recursively; one of some ten thousand parts would exhaust the
+/// stack.
+void refuse_long_lines(const std::string& text, const std::string& file) {
+  constexpr std::size_t longest = 4096;
+  std::size_t line = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > longest)
+      throw InputError({file, line, longest + 1},
+                       fmt::format("a line of {} characters; expected at most {}", end - begin, longest));
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// The table of an override: "beam", "record.time", "sensors[2]". A table that is missing is made, one of an
+/// array is not. @returns null where something else has the name: the reader will refuse it.
+/// @throws InputError where the array has no such table.
+toml::table* table_at(toml::table& root, const Override& over) {
+  toml::table* table = &root;
+  for (std::size_t begin = 0; begin <= over.table.size();) {
+    const std::size_t end = std::min(over.table.find('.', begin), over.table.size());
+    const std::string part = over.table.substr(begin, end - begin);
+    const std::size_t bracket = part.find('[');
+    const std::string name = part.substr(0, bracket);
+    begin = end + 1;
+    toml::node* node = table->get(name);
+    if (bracket != std::string::npos) {
+      toml::array* const array = node ? node->as_array() : nullptr;
+      const std::string count = part.substr(bracket + 1, part.size() - bracket - 2);
+      if (!part.ends_with(']') || count.empty() || count.find_first_not_of("0123456789") != std::string::npos)
+        throw InputError({over.origin, 0, 0},
+                         fmt::format("'{}'; expected a table by its number, as {}[1]", part, name));
+      const std::size_t number = std::strtoul(count.c_str(), nullptr, 10);
+      if (!array || number < 1 || number > array->size())
+        throw InputError({over.origin, 0, 0}, fmt::format("there is no {}; {} has {} tables, counted from 1",
+                                                          part, name, array ? array->size() : 0));
+      node = array->get(number - 1);
+    } else if (node == nullptr) {
+      table->insert(name, toml::table());
+      node = table->get(name);
+    }
+    table = node->as_table();
+    if (table == nullptr) return nullptr;
+  }
+  return table;
+}
+
+/// A whole number is one to those who read it as a number, too.
+void set(toml::table& table, const std::string& key, const filters::OptionValue& value) {
+  constexpr double largest = 0x1p53;
+  if (const double* const number = std::get_if<double>(&value);
+      number && *number == std::floor(*number) && std::abs(*number) <= largest) {
+    table.insert_or_assign(key, static_cast<std::int64_t>(*number));
+  } else if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+    toml::array array;
+    for (const double one : *numbers) array.push_back(one);
+    table.insert_or_assign(key, std::move(array));
+  } else {
+    std::visit(
+        [&](const auto& plain) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(plain)>, std::vector<double>>)
+            table.insert_or_assign(key, plain);
+        },
+        value);
+  }
+}
+
+/// Sets the keys, and gives where each came from by its path.
+std::map<std::string, std::string> apply(const std::vector<Override>& overrides, toml::table& root) {
+  std::map<std::string, std::string> origins;
+  for (const Override& over : overrides) {
+    toml::table* const table = table_at(root, over);
+    if (table == nullptr) continue;
+    for (const std::string& key : over.instead_of) table->erase(key);
+    set(*table, over.key, over.value);
+    origins[over.table + "." + over.key] = over.origin;
+  }
+  return origins;
+}
+
+}  // namespace
+
+TomlTable TomlTable::read(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+  return parse(read_text(file, "a TOML file"), file.string(), overrides);
+}
+
+TomlTable TomlTable::parse(const std::string& text, const std::string& name,
+                           const std::vector<Override>& overrides) {
+  refuse_long_lines(text, name);
+  try {
+    auto root = std::make_shared<toml::table>(toml::parse(text, name));
+    auto origins = std::make_shared<const std::map<std::string, std::string>>(apply(overrides, *root));
+    const toml::table* const top = root.get();
+    return TomlTable(std::make_shared<const Node>(Node{std::move(root), top, name, "", std::move(origins)}));
+  } catch (const toml::parse_error& error) {
+    throw InputError({name, error.source().begin.line, error.source().begin.column},
+                     fmt::format("no valid TOML: {}", error.description()));
+  }
+}
+
+const std::string& TomlTable::name() const {
+  return node_->name;
+}
+
+std::string TomlTable::path(const std::string& key) const {
+  return node_->name.empty() ? key : node_->name + "." + key;
+}
+
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::pair<toml::source_position, std::string>> placed;
+  for (const auto& [key, value] : *node_->table)
+    placed.emplace_back(key.source().begin, std::string(key.str()));
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (auto& [position, key] : placed) names.push_back(std::move(key));
+  return names;
+}
+
+bool TomlTable::contains(const std::string& key) const {
+  return node_->table->contains(key);
+}
+
+Place TomlTable::place() const {
+  return node_->name.empty() ? Place{node_->file, 0, 0} : node_->at(node_->table->source());
+}
+
+Place TomlTable::key_place(const std::string& key) const {
+  if (const auto origin = node_->origins->find(path(key)); origin != node_->origins->end())
+    return {origin->second, 0, 0};
+  const auto it = node_->table->find(key);
+  return it == node_->table->end() ? place() : node_->at(it->first.source());
+}
+
+Place TomlTable::value_place(const std::string& key) const {
+  if (node_->origins->contains(path(key))) return key_place(key);
+  const toml::node* const value = node_->table->get(key);
+  return value == nullptr ? place() : node_->at(value->source());
+}
+
+void TomlTable::refuse(const std::string& key, const std::string& expected) const {
+  throw InputError(value_place(key),
+                   fmt::format("{} is {}; expected {}", path(key), found(*node_->table->get(key)), expected));
+}
+
+void TomlTable::miss(const std::string& key, const std::string& expected) const {
+  throw InputError(place(), fmt::format("{} is missing; expected {}", path(key), expected));
+}
+
+std::optional<TomlTable> TomlTable::find_table(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_table()) refuse(key, "a table");
+  return TomlTable(node_->below(node->as_table(), path(key)));
+}
+
+std::vector<TomlTable> TomlTable::find_tables(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  if (node == nullptr) return {};
+  const toml::array* const array = node->as_array();
+  if (array == nullptr || array->empty()) refuse(key, "an array of at least one table");
+  std::vector<TomlTable> tables;
+  for (const toml::node& element : *array) {
+    const std::string name = fmt::format("{}[{}]", path(key), tables.size() + 1);
+    if (!element.is_table())
+      throw InputError(node_->at(element.source()),
+                       fmt::format("{} is {}; expected a table", name, found(element)));
+    tables.push_back(TomlTable(node_->below(element.as_table(), name)));
+  }
+  return tables;
+}
+
+std::vector<TomlTable> TomlTable::tables_below(const std::string& key) const {
+  const toml::node* const node = node_->table->get(key);
+  std::vector<TomlTable> tables;
+  const auto add = [&](const toml::node& candidate, const std::string& name) {
+    if (candidate.is_table()) tables.push_back(TomlTable(node_->below(candidate.as_table(), name)));
+  };
+  if (node == nullptr) return tables;
+  add(*node, path(key));
+  if (const toml::array* const array = node->as_array())
+    for (const toml::node& element : *array) add(element, path(key));
+  return tables;
+}
+
+TomlTable TomlTable::table(const std::string& key) const {
+  const std::optional<TomlTable> value = find_table(key);
+  if (!value) miss(key, "a table");
+  return *value;
+}
+
+}  // namespace beamid::experiments

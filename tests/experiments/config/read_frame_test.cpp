@@ -1,0 +1,133 @@
+// Oracles: the values written in the files themselves, closed forms of section properties.
+#include "experiments/config/read_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include "experiments/config/read_experiment.hpp"
+#include "tests/experiments/config/temporary_file.hpp"
+
+namespace beamid::experiments::read_frame_test {
+namespace {
+
+const std::string joints =
+    "[frame]\n"
+    "joints = [{ x_m = 0, y_m = 0 }, { x_m = 3, y_m = 4, name = \"ridge\" }, { x_m = 6, y_m = 0 }]\n";
+const std::string members =
+    "[[frame.members]]\n"  // line 3
+    "first = 1\n"
+    "second = 2\n"
+    "width_m = 0.1\n"
+    "height_m = 0.2\n"
+    "youngs_modulus_pa = 2e11\n"
+    "density_kg_per_m3 = 8000\n"
+    "[[frame.members]]\n"  // line 10
+    "first = 3\n"
+    "second = 2\n"
+    "bending_stiffness_n_m2 = 100\n"
+    "axial_stiffness_n = 1e6\n"
+    "mass_kg = 10\n"
+    "hinged_at_second = true\n";
+
+FrameExperiment frame_of(const std::string& text) {
+  return read_frame(TomlTable::parse(text, "frame.toml"));
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    frame_of(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ReadFrame, TakesMembersByDimensionsAndByStiffness) {
+  const FrameExperiment read = frame_of("title = \"roof\"\n" + joints + members);
+  EXPECT_EQ(read.title, "roof");
+  EXPECT_EQ(read.elements_per_member, 20);
+  EXPECT_EQ(read.joint_names, (std::vector<std::string>{"1", "ridge", "3"}));
+  const fem::Frame& frame = read.frame;
+  ASSERT_EQ(frame.members.size(), 2u);
+  EXPECT_EQ(frame.members[0].first, 0);
+  EXPECT_EQ(frame.members[1].first, 2);
+  EXPECT_EQ(frame.length(1), 5.0);
+  EXPECT_NEAR((*frame.members[0].section.axial_stiffness)(0) / 4e9, 1.0, 1e-15);
+  EXPECT_NEAR(frame.members[0].section.bending_stiffness(0) / (2e11 * 0.1 * 0.008 / 12), 1.0, 1e-15);
+  EXPECT_EQ((*frame.members[1].section.axial_stiffness)(0), 1e6);
+  EXPECT_EQ(frame.members[1].section.mass_per_length(0), 2.0);  // 10 kg over the 5 m between its joints
+  EXPECT_FALSE(frame.members[0].hinged_at_second);
+  EXPECT_TRUE(frame.members[1].hinged_at_second);
+  EXPECT_NEAR(total_mass(frame), 5 * 160 + 10, 1e-12);
+}
+
+TEST(ReadFrame, TakesWhatHoldsItAndWhatSitsOnIt) {
+  const fem::Frame frame =
+      frame_of("[frame]\nmass_model = \"lumped\"\n" + joints.substr(8) + members +
+               "[[frame.supports]]\njoint = 1\nkind = \"clamped\"\n[[frame.supports]]\njoint = 3\n"
+               "kind = \"rolling_x\"\n[[frame.bodies]]\njoint = 2\nmass_kg = 7\nrotary_inertia_kg_m2 = 0.5\n"
+               "[[frame.springs]]\njoint = 2\ntranslational_x_n_per_m = 1\ntranslational_y_n_per_m = 2\n"
+               "rotational_n_m_per_rad = 3\n")
+          .frame;
+  EXPECT_EQ(frame.mass_model, fem::MassModel::lumped);
+  ASSERT_EQ(frame.supports.size(), 2u);
+  EXPECT_TRUE(frame.supports[0].x && frame.supports[0].y && frame.supports[0].rotation);
+  EXPECT_EQ(frame.supports[1].joint, 2);
+  EXPECT_TRUE(frame.supports[1].y && !frame.supports[1].x && !frame.supports[1].rotation);
+  EXPECT_EQ(frame.bodies.at(0).joint, 1);
+  EXPECT_EQ(frame.bodies.at(0).mass, 7.0);
+  EXPECT_EQ(frame.bodies.at(0).rotary_inertia, 0.5);
+  EXPECT_EQ(frame.springs.at(0).x, 1.0);
+  EXPECT_EQ(frame.springs.at(0).y, 2.0);
+  EXPECT_EQ(frame.springs.at(0).rotational, 3.0);
+}
+
+TEST(ReadFrame, RefusesWhatCannotBe) {
+  const auto replaced = [](std::string text, const std::string& what, const std::string& by) {
+    return text.replace(text.find(what), what.size(), by);
+  };
+  const std::string good = joints + members;
+  const std::pair<std::string, std::string> cases[] = {
+      {"title = \"nothing\"\n", "frame.toml: frame is missing; expected a table"},
+      {"[frame]\n", "frame.toml:1:1: frame.joints is missing; expected an array of at least one table"},
+      {joints, "frame.toml:1:1: frame.members is missing; expected an array of at least one table"},
+      {replaced(good, "second = 2", "second = 4"),
+       "frame.toml:5:10: frame.members[1].second is 4; expected a whole number from 1 to 3"},
+      {replaced(good, "second = 2", "second = 1"),
+       "frame.toml:3:1: frame.members[1] goes from joint 1 to joint 1 and has no length; expected joints at "
+       "different places"},
+      {replaced(good, "second = 2\n", ""),
+       "frame.toml:3:1: frame.members[1].second is missing; expected the number of a joint, from 1 to 3"},
+      {replaced(good, "axial_stiffness_n = 1e6\n", ""),
+       "frame.toml:10:1: frame.members[2].axial_stiffness_n is missing; expected a positive number beside "
+       "bending_stiffness_n_m2"},
+      {replaced(good, "first = 3", "first = 1"),
+       "frame.toml:2:71: frame.joints[3] ends no member; expected one at least"},
+      {good + "[[frame.supports]]\njoint = 1\n",
+       "frame.toml:17:1: frame.supports[1].kind is missing; expected one of clamped, pinned, rolling_x, "
+       "rolling_y, sliding_x, sliding_y, guided"},
+      {good + "[[frame.bodies]]\njoint = 1\n",
+       "frame.toml:17:1: frame.bodies[1] has no effect; expected at least one of mass_kg, "
+       "rotary_inertia_kg_m2"},
+      {replaced(good, "[frame]", "[frame]\nelements_per_member = 500001"),
+       "frame.toml:2:23: frame.elements_per_member is 500001; expected a whole number from 1 to 500000"},
+      {good + "[damping]\nratio = 0.01\n",
+       "frame.toml:17:2: damping has no use beside [frame]; of use there: title, frame"}};
+  for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text), message);
+}
+
+TEST(ReadFrame, RefusesMisspeltKeysAndALength) {
+  EXPECT_EQ(error_of(joints + "[[frame.members]]\nfrist = 1\n")
+                .find("frame.toml:4:1: unknown key 'frist' in "
+                      "frame.members; did you mean 'first'?"),
+            0u);
+  EXPECT_EQ(error_of(joints + "[[frame.members]]\nlength_m = 1\n").find("frame.toml:4:1: unknown key "), 0u);
+}
+
+TEST(ReadExperiment, OfAFrameSaysWhoTakesIt) {
+  const TemporaryFile file("frame.toml", joints + members);
+  EXPECT_EQ(input_error_of(file, [&] { read_experiment(file.path()); }),
+            "frame.toml:1:2: frame describes a plane frame, which 'beamid frame' takes; expected a beam");
+}
+
+}  // namespace
+}  // namespace beamid::experiments::read_frame_test

@@ -1,0 +1,161 @@
+// The first lines of a result: what contradicts it, and why. Oracles: the closed form of a scheme, the other
+// mode that was put in, the prior that was stated wrongly.
+#include "experiments/identify/judgement.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiments/models/discretisation_bias.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
+#include "tests/experiments/identify/simulated_record.hpp"
+
+namespace beamid::experiments::judgement_test {
+namespace {
+
+using Eigen::Index;
+using testing::AllOf, testing::HasSubstr, testing::IsEmpty, testing::Not;
+
+const test::SimulatedBeam simulated;
+
+RecordIdentification identified(const Experiment& experiment, const Record& record) {
+  return identify_record(experiment, record);
+}
+
+std::string printed(const Experiment& experiment, const Record& record) {
+  std::ostringstream text;
+  print(text, report(experiment, record, "record.csv", identify_record(experiment, record)));
+  std::string line = text.str();
+  for (char& letter : line)
+    if (letter == '\n') letter = ' ';
+  return line;
+}
+
+TEST(Judgement, HasNothingToSayOfAGoodRecord) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    const RecordIdentification r =
+        identified(simulated.experiment(), simulated.record({Quantity::acceleration}, 0.01, seed));
+    EXPECT_EQ(r.judgement.verdict, Verdict::converged);
+    EXPECT_THAT(r.judgement.messages, IsEmpty()) << seed;
+  }
+}
+
+// Cramer-Rao: 2 s behind the release, with noise of 0.4 of the amplitude, know the damping to about 100 %.
+TEST(Judgement, SaysWhereTheDampingIsHardlyDetermined) {
+  const Record record = simulated.record({Quantity::acceleration}, 0.4, 3).window(0, 2);
+  const RecordIdentification r = identified(simulated.experiment(), record);
+  ASSERT_FALSE(r.judgement.messages.empty());
+  EXPECT_THAT(r.judgement.messages[0], HasSubstr("The record hardly determines the damping ratio"));
+}
+
+// C_f / C - 1 by the closed form, with the sampling interval of 5 ms: 1200 %.
+TEST(Judgement, NamesTheDiscretisationThatMakesTheDifference) {
+  Experiment experiment = simulated.experiment();
+  experiment.discretisation = "forward_euler";
+  const Record record = simulated.record({Quantity::acceleration}, 0.01, 1);
+  const RecordIdentification r = identified(experiment, record);
+  EXPECT_EQ(r.judgement.verdict, Verdict::contradicted);
+  ASSERT_EQ(r.judgement.messages.size(), 1u);
+  const Oscillator seen = seen_through("forward_euler", simulated.truth, 0.005);
+  const std::string error = std::to_string(
+      static_cast<int>(std::lround(percent(seen.damping, simulated.truth.damping) / 10.0)));  // three digits
+  EXPECT_THAT(r.judgement.messages[0],
+              AllOf(HasSubstr("disagree by +"), HasSubstr("forward_euler at 5 ms makes C 1"),
+                    HasSubstr("too large"), HasSubstr("use exponential")));
+  EXPECT_NEAR(percent(r.identification.found.damping, simulated.truth.damping), 10.0 * std::stod(error),
+              50.0);
+  const std::string text = printed(experiment, record);
+  EXPECT_LT(text.find("Filter and modal analysis disagree"), text.find("samples from"));
+  EXPECT_THAT(text, Not(HasSubstr("as they should be")));
+}
+
+// omega dt = 1.15: the scheme's closed form grows.
+TEST(Judgement, NamesAStepThatIsTooLong) {
+  Record record = simulated.record({Quantity::acceleration}, 0.01, 1), thin;
+  constexpr Index every = 11;
+  thin.channels = record.channels;
+  const Index count = record.size() / every;
+  thin.time.resize(count), thin.samples.resize(1, count);
+  for (Index k = 0; k < count; ++k)
+    thin.time[k] = record.time[every * k], thin.samples(0, k) = record.samples(0, every * k);
+  Experiment experiment = simulated.experiment();
+  EXPECT_EQ(identified(experiment, thin).judgement.verdict, Verdict::converged);
+  experiment.discretisation = "runge_kutta_4";
+  const RecordIdentification r = identified(experiment, thin);
+  EXPECT_EQ(r.judgement.verdict, Verdict::diverged);
+  EXPECT_THAT(r.judgement.messages.at(0),
+              AllOf(HasSubstr("DIVERGED: its damping ratio is -"),
+                    HasSubstr("The step is too long; discretisation exponential")));
+}
+
+TEST(Judgement, NamesAPriorThatExcludesTheRecord) {
+  Experiment experiment = simulated.experiment();
+  experiment.filter.name = "adaptive_ekf";
+  experiment.prior.damping_ratio = 0.05;
+  experiment.prior.damping_ratio_deviation = 1e-4;
+  const RecordIdentification r = identified(experiment, simulated.record({Quantity::acceleration}, 0.01, 1));
+  EXPECT_NE(r.judgement.verdict, Verdict::converged);
+  EXPECT_THAT(r.judgement.messages.at(0), HasSubstr("prior.damping_ratio, 0.05 +- 0.0001, excludes it"));
+  EXPECT_EQ(report(experiment, simulated.record({Quantity::acceleration}, 0.01, 1), "r", r).values["status"],
+            to_string(r.judgement.verdict));
+}
+
+// A mode with half the amplitude at 1.25 times the frequency, which beats with the first over the whole
+// record.
+TEST(Judgement, NamesAnotherMode) {
+  Record record = simulated.record({Quantity::acceleration}, 0.002, 1);
+  const double w = 1.25 * simulated.mode.angular_frequency(),
+               half = 0.5 * record.samples.cwiseAbs().maxCoeff();
+  for (Index k = 0; k < record.size(); ++k)
+    record.samples(0, k) += half * std::exp(-0.02 * w * record.time[k]) * std::cos(w * record.time[k]);
+  const RecordIdentification r = identified(simulated.experiment(), record);
+  ASSERT_EQ(r.modal.companions.size(), 1u);
+  EXPECT_NEAR(r.modal.damping_ratio, simulated.damping_ratio, 0.05 * simulated.damping_ratio);
+  if (!r.judgement.messages.empty()) {
+    EXPECT_THAT(r.judgement.messages[0], HasSubstr("another mode at"));
+  }
+}
+
+// A line at 2 f of 0.3 of the amplitude that decays with the mode, as a clipped or quadratic reading has it.
+TEST(Judgement, NamesAnOvertone) {
+  Record record = simulated.record({Quantity::acceleration}, 0.002, 1);
+  const double w = simulated.mode.angular_frequency(), part = 0.3 * record.samples.cwiseAbs().maxCoeff();
+  for (Index k = 0; k < record.size(); ++k)
+    record.samples(0, k) +=
+        part * std::exp(-simulated.damping_ratio * w * record.time[k]) * std::cos(2.0 * w * record.time[k]);
+  const auto slow =
+      Eigen::seqN(Index{0}, record.size() / 6, Index{6});  // 33 Hz: no decimation takes 2 f away
+  record.time = record.time(slow).eval();
+  record.samples = record.samples(Eigen::all, slow).eval();
+  const RecordIdentification r = identified(simulated.experiment(), record);
+  ASSERT_FALSE(r.judgement.messages.empty());
+  EXPECT_THAT(r.judgement.messages.back(),
+              HasSubstr("An overtone at 6.911 Hz, 2 times the frequency, has 30 %"));
+}
+
+TEST(Report, BeginsWithTheWarningsOfTheRecord) {
+  Record record = simulated.record({Quantity::acceleration}, 0.01, 1);
+  record.warnings = {"Channel tip is clipped."};
+  const Experiment experiment = simulated.experiment();
+  Results results = report(experiment, record, "record.csv", identify_record(experiment, record));
+  lead_with(results, "", record);
+  std::ostringstream shown;
+  print(shown, results);
+  const std::string text = shown.str();
+  ASSERT_NE(text.find("Channel tip is clipped."), std::string::npos);
+  EXPECT_LT(text.find("Channel tip is clipped."), text.find("samples from"));
+}
+
+TEST(Judgement, NamesTheConditionThatADivergedFilterFails) {
+  Experiment experiment = simulated.experiment();
+  experiment.noise = {{Quantity::displacement, 1e-14}};
+  const Record record = simulated.record({Quantity::displacement}, 0.01, 9);
+  const RecordIdentification r = identified(experiment, record);
+  EXPECT_EQ(r.judgement.verdict, Verdict::diverged);
+  EXPECT_THAT(r.judgement.messages.at(0), HasSubstr("DIVERGED: sample "));
+}
+
+}  // namespace
+}  // namespace beamid::experiments::judgement_test

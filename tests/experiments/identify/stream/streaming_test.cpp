@@ -1,0 +1,267 @@
+// Samples that arrive one by one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/stream/sample_line.hpp"
+#include "experiments/identify/stream/streamed_identification.hpp"
+#include "tests/experiments/identify/simulated_record.hpp"
+
+namespace beamid::experiments::streaming_test {
+namespace {
+
+using Eigen::Index;
+
+const test::SimulatedBeam simulated;
+
+class EveryFilter : public testing::TestWithParam<const char*> {
+ protected:
+  EveryFilter() { experiment_.filter.name = GetParam(); }
+
+  // The batch: one pass over the whole record.
+  filters::FilterRun batch() const {
+    RecordIdentification prepared = prepare_identification(experiment_, record_);
+    prepared.settings.passes = 1;
+    return filter_record(prepared.model, measurements(record_), prepared.settings,
+                         filters::Keep::all_beliefs);
+  }
+
+  filters::Sample sample(Index k) const { return {record_.time[k], record_.samples.col(k)}; }
+
+  Experiment experiment_ = simulated.experiment();
+  Record record_ = simulated.record({Quantity::displacement, Quantity::acceleration}, 0.01, 11).window(0, 4);
+};
+
+// Oracle: the batch run, to the last digit, and after every sample.
+TEST_P(EveryFilter, HasTheNumbersOfTheBatch) {
+  const filters::FilterRun whole = batch();
+  StreamedIdentification stream(experiment_, record_);
+  for (Index k = 0; k < record_.size(); ++k) {
+    ASSERT_TRUE(stream.take_in(sample(k)));
+    ASSERT_EQ(stream.running().belief().mean, whole.filtered[static_cast<std::size_t>(k)].mean) << k;
+  }
+  EXPECT_EQ(stream.running().belief().covariance, whole.last.covariance);
+}
+
+TEST_P(EveryFilter, RefusesAMeasuredForce) {
+  Record forced = record_;
+  forced.channels[1] = {Quantity::force, "hammer"};
+  try {
+    StreamedIdentification(experiment_, forced);
+    ADD_FAILURE() << "no error";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("a stream takes free motion; found the measured force 'hammer'"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+// Oracle: the batch run. The text of the state is what a file would hold. A filter that carries a factor of
+// the covariance forms it anew: rounding, not more.
+TEST_P(EveryFilter, GoesOnFromASavedState) {
+  const filters::FilterRun whole = batch();
+  const Index half = record_.size() / 2;
+  StreamedIdentification first(experiment_, record_), second(experiment_, record_);
+  for (Index k = 0; k < half; ++k) ASSERT_TRUE(first.take_in(sample(k)));
+  second.resume(nlohmann::json::parse(first.save().dump()));
+  for (Index k = half; k < record_.size(); ++k) ASSERT_TRUE(second.take_in(sample(k)));
+  EXPECT_EQ(second.running().step(), record_.size());
+  const Eigen::VectorXd error = second.running().belief().mean - whole.last.mean,
+                        deviation = whole.last.deviations();
+  if (std::string(GetParam()) == "ekf")
+    EXPECT_EQ(second.running().belief().mean, whole.last.mean);
+  else
+    for (Index i = 0; i < error.size(); ++i) EXPECT_LT(std::abs(error[i]), 1e-6 * deviation[i]) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Filters, EveryFilter, testing::Values("ekf", "ukf", "srukf"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+// Oracle: the batch with NaN at the same places.
+TEST(Stream, LeavesOutWhatWasNotMeasured) {
+  Record record = simulated.record({Quantity::displacement}, 0.01, 12).window(0, 2);
+  const Experiment experiment = simulated.experiment();
+  RecordIdentification prepared = prepare_identification(experiment, record);
+  prepared.settings.passes = 1;
+  StreamedIdentification stream(experiment, record);
+  record.samples.middleCols(100, 20).setConstant(std::nan(""));
+  const filters::FilterRun whole = filter_record(prepared.model, measurements(record), prepared.settings);
+  for (Index k = 0; k < record.size(); ++k) stream.take_in({record.time[k], record.samples.col(k)});
+  EXPECT_EQ(stream.running().belief().mean, whole.last.mean);
+}
+
+/// A stream of what happens to loggers: K and C at the end, as rows of beamid stream have them.
+class Disturbed : public testing::Test {
+ protected:
+  Record record_ = simulated.record({Quantity::acceleration}, 0.01, 21);
+  Experiment experiment_ = simulated.experiment();
+
+  filters::Sample sample(Index k) const { return {record_.time[k], record_.samples.col(k)}; }
+
+  StreamedIdentification streamed() const {
+    StreamedIdentification stream(experiment_, simulated.record({Quantity::acceleration}, 0.01, 22));
+    for (Index k = 0; k < record_.size(); ++k) EXPECT_TRUE(stream.take_in(sample(k)));
+    return stream;
+  }
+
+  // Oracle: the truth that was simulated, within four of the deviations that the rows show.
+  static void expect_truth(const StreamedIdentification& stream) {
+    const Identification found = stream.found();
+    const double factor = stream.interval_factor();
+    EXPECT_LT(std::abs(found.found.stiffness - simulated.truth.stiffness),
+              4.0 * factor * found.stiffness_deviation);
+    EXPECT_LT(std::abs(found.found.damping - simulated.truth.damping),
+              4.0 * factor * found.damping_deviation);
+    EXPECT_LT(factor, 2.0);
+    EXPECT_EQ(stream.status(), StreamedIdentification::Status::settled);
+  }
+};
+
+// Before: C = -858 +- 2e-7 for 0.21, and no word.
+TEST_F(Disturbed, OneSpikeIsLeftOut) {
+  const double largest = record_.samples.cwiseAbs().maxCoeff();
+  record_.samples(0, 1000) = 1e3 * largest;
+  const StreamedIdentification stream = streamed();
+  expect_truth(stream);
+  EXPECT_EQ(stream.watch().left_out(), 1);
+  EXPECT_EQ(stream.watch().starts(), 0);
+  record_.samples(0, 1000) = std::nan("");  // oracle: the reading that was not there
+  EXPECT_EQ(streamed().running().belief().mean, stream.running().belief().mean);
+}
+
+TEST_F(Disturbed, ASpikeBeforeTheFilterHasSettledIsForgotten) {
+  for (const double size : {3.0, 1e3, 1e9}) {
+    record_ = simulated.record({Quantity::acceleration}, 0.01, 21);
+    record_.samples(0, 100) = size * record_.samples.cwiseAbs().maxCoeff();
+    StreamedIdentification stream = streamed();
+    expect_truth(stream);
+    EXPECT_GT(stream.watch().starts(), 0) << size;
+    EXPECT_FALSE(stream.news().empty());
+  }
+}
+
+// The beam is released again in mid-record, from another deflection.
+TEST_F(Disturbed, ANewReleaseStartsANewMotionAndKeepsWhatIsKnown) {
+  const Record other = simulated.record({Quantity::acceleration}, 0.01, 23);
+  record_.samples.rightCols(1000) = 0.7 * other.samples.middleCols(200, 1000);
+  StreamedIdentification stream = streamed();
+  expect_truth(stream);
+  const double both = stream.interval_factor() * stream.found().stiffness_deviation;
+  record_ = record_.window(5.01, 10.0);
+  const StreamedIdentification second = streamed();
+  EXPECT_LT(both, 0.8 * second.interval_factor() * second.found().stiffness_deviation);
+}
+
+// Ten times the noise of the earlier record: flagged in every row, and no tight interval is shown.
+TEST_F(Disturbed, MoreNoiseThanExpectedIsNeverSettled) {
+  record_ = simulated.record({Quantity::acceleration}, 0.1, 24);
+  StreamedIdentification stream(experiment_, simulated.record({Quantity::acceleration}, 0.01, 22));
+  for (Index k = 0; k < record_.size(); ++k) {
+    stream.take_in(sample(k));
+    ASSERT_NE(stream.status(), StreamedIdentification::Status::settled) << k;
+  }
+  EXPECT_GT(stream.interval_factor(), 7.0);
+}
+
+// Oracle: the same in one piece, wherever it is split; the state holds the alarm's counters.
+TEST_F(Disturbed, GoesOnFromAStateOfAnyMoment) {
+  record_.samples(0, 100) *= 1e3;
+  record_.samples(0, 1200) *= 1e3;
+  record_.samples.rightCols(500) *= -2.0;
+  const auto rows = [&](Index split) {
+    const Record earlier = simulated.record({Quantity::acceleration}, 0.01, 22);
+    auto stream = std::make_unique<StreamedIdentification>(experiment_, earlier);
+    std::string text;
+    for (Index k = 0; k < record_.size(); ++k) {
+      if (k == split) {
+        const auto saved = nlohmann::json::parse(stream->save().dump());
+        stream = std::make_unique<StreamedIdentification>(experiment_, earlier);
+        stream->resume(saved);
+      }
+      stream->take_in(sample(k));
+      text += stream_row(record_.time[k], *stream);
+    }
+    return text;
+  };
+  const std::string whole = rows(-1);
+  for (const Index split : {1, 49, 101, 500, 777, 1201, 1502, 1503, 1504, 1505, 1600, 1999})
+    EXPECT_EQ(rows(split), whole) << split;
+}
+
+TEST(Stream, RefusesAStateThatNoFilterHas) {
+  const Record record = simulated.record({Quantity::displacement}, 0.01, 13).window(0, 2);
+  StreamedIdentification stream(simulated.experiment(), record);
+  for (Index k = 0; k < 300; ++k) stream.take_in({record.time[k], record.samples.col(k)});
+  const nlohmann::json saved = stream.save();
+  const auto refusal = [&](const char* key, const nlohmann::json& value) -> std::string {
+    nlohmann::json changed = saved;
+    changed[key] = value;
+    try {
+      stream.resume(changed);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_EQ(refusal("covariance", std::vector<double>(16, 0.0)),
+            "a deviation of the state is 0; expected more than 0");
+  EXPECT_EQ(refusal("step", 1e30), "step is 1e+30; expected a count of samples");
+  EXPECT_EQ(refusal("step", -3), "step is -3; expected a count of samples");
+  EXPECT_NE(refusal("mean", nlohmann::json::array()).find("mean has 0 numbers"), std::string::npos);
+  EXPECT_NE(refusal("covariance", nlohmann::json::array()), "taken");
+  EXPECT_NE(refusal("filter", nlohmann::json::array({nlohmann::json::array()})), "taken");
+  EXPECT_NE(refusal("health", 3), "taken");
+  EXPECT_EQ(refusal("time_s", saved["time_s"]), "taken");
+}
+
+TEST(Stream, RefusesAStateThatIsNotItsOwn) {
+  const Record record = simulated.record({Quantity::displacement}, 0.01, 13).window(0, 2);
+  Experiment experiment = simulated.experiment();
+  StreamedIdentification ekf(experiment, record);
+  EXPECT_THROW(ekf.save(), std::invalid_argument);
+  ekf.take_in({0.0, record.samples.col(0)});
+  const nlohmann::json saved = ekf.save();
+  experiment.filter.name = "ukf";
+  StreamedIdentification ukf(experiment, record);
+  try {
+    ukf.resume(saved);
+    FAIL() << "nothing was thrown";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "filter is \"ekf\"; expected \"ukf\"");
+  }
+  EXPECT_THROW(ekf.resume(nlohmann::json::object()), std::invalid_argument);
+  experiment.filter.name = "adaptive_ekf";
+  StreamedIdentification adaptive(experiment, record);
+  adaptive.take_in({0.0, record.samples.col(0)});
+  EXPECT_THROW(adaptive.save(), std::invalid_argument);
+}
+
+TEST(SampleLine, TakesNumbersAndGaps) {
+  const filters::Sample sample = read_sample(" 0.5 ,+1.5e-3,, nan\r", 3, {"standard input", 3, 1});
+  EXPECT_EQ(sample.time, 0.5);
+  EXPECT_EQ(sample.output[0], 1.5e-3);
+  EXPECT_TRUE(std::isnan(sample.output[1]));
+  EXPECT_TRUE(std::isnan(sample.output[2]));
+}
+
+TEST(SampleLine, SaysWhatIsWrongAndWhere) {
+  const auto message = [](const std::string& line) -> std::string {
+    try {
+      read_sample(line, 1, {"standard input", 3, 1});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message("0.5,one"),
+            "standard input:3:5: 'one'; expected a number, or nothing where none was measured");
+  EXPECT_EQ(message("0.5"),
+            "standard input:3:1: 1 fields; expected 2: a time and 1 output, parted by commas");
+  EXPECT_EQ(message(",1"), "standard input:3:1: no time; expected seconds");
+}
+
+}  // namespace
+}  // namespace beamid::experiments::streaming_test

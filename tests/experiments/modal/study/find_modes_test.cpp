@@ -1,0 +1,210 @@
+// Which modes a record has, told nothing but the record. Oracle everywhere: what was simulated.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "experiments/modal/study/modal_study.hpp"
+#include "experiments/signal/random.hpp"
+
+namespace beamid::experiments::find_modes_test {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+using testing::HasSubstr, testing::Not, testing::PrintToString;
+
+constexpr double pi = std::numbers::pi;
+
+struct Sine {
+  double frequency_hz, ratio, amplitude;
+};
+
+Record record_of(const VectorXd& signal, double interval) {
+  Record record;
+  record.time = VectorXd::LinSpaced(signal.size(), 0, interval * static_cast<double>(signal.size() - 1));
+  record.samples = signal.transpose();
+  record.channels = {{Quantity::acceleration, "tip"}};
+  return record;
+}
+
+Record decay(const std::vector<Sine>& sines, double rate, double seconds, double noise, std::uint64_t seed) {
+  const auto count = static_cast<Index>(rate * seconds);
+  VectorXd signal = noise * standard_normal(count, seed, 7);
+  for (const Sine& sine : sines) {
+    const double w = 2 * pi * sine.frequency_hz;
+    for (Index k = 0; k < count; ++k) {
+      const double t = static_cast<double>(k) / rate;
+      signal[k] += sine.amplitude * std::exp(-sine.ratio * w * t) *
+                   std::cos(w * std::sqrt(1 - sine.ratio * sine.ratio) * t + 0.3 * sine.frequency_hz);
+    }
+  }
+  return record_of(signal, 1 / rate);
+}
+
+/// Acceleration of x'' + 2 ratio w x' (1 + drag |x'|) + w^2 (x + quadratic x^2 + cubic x^3) = 0 from x = 1,
+/// by the classical Runge-Kutta method at a twentieth of the interval.
+struct Oscillator {
+  double frequency_hz = 5, ratio = 0.005, drag = 0, quadratic = 0, cubic = 0;
+
+  Record record(double rate, double seconds, double noise, std::uint64_t seed) const {
+    constexpr int steps = 20;
+    const auto count = static_cast<Index>(rate * seconds);
+    const double w = 2 * pi * frequency_hz, h = 1 / (rate * steps);
+    const auto acceleration = [&](double x, double v) {
+      return -2 * ratio * w * v * (1 + drag * std::abs(v)) -
+             w * w * (x + quadratic * x * x + cubic * x * x * x);
+    };
+    VectorXd signal = noise * standard_normal(count, seed, 3);
+    double x = 1, v = 0;
+    for (Index k = 0; k < count; ++k) {
+      signal[k] += acceleration(x, v);
+      for (int i = 0; i < steps; ++i) {
+        const double a1 = acceleration(x, v), v2 = v + h / 2 * a1, a2 = acceleration(x + h / 2 * v, v2),
+                     v3 = v + h / 2 * a2, a3 = acceleration(x + h / 2 * v2, v3), v4 = v + h * a3,
+                     a4 = acceleration(x + h * v3, v4);
+        x += h / 6 * (v + 2 * v2 + 2 * v3 + v4);
+        v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+      }
+    }
+    return record_of(signal, 1 / rate);
+  }
+};
+
+std::vector<double> frequencies(const RecordModes& found) {
+  std::vector<double> all;
+  for (const ModeEstimate& mode : found.modes) all.push_back(mode.pole.frequency_hz());
+  return all;
+}
+
+// S(11.8) of the study, 10 s: modes 2 and 3 are over after a second and averaged away in the whole record's
+// spectrum.
+TEST(FindModes, FindsModesThatDieOutEarlyWithoutABand) {
+  const std::vector<Sine> truth{{3.4555, 0.0045, 5.58}, {22.80, 0.005, 2.96}, {65.74, 0.005, 1.84}};
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const RecordModes found = find_modes("a", decay(truth, 250, 10, 0.02, seed), false, {});
+    ASSERT_EQ(found.modes.size(), truth.size()) << PrintToString(frequencies(found));
+    for (std::size_t m = 0; m < truth.size(); ++m) {
+      const Pole& pole = found.modes[m].pole;
+      EXPECT_NEAR(pole.frequency_hz(), truth[m].frequency_hz, 5 * pole.frequency_deviation_hz);
+      EXPECT_NEAR(pole.damping_ratio(), truth[m].ratio, 5 * pole.damping_ratio_deviation);
+      EXPECT_LT(pole.damping_ratio_deviation, 0.02 * truth[m].ratio);
+    }
+  }
+}
+
+TEST(FindModes, NamesLinesOutsideTheBand) {
+  const std::vector<Sine> truth{{3.4555, 0.0045, 5.58}, {22.80, 0.005, 2.96}, {65.74, 0.005, 1.84}};
+  ModalStudySettings settings;
+  settings.band_hz = {0.5, 10};
+  const RecordModes found = find_modes("a", decay(truth, 250, 10, 0.02, 1), false, settings);
+  EXPECT_EQ(found.modes.size(), 1u);
+  EXPECT_THAT(PrintToString(found.warnings), HasSubstr("Lines at 22.8"));
+  EXPECT_THAT(PrintToString(found.warnings), HasSubstr("outside this band"));
+}
+
+// Modes a factor of 35 apart: at the rate of the highest, 200 samples hold less than two cycles of the
+// lowest.
+TEST(FindModes, SearchesAWideBandAtSeveralRates) {
+  const std::vector<Sine> truth{
+      {4.15, 0.002, 7.9}, {26.0, 0.005, 7.6}, {72.8, 0.005, 7.3}, {143, 0.005, 7.0}};
+  const RecordModes found = find_modes("a", decay(truth, 1000, 10, 0.05, 1), false, {});
+  ASSERT_EQ(found.modes.size(), truth.size()) << PrintToString(frequencies(found));
+  for (std::size_t m = 0; m < truth.size(); ++m)
+    EXPECT_NEAR(found.modes[m].pole.frequency_hz(), truth[m].frequency_hz, 1e-3 * truth[m].frequency_hz);
+}
+
+// Of 4 records with a band to nearly half the rate, none shows a mode of noise.
+TEST(FindModes, ListsNoPolesOfNoise) {
+  const std::vector<Sine> truth{{5.5, 0.004, 6}, {47.8, 0.003, 2.2}};
+  ModalStudySettings settings;
+  settings.band_hz = {1, 240};
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const RecordModes found = find_modes("a", decay(truth, 500, 8, 0.1, seed), false, settings);
+    EXPECT_EQ(found.modes.size(), truth.size()) << seed << " " << PrintToString(frequencies(found));
+    EXPECT_TRUE(found.polished);
+  }
+}
+
+// Damping that grows with amplitude to five times its last value, and a frequency that falls by 2 %.
+TEST(FindModes, ListsAModeThatFollowsItsAmplitudeOnce) {
+  for (const auto& [drag, cubic] : {std::pair(0.2, 0.0), std::pair(0.0, -0.05), std::pair(0.1, 0.03)})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      Oscillator oscillator{.frequency_hz = 5, .ratio = 0.003, .drag = drag, .quadratic = 0, .cubic = cubic};
+      const RecordModes found = find_modes("a", oscillator.record(200, 12, 0.5, seed), false, {});
+      ASSERT_EQ(found.modes.size(), 1u)
+          << drag << " " << cubic << " " << seed << PrintToString(frequencies(found));
+      EXPECT_NEAR(found.modes[0].pole.frequency_hz(), 5, 0.1);
+    }
+}
+
+// A frequency that rises by 6 % as the motion dies, 20 s: two poles more than two cycles apart fit it.
+TEST(FindModes, ListsAModeOnceWhoseFrequencyDriftsFar) {
+  const Oscillator oscillator{.frequency_hz = 5, .ratio = 0.003, .drag = 0, .quadratic = 0, .cubic = -0.2};
+  const RecordModes found = find_modes("a", oscillator.record(200, 20, 0.05, 1), false, {});
+  ASSERT_EQ(found.modes.size(), 1u) << PrintToString(frequencies(found));
+  EXPECT_NEAR(found.modes[0].pole.frequency_hz(), 4.85, 0.15);
+}
+
+// Two modes that beat once and a half over the record are two.
+TEST(FindModes, KeepsTwoModesThatBeat) {
+  const RecordModes found =
+      find_modes("a", decay({{5, 0.004, 6}, {5.2, 0.004, 2}}, 200, 8, 0.05, 1), false, {});
+  EXPECT_EQ(found.modes.size(), 2u) << PrintToString(frequencies(found));
+}
+
+// x^2 in the stiffness: 2 f with the same damping ratio, 5 to 20 % of the acceleration.
+TEST(FindModes, TakesOvertonesForNoModes) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Oscillator oscillator{.frequency_hz = 5, .ratio = 0.005, .drag = 0, .quadratic = 0.1, .cubic = 0};
+    const RecordModes found = find_modes("a", oscillator.record(200, 10, 0.5, seed), false, {});
+    ASSERT_EQ(found.modes.size(), 1u) << PrintToString(frequencies(found));
+    EXPECT_NEAR(found.modes[0].pole.frequency_hz(), 5, 0.05);
+    bool overtone = false;
+    for (const PoleCluster& cluster : found.stabilisation.rejected)
+      overtone |= cluster.objection.find("overtone: 2 times") != std::string::npos;
+    EXPECT_TRUE(overtone);
+  }
+}
+
+// A second mode at twice the frequency with another damping ratio is no overtone.
+TEST(FindModes, KeepsAModeAtTwiceAnothersFrequency) {
+  const RecordModes found =
+      find_modes("a", decay({{5, 0.005, 6}, {10, 0.012, 2}}, 200, 10, 0.05, 1), false, {});
+  EXPECT_EQ(found.modes.size(), 2u);
+}
+
+TEST(FindModes, CallsASlowDecayAndABeatDecays) {
+  for (const auto& sines : {std::vector<Sine>{{5, 0.0003, 6}}, {{5, 0.001, 6}, {5.2, 0.001, -5}}}) {
+    const RecordModes found = find_modes("a", decay(sines, 100, 8, 0.05, 1), true, {});
+    EXPECT_EQ(found.modes.size(), sines.size());
+    EXPECT_THAT(PrintToString(found.warnings), Not(HasSubstr("does not decay")));
+  }
+  const RecordModes steady = find_modes("a", decay({{5, 0, 6}}, 100, 8, 0.05, 1), true, {});
+  EXPECT_THAT(PrintToString(steady.warnings), HasSubstr("does not decay"));
+}
+
+// A drop-out of 0.4 s: whatever is listed has been confirmed by least squares.
+TEST(FindModes, ListsNothingThatLeastSquaresDidNotConfirm) {
+  Record record = decay({{5, 0.005, 6}, {31, 0.004, 3}}, 200, 6, 0.05, 1);
+  record.samples.middleCols(300, 80).setZero();
+  const RecordModes found = find_modes("a", record, true, {});
+  EXPECT_TRUE(found.modes.empty() || found.polished);
+  EXPECT_LE(found.modes.size(), 2u) << PrintToString(frequencies(found));
+}
+
+// Missing readings (clipped peaks) end the part that is taken; the rest has the modes it had.
+TEST(FindModes, TakesTheLongestPartWithoutMissingReadings) {
+  Record record = decay({{5, 0.01, 6}}, 200, 6, 0.02, 1);
+  for (Index k = 0; k < record.size(); ++k)
+    if (std::abs(record.samples(0, k)) > 3) record.samples(0, k) = std::numeric_limits<double>::quiet_NaN();
+  const RecordModes found = find_modes("a", record, false, {});
+  ASSERT_EQ(found.modes.size(), 1u);
+  EXPECT_NEAR(found.modes[0].pole.damping_ratio(), 0.01, 5 * found.modes[0].pole.damping_ratio_deviation);
+  EXPECT_THAT(PrintToString(found.remarks), HasSubstr("missing or clipped"));
+  record.samples.setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THROW(find_modes("a", record, false, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace beamid::experiments::find_modes_test

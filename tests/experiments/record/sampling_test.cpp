@@ -1,0 +1,57 @@
+// Oracle: times made at a known rate and printed with a known rounding, by two printing rules.
+#include "experiments/record/sampling.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace beamid::experiments::sampling_test {
+namespace {
+
+std::optional<SamplingFault> fault_of(const std::vector<std::string>& printed) {
+  PrintedPrecision precision;
+  std::vector<double> times;
+  for (const std::string& token : printed) {
+    times.push_back(std::stod(token));
+    precision.add(token);
+  }
+  return find_sampling_fault(times, precision);
+}
+
+/// @param skipped a sample that is missing, -1 for none.
+std::vector<std::string> printed(const char* format, double interval, int skipped) {
+  std::vector<std::string> tokens;
+  for (int i = 0; i < 3000; ++i)
+    if (i != skipped) tokens.push_back(fmt::format(fmt::runtime(format), 0.3 + i * interval));
+  return tokens;
+}
+
+TEST(Sampling, PrintedWithAnyRoundingIsRegular) {
+  for (const char* format : {"{:.4f}", "{:.6f}", "{:.5g}", "{:.6g}", "{:.5e}", "{:.9e}", "{}"})
+    for (const double interval : {31.0 / 51200, 1e-3, 1.0 / 3, 0.7})
+      EXPECT_FALSE(fault_of(printed(format, interval, -1))) << format << " " << interval;
+}
+
+TEST(Sampling, WithASampleMissingIsIrregularUnderAnyRounding) {
+  for (const char* format : {"{:.4f}", "{:.6f}", "{:.6g}", "{:.5e}", "{:.9e}", "{}"})
+    for (const double interval : {31.0 / 51200, 1e-3}) {
+      const auto fault = fault_of(printed(format, interval, 500));
+      ASSERT_TRUE(fault) << format << " " << interval;
+      EXPECT_EQ(fault->sample, 500u);
+    }
+}
+
+TEST(Sampling, KnowsTheResolutionOfPrintedNumbers) {
+  PrintedPrecision fixed, significant, scientific;
+  for (const char* token : {"0.000000", "0.000605", "2.486660"}) fixed.add(token);
+  for (const char* token : {"0", "0.00123457", "12.3457", "-123"}) significant.add(token);
+  for (const char* token : {"1.2500E-03", "+2.5000e+01"}) scientific.add(token);
+  EXPECT_DOUBLE_EQ(fixed.resolution(0.000605), 1e-6);
+  EXPECT_DOUBLE_EQ(fixed.resolution(2.4), 1e-6);
+  EXPECT_DOUBLE_EQ(significant.resolution(0.00123457), 1e-8);
+  EXPECT_DOUBLE_EQ(significant.resolution(12.3), 1e-4);
+  EXPECT_DOUBLE_EQ(scientific.resolution(1.25e-3), 1e-7);
+  EXPECT_DOUBLE_EQ(scientific.resolution(25.0), 1e-3);
+}
+
+}  // namespace
+}  // namespace beamid::experiments::sampling_test

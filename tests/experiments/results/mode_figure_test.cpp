@@ -1,0 +1,98 @@
+#include "experiments/results/mode_figure.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "fem/assembly.hpp"
+#include "fem/frame.hpp"
+#include "tests/experiments/results/temporary_folder.hpp"
+
+namespace beamid::experiments::mode_figure_test {
+namespace {
+
+// Pinned at both ends, cut into few elements.
+fem::StructuralSystem pinned(int elements) {
+  fem::Beam beam;
+  beam.segments = {{2.0, {100.0, 3.0, 0.0, {}, {}, {}}}};
+  beam.supports = {{0.0, true, false}, {2.0, true, false}};
+  return fem::assemble(beam, elements);
+}
+
+// sin(i pi x/L) with its slope at the nodes.
+Eigen::MatrixXd sines(const fem::StructuralSystem& system, int count) {
+  Eigen::MatrixXd shapes(system.size(), count);
+  for (int mode = 0; mode < count; ++mode)
+    for (Eigen::Index i = 0; i < system.size(); ++i) {
+      const fem::Coordinate& c = system.coordinates[i];
+      const double wave = (mode + 1) * std::numbers::pi / 2.0;
+      shapes(i, mode) = c.kind == fem::Coordinate::Kind::deflection
+                            ? std::sin(wave * c.position)
+                            : wave * std::cos(wave * c.position) * c.scale;
+    }
+  return shapes;
+}
+
+// Oracle: the sine itself. Hermite's cubic misses it by (i pi h/L)^4/384 at most, a straight line by (i pi
+// h/L)^2/8.
+TEST(ModeFigure, CurvesAreSmoothBetweenFewNodes) {
+  const fem::StructuralSystem system = pinned(6);
+  const Figure figure = mode_figure(system, sines(system, 3), Eigen::Vector3d(4.1455, 26.0, 123.456));
+  ASSERT_EQ(figure.panels.size(), 3u);
+  EXPECT_EQ(figure.panels[0].title, "mode 1, 4.1455 Hz");
+  EXPECT_EQ(figure.panels[2].title, "mode 3, 123.46 Hz");
+  for (int mode = 1; mode <= 3; ++mode) {
+    const Curve& curve = figure.panels[mode - 1].curves.back();
+    EXPECT_GT(curve.x.size(), 300);
+    EXPECT_NEAR(curve.y.cwiseAbs().maxCoeff(), 1.0, 1e-15);
+    const double bound = 2.1 * std::pow(mode * std::numbers::pi / 6, 4) / 384;  // twice: scaled to 1 as well
+    const double sign = curve.y[20] < 0 ? -1 : 1;
+    for (Eigen::Index i = 0; i < curve.x.size(); ++i)
+      EXPECT_NEAR(sign * curve.y[i], std::sin(mode * std::numbers::pi * curve.x[i] / 2.0), bound);
+  }
+}
+
+TEST(ModeFigure, IsDrawnAsPngAndSvg) {
+  TemporaryFolder folder;
+  const fem::StructuralSystem system = pinned(20);
+  const Figure figure = mode_figure(system, sines(system, 20), Eigen::VectorXd::LinSpaced(20, 0.0, 100.0));
+  EXPECT_EQ(figure.panels.size(), 12u);
+  EXPECT_EQ(figure.panels[0].title, "mode 1, rigid body");
+  write(figure, folder.path);
+  EXPECT_EQ(contents(folder.path / "mode_shapes.png").substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_NE(contents(folder.path / "mode_shapes.svg").find("mode 12, 57.895 Hz"), std::string::npos);
+}
+
+// Oracle: a leaning cantilever whose tip moves across it, drawn by an eighth of its extent, the larger of 3
+// and 4 m.
+TEST(ModeFigure, FrameIsDrawnInItsPlane) {
+  fem::Frame frame;
+  frame.joints = {{0, 0}, {3, 4}};
+  frame.members = {{0, 1, {100.0, 1.0, 0.0, {}, 1e6, {}}}};
+  frame.supports = {{0}};
+  const fem::StructuralSystem system = fem::assemble(frame, 4);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(system.size());
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    if (system.coordinates[i].node != 1) continue;
+    if (system.coordinates[i].kind == fem::Coordinate::Kind::axial) q[i] = -0.8;
+    if (system.coordinates[i].kind == fem::Coordinate::Kind::deflection) q[i] = 0.6;
+  }
+  const Figure figure = mode_figure(system, q, Eigen::VectorXd::Constant(1, 7.0));
+  const Curve &still = figure.panels[0].curves[0], &moved = figure.panels[0].curves[1];
+  EXPECT_EQ(still.x[still.x.size() - 1], 3.0);
+  EXPECT_EQ(still.y[still.y.size() - 1], 4.0);
+  // The sign is settled by the larger component, along x.
+  EXPECT_NEAR(moved.x[moved.x.size() - 1], 3.0 + 0.8 * 0.5, 1e-12);
+  EXPECT_NEAR(moved.y[moved.y.size() - 1], 4.0 - 0.6 * 0.5, 1e-12);
+}
+
+TEST(ModeFigure, RefusesOtherSizes) {
+  const fem::StructuralSystem system = pinned(6);
+  EXPECT_THROW(mode_figure(system, sines(system, 3), Eigen::Vector2d(1, 2)), std::invalid_argument);
+  EXPECT_THROW(mode_figure(system, Eigen::MatrixXd(system.size(), 0), Eigen::VectorXd()),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace beamid::experiments::mode_figure_test

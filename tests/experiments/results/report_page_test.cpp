@@ -1,0 +1,82 @@
+// Pages: oracles are the vectors of RFC 4648, and the page taken apart again.
+#include "experiments/results/report_page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "experiments/results/html.hpp"
+#include "experiments/results/joined_report.hpp"
+
+namespace beamid::experiments::report_page_test {
+namespace {
+
+using testing::HasSubstr, testing::Not;
+
+TEST(Base64, GivesThePublishedVectors) {
+  const std::pair<const char*, const char*> vectors[] = {{"", ""},
+                                                         {"f", "Zg=="},
+                                                         {"fo", "Zm8="},
+                                                         {"foo", "Zm9v"},
+                                                         {"foob", "Zm9vYg=="},
+                                                         {"fooba", "Zm9vYmE="},
+                                                         {"foobar", "Zm9vYmFy"}};
+  for (const auto& [bytes, text] : vectors) EXPECT_EQ(base64(bytes), text);
+}
+
+TEST(EscapedText, ShowsWhatHtmlWouldTakeForItsOwn) {
+  EXPECT_EQ(escaped("K < 3 & \"ξ\" > 2"), "K &lt; 3 &amp; &quot;ξ&quot; &gt; 2");
+  EXPECT_EQ(escaped("a\xff\xc3\x1b[2J"), "aÿÃ[2J");
+  for (const std::string text : {"&lt;", "<&>\"", "plain", "&amp;lt;"})
+    EXPECT_EQ(unescaped(escaped(text)), text);
+}
+
+Results small_results(double stiffness) {
+  Results results;
+  results.command = "identify";
+  results.command_line = "beamid identify 'my record.csv' --config a.toml";
+  results.heading("A beam & its <record>");
+  results.paragraph("First line\nand second");
+  Table table{"parameters", "Parameters"};
+  table.column({"name", "name"}).column({"K [N/m]", "stiffness_n_per_m", "{:.2f}"});
+  table.row({"K", stiffness}).row({"none", std::numeric_limits<double>::quiet_NaN()});
+  results.table(std::move(table));
+  results.values["stiffness_n_per_m"] = stiffness;
+  results.values["samples"] = 12;
+  return results;
+}
+
+TEST(ReportPage, HoldsAllThatWasPrintedAndNeedsNoNetwork) {
+  const std::string page = report_page({report_section(small_results(509.394), ".")});
+  for (const char* text :
+       {"<h1>A beam &amp; its &lt;record&gt;</h1>",
+        "<pre>beamid identify 'my record.csv' --config a.toml</pre>", "<p>First line\nand second</p>",
+        "<th>K [N/m]</th>", "<td class=\"number\">509.39</td>", "<td class=\"number\">-</td>"})
+    EXPECT_THAT(page, HasSubstr(text));
+  for (const char* outside : {"http:", "https:", "src=\"/", "@import", "<script", "url("})
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+}
+
+TEST(ReportPage, IsTakenApartAgain) {
+  const std::vector<ReportSection> sections{report_section(small_results(1.0), "."),
+                                            {"Two", "<h1>Two</h1>\n<p>x</p>\n"}};
+  const std::vector<ReportSection> found = sections_of(report_page(sections));
+  ASSERT_EQ(found.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(found[i].title, sections[i].title);
+    EXPECT_EQ(found[i].html, sections[i].html);
+  }
+  EXPECT_TRUE(sections_of("<html><h1>another page</h1></html>").empty());
+}
+
+TEST(SideBySide, ShowsTheNumbersThatDiffer) {
+  const Table table =
+      side_by_side({{"one", to_json(small_results(500.0))}, {"two", to_json(small_results(505.0))}});
+  ASSERT_EQ(table.rows(), 1u);
+  EXPECT_EQ(std::get<std::string>(table.columns[0].cells[0]), "stiffness_n_per_m");
+  EXPECT_NEAR(std::get<double>(table.columns[3].cells[0]), 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace beamid::experiments::report_page_test
