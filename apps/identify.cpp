@@ -13,6 +13,7 @@
 #include "experiments/identify/noise_source.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/studies/compare/comparison_report.hpp"
 #include "experiments/studies/damping/compared_laws.hpp"
@@ -55,7 +56,8 @@ Results identify_generally(const Experiment& experiment, const Record& record, c
   results.values["status"] = to_string(found.runs.at(0).status);
   results.configuration["on_failure"] = to_string(experiment.on_failure);
   for (const ComparedRun& one : found.runs) {
-    if (const std::string text = words(one.run.events); !text.empty()) results.paragraph(trouble + text);
+    if (const std::string text = failure_sentences(one.run.events); !text.empty())
+      results.paragraph(trouble + text);
     if (!one.diagnostics) continue;
     std::vector<std::string> outputs;
     for (const Eigen::Index i : output_channels(record)) outputs.push_back(record.channels[i].name);

@@ -1,5 +1,6 @@
 // beamid inspect: what is in a record's file, and what is wrong with it?
 #include "experiments/record/inspect/inspection.hpp"
+#include "experiments/studies/inspect/inspection_report.hpp"
 
 #include "apps/deliver.hpp"
 #include "apps/record_options.hpp"

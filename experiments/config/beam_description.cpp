@@ -33,6 +33,10 @@ Json describe(const fem::Segment& segment) {
 
 namespace {
 
+Json attachment_json(const fem::Segment& segment) {
+  return describe(segment);
+}
+
 Json attachment_json(const fem::Body& body) {
   return {{"position_m", body.position},
           {"mass_kg", body.mass},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "filters/diagnostics.hpp"
@@ -13,5 +14,8 @@ namespace beamid::experiments {
 std::optional<filters::Diagnostics> diagnostics_of(const filters::FilterRun& run,
                                                    const filters::Gaussian& initial,
                                                    const std::vector<Eigen::Index>& unknowns);
+
+/// A paragraph about the first five, and how many more there were; empty when there were none.
+std::string failure_sentences(const std::vector<filters::Failure>& events);
 
 }  // namespace beamid::experiments

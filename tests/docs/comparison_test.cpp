@@ -3,7 +3,7 @@
 
 #include "tests/docs/golden_case.hpp"
 
-namespace beamid::docs {
+namespace beamid::docs::comparison_test {
 namespace {
 
 using testing::ElementsAre, testing::IsEmpty;
@@ -69,4 +69,4 @@ TEST(Rounded, KeepsNineDigitsAndCounts) {
 }
 
 }  // namespace
-}  // namespace beamid::docs
+}  // namespace beamid::docs::comparison_test

@@ -6,7 +6,7 @@
 
 #include "tests/docs/golden_case.hpp"
 
-namespace beamid::docs {
+namespace beamid::docs::golden_test {
 namespace {
 
 using testing::IsEmpty;
@@ -69,4 +69,4 @@ INSTANTIATE_TEST_SUITE_P(Command, Golden, testing::ValuesIn(golden_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
-}  // namespace beamid::docs
+}  // namespace beamid::docs::golden_test

@@ -4,7 +4,7 @@
 #include "tests/docs/page.hpp"
 #include "tests/docs/printed_output.hpp"
 
-namespace beamid::docs {
+namespace beamid::docs::page_reading_test {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr, testing::SizeIs;
@@ -68,4 +68,4 @@ TEST(PrintedOutput, NamesLinesOfThePageThatDiffer) {
 }
 
 }  // namespace
-}  // namespace beamid::docs
+}  // namespace beamid::docs::page_reading_test

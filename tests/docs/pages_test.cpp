@@ -6,7 +6,7 @@
 #include "tests/docs/printed_output.hpp"
 #include "tests/docs/shell.hpp"
 
-namespace beamid::docs {
+namespace beamid::docs::pages_test {
 namespace {
 
 std::vector<std::string> pages() {
@@ -105,4 +105,4 @@ INSTANTIATE_TEST_SUITE_P(Documentation, Pages, testing::ValuesIn(pages()), [](co
 });
 
 }  // namespace
-}  // namespace beamid::docs
+}  // namespace beamid::docs::pages_test

@@ -99,7 +99,8 @@ bool StreamedIdentification::take_in(const filters::Sample& sample) {
 void StreamedIdentification::list_failures() {
   const auto& events = running_->events();
   for (; told_ < events.size(); ++told_)
-    if (!events[told_].reason.starts_with("the innovations diverge")) news_.push_back(words({events[told_]}));
+    if (!events[told_].reason.starts_with("the innovations diverge"))
+      news_.push_back(failure_sentences({events[told_]}));
 }
 
 void StreamedIdentification::heed(const filters::Gaussian& predicted) {

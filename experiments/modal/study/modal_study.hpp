@@ -9,6 +9,7 @@
 
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/modal/stabilisation.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/text/choice.hpp"
 
 namespace beamid::experiments {

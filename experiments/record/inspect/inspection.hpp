@@ -50,7 +50,4 @@ struct Inspection {
 /// @throws InputError.
 Inspection inspect(const std::filesystem::path& file, const RecordFormat& format);
 
-/// What to write into an experiment file so that every command reads the record like this.
-std::string record_table_text(const Inspection& found);
-
 }  // namespace beamid::experiments

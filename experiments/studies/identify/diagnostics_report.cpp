@@ -67,17 +67,4 @@ Json values(const std::vector<filters::Failure>& events) {
   return json;
 }
 
-std::string words(const std::vector<filters::Failure>& events) {
-  constexpr std::size_t told = 5;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(told, events.size()); ++i)
-    text += fmt::format("{}Sample {}, {:.4f} s: {}{}.", i ? " " : "", events[i].step, events[i].time,
-                        events[i].reason,
-                        std::isnan(events[i].smallest_eigenvalue)
-                            ? ""
-                            : fmt::format(" (smallest eigenvalue {:.3g})", events[i].smallest_eigenvalue));
-  if (events.size() > told) text += fmt::format(" And {} more events.", events.size() - told);
-  return text;
-}
-
 }  // namespace beamid::experiments

@@ -24,7 +24,4 @@ std::vector<Figure> figures(const filters::Diagnostics& found, const std::vector
 /// An object with keys step, time_s, reason, smallest_eigenvalue for each; null where no covariance failed.
 nlohmann::ordered_json values(const std::vector<filters::Failure>& events);
 
-/// A paragraph about the first five, and how many more there were; empty when there were none.
-std::string words(const std::vector<filters::Failure>& events);
-
 }  // namespace beamid::experiments

@@ -5,6 +5,8 @@
 #include "experiments/identify/joint_words.hpp"
 #include "experiments/studies/identify/joint_comparison_report.hpp"
 
+#include "experiments/studies/compare/comparison_report.hpp"
+
 namespace beamid::experiments {
 namespace {
 

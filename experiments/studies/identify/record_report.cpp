@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/config/channel_places.hpp"
+#include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
 #include "experiments/studies/identify/record_figures.hpp"
@@ -204,7 +205,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   results.paragraph(consistency_text(found));
   const std::vector<std::string> names = record.channel_names();
   if (found.diagnostics) results.paragraph(words(*found.diagnostics, names));
-  if (const std::string text = words(found.identification.run.events); !text.empty())
+  if (const std::string text = failure_sentences(found.identification.run.events); !text.empty())
     results.paragraph("The filter had trouble (--on-failure says what it then does). " + text);
   results.paragraph(noise_text(record, found));
   results.paragraph(fmt::format(

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/record/inspect/inspection_words.hpp"
 #include "experiments/signal/amplitude_spectrum.hpp"
+#include "experiments/studies/inspect/inspection_words.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/record/inspect/inspection_words.hpp"
+#include "experiments/studies/inspect/inspection_words.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/record/inspect/inspection.hpp"
+#include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
 
@@ -22,6 +23,9 @@ std::string sampling_text(const Inspection& found);
 
 /// What is wrong with the record, a sentence each.
 std::vector<std::string> doubts_of(const Inspection& found);
+
+/// What to write into an experiment file so that every command reads the record like this.
+std::string record_table_text(const Inspection& found);
 
 /// The tables `channels` and `events`; the second may have no row.
 Table channel_table(const Inspection& found);

@@ -1,4 +1,4 @@
-#include "experiments/record/inspect/inspection_words.hpp"
+#include "experiments/studies/inspect/inspection_words.hpp"
 
 #include <fmt/format.h>
 
