@@ -4,7 +4,7 @@
 #include "tests/docs/compare_numbers.hpp"
 #include "tests/docs/shell.hpp"
 
-namespace beamid::docs {
+namespace beamid::docs::links_test {
 namespace {
 
 std::vector<fs::path> markdown_pages() {
@@ -29,4 +29,4 @@ TEST(Links, LeadToFilesThatAreThere) {
 }
 
 }  // namespace
-}  // namespace beamid::docs
+}  // namespace beamid::docs::links_test
