@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <numbers>
 
 #include "experiments/modal/damped_sine_fit.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/record_identification/amplitude_law.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/missing_samples.hpp"
 
@@ -71,67 +71,114 @@ SectionLine section_line_through(const VectorXd& u, const VectorXd& v, const Vec
   return line;
 }
 
-/// log A at instants evenly spread from the first sample to `end`, straight between the sections' middles and
-/// beyond.
-VectorXd log_amplitudes(const std::vector<DecaySection>& sections, double end) {
+constexpr double law_powers[] = {2, 1, 0.5, 0, -1};  // friction that grows with velocity ... Coulomb's
+
+/// Where the last sample that counts is: evenly spread instants up to there [s].
+VectorXd instants_until(double end) {
   constexpr Index instants = 60;
-  VectorXd result(instants);
-  for (Index k = 0; k < instants; ++k) {
-    const double time = end * (static_cast<double>(k) + 0.5) / instants;
-    const auto middle = [&](std::size_t i) { return 0.5 * (sections[i].from + sections[i].to); };
-    std::size_t i = 0;
-    while (i + 2 < sections.size() && time > middle(i + 1)) ++i;
-    const double share = (time - middle(i)) / (middle(i + 1) - middle(i));
-    result[k] = (1 - share) * std::log(sections[i].amplitude) + share * std::log(sections[i + 1].amplitude);
-  }
-  return result;
+  return VectorXd::LinSpaced(instants, 0.5, instants - 0.5) * (end / instants);
 }
 
-/// The line at the instants u, with slopes as its own may be: z deviations off, which have a variance of one.
-/// The first value and the last are those of the line itself.
-VectorXd section_values_of(const SectionLine& line, const VectorXd& u) {
-  constexpr std::array<double, 6> z{0, -1.57, 1.57, -0.73, 0.73, 0};
-  const Index count = u.size();
-  VectorXd values(count * static_cast<Index>(z.size()));
-  for (std::size_t i = 0; i < z.size(); ++i)
-    values.segment(static_cast<Index>(i) * count, count) =
-        line.a + line.b * u.array() + z[i] * line.b_deviation * (u.array() - line.u_mean);
-  return values;
+/// Frequency or damping of the sections.
+struct SectionValues {
+  VectorXd value, deviation;
+};
+
+/// By how much they scatter about the nearest of the laws' lines: the probability of as much by noise, and
+/// the standard deviation beyond it, by moments [dersimonian1986].
+struct Scatter {
+  double probability = 1, deviation = 0;
+};
+
+Scatter scatter_about_lines(const std::vector<VectorXd>& shapes, const SectionValues& of, double freedom) {
+  double squares = std::numeric_limits<double>::infinity();
+  for (const VectorXd& u : shapes)
+    squares = std::min(squares, section_line_through(u, of.value, of.deviation).squares);
+  const double left = static_cast<double>(of.value.size()) - 2;
+  const boost::math::fisher_f distribution(left, freedom);
+  Scatter scatter{cdf(complement(distribution, squares / left)), 0};
+  if (!(scatter.probability < significant)) return scatter;
+  const Eigen::ArrayXd weight = of.deviation.array().square().inverse();
+  scatter.deviation = std::sqrt((squares - left) / (weight.sum() - weight.square().sum() / weight.sum()));
+  return scatter;
 }
 
-SectionTrend trend_of(const std::vector<DecaySection>& sections, const VectorXd& value,
-                      const VectorXd& deviation, double noise_freedom, double end) {
-  const auto count = static_cast<Index>(sections.size());
-  VectorXd log_amplitude(count);
-  for (Index i = 0; i < count; ++i)
-    log_amplitude[i] = std::log(sections[static_cast<std::size_t>(i)].amplitude);
-  const double origin = log_amplitude.mean();
-  const std::function<VectorXd(const VectorXd&)> shapes[] = {
-      [&](const VectorXd& x) { return VectorXd((x.array() - origin).exp()); },
-      [&](const VectorXd& x) { return VectorXd(x.array() - origin); },
-      [&](const VectorXd& x) { return VectorXd((origin - x.array()).exp()); }};
+/// log of Student's likelihood of a slope that is z deviations off.
+double log_likelihood(double z, double freedom) {
+  return -0.5 * (freedom + 1) * std::log1p(z * z / freedom);
+}
+
+/// Of a quantity by the laws: their probabilities beside that of a constant, and what it then is along the
+/// decay.
+/// @param usual standard deviation beforehand of the change over the decay, where there is one
+SectionTrend trend_of(const std::vector<AmplitudeLaw>& laws, LawLine AmplitudeLaw::*line, double usual,
+                      const Scatter& scatter) {
+  constexpr double odds = 0.3;                                     // that a quantity varies, beforehand
+  constexpr std::array<double, 5> z{0, -1.57, 1.57, -0.73, 0.73};  // slopes: their variance is one
   SectionTrend trend;
-  SectionLine best;
-  VectorXd values;
-  for (const auto& shape : shapes) {
-    const SectionLine line = section_line_through(shape(log_amplitude), value, deviation);
-    if (values.size() > 0 && line.squares >= best.squares) continue;
-    best = line;
-    values = section_values_of(line, shape(log_amplitudes(sections, end)));
+  if (laws.empty()) return trend;
+  const auto best = std::min_element(laws.begin(), laws.end(),
+                                     [](const auto& a, const auto& b) { return a.squares < b.squares; });
+  const double share = 1 / static_cast<double>(laws.size());
+  double constant = 0, all = 0;
+  std::vector<double> weights;
+  for (const AmplitudeLaw& law : laws) {
+    const LawLine& l = law.*line;
+    const double prior = usual / (law.shape.maxCoeff() - law.shape.minCoeff()),
+                 together = std::hypot(prior, l.slope_deviation);
+    const double as_good = share * std::exp(-0.5 * law.freedom * (law.squares / best->squares - 1));
+    constant += as_good * std::exp(log_likelihood(l.slope / l.slope_deviation, law.freedom));
+    weights.push_back(odds * as_good * l.slope_deviation / together *
+                      std::exp(log_likelihood(l.slope / together, law.freedom)));
+    all += weights.back();
   }
-  const boost::math::students_t of_slope(noise_freedom);
-  const boost::math::fisher_f of_scatter(static_cast<double>(count) - 2, noise_freedom);
-  const double slope = 2 * cdf(complement(of_slope, std::abs(best.b) / best.b_deviation)),
-               about = cdf(complement(of_scatter, best.squares / (static_cast<double>(count) - 2)));
-  trend.probability = std::min(slope, about);
-  if (!(trend.probability < significant)) return trend;
-  trend.values = values;
-  if (about < significant) {  // moments [dersimonian1986]
-    const Eigen::ArrayXd weight = deviation.array().square().inverse();
-    const double surplus = best.squares - (static_cast<double>(count) - 2);
-    trend.scatter = std::sqrt(surplus / (weight.sum() - weight.square().sum() / weight.sum()));
+  all += constant;
+  trend.constant = constant / all;
+  const Index instants = best->shape.size(), rounds = static_cast<Index>(z.size());
+  trend.possible.resize(instants * rounds, static_cast<Index>(laws.size()));
+  trend.weight.resize(trend.possible.cols());
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    const LawLine& l = laws[i].*line;
+    const double prior = usual / (laws[i].shape.maxCoeff() - laws[i].shape.minCoeff()),
+                 kept = prior * prior / (prior * prior + l.slope_deviation * l.slope_deviation);
+    trend.weight[static_cast<Index>(i)] = weights[i] / all;
+    for (Index r = 0; r < rounds; ++r) {
+      const double slope =
+          kept * l.slope + z[static_cast<std::size_t>(r)] * std::sqrt(kept) * l.slope_deviation;
+      trend.possible.col(static_cast<Index>(i)).segment(r * instants, instants) =
+          l.value + slope * (laws[i].shape.array() - l.pivot);
+    }
   }
+  const LawLine& l = (*best).*line;
+  const boost::math::students_t of_slope(best->freedom);
+  trend.probability =
+      std::min(2 * cdf(complement(of_slope, std::abs(l.slope) / l.slope_deviation)), scatter.probability);
+  trend.scatter = scatter.deviation;
+  if (trend.probability < significant) trend.values = l.value + l.slope * (best->shape.array() - l.pivot);
   return trend;
+}
+
+/// The laws that converge, from lines through the sections.
+std::vector<AmplitudeLaw> laws_of(const DecimatedSignal& coarse, Index used, double end,
+                                  const std::vector<DecaySection>& sections,
+                                  const std::vector<VectorXd>& shapes, double log_reference,
+                                  const SectionValues& frequency, const SectionValues& damping) {
+  const DecaySection& first = sections.front();
+  std::vector<AmplitudeLaw> laws;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const SectionLine f = section_line_through(shapes[i], frequency.value, frequency.deviation),
+                      d = section_line_through(shapes[i], damping.value, damping.deviation);
+    const double rate = 2 * std::numbers::pi * first.frequency_hz * first.damping_ratio;
+    const AmplitudeLawStart start{f.a, f.b, d.a, d.b,
+                                  std::log(first.amplitude) + 0.5 * rate * (first.to - first.from)};
+    try {
+      laws.push_back(fit_amplitude_law(coarse.samples.head(used), coarse.interval,
+                                       {law_powers[i], log_reference}, start,
+                                       instants_until(end).array() - coarse.start));
+    } catch (const std::runtime_error&) {  // others remain, or the sections alone
+    }
+  }
+  return laws;
 }
 
 }  // namespace
@@ -169,36 +216,58 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
   const double noise = std::sqrt(squares / freedom);  // as dense as this at the coarse rate
   result.noise = noise / coarse.kernel.norm();
   const auto sections = static_cast<Index>(fitted.size());
-  VectorXd frequency(sections), frequency_deviation(sections), damping(sections), damping_deviation(sections);
+  SectionValues frequency{VectorXd(sections), VectorXd(sections)},
+      damping{VectorXd(sections), VectorXd(sections)};
+  VectorXd log_amplitude(sections);
   // white noise passes the kernel as dense as it was: 1 / factor of its variance
   const double scale = result.noise / std::sqrt(static_cast<double>(coarse.factor));
   for (Index i = 0; i < sections; ++i) {
     DecaySection& section = fitted[static_cast<std::size_t>(i)].section;
-    frequency[i] = section.frequency_hz;
-    frequency_deviation[i] = section.frequency_deviation_hz *= scale;
-    damping[i] = section.damping_ratio;
-    damping_deviation[i] = section.damping_ratio_deviation *= scale;
+    frequency.value[i] = section.frequency_hz;
+    frequency.deviation[i] = section.frequency_deviation_hz *= scale;
+    damping.value[i] = section.damping_ratio;
+    damping.deviation[i] = section.damping_ratio_deviation *= scale;
+    log_amplitude[i] = std::log(section.amplitude);
     result.sections.push_back(section);
   }
+  std::vector<VectorXd> shapes;
+  for (const double power : law_powers)
+    shapes.push_back(log_amplitude.unaryExpr(
+        [shape = AmplitudeShape{power, log_amplitude.mean()}](double x) { return shape.at(x); }));
   const double end =
       sections == count ? interval * static_cast<double>(signal.size()) : result.sections.back().to;
-  result.frequency = trend_of(result.sections, frequency, frequency_deviation, freedom, end);
-  result.damping = trend_of(result.sections, damping, damping_deviation, freedom, end);
+  const std::vector<AmplitudeLaw> laws = laws_of(coarse, sections * length, end, result.sections, shapes,
+                                                 log_amplitude.mean(), frequency, damping);
+  // What joints, clamps and air commonly do to a beam over a decay: 0.2 % of its frequency, two fifths of its
+  // damping.
+  constexpr double usual_frequency = 0.002, usual_damping = 0.4;
+  result.frequency = trend_of(laws, &AmplitudeLaw::frequency_hz, usual_frequency * modal.frequency_hz,
+                              scatter_about_lines(shapes, frequency, freedom));
+  result.damping = trend_of(laws, &AmplitudeLaw::damping_ratio, usual_damping * std::abs(modal.damping_ratio),
+                            scatter_about_lines(shapes, damping, freedom));
   return result;
 }
 
-double section_half_width(const SectionTrend& trend, double estimate, double deviation) {
-  if (!trend.varies()) return quantile_95 * deviation;
-  const double s = std::max(std::hypot(deviation, trend.scatter), 1e-12 * std::abs(estimate));
-  const Eigen::ArrayXd off = (trend.values.array() - estimate).abs();
-  const boost::math::normal normal;
-  const auto held = [&](double h) {
-    double sum = 0;
-    for (const double d : off) sum += cdf(normal, (h - d) / s) - cdf(normal, (-h - d) / s);
-    return sum / static_cast<double>(off.size());
+double section_half_width(const SectionTrend& trend, double estimate, double deviation,
+                          double deviation_where_it_varies) {
+  if (trend.possible.size() == 0) return quantile_95 * deviation;
+  const double least = 1e-12 * std::abs(estimate), s0 = std::max(deviation, least),
+               s = std::max(std::hypot(deviation_where_it_varies, trend.scatter), least);
+  const Eigen::ArrayXXd off = (trend.possible.array() - estimate).abs();
+  const auto within = [&](double h, double d, double of) {
+    return 0.5 * (std::erfc((d - h) / (std::numbers::sqrt2 * of)) -
+                  std::erfc((d + h) / (std::numbers::sqrt2 * of)));
   };
-  double low = 0, high = off.maxCoeff() + 3 * s;
-  constexpr int halvings = 60;
+  constexpr double negligible = 1e-5;
+  const auto held = [&](double h) {
+    double sum = trend.constant * within(h, 0.0, s0);
+    for (Eigen::Index i = 0; i < off.cols(); ++i)
+      if (trend.weight[i] > negligible)
+        sum += trend.weight[i] * off.col(i).unaryExpr([&](double d) { return within(h, d, s); }).mean();
+    return sum / (trend.constant + trend.weight.sum());
+  };
+  double low = 0, high = off.maxCoeff() + 4 * std::max(s, s0);
+  constexpr int halvings = 30;
   for (int i = 0; i < halvings; ++i) {
     const double middle = 0.5 * (low + high);
     (held(middle) < 0.95 ? low : high) = middle;

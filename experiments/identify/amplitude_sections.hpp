@@ -19,11 +19,15 @@ struct DecaySection {
 /// A quantity over the decay, where it is no constant.
 struct SectionTrend {
   double probability = 1;  ///< of variation as large where there is none
-  /// At instants evenly spread over the decay, six rounds of them: along the line first and last, between
-  /// with slopes as its own may be. Empty: taken for a constant.
-  Eigen::VectorXd values;
-  double scatter = 0;  ///< standard deviation of the sections about the trend beyond their noise
+  Eigen::VectorXd
+      values;           ///< at instants evenly spread over the decay, by the best law; empty: not above 1 %
+  double scatter = 0;   ///< standard deviation of the sections about the laws beyond their noise
+  double constant = 1;  ///< probability that it is one
+  /// What it is by every law (a column each), with slopes as they may be, at these instants.
+  Eigen::MatrixXd possible;
+  Eigen::VectorXd weight;  ///< probability of every law; with `constant`, they sum to one
 
+  /// For a report. Intervals do not ask.
   bool varies() const { return values.size() > 0; }
 };
 
@@ -35,20 +39,27 @@ struct AmplitudeSections {
 };
 
 /// Three to ten sections of three periods or more, each fitted by itself (fit_damped_sines) behind the
-/// decimation of the modal analysis; then lines v = a + b u through their values, with u = A, log A or 1/A of
-/// the section's amplitude A (friction that grows with velocity, any, Coulomb's), the best of the three. The
-/// quantity varies where b is not zero, or the sections scatter about the line, with a probability below 1
-/// %. Sections whose amplitude has fallen to three deviations of the noise are left out; none are made beside
-/// a companion mode, whose beat is not a matter of amplitude.
+/// decimation of the modal analysis; then laws v = a + b g(A) of the amplitude A through all of them as one
+/// motion (amplitude_law.hpp), g(A) = A^2, A, sqrt A, log A and 1/A (friction that grows with velocity, ...,
+/// Coulomb's). With the likelihood L of the constant and L_g of each law,
+///
+///     P(constant) = L / (L + sum_g w L_g),   w = 0.3 / 5,   b_g ~ N(0, B_g^2) beforehand,
+///
+/// B_g making a change over the decay of 0.2 % of the frequency or two fifths of the damping ratio. A report
+/// says that the quantity varies where the best law's b is not zero, or the sections scatter about their
+/// lines, with a probability below 1 %. Sections whose amplitude has fallen to three deviations of the noise
+/// are left out; none are made beside a companion mode, whose beat is not a matter of amplitude.
 AmplitudeSections amplitude_sections(const Eigen::VectorXd& signal, double interval,
                                      const ModalEstimate& modal);
 
-/// Half width h of an interval about an estimate that holds a section's value in 95 of 100 cases:
+/// Half width h of an interval about an estimate that holds the decay's value in 95 of 100 cases, constant or
+/// not, each with its probability:
 ///
-///     mean over the decay of P(|v(t) - estimate + s z| < h) = 0.95,   z ~ N(0, 1),  s^2 = deviation^2 +
-///     scatter^2
+///     P(constant) P(|deviation z| < h) + sum_g P_g mean over the decay of P(|v_g(t) - estimate + s z| < h) =
+///     0.95,
 ///
-/// 1.96 deviations where nothing varies.
-double section_half_width(const SectionTrend& trend, double estimate, double deviation);
+/// z ~ N(0, 1), s^2 = deviation_where_it_varies^2 + scatter^2. 1.96 deviations where no law was fitted.
+double section_half_width(const SectionTrend& trend, double estimate, double deviation,
+                          double deviation_where_it_varies);
 
 }  // namespace beamid::experiments

@@ -133,13 +133,14 @@ void take_quiet_noise(const Eigen::VectorXd& quiet_noise, const Record& record, 
   found.interval_factor = interval_widening(found);
 }
 
-// Of one quantity: where it varies over the decay, what the variation leaves at the mode is no noise, and
-// what its sections leave is.
+// Of one quantity: if it varies over the decay, what the variation leaves at the mode is no noise, and what
+// its sections leave is.
 double factor_of(const RecordIdentification& found, const SectionTrend& trend, double estimate,
                  double deviation) {
-  if (!trend.varies()) return found.interval_factor;
   const double noise = std::min(found.interval_factor, found.sections.noise / found.noise_deviation[0]);
-  return std::max(1.0, section_half_width(trend, estimate, noise * deviation) / (quantile_95 * deviation));
+  const double half =
+      section_half_width(trend, estimate, found.interval_factor * deviation, noise * deviation);
+  return std::max(1.0, half / (quantile_95 * deviation));
 }
 
 // The model, the beam's frequency, and what the model is made of: every channel read where it sits.

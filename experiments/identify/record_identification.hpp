@@ -45,8 +45,8 @@ struct RecordIdentification {
   Eigen::MatrixXd reproduced;                ///< (p x N): free decay with the identified K and C
   std::optional<BatchIdentification> batch;  ///< where it was asked for
 
-  /// What deviations of frequency and K, of damping ratio and C, are multiplied by: the interval factor, or
-  /// where the sections vary what holds the values of 95 % of the decay (section_half_width); 1 at least.
+  /// What deviations of frequency and K, of damping ratio and C, are multiplied by: what holds the
+  /// values of 95 % of the decay, constant or not as the record has it (section_half_width); 1 at least.
   double frequency_factor() const;
   double damping_factor() const;
   /// 100 ||y - reproduced|| / ||y|| over the samples that were measured; NaN where nothing was reproduced.
