@@ -148,6 +148,24 @@ std::string cause_of(const Experiment& experiment, const Record& record, const R
   return {};
 }
 
+// A line at a multiple of the mode's frequency: readings cut off that no test of runs has found, or a
+// stiffness that is not linear. It belongs to the motion that is identified, so that no fit of two modes
+// helps.
+std::string by_overtone(const RecordIdentification& found) {
+  constexpr double least_share = 0.1, near = 0.02;
+  for (const CompanionMode& other : found.modal.companions) {
+    const double times = other.frequency_hz / found.modal.frequency_hz,
+                 share = other.amplitude / found.modal.amplitude;
+    const double whole = std::round(times);
+    if (whole < 2 || std::abs(times - whole) > near || share < least_share) continue;
+    return fmt::format(
+        "An overtone at {:.4g} Hz, {:.0f} times the frequency, has {:.0f} % of the amplitude: clipped "
+        "readings or a stiffness that is not linear",
+        other.frequency_hz, whole, 100.0 * share);
+  }
+  return {};
+}
+
 void take_divergence(const std::string& condition, const Experiment& experiment, const Record& record,
                      const RecordIdentification& found, Judgement& judgement) {
   judgement.verdict = Verdict::diverged;
@@ -161,6 +179,10 @@ void take_divergence(const std::string& condition, const Experiment& experiment,
                         100.0 * found.modal.damping_ratio, prior);
   else if (const std::string noise = by_stated_noise(found); !noise.empty())
     text += fmt::format("The cause is likely that {}.", noise);
+  else if (const std::string overtone = by_overtone(found); !overtone.empty())
+    text += overtone + ". Try a later window.";
+  else if (const std::string companion = by_companion(found); !companion.empty())
+    text += fmt::format("The cause is likely that {}. Try a later window.", companion);
   else
     text += "Look at [prior] and [noise] in the experiment file, or another window.";
   if (!found.identification.run.failure) text += " Below is where the filter ended.";
@@ -180,25 +202,13 @@ std::string difference_text(const RecordIdentification& found, bool frequency, b
   return text + ", by more than their intervals";
 }
 
-// A line at a multiple of the mode's frequency: readings cut off that no test of runs has found, or a
-// stiffness that is not linear. It belongs to the motion that is identified, so that no fit of two modes
-// helps.
+// Of a line at a multiple of the mode's frequency, where the innovations see it.
 std::string overtone_text(const RecordIdentification& found) {
-  constexpr double least_share = 0.1, near = 0.02, hardly_white = 1e-6;
+  constexpr double hardly_white = 1e-6;
   if (!found.consistency || found.consistency->whiteness_p_value > hardly_white) return {};
-  for (const CompanionMode& other : found.modal.companions) {
-    const double times = other.frequency_hz / found.modal.frequency_hz,
-                 share = other.amplitude / found.modal.amplitude;
-    const double whole = std::round(times);
-    if (whole < 2 || std::abs(times - whole) > near || share < least_share) continue;
-    return fmt::format(
-        "An overtone at {:.4g} Hz, {:.0f} times the frequency, has {:.0f} % of the amplitude: clipped "
-        "readings or a "
-        "stiffness that is not linear. The damping ratio may be wrong by more than its interval; try a later "
-        "window.",
-        other.frequency_hz, whole, 100.0 * share);
-  }
-  return {};
+  const std::string overtone = by_overtone(found);
+  if (overtone.empty()) return {};
+  return overtone + ". The damping ratio may be wrong by more than its interval; try a later window.";
 }
 
 // Of an interval that is no narrower than half of its estimate to either side.

@@ -135,6 +135,20 @@ TEST(Judgement, NamesAnOvertone) {
               HasSubstr("An overtone at 6.911 Hz, 2 times the frequency, has 30 %"));
 }
 
+// A filter that makes the motion grow, where the modal analysis had to fit a line at 2 f along.
+TEST(Judgement, NamesAnOvertoneAsTheCauseOfADivergence) {
+  const Record record = simulated.record({Quantity::acceleration}, 0.002, 1);
+  RecordIdentification r = identified(simulated.experiment(), record);
+  r.identification.found.damping *= -1;
+  r.modal.companions = {{2 * r.modal.frequency_hz, r.modal.damping_ratio, 0.8 * r.modal.amplitude}};
+  const Judgement judgement = judge(simulated.experiment(), record, r);
+  EXPECT_EQ(judgement.verdict, Verdict::diverged);
+  EXPECT_THAT(judgement.messages.at(0),
+              HasSubstr("An overtone at 6.911 Hz, 2 times the frequency, has 80 %"));
+  r.modal.companions[0].frequency_hz = 1.4 * r.modal.frequency_hz;
+  EXPECT_THAT(judge(simulated.experiment(), record, r).messages.at(0), HasSubstr("another mode at 4.84 Hz"));
+}
+
 TEST(Report, BeginsWithTheWarningsOfTheRecord) {
   Record record = simulated.record({Quantity::acceleration}, 0.01, 1);
   record.warnings = {"Channel tip is clipped."};
