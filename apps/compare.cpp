@@ -77,9 +77,9 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       ComparedRecord compared;
       PreparedRecord prepared;
       if (file) {
-        compared.name = file->filename().string();
         prepared = read_and_prepare(*file, source.experiment.format);
-        compared.record = prepared.record = made_analysable(prepared.record);
+        compared = measured_record(file->filename().string(), prepared.record);
+        prepared.record = compared.record;
       } else if (values.count("truth")) {
         const fs::path truth = values["truth"].as<std::string>();
         compared = simulated_record(read_experiment(truth), truth.parent_path(), progress);

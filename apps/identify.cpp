@@ -41,16 +41,15 @@ Comparison identify_by_comparison(Experiment experiment, const Record& record, c
   experiment.reductions = {experiment.reduction};
   experiment.filters = {experiment.filter};
   experiment.discretisations = {experiment.discretisation};
-  ComparedRecord compared;
-  compared.name = file.filename().string();
-  compared.record = made_analysable(record);
-  return compare(experiment, std::move(compared), folder, show_progress());
+  Comparison found =
+      compare(experiment, measured_record(file.filename().string(), record), folder, show_progress());
+  judge_runs(found);
+  return found;
 }
 
 Results identify_generally(const Experiment& experiment, const Record& record, const fs::path& file,
                            const fs::path& folder) {
-  Comparison found = identify_by_comparison(experiment, record, file, folder);
-  judge_runs(found);
+  const Comparison found = identify_by_comparison(experiment, record, file, folder);
   Results results = report(experiment, found);
   results.command = "identify";
   results.values["status"] = to_string(found.runs.at(0).status);

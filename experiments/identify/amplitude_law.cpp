@@ -1,4 +1,4 @@
-#include "experiments/record_identification/amplitude_law.hpp"
+#include "experiments/identify/amplitude_law.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

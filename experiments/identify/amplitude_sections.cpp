@@ -8,9 +8,9 @@
 #include <limits>
 #include <numbers>
 
+#include "experiments/identify/amplitude_law.hpp"
 #include "experiments/modal/damped_sine_fit.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/record_identification/amplitude_law.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/missing_samples.hpp"
 

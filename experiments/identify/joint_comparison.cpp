@@ -11,6 +11,8 @@ using Eigen::Index;
 RecordBelief joint_belief_of(const ComparedRun& run) {
   RecordBelief belief{run.unknown_state, run.unknown_start.covariance};
   belief.start = run.unknown_start.mean;
+  belief.noise_ratio = run.noise_ratio;
+  belief.noise_freedom = run.noise_freedom;
   for (std::size_t j = 0; j < run.unknowns.size(); ++j) {
     belief.nuisance.push_back(run.unknowns[j].nuisance);
     const auto place = static_cast<Index>(j);
@@ -44,9 +46,7 @@ JointComparison joint_comparison(std::vector<Comparison> records) {
           "in all records");
     beliefs.push_back(joint_belief_of(run));
   }
-  if (!kept)
-    throw std::invalid_argument("no record was identified; the first one: " +
-                                joint.records.at(0).runs.at(0).reason);
+  if (!kept) return joint;
   joint.estimate = joint_estimate(beliefs);
   const Eigen::VectorXd deviations = joint.estimate.unknowns.deviations();
   for (std::size_t j = 0; j < kept->unknowns.size(); ++j) {

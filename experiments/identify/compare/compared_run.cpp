@@ -58,6 +58,23 @@ KnownNoise known_noise(const RunContext& context, const MatrixXd& outputs) {
   return known;
 }
 
+// What was measured: samples filled in are none of it.
+filters::Measurements readings(const ComparedRecord& compared) {
+  filters::Measurements record = measurements(compared.record);
+  const std::vector<Index> channels = output_channels(compared.record);
+  if (compared.filled.size() > 0)
+    record.outputs = compared.filled(channels, Eigen::all).select(std::nan(""), record.outputs);
+  return record;
+}
+
+// What a motion leaves of the readings (p).
+VectorXd left_of(const MatrixXd& outputs, const MatrixXd& motion) {
+  const auto read = outputs.array().isFinite();
+  const MatrixXd left = read.select(outputs - motion, 0.0);
+  const VectorXd counts = read.cast<double>().rowwise().sum().matrix();
+  return left.rowwise().squaredNorm().cwiseQuotient(counts.cwiseMax(1.0)).cwiseSqrt();
+}
+
 // Channels weighed by their size, before anything is known of their noise.
 MatrixXd unit_noise(const MatrixXd& outputs) {
   return root_mean_squares(outputs).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
@@ -98,6 +115,10 @@ VectorXd bounds(filters::DiscreteModel& discrete, const JointModel& model, const
         directions.unknowns(place, j) * std::abs(model.unknowns[j].slope(motion.initial_state[place]));
   }
   return bound;
+}
+
+double share_read(const MatrixXd& outputs) {
+  return outputs.array().isFinite().cast<double>().mean();
 }
 
 // Of the unknowns alone, as the state carries them.
@@ -248,6 +269,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
   ComparedRun result;
   const filters::Measurements record = measurements(context.compared.record);
   const double dt = context.compared.record.interval();
+  const filters::Measurements read = readings(context.compared);
   const Index p = record.outputs.rows();
   result.coordinates = started.model.motion_size();
   result.observed_per_freedom = static_cast<double>(p) / static_cast<double>(result.coordinates);
@@ -285,7 +307,8 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
     motion = is_nonlinear(model) ? reproduce_nonlinear(model, *discrete, state, directions, record)
                                  : reproduce(*discrete, state, directions, record);
     identification.initial.mean = motion.initial_state;
-    result.noise_left = motion.residual_deviation;
+    result.noise_left = context.compared.filled.size() > 0 ? left_of(read.outputs, motion.outputs)
+                                                           : motion.residual_deviation;
   };
   try {
     SteadyClock::time_point start = SteadyClock::now();
@@ -295,7 +318,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
       result.noise = assumed(known, result.noise_left);
       identification.output_noise = result.noise.cwiseAbs2().asDiagonal();
       start = SteadyClock::now();
-      result.run = filter_record(model, record, identification);
+      result.run = filter_record(model, read, identification);
       result.seconds += seconds_since(start);
       result.remarks = result.run.remarks;
       result.diagnostics = diagnostics_of(result.run, identification.initial, model.unknown_places);
@@ -316,7 +339,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
       const MatrixXd noise = noise_of_bound(context, known, result).cwiseAbs2().asDiagonal();
       const auto discrete = finest(model, dt, noise);
       score(result, context, model, settings.true_mass, motion,
-            bounds(*discrete, model, motion, directions, record));
+            bounds(*discrete, model, motion, directions, record) / std::sqrt(share_read(read.outputs)));
       result.response_seconds += seconds_since(start);
     }
   } catch (const std::invalid_argument& error) {  // a scheme or a filter that such a model cannot have

@@ -15,6 +15,7 @@
 #include "experiments/identify/recorded_frequency.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "experiments/models/motion/following_motion.hpp"
+#include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "experiments/text/choice_text.hpp"
 #include "fem/assembly.hpp"
@@ -114,6 +115,16 @@ ComparedRecord simulated_record(const Experiment& truth, const std::filesystem::
     compared.sensor_noise[static_cast<Index>(i)] = test.sensors[i].noise;
   compared.truth = truth;
   compared.notes = test.notes;
+  return compared;
+}
+
+ComparedRecord measured_record(std::string name, const Record& record) {
+  AnalysableRecord even = analysable(record);
+  if (!even.remark.empty()) even.record.remarks.push_back(even.remark);
+  ComparedRecord compared;
+  compared.name = std::move(name);
+  compared.record = std::move(even.record);
+  compared.filled = std::move(even.filled);
   return compared;
 }
 

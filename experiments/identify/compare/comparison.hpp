@@ -22,7 +22,12 @@ struct ComparedRecord {
   Eigen::VectorXd sensor_noise;     ///< standard deviation of every channel where it is known, else 0 (p)
   std::optional<Experiment> truth;  ///< the beam it was simulated from
   std::vector<std::string> notes;   ///< of the simulation
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> filled =
+      {};  ///< samples that were missing: no readings to a filter; empty: none
 };
+
+/// Stamps made even and missing samples filled in, as finding a start and a modal analysis need it.
+ComparedRecord measured_record(std::string name, const Record& record);
 
 /// Simulated from the beam of `truth`, as `beamid simulate` does. @throws as simulate().
 ComparedRecord simulated_record(const Experiment& truth, const std::filesystem::path& folder,
@@ -53,13 +58,15 @@ struct ComparedRun {
   double observed_per_freedom = 0;  ///< p / r, the paper's O/F ratio
   std::vector<ComparedParameter> parameters;
   double response_error_percent = 0.0;
-  Eigen::VectorXd noise;               ///< standard deviation assumed in the last pass (p)
-  Eigen::VectorXd noise_left;          ///< root mean square of what the best motion leaves (p)
+  Eigen::VectorXd noise;       ///< standard deviation assumed in the last pass (p)
+  Eigen::VectorXd noise_left;  ///< root mean square of what the best motion leaves of the readings (p)
   std::optional<double> frequency_hz;  ///< of the model's first mode at the estimate
   std::optional<FoundMode> mode;       ///< likewise, where its equations tell it
-  double seconds = 0.0;                ///< all passes of the filter
-  double response_seconds = 0.0;       ///< the reproduction and the bound
-  Eigen::MatrixXd reproduced;          ///< (p x N)
+  double noise_ratio = 1;         ///< deviation of the noise that counts over that assumed (run_verdict.hpp)
+  double noise_freedom = 1e9;     ///< degrees of freedom that this ratio is known with
+  double seconds = 0.0;           ///< all passes of the filter
+  double response_seconds = 0.0;  ///< the reproduction and the bound
+  Eigen::MatrixXd reproduced;     ///< (p x N)
   filters::FilterRun run;
   std::vector<Unknown> unknowns;                    ///< of the model, in the order of the parameters (q)
   filters::Gaussian unknown_state, unknown_start;   ///< of what the filter's state carries for them: at the

@@ -25,13 +25,15 @@ std::string innovations_text(const filters::InnovationConsistency& c) {
 
 // What counts for frequency and damping is the density of the noise at the mode, whatever R says of all of
 // it.
-double widening(const Comparison& comparison, const ComparedRun& run, std::vector<std::string>& notes) {
+double widening(const Comparison& comparison, ComparedRun& run, std::vector<std::string>& notes) {
   const Record& record = comparison.compared.record;
   const Eigen::Index first = output_channels(record)[0];
   const NoiseNearMode near =
       noise_near_mode(record.samples.row(first).transpose(), record.interval(), *comparison.modal);
   const double density = near.deviation / run.noise[0], factor = near.student() * density;
   if (!(factor > 1.0)) return 1.0;
+  run.noise_ratio = density;
+  run.noise_freedom = near.freedom;
   notes.push_back(fmt::format(
       "Near the mode the noise density, from {} spectral lines, is {:.3g} times that of white noise of the "
       "deviation assumed: intervals are widened by {:.3g}.",

@@ -77,6 +77,7 @@ AnalysableRecord analysable(const Record& record, const std::optional<std::pair<
                     found.remark.empty() ? "" : " ", parts.size(), left.time[first], left.time[last]);
   left.time = left.time.segment(first, last - first + 1).eval();
   left.samples = left.samples.middleCols(first, last - first + 1).eval();
+  found.filled = !left.samples.array().isFinite();
   Index missing = 0;
   for (Index row = 0; row < left.samples.rows(); ++row) {
     const VectorXd signal = left.samples.row(row).transpose();

@@ -13,7 +13,8 @@ struct AnalysableRecord {
   Record record;
   std::string remark = {};  ///< what was done, a sentence or more; empty: nothing
   double share = 1;         ///< of its samples that were read, not filled in
-  double density = 1;       ///< of its stamps over that of the readings
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> filled = {};  ///< which were not; empty: all were read
+  double density = 1;  ///< of its stamps over that of the readings
 };
 
 /// Stamps at unequal intervals are brought to an even grid by the step `resample`. Of samples that are

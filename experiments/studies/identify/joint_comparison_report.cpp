@@ -88,9 +88,9 @@ Json joint_comparison_values_of(const JointComparison& joint, const std::vector<
                 {"lower_95", e.lower_95},
                 {"upper_95", e.upper_95}};
   };
-  Json json{{"status", "converged"}};
+  Json json{{"status", joint.none_converged() ? "diverged" : "converged"}};
   for (const Estimate& e : joint.parameters) json["parameters"][e.name] = values(e);
-  json["agreement"] = agreement_values(joint.estimate, names);
+  if (!joint.none_converged()) json["agreement"] = agreement_values(joint.estimate, names);
   for (const Comparison& one : joint.records) {
     Json record{{"record", one.compared.name}, {"status", to_string(one.runs.at(0).status)}};
     if (!one.runs[0].reason.empty()) record["reason"] = one.runs[0].reason;
@@ -104,7 +104,7 @@ Json joint_comparison_values_of(const JointComparison& joint, const std::vector<
 }  // namespace
 
 Results report(const Experiment& experiment, const JointComparison& joint) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, notes;
   for (const Estimate& e : joint.parameters) names.push_back(e.name);
   Results results;
   results.command = "identify";
@@ -113,10 +113,24 @@ Results report(const Experiment& experiment, const JointComparison& joint) {
   results.values = joint_comparison_values_of(joint, names);
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
+  for (const Comparison& one : joint.records) {
+    for (const std::string& text : one.warnings) results.paragraph(one.compared.name + ": " + text);
+    for (const std::string& text : one.compared.notes) notes.push_back(one.compared.name + ": " + text);
+  }
   results.paragraph(fmt::format(
       "{} records of one structure, each with its own start, noise and window; {} on {}, reduction {}.",
       joint.records.size(), joint.records[0].runs[0].filter, experiment.model.name,
       joint.records[0].runs[0].reduction));
+  const auto lost = [&] {
+    for (const Comparison& one : joint.records)
+      if (!converged(one))
+        results.paragraph(fmt::format("{} is left out: {}.", one.compared.name, one.runs[0].reason));
+  };
+  if (joint.none_converged()) {
+    results.paragraph("DIVERGED. No joint estimate: no record was identified.");
+    lost();
+    return results;
+  }
   Figure figure{"agreement", {}, 0, 1};
   constexpr std::size_t most_panels = 4;
   for (std::size_t j = 0; j < names.size(); ++j) {
@@ -127,9 +141,8 @@ Results report(const Experiment& experiment, const JointComparison& joint) {
   figure.panels.back().legend = Legend::below;
   results.figures = {figure};
   results.paragraph(agreement_words(joint.estimate, names));
-  for (const Comparison& one : joint.records)
-    if (!converged(one))
-      results.paragraph(fmt::format("{} is left out: {}.", one.compared.name, one.runs[0].reason));
+  lost();
+  for (const std::string& text : notes) results.paragraph(text);
   return results;
 }
 

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <random>
 
+#include "experiments/identify/amplitude_law.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/record_identification/amplitude_law.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::amplitude_sections_test {
