@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <boost/any.hpp>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <optional>
 
 #include "experiments/text/clean_text.hpp"
@@ -27,6 +30,23 @@ void warn_of_undrawn(const experiments::Results& results, const std::filesystem:
            "says which; the Debian package gnuplot-nox has it). All else is written.\n";
 }
 
+// What --config names, for the page: it repeats the run.
+std::string experiment_text(const options::variables_map& values) {
+  if (!values.count("config")) return "";
+  const auto& given = values["config"].value();
+  std::vector<std::string> files;
+  if (const auto* one = boost::any_cast<std::string>(&given)) files = {*one};
+  if (const auto* many = boost::any_cast<std::vector<std::string>>(&given)) files = *many;
+  std::string text;
+  for (const std::string& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(stream), {}};
+    if (files.size() > 1) text += (text.empty() ? "# " : "\n# ") + file + "\n";
+    text += content;
+  }
+  return text;
+}
+
 }  // namespace
 
 experiments::Progress show_progress() {
@@ -43,6 +63,7 @@ void deliver(const options::variables_map& values, const std::function<experimen
 
   experiments::Results results = find();
   results.command_line = values[command_line_key].as<std::string>();
+  results.experiment_file = experiment_text(values);
   if (isatty(STDERR_FILENO)) std::cerr << clear_line;
   if (directory) {
     experiments::write(results, *directory);

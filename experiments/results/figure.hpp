@@ -11,11 +11,12 @@
 namespace beamid::experiments {
 
 /// How a curve is drawn. A band is a shaded area between `lower` and `upper`; points with `lower` and `upper`
-/// carry error bars.
-enum class CurveStyle { line, dashed, dotted, points, open_points, band };
+/// carry error bars; intervals are points with bars along x from `lower` to `upper`; arrows point along x
+/// from `lower` to `upper`; stems stand on zero.
+enum class CurveStyle { line, dashed, dotted, thin, points, open_points, stems, intervals, arrows, band };
 
 /// Told apart by colour-blind readers too [okabe2008]. `automatic` takes the first six in turn, a band the
-/// colour of the curve after it.
+/// colour of the curve after it; a label that an earlier panel of the figure has keeps its colour.
 enum class Colour { automatic, blue, vermillion, green, purple, orange, sky, black, grey };
 
 /// Labels and titles are UTF-8 and taken literally but for "^{...}" and "_{...}", which raise and lower.
@@ -32,24 +33,52 @@ struct Axis {
   std::string label;  ///< with its unit: "time [s]"
   bool logarithmic = false;
   std::optional<std::pair<double, double>> range = {};  ///< absent: from the curves
+  double tick = 0;                      ///< from tick to tick; 0: as many as there is room for
+  std::vector<std::string> names = {};  ///< of the places 1, 2, ..., instead of numbers; upright from the top
 };
 
-/// Only `below` never hides a curve; inside the frame the legend has an opaque ground.
+/// Only `below` never hides a curve; inside the frame the legend has an opaque ground. A legend that all
+/// panels have in common is drawn once, below the last row.
 enum class Legend { below, top_right, top_left, bottom_right, bottom_left, none };
 
+/// Built by adding curves:
+///
+///     Panel{"", {"time [s]"}, {"frequency [Hz]"}}
+///         .band("95 %", t, f - w, f + w).line("filter", t, f, Colour::blue).level("modal analysis", 3.4555);
 struct Panel {
   std::string title;  ///< may be empty
   Axis x_axis, y_axis;
-  std::vector<Curve> curves;
+  std::vector<Curve> curves = {};
   Legend legend = Legend::below;
+  std::vector<std::string> remarks = {};  ///< right of the frame, beside the places 1, 2, ... of the y axis
+
+  using Values = Eigen::VectorXd;
+  Panel& add(CurveStyle style, std::string label, Values x, Values y, Colour colour = Colour::automatic);
+  Panel& line(std::string label, Values x, Values y, Colour colour = Colour::automatic);
+  Panel& thin(std::string label, Values x, Values y, Colour colour = Colour::automatic);
+  Panel& dashed(std::string label, Values x, Values y, Colour colour = Colour::automatic);
+  Panel& points(std::string label, Values x, Values y, Colour colour = Colour::automatic);
+  Panel& open_points(std::string label, Values x, Values y, Colour colour = Colour::automatic);
+  Panel& band(std::string label, Values x, Values lower, Values upper, Colour colour = Colour::automatic);
+  /// Points with error bars from `lower` to `upper`.
+  Panel& bars(std::string label, Values x, Values y, Values lower, Values upper,
+              Colour colour = Colour::automatic);
+  /// A dashed line at one height, as wide as the axis or, without a range of it, the curves added so far.
+  Panel& level(std::string label, double height, Colour colour = Colour::black);
+  /// A dashed line at one place, as high as the axis or the curves added so far.
+  Panel& upright(std::string label, double place, Colour colour = Colour::black);
+  Panel& across(double from, double to);  ///< range of the x axis
+  Panel& up(double from, double to);      ///< range of the y axis
+  Panel& key(Legend place);               ///< where the legend stands
 };
 
 struct Figure {
   std::string name;           ///< of its files, without ending: letters, digits, '_', '-', '.'
   std::vector<Panel> panels;  ///< row by row
   int rows = 1, columns = 1;
-  int width = 800;  ///< [px] of the SVG; the PNG is twice as large
-  int height = 0;   ///< [px]; 0: from the rows and columns
+  int width = 800;           ///< [px] of the SVG; the PNG is twice as large
+  int height = 0;            ///< [px]; 0: from the rows and columns
+  std::string caption = {};  ///< below it on a page; empty: titles or axes of its panels
 };
 
 /// Writes NAME.csv, NAME.gp, NAME.svg and NAME.png; the same figure gives the same bytes.

@@ -6,40 +6,29 @@
 
 #include "experiments/results/gnuplot_axes.hpp"
 #include "experiments/results/gnuplot_curves.hpp"
+#include "experiments/results/gnuplot_layout.hpp"
+#include "experiments/results/gnuplot_ticks.hpp"
 #include "experiments/results/text.hpp"
+#include "experiments/results/typeset.hpp"
 #include "experiments/text/clean_text.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-// Place and shape of the legend. Those below the frames of one row of panels take equal room, so that the
-// frames stay level.
-struct LegendShape {
-  int rows = 0, columns = 0;
-};
-
-LegendShape shape_below(const Panel& panel, int panel_width) {
-  int labels = 0;
-  std::size_t longest = 0;
-  for (const Curve& curve : panel.curves) {
-    if (curve.label.empty()) continue;
-    ++labels;
-    longest = std::max(longest, width_of(curve.label));
-  }
-  if (labels == 0 || panel.legend != Legend::below) return {};
-  constexpr double frame_margin = 80, sample = 60, letter = 7.8;  // [px] at the 13 px of the SVG's font
-  const int fit =
-      static_cast<int>((panel_width - frame_margin) / (sample + letter * static_cast<double>(longest)));
-  const int columns = std::clamp(fit, 1, labels), rows = (labels + columns - 1) / columns;
-  return {rows, (labels + rows - 1) / rows};
+// Where the frame is, as parts of the picture from its lower left corner: both terminals have the same
+// layout.
+std::string frame_commands(const PanelPlace& place, const Figure& figure, int height) {
+  return fmt::format(
+      "  set lmargin at screen {:.5f}; set rmargin at screen {:.5f}; set tmargin at screen {:.5f}; set "
+      "bmargin at "
+      "screen {:.5f}\n",
+      place.left / figure.width, place.right / figure.width, 1 - place.top / height,
+      1 - place.bottom / height);
 }
 
-std::string legend_commands(const Panel& panel, const LegendShape& shape, int rows_below) {
-  const std::string margin =
-      rows_below == 0 ? "unset bmargin" : fmt::format("set bmargin {:.2f}", 4.0 + 1.2 * rows_below);
-  const auto inside = [&](const char* place) {
-    return fmt::format("  {}; set key inside {} vertical maxcols 1 opaque fillcolor rgb '#ffffff'\n", margin,
-                       place);
+std::string legend_commands(const PanelPlace& place, const Panel& panel, const Figure& figure, int height) {
+  const auto inside = [](const char* corner) {
+    return fmt::format("  set key inside {} vertical maxcols 1 opaque fillcolor rgb '#ffffff'\n", corner);
   };
   switch (panel.legend) {
     case Legend::top_right:
@@ -51,31 +40,34 @@ std::string legend_commands(const Panel& panel, const LegendShape& shape, int ro
     case Legend::bottom_left:
       return inside("bottom left");
     case Legend::below:
-      if (shape.columns > 0)
-        return fmt::format("  {}; set key bmargin center horizontal maxcols {} noopaque\n", margin,
-                           shape.columns);
-      break;
     case Legend::none:
       break;
   }
-  return "  " + margin + "; unset key\n";
+  if (place.legend_columns == 0) return "  unset key\n";
+  return fmt::format("  set key at screen {:.5f}, screen {:.5f} center top horizontal maxcols {} noopaque\n",
+                     place.legend_x / figure.width, 1 - place.legend_y / height, place.legend_columns);
 }
 
-std::string panels_commands(const Figure& figure) {
+// Texts right of the frame, as the ticks of an axis of its own.
+std::string remark_commands(const Panel& panel) {
+  if (panel.remarks.empty()) return "  unset y2tics\n";
+  const double last = static_cast<double>(panel.remarks.size()) + 0.6;
+  return fmt::format("  set y2range [{}:0.4]; set y2tics scale 0\n", last) +
+         named_ticks("y2", panel.remarks).commands;
+}
+
+std::string panels_commands(const Figure& figure, int height) {
   std::string out;
   int column = 1;
-  const int across = figure.columns, width = figure.width / across,
-            count = static_cast<int>(figure.panels.size());
-  for (int first = 0; first < count; first += across) {
-    const int last = std::min(first + across, count);
-    int rows_below = 0;
-    for (int i = first; i < last; ++i)
-      rows_below = std::max(rows_below, shape_below(figure.panels[i], width).rows);
-    for (int i = first; i < last; ++i) {
-      const Panel& panel = figure.panels[i];
-      out += fmt::format("\n  set title {}\n", gnuplot_text(panel.title)) + axis_commands(panel) +
-             legend_commands(panel, shape_below(panel, width), rows_below) + plot_command(panel, column);
-    }
+  const auto colours = colours_of(figure);
+  const std::vector<PanelPlace> places = panel_places(figure, height);
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const Panel& panel = figure.panels[i];
+    const PanelPlace& place = places[i];
+    out += fmt::format("\n  set title {}\n", gnuplot_text(typeset(panel.title))) +
+           frame_commands(place, figure, height) + drawn_x_axis(panel, place.right - place.left).commands +
+           drawn_y_axis(panel, place.bottom - place.top).commands + remark_commands(panel) +
+           legend_commands(place, panel, figure, height) + plot_command(panel, colours[i], column);
   }
   return out;
 }
@@ -97,20 +89,20 @@ set border 3 linewidth 0.8 linecolor rgb '#404040'
 set tics out nomirror scale 0.7,0.4
 set grid back linetype 1 linewidth 0.5 linecolor rgb '#dcdcdc'
 set key Left reverse samplen 2.4 spacing 1.15
-set xlabel offset 0,0.3
 
 # Each picture in turn: text stays text in the SVG; the PNG has twice as many pixels.
 do for [picture in 'svg png'] {{
   if (picture eq 'svg') {{
     set terminal svg size {width},{height} enhanced font 'DejaVu Sans,13' background '#ffffff'
-    set title font ',14'
+    set title font ',14' offset 0,-0.4; set xlabel offset 0,0.75
+    set xtics offset 0,0.35
   }} else {{
     set terminal pngcairo size {width2},{height2} enhanced font 'DejaVu Sans,10' fontscale 2 \
         linewidth 2 pointscale 2 dashlength 1.6
-    set title font ',11'
+    set title font ',11'; set xlabel offset 0,0.3; set xtics offset 0,0
   }}
   set output '{name}.'.picture
-  set multiplot layout {rows},{columns}
+  set multiplot
 )";
 
 }  // namespace
@@ -143,12 +135,11 @@ std::string gnuplot_text(const std::string& label) {
 }
 
 std::string gnuplot_script(const Figure& figure) {
-  const int height = figure.height > 0 ? figure.height : (figure.rows == 1 ? 460 : 330 * figure.rows);
+  const int height = picture_height(figure);
   std::string script = fmt::format(fmt::runtime(opening), fmt::arg("name", figure.name),
                                    fmt::arg("width", figure.width), fmt::arg("height", height),
-                                   fmt::arg("width2", 2 * figure.width), fmt::arg("height2", 2 * height),
-                                   fmt::arg("rows", figure.rows), fmt::arg("columns", figure.columns));
-  return script + panels_commands(figure) + "\n  unset multiplot\n  unset output\n}\n";
+                                   fmt::arg("width2", 2 * figure.width), fmt::arg("height2", 2 * height));
+  return script + panels_commands(figure, height) + "\n  unset multiplot\n  unset output\n}\n";
 }
 
 }  // namespace beamid::experiments

@@ -8,21 +8,17 @@
 #include <vector>
 
 #include "experiments/results/gnuplot.hpp"
+#include "experiments/results/gnuplot_curves.hpp"
+#include "experiments/results/gnuplot_ticks.hpp"
+#include "experiments/results/typeset.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-using Range = std::pair<double, double>;
-
-// The largest number of the form 1, 2 or 5 times a power of ten that is not above `size`.
-double round_step(double size) {
-  const double power = std::pow(10.0, std::floor(std::log10(size)));
-  return power * (size >= 5 * power ? 5 : size >= 2 * power ? 2 : 1);
-}
-
 bool has_points(const Panel& panel) {
   return std::any_of(panel.curves.begin(), panel.curves.end(), [](const Curve& curve) {
-    return curve.style == CurveStyle::points || curve.style == CurveStyle::open_points;
+    return curve.style == CurveStyle::points || curve.style == CurveStyle::open_points ||
+           curve.style == CurveStyle::intervals;
   });
 }
 
@@ -43,50 +39,56 @@ double legend_room(const Panel& panel) {
   }
 }
 
-Range logarithmic_range(const Extent& extent, double room) {
+AxisRange logarithmic_range(const Extent& extent, double room) {
   const double decades = std::log10(extent.high / extent.low), margin = std::max(0.06 * decades, 0.02);
   return {extent.low * std::pow(10.0, -margin + std::min(room, 0.0) * decades),
           extent.high * std::pow(10.0, margin + std::max(room, 0.0) * decades)};
 }
 
 // A record of 0 to 24.999 s ends at 25, so that its last tick is shown.
-Range linear_range(const Extent& extent, bool points) {
+AxisRange linear_range(const Extent& extent, bool points) {
   const double span = extent.high - extent.low;
   if (points) return {extent.low - 0.05 * span, extent.high + 0.05 * span};
-  const double step = round_step(span / 50), low = std::floor(extent.low / step) * step,
+  const double step = rounded_up_step(span / 100), low = std::floor(extent.low / step) * step,
                high = std::ceil(extent.high / step) * step;
   return {extent.low - low <= 0.005 * span ? low : extent.low,
           high - extent.high <= 0.005 * span ? high : extent.high};
 }
 
-// Ticks of a logarithmic axis: powers of ten or, where it is too short for those, numbers in between.
-std::string logarithmic_ticks(char name, const Range& range) {
-  const double decades = std::log10(range.second / range.first);
-  if (decades > 2.5)
-    return fmt::format("  set format {0} '10^{{%T}}'; set {0}tics autofreq; set m{0}tics 10\n", name);
-  using Factors = std::vector<double>;
-  const Factors factors = decades > 1.2   ? Factors{1, 2, 5}
-                          : decades > 0.5 ? Factors{1, 1.5, 2, 3, 4, 5, 7}
-                                          : Factors{1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9};
-  std::string ticks;
-  const int first = static_cast<int>(std::floor(std::log10(range.first)));
-  for (int power = first; power <= first + 3; ++power)
-    for (const double factor : factors)
-      if (const double tick = factor * std::pow(10.0, power); tick >= range.first && tick <= range.second)
-        ticks += fmt::format("{}{:.6g}", ticks.empty() ? "" : ", ", tick);
-  return fmt::format("  set format {0} '%g'; set {0}tics ({1})\n", name, ticks);
+// A vertical axis ends on ticks.
+AxisRange upright_range(const Extent& extent, bool points, double room, double length) {
+  double span = extent.high - extent.low;
+  if (!(span > 1e-12 * std::max(std::abs(extent.low), std::abs(extent.high))))
+    span = extent.high != 0 ? 0.2 * std::abs(extent.high) : 2;
+  double low = extent.low, high = extent.high;
+  if (span > extent.high - extent.low) low -= 0.5 * span, high += 0.5 * span;
+  if (points) low -= 0.03 * span, high += 0.03 * span;
+  high += std::max(room, 0.0) * span, low += std::min(room, 0.0) * span;
+  const double step = step_for({low, high}, length, true);
+  return {std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step};
 }
 
-std::string commands(char name, const Axis& axis, const std::optional<Range>& range,
-                     const std::string& format) {
-  std::string out = fmt::format("  set {}label {}\n", name, gnuplot_text(axis.label));
-  out += range ? fmt::format("  set {}range [{}:{}]\n", name, range->first, range->second)
-               : fmt::format("  set {}range [*:*]\n", name);
-  if (axis.logarithmic)
-    return out + fmt::format("  set logscale {}\n", name) + logarithmic_ticks(name, *range);
-  return out + fmt::format(
-                   "  unset logscale {0}; set format {0} '{1}'; set {0}tics autofreq; set m{0}tics default\n",
-                   name, format);
+DrawnAxis drawn_axis(char name, const Axis& axis, const AxisRange& range, double length) {
+  const bool named = !axis.names.empty();
+  const Ticks ticks =
+      named ? named_ticks(std::string(1, name), axis.names)
+      : axis.logarithmic
+          ? logarithmic_ticks(name, range, length)
+          : linear_ticks(name, range, axis.tick > 0 ? axis.tick : step_for(range, length, name == 'y'));
+  return {fmt::format("  set {0}label {1}\n  set {0}range [{2}:{3}]\n{4}", name,
+                      gnuplot_text(typeset(axis.label)), range.first, range.second,
+                      axis.logarithmic && !named ? fmt::format("  set logscale {}\n", name) : "") +
+              ticks.commands,
+          ticks.widest};
+}
+
+AxisRange named_range(const Axis& axis, bool upright) {
+  const double first = 0.4, last = static_cast<double>(axis.names.size()) + 0.6;
+  return upright ? AxisRange{last, first} : AxisRange{first, last};
+}
+
+AxisRange empty_range(const Axis& axis) {
+  return {axis.logarithmic ? 0.1 : 0.0, 1.0};
 }
 
 }  // namespace
@@ -101,28 +103,36 @@ void Extent::add(const Eigen::VectorXd& values, bool positive) {
   }
 }
 
-std::string axis_commands(const Panel& panel) {
-  Extent across, up;
+DrawnAxis drawn_x_axis(const Panel& panel, double length) {
+  const Axis& axis = panel.x_axis;
+  if (!axis.names.empty()) return drawn_axis('x', axis, named_range(axis, false), length);
+  Extent extent;
   for (const Curve& curve : panel.curves) {
-    across.add(curve.x, panel.x_axis.logarithmic);
-    for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
-      up.add(*values, panel.y_axis.logarithmic);
+    extent.add(curve.x, axis.logarithmic);
+    if (along_x(curve)) extent.add(curve.lower, axis.logarithmic), extent.add(curve.upper, axis.logarithmic);
   }
-  const double room = legend_room(panel);
+  std::optional<AxisRange> range = axis.range;
+  if (!range && extent.empty()) range = empty_range(axis);
+  if (!range && axis.logarithmic) range = logarithmic_range(extent, 0);
+  if (!range && extent.low < extent.high) range = linear_range(extent, has_points(panel));
+  if (!range) range = upright_range(extent, true, 0, length);
+  return drawn_axis('x', axis, *range, length);
+}
 
-  std::optional<Range> x_range = panel.x_axis.range, y_range = panel.y_axis.range;
-  if (!x_range && across.empty()) x_range = {panel.x_axis.logarithmic ? 0.1 : 0.0, 1.0};
-  if (!x_range && panel.x_axis.logarithmic) x_range = logarithmic_range(across, 0);
-  if (!x_range && across.low < across.high) x_range = linear_range(across, has_points(panel));
-  // A linear vertical axis is left to gnuplot, which ends it on ticks.
-  std::string offsets = "0, 0, 0, 0";
-  if (!y_range && up.empty()) y_range = {panel.y_axis.logarithmic ? 0.1 : 0.0, 1.0};
-  if (!y_range && panel.y_axis.logarithmic) y_range = logarithmic_range(up, room);
-  if (!y_range)
-    offsets = fmt::format("0, 0, graph {:.2f}, graph {:.2f}", std::max(room, 0.0), std::max(-room, 0.0));
-  // Labels at least four characters wide give panels below each other the same left margin.
-  return commands('x', panel.x_axis, x_range, "%h") + commands('y', panel.y_axis, y_range, "%4h") +
-         fmt::format("  set offsets {}\n", offsets);
+DrawnAxis drawn_y_axis(const Panel& panel, double length) {
+  const Axis& axis = panel.y_axis;
+  if (!axis.names.empty()) return drawn_axis('y', axis, named_range(axis, true), length);
+  Extent extent;
+  for (const Curve& curve : panel.curves) {
+    extent.add(curve.y, axis.logarithmic);
+    if (curve.style == CurveStyle::stems) extent.add(Eigen::VectorXd::Zero(1), axis.logarithmic);
+    if (!along_x(curve)) extent.add(curve.lower, axis.logarithmic), extent.add(curve.upper, axis.logarithmic);
+  }
+  std::optional<AxisRange> range = axis.range;
+  if (!range && extent.empty()) range = empty_range(axis);
+  if (!range && axis.logarithmic) range = logarithmic_range(extent, legend_room(panel));
+  if (!range) range = upright_range(extent, has_points(panel), legend_room(panel), length);
+  return drawn_axis('y', axis, *range, length);
 }
 
 }  // namespace beamid::experiments

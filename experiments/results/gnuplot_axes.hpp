@@ -18,7 +18,16 @@ struct Extent {
   bool empty() const { return !(low <= high); }
 };
 
-/// Labels, ranges and ticks of both axes, with room for a legend inside the frame.
-std::string axis_commands(const Panel& panel);
+/// Label, range and ticks of an axis.
+struct DrawnAxis {
+  std::string commands;
+  double widest = 0;  ///< [px] of its ticks' labels, in the SVG
+};
+
+/// @param length [px] of the frame along the axis, in the SVG: as many ticks as have room there.
+DrawnAxis drawn_x_axis(const Panel& panel, double length);
+
+/// With room for a legend inside the frame. @param length as above
+DrawnAxis drawn_y_axis(const Panel& panel, double length);
 
 }  // namespace beamid::experiments

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "experiments/results/figure.hpp"
 
@@ -11,8 +12,15 @@ namespace beamid::experiments {
 /// has them.
 int column_count(const Curve& curve);
 
+/// Whether `lower` and `upper` are bounds of x.
+bool along_x(const Curve& curve);
+
+/// The names of the colours that the curves of the panels have. One label has one colour throughout.
+std::vector<std::vector<std::string>> colours_of(const Figure& figure);
+
 /// The plot command of a panel.
 /// @param column the first column of the panel's curves, from 1; moved on to the next panel's.
-std::string plot_command(const Panel& panel, int& column);
+/// @param colours of its curves, from colours_of()
+std::string plot_command(const Panel& panel, const std::vector<std::string>& colours, int& column);
 
 }  // namespace beamid::experiments

@@ -18,11 +18,17 @@ std::string unescaped(std::string_view html);
 /// [rfc4648]
 std::string base64(std::string_view bytes);
 
-/// The table with its title and note.
+/// As escaped(), with the signs of typeset.hpp.
+std::string typeset_html(std::string_view text);
+
+/// The table with its title and note. A column of numbers, written or not, stands to the right with its
+/// decimal points below each other.
 std::string html_table(const Table& table);
 
-/// An SVG file as a picture inside the page, so that the page needs no other file.
+/// An SVG file as a picture inside the page with its caption, so that the page needs no other file.
+/// @param caption typeset as text
 /// @throws std::runtime_error when the file cannot be read.
-std::string html_picture(const std::filesystem::path& svg, std::string_view description);
+std::string html_picture(const std::filesystem::path& svg, std::string_view description,
+                         std::string_view caption);
 
 }  // namespace beamid::experiments

@@ -116,6 +116,22 @@ std::pair<Axis, Axis> frame_axes(const Eigen::Matrix3Xd& places, double size, do
   return {{"x [m]", false, range(x_middle, width)}, {"y [m]", false, range(z_middle, height)}};
 }
 
+// Nodes without a deflection of their own: a filled mark where the rotation is held too, else an open one.
+void mark_supports(const fem::StructuralSystem& system, const Eigen::Matrix3Xd& places, Panel& panel) {
+  std::vector<bool> deflects(system.mesh.nodes.size()), turns(system.mesh.nodes.size());
+  for (const fem::Coordinate& c : system.coordinates) {
+    if (c.node < 0) continue;
+    if (c.kind == fem::Coordinate::Kind::deflection) deflects[static_cast<std::size_t>(c.node)] = true;
+    if (c.kind == fem::Coordinate::Kind::rotation) turns[static_cast<std::size_t>(c.node)] = true;
+  }
+  for (std::size_t i = 0; i < deflects.size(); ++i) {
+    if (deflects[i]) continue;
+    const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, places(0, static_cast<Eigen::Index>(i)));
+    panel.add(turns[i] ? CurveStyle::open_points : CurveStyle::points, "", at, Eigen::VectorXd::Zero(1),
+              Colour::black);
+  }
+}
+
 void check_mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
                        const Eigen::VectorXd& frequencies_hz) {
   if (shapes.rows() != system.size() || shapes.cols() != frequencies_hz.size() || shapes.cols() == 0)
@@ -143,7 +159,7 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
   const Eigen::Vector3d extent = places.rowwise().maxCoeff() - places.rowwise().minCoeff();
   const double size = extent.maxCoeff();
   std::pair<Axis, Axis> axes{{"x [m]", false, std::pair{places.row(0).minCoeff(), places.row(0).maxCoeff()}},
-                             {"deflection", false, std::pair{-1.15, 1.15}}};
+                             {"deflection (largest 1)", false, std::pair{-1.15, 1.15}}};
   if (frame) axes = frame_axes(places, size, figure.width / figure.columns - 101.0, row_height - 98.0);
   for (int mode = 0; mode < modes; ++mode) {
     const NodalMotion motion = scaled_mode(system, shapes.col(mode));
@@ -152,10 +168,21 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
     figure.panels.push_back({mode_figure_title(mode, frequencies_hz[mode]),
                              axes.first,
                              axes.second,
-                             {shape.undeformed.curve(Colour::grey), shape.deformed.curve(Colour::blue)},
+                             {shape.undeformed.curve(Colour::grey)},
                              Legend::none});
+    if (!frame) mark_supports(system, places, figure.panels.back());
+    figure.panels.back().curves.push_back(shape.deformed.curve(Colour::blue));
   }
+  figure.caption =
+      frame ? "Mode shapes." : "Mode shapes, largest deflection 1. Filled mark: clamped; open: supported.";
   return figure;
+}
+
+Curve mode_curve(const fem::StructuralSystem& system, const Eigen::VectorXd& shape) {
+  const Shape drawn = shape_of(system.mesh, nodal_places(system), scaled_mode(system, shape), 1.0);
+  Line line = drawn.deformed;
+  scale(line.y);
+  return line.curve(Colour::automatic);
 }
 
 }  // namespace beamid::experiments

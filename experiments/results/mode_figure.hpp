@@ -24,4 +24,7 @@ inline constexpr Eigen::Index most_drawn_modes = 12;
 Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
                    const Eigen::VectorXd& frequencies_hz);
 
+/// A beam's mode shape (n) along x, smooth between the nodes, largest deflection 1.
+Curve mode_curve(const fem::StructuralSystem& system, const Eigen::VectorXd& shape);
+
 }  // namespace beamid::experiments

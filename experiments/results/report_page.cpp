@@ -3,6 +3,7 @@
 #include <set>
 
 #include "experiments/results/html.hpp"
+#include "experiments/results/report_style.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -18,29 +19,6 @@ constexpr std::string_view head = R"(<!DOCTYPE html>
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="generator" content="beamid )" BEAMID_VERSION R"(">
-<style>
-body { font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; color: #222; max-width: 60rem; margin: 2rem auto; padding: 0 1rem }
-h1 { font-size: 1.5rem; line-height: 1.25; border-bottom: 2px solid #0072b2; padding-bottom: .3rem }
-h2 { font-size: 1.15rem; margin-top: 2rem }
-pre { background: #f3f5f7; padding: .6rem .8rem; white-space: pre-wrap; overflow-wrap: anywhere; font-size: .85rem }
-p { white-space: pre-line }
-figure { margin: 1.5rem 0; overflow-x: auto }
-figcaption { font-weight: bold; margin-bottom: .3rem }
-img { max-width: 100%; height: auto; display: block; margin: auto }
-table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums }
-th { text-align: left; vertical-align: bottom; border-bottom: 1px solid #222 }
-th, td { padding: .15rem .8rem .15rem 0 }
-tr:nth-child(odd) td { background: #f7f8fa }
-.number { text-align: right; white-space: nowrap }
-.note { font-size: .85rem; color: #444; margin-top: .3rem }
-footer { margin-top: 3rem; border-top: 1px solid #bbb; font-size: .8rem; color: #555 }
-@media print {
-  body { max-width: none; margin: 0; font-size: 10pt }
-  figure, tr { break-inside: avoid }
-  h1, h2, figcaption { break-after: avoid }
-  section + section { break-before: page }
-}
-</style>
 )";
 
 std::string description(const Figure& figure) {
@@ -48,9 +26,51 @@ std::string description(const Figure& figure) {
   for (const Panel& panel : figure.panels) {
     const std::string words =
         panel.title.empty() ? panel.y_axis.label + " over " + panel.x_axis.label : panel.title;
-    text += (text.empty() ? "" : "; ") + words;
+    if (text.find(words) == std::string::npos) text += (text.empty() ? "" : "; ") + words;
   }
   return text;
+}
+
+std::string paragraph_html(const Paragraph& paragraph) {
+  const char* const box = paragraph.severity == Severity::failure   ? " class=\"failure\" role=\"alert\""
+                          : paragraph.severity == Severity::warning ? " class=\"warning\""
+                                                                    : "";
+  return "<p" + std::string(box) + ">" + typeset_html(paragraph.text) + "</p>\n";
+}
+
+constexpr std::string_view plain_heading = "<h2>", named_heading = "<h2 id=\"";
+
+/// A section whose headings can be linked to, and links to them.
+struct Headings {
+  std::string html, list;
+  std::size_t count = 0;
+};
+
+Headings with_anchors(std::string_view html, const std::string& section) {
+  Headings found;
+  while (true) {
+    const std::size_t at = html.find(plain_heading), end = html.find("</h2>", at);
+    if (at == std::string_view::npos || end == std::string_view::npos) break;
+    const std::string id = section + "-" + std::to_string(++found.count);
+    const std::string_view text = html.substr(at + plain_heading.size(), end - at - plain_heading.size());
+    found.html.append(html.substr(0, at))
+        .append(named_heading)
+        .append(id + "\">")
+        .append(text)
+        .append("</h2>");
+    found.list.append("<li><a href=\"#" + id + "\">").append(text).append("</a></li>\n");
+    html.remove_prefix(end + 5);
+  }
+  found.html.append(html);
+  return found;
+}
+
+std::string without_anchors(std::string html) {
+  for (std::size_t at = html.find(named_heading); at != std::string::npos;
+       at = html.find(named_heading, at + 1))
+    if (const std::size_t end = html.find("\">", at); end != std::string::npos)
+      html.replace(at, end + 2 - at, plain_heading);
+  return html;
 }
 
 }  // namespace
@@ -62,23 +82,32 @@ ReportSection report_section(const Results& results, const std::filesystem::path
   for (const auto& part : results.report) {
     if (const auto* heading = std::get_if<Heading>(&part)) {
       if (std::exchange(titled, true))
-        body += "<h2>" + escaped(heading->text) + "</h2>\n";
+        body += "<h2>" + typeset_html(heading->text) + "</h2>\n";
       else
         section.title = heading->text;
     } else if (const auto* paragraph = std::get_if<Paragraph>(&part)) {
-      body += "<p>" + escaped(paragraph->text) + "</p>\n";
+      body += paragraph_html(*paragraph);
     } else {
       body += html_table(std::get<Table>(part));
     }
   }
+  if (!results.figures.empty()) body += "<h2>Figures</h2>\n";
   for (const Figure& figure : results.figures) {
     const std::filesystem::path svg = folder / (figure.name + ".svg");
     body += std::filesystem::exists(svg)
-                ? html_picture(svg, description(figure))
+                ? html_picture(svg, description(figure),
+                               figure.caption.empty() ? description(figure) : figure.caption)
                 : "<p class=\"note\">Figure " + escaped(figure.name) +
                       " is not drawn (results.json says why): " + escaped(figure.name) +
                       ".csv holds its data, `gnuplot " + escaped(figure.name) + ".gp` draws it.</p>\n";
   }
+  body +=
+      "<h2>How it was made</h2>\n<p>beamid " BEAMID_VERSION ", command " + escaped(results.command) + ". " +
+      (results.seed ? "Seed " + std::to_string(*results.seed) + ": the same command gives the same numbers."
+                    : "Nothing is random: the same command gives the same numbers.") +
+      "</p>\n";
+  if (!results.experiment_file.empty())
+    body += "<h2>The experiment file</h2>\n<pre>" + escaped(results.experiment_file) + "</pre>\n";
   section.html = "<h1>" + escaped(section.title) + "</h1>\n";
   if (!results.command_line.empty()) section.html += "<pre>" + escaped(results.command_line) + "</pre>\n";
   section.html += body;
@@ -86,20 +115,28 @@ ReportSection report_section(const Results& results, const std::filesystem::path
 }
 
 std::string report_page(const std::vector<ReportSection>& sections) {
-  std::string page(head), contents;
+  std::string page(head), contents, body;
+  page.append("<style>\n").append(report_style).append("</style>\n");
   page += "<title>" + escaped(sections.size() == 1 ? sections[0].title : "beamid report") +
           "</title>\n</head>\n<body>\n";
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    contents += "<li><a href=\"#section-" + std::to_string(i + 1) + "\">" + escaped(sections[i].title) +
-                "</a></li>\n";
-  if (sections.size() > 1) page += "<nav><ol>\n" + contents + "</ol></nav>\n";
+  std::size_t entries = 0;
   for (std::size_t i = 0; i < sections.size(); ++i) {
-    page += "<section id=\"section-" + std::to_string(i + 1) + "\">\n";
-    page.append(begin_mark).append(sections[i].html).append(end_mark).append("</section>\n");
+    const std::string id = "section-" + std::to_string(i + 1);
+    const Headings marked = with_anchors(sections[i].html, id);
+    entries += marked.count;
+    contents += sections.size() > 1
+                    ? "<li><a href=\"#" + id + "\">" + typeset_html(sections[i].title) + "</a>" +
+                          (marked.count > 0 ? "<ol>\n" + marked.list + "</ol>" : "") + "</li>\n"
+                    : marked.list;
+    body += "<section id=\"" + id + "\">\n";
+    body.append(begin_mark).append(marked.html).append(end_mark).append("</section>\n");
   }
-  return page + "<footer>Made by beamid " BEAMID_VERSION
-                ". Numbers, tables and figures of this page lie beside it as JSON, CSV and "
-                "SVG.</footer>\n</body>\n</html>\n";
+  if (sections.size() > 1 || entries > 2)
+    page += "<nav aria-label=\"contents\">\n<p>Contents</p>\n<ol>\n" + contents + "</ol>\n</nav>\n";
+  return page + body +
+         "<footer>Made by beamid " BEAMID_VERSION
+         ". Numbers, tables and figures of this page lie beside it as JSON, CSV and "
+         "SVG.</footer>\n</body>\n</html>\n";
 }
 
 std::vector<ReportSection> sections_of(const std::string& page) {
@@ -109,7 +146,7 @@ std::vector<ReportSection> sections_of(const std::string& page) {
     begin += begin_mark.size();
     const std::size_t end = page.find(end_mark, begin);
     if (end == std::string::npos) break;
-    ReportSection section{{}, page.substr(begin, end - begin)};
+    ReportSection section{{}, without_anchors(page.substr(begin, end - begin))};
     const std::size_t title = section.html.find("<h1>"), after = section.html.find("</h1>");
     if (title != std::string::npos && after != std::string::npos)
       section.title = unescaped(std::string_view(section.html).substr(title + 4, after - title - 4));
@@ -119,8 +156,9 @@ std::vector<ReportSection> sections_of(const std::string& page) {
 }
 
 std::string foreign_tag(std::string_view html) {
-  static const std::set<std::string_view> own{"h1",         "h2",    "p",  "b",  "pre", "figure",
-                                              "figcaption", "table", "tr", "th", "td",  "img"};
+  static const std::set<std::string_view> own{"h1",         "h2",    "p",   "b",   "pre", "figure",
+                                              "figcaption", "table", "tr",  "th",  "td",  "img",
+                                              "thead",      "tbody", "div", "span"};
   for (std::size_t at = html.find('<'); at != std::string_view::npos; at = html.find('<', at + 1)) {
     const std::size_t begin = at + (html.substr(at).starts_with("</") ? 2 : 1);
     const std::string_view name = html.substr(begin, html.find_first_of(" \t\r\n/>", begin) - begin);

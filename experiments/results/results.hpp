@@ -23,9 +23,13 @@ struct Heading {
   std::string text;
 };
 
+/// How much a reader must heed a paragraph; a page shows the last two in coloured boxes.
+enum class Severity { none, warning, failure };
+
 /// Text for the terminal, wrapped when printed.
 struct Paragraph {
   std::string text;
+  Severity severity = Severity::none;
 };
 
 /// Files that none of the other parts describes, such as meshes.
@@ -37,6 +41,7 @@ struct Attachment {
 struct Results {
   std::string command;                ///< "paper", "identify"
   std::string command_line;           ///< what repeats it, "beamid identify ..."; empty: not known
+  std::string experiment_file;        ///< its text, shown on the page; empty: there is none
   std::optional<std::uint64_t> seed;  ///< null where nothing is random
   nlohmann::ordered_json configuration = nlohmann::ordered_json::object();  ///< all of it, defaults included
   nlohmann::ordered_json values = nlohmann::ordered_json::object();  ///< SI units as suffixes of the keys
@@ -48,6 +53,10 @@ struct Results {
 
   void heading(std::string text) { report.emplace_back(Heading{std::move(text)}); }
   void paragraph(std::string text) { report.emplace_back(Paragraph{std::move(text)}); }
+  /// What may make the results wrong, or has. @param failed there is no result, or it is not to be used
+  void warning(std::string text, bool failed = false) {
+    report.emplace_back(Paragraph{std::move(text), failed ? Severity::failure : Severity::warning});
+  }
   void table(Table table) { report.emplace_back(std::move(table)); }
 };
 

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "experiments/config/beam_description.hpp"
+#include "experiments/models/estimates.hpp"
+#include "experiments/results/forest_plot.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -18,7 +20,7 @@ constexpr std::size_t most_pairs = 8;
 
 std::string label(const ModelCheck& check, const CheckedMode& mode) {
   return check.structures.size() > 1
-             ? fmt::format("{} mode {}", check.structures[mode.structure].name, mode.number)
+             ? fmt::format("{}, mode {}", check.structures[mode.structure].name, mode.number)
              : fmt::format("mode {}", mode.number);
 }
 
@@ -138,56 +140,48 @@ Table pair_table(const ModelCheck& check) {
   return table;
 }
 
-Curve points(const ModelCheck& check, const std::string& name, const VectorXd& left, double shift,
-             Colour colour) {
-  const auto n = static_cast<Index>(check.modes.size());
-  VectorXd half(n);
-  for (Index i = 0; i < n; ++i) {
+ForestSeries check_series(const ModelCheck& check, const std::string& name, const VectorXd& left,
+                          Colour colour) {
+  ForestSeries series{name, {}, {}, {}, colour};
+  for (std::size_t i = 0; i < check.modes.size(); ++i) {
     const ObservedMode& mode = check.modes[i].identified;
     const double own =
         std::isfinite(mode.frequency_deviation_hz) ? mode.frequency_deviation_hz / mode.frequency_hz : 0;
-    half[i] = 196 * std::hypot(own, check.settings.model_error);
+    const double half = 100 * quantile_95 * std::hypot(own, check.settings.model_error);
+    const double value = 100 * left[static_cast<Index>(i)];
+    series.value.push_back(value);
+    series.lower.push_back(value - half);
+    series.upper.push_back(value + half);
   }
-  const VectorXd percent = 100 * left;
-  Curve curve{name,           VectorXd::LinSpaced(n, 1, static_cast<double>(n)).array() + shift,
-              percent,        CurveStyle::points,
-              percent - half, percent + half};
-  curve.colour = colour;
-  return curve;
+  return series;
 }
 
+// A row for each mode: as described, and after the best one and two changes.
 Figure figure_of(const ModelCheck& check) {
-  const auto n = static_cast<Index>(check.modes.size());
-  std::string order;
-  for (Index i = 0; i < n; ++i)
-    order += fmt::format("{}{}: {}", i > 0 ? ", " : "", i + 1, label(check, check.modes[i]));
-  Panel panel{n <= 4 ? order : "",
-              {"frequency, in the order of the table"},
-              {"identified against predicted [%]"},
-              {}};
-  VectorXd described(n);
-  for (Index i = 0; i < n; ++i) described[i] = check.modes[i].difference();
-  panel.curves.push_back({"",
-                          Eigen::Vector2d(0.5, static_cast<double>(n) + 0.5),
-                          Eigen::Vector2d(0, 0),
-                          CurveStyle::dashed,
-                          {},
-                          {},
-                          Colour::grey});
-  panel.curves.push_back(points(check, "as described", described, -0.12, Colour::black));
+  ForestPlot plot{"", "identified against predicted frequency [%], 95 % intervals", {}, {}};
+  VectorXd described(static_cast<Index>(check.modes.size()));
+  for (std::size_t i = 0; i < check.modes.size(); ++i) {
+    plot.names.push_back(label(check, check.modes[i]));
+    described[static_cast<Index>(i)] = check.modes[i].difference();
+  }
   const auto named = [&](const Explanation& e) {
-    std::string name = "with another " + check.candidates[e.candidates[0]].name;
+    std::string name = check.candidates[e.candidates[0]].name;
     if (e.candidates.size() > 1) name += " and " + check.candidates[e.candidates[1]].name;
     std::replace(name.begin(), name.end(), '_', ' ');
-    return name;
+    return name + " fitted";
   };
+  plot.series.push_back(check_series(check, "as described", described, Colour::black));
   if (!check.right && !check.single.empty())
-    panel.curves.push_back(points(check, named(check.single[0]), check.single[0].left, 0, Colour::blue));
+    plot.series.push_back(check_series(check, named(check.single[0]), check.single[0].left, Colour::blue));
   if (!check.right && !check.pairs.empty())
-    panel.curves.push_back(
-        points(check, named(check.pairs[0]), check.pairs[0].left, 0.12, Colour::vermillion));
-  panel.x_axis.range = {0.5, static_cast<double>(n) + 0.5};
-  return {"model_check", {panel}};
+    plot.series.push_back(
+        check_series(check, named(check.pairs[0]), check.pairs[0].left, Colour::vermillion));
+  plot.reference = ForestReference{"as predicted", 0.0};
+  Figure figure{"model_check", {forest_panel(plot)}};
+  figure.height = forest_height(plot.names.size() * std::max<std::size_t>(1, plot.series.size() - 1), 1);
+  figure.caption =
+      "Identified against predicted frequencies: as described, and with the best changes fitted.";
+  return figure;
 }
 
 Json model_check_values_of(const ModelCheck& check, const Explanation& e) {
@@ -250,8 +244,8 @@ Results report(const ModelCheck& check) {
   fill(check, results);
   results.heading("The model against the modes identified");
   for (const CheckedStructure& structure : check.structures)
-    for (const std::string& warning : structure.warnings) results.paragraph(warning);
-  for (const std::string& sentence : check.contradictions) results.paragraph(sentence);
+    for (const std::string& warning : structure.warnings) results.warning(warning);
+  for (const std::string& sentence : check.contradictions) results.warning(sentence);
   for (const CheckedMode& mode : check.modes)
     if (mode.far)
       results.paragraph(fmt::format(

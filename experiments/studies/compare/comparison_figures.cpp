@@ -5,78 +5,112 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/axis_label.hpp"
 #include "experiments/identify/model_setting.hpp"
+#include "experiments/results/forest_plot.hpp"
+#include "experiments/results/signal_panels.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
+using Runs = std::vector<const ComparedRun*>;
 
 constexpr double shown_periods = 10.0;
-constexpr std::size_t most_curves = 6;  // that can be told apart
+constexpr std::size_t most_residuals = 8;  // of which each has a panel
 
-std::vector<const ComparedRun*> reproduced_runs(const Comparison& comparison) {
-  std::vector<const ComparedRun*> runs;
+Runs reproduced_runs(const Comparison& comparison) {
+  Runs runs;
   for (const ComparedRun& run : comparison.runs)
     if (run.reproduced.size() > 0) runs.push_back(&run);
   return runs;
 }
 
-// Points with 95 % bars: error in per cent where the truth is known, else the estimate.
-Panel parameter_panel(const Comparison& comparison, const std::vector<const ComparedRun*>& runs,
-                      std::size_t j) {
+// A row for each run: error in per cent where the truth is known, else the estimate.
+Panel parameter_panel(const Comparison& comparison, const Runs& runs, std::size_t j) {
   const ComparedParameter& first = runs.front()->parameters[j];
   const std::string unit = first.estimate.unit.empty() ? "" : " [" + first.estimate.unit + "]";
   const bool relative = first.error_percent().has_value();
-  Panel panel{first.estimate.name,
-              {"coordinates of the model", true},
-              {relative ? "error [%], bars of 95 %" : "estimate" + unit + ", bars of 95 %"},
-              {}};
-  double fewest = 1e9, most = 0.0;
+  std::string title = first.estimate.name;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  ForestPlot plot{
+      title, relative ? "error [%], 95 % intervals" : "estimate" + unit + ", 95 % intervals", {}, {{}}};
   for (const ComparedRun* run : runs) {
     const ComparedParameter& p = run->parameters[j];
     const auto shown = [&](double value) { return relative ? 100.0 * (value / *p.truth - 1.0) : value; };
-    const auto r = static_cast<double>(run->coordinates);
-    fewest = std::min(fewest, r);
-    most = std::max(most, r);
-    panel.curves.push_back({name_of(comparison, *run), VectorXd::Constant(1, r),
-                            VectorXd::Constant(1, shown(p.estimate.value)), CurveStyle::points,
-                            VectorXd::Constant(1, shown(p.estimate.lower_95)),
-                            VectorXd::Constant(1, shown(p.estimate.upper_95))});
+    const double ends[] = {shown(p.estimate.lower_95), shown(p.estimate.upper_95)};
+    plot.names.push_back(name_of(comparison, *run));
+    plot.series[0].value.push_back(shown(p.estimate.value));
+    plot.series[0].lower.push_back(std::min(ends[0], ends[1]));
+    plot.series[0].upper.push_back(std::max(ends[0], ends[1]));
   }
-  panel.x_axis.range = {0.6 * fewest, 1.7 * most};
-  if (relative)
-    panel.curves.push_back({"truth",
-                            Eigen::Vector2d(0.6 * fewest, 1.7 * most),
-                            Eigen::Vector2d::Zero(),
-                            CurveStyle::dashed,
-                            {},
-                            {},
-                            Colour::black});
-  return panel;
+  if (relative) plot.reference = ForestReference{"true value", 0.0};
+  return forest_panel(plot);
 }
 
-Panel motion_panel(const Comparison& comparison, const std::vector<const ComparedRun*>& runs, bool left) {
+Figure parameter_figure(const Comparison& comparison, const Runs& runs) {
+  Figure figure{"parameters", {}, 0, 1, 900};
+  for (std::size_t j = 0; j < runs.front()->parameters.size(); ++j)
+    figure.panels.push_back(parameter_panel(comparison, runs, j));
+  figure.rows = static_cast<int>(figure.panels.size());
+  figure.height = forest_height(runs.size(), figure.panels.size());
+  figure.caption =
+      "Estimates of all runs with their 95 % intervals; an arrow: beyond the axis, the number at the right.";
+  return figure;
+}
+
+double residual_rms(const VectorXd& residual) {
+  const auto measured = residual.array().isFinite();
+  return std::sqrt(measured.select(residual.array().square(), 0.0).sum() /
+                   std::max<double>(1.0, static_cast<double>(measured.count())));
+}
+
+// Record with the runs nearest to it and farthest from it, then what each run leaves, on one scale.
+Figure motion_figure(const Comparison& comparison, const Runs& runs, Index channel) {
   const Record& record = comparison.compared.record;
-  const Index channel = output_channels(record)[0];
-  const Quantity quantity = record.channels[channel].quantity;
-  const VectorXd measured = record.samples.row(channel);
-  Panel panel{left ? "what the model leaves" : "record and reproduction, the first ten periods",
-              {"time [s]"},
-              {fmt::format("{} [{}]", to_string(quantity), si_unit(quantity))},
-              {}};
-  if (!left)
-    panel.curves.push_back({"record", record.time, measured, CurveStyle::line, {}, {}, Colour::grey});
-  for (const ComparedRun* run : runs) {
-    const VectorXd reproduced = run->reproduced.row(0);
-    panel.curves.push_back({name_of(comparison, *run), record.time,
-                            left ? VectorXd(measured - reproduced) : reproduced,
-                            left ? CurveStyle::line : CurveStyle::dashed});
-  }
+  const auto row = output_channels(record)[static_cast<std::size_t>(channel)];
+  const Channel& shown = record.channels[static_cast<std::size_t>(row)];
+  const VectorXd measured = record.samples.row(row);
+  const std::string label = axis_label(shown.quantity);
+  const auto [best, worst] = std::minmax_element(runs.begin(), runs.end(), [](const auto* a, const auto* b) {
+    return a->response_error_percent < b->response_error_percent;
+  });
+  std::vector<DrawnSignal> drawn{
+      {name_of(comparison, **best), (*best)->reproduced.row(channel), Colour::sky}};
+  if (*best != *worst)
+    drawn.insert(drawn.begin(),
+                 {name_of(comparison, **worst), (*worst)->reproduced.row(channel), Colour::vermillion});
   const double begin = record.time[0], end = record.time[record.size() - 1];
-  const double frequency = runs.front()->frequency_hz.value_or(shown_periods / (end - begin));
-  panel.x_axis.range = {begin, std::min(end, begin + shown_periods / frequency)};
-  return panel;
+  const double frequency = (*best)->frequency_hz.value_or(shown_periods / (end - begin));
+  const double last = std::min(end, begin + shown_periods / frequency);
+  Figure figure{channel == 0 ? "reproduction" : fmt::format("reproduction_{}", channel + 1), {}, 0, 1, 900};
+  figure.panels.push_back(
+      reproduction_panel(channel_title(shown) + ", the first ten periods: nearest and farthest run",
+                         record.time, measured, drawn, label)
+          .across(begin, last));
+  double largest = 0;
+  const Index inside = (record.time.array() <= last).count();
+  for (std::size_t i = 0; i < std::min(runs.size(), most_residuals); ++i) {
+    const VectorXd residual = measured - runs[i]->reproduced.row(channel).transpose();
+    for (const double value : residual.head(inside))
+      if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+    figure.panels.push_back(
+        residual_panel(fmt::format("{} leaves {:.3g} {} (rms)", name_of(comparison, *runs[i]),
+                                   residual_rms(residual), si_unit(shown.quantity)),
+                       record.time, residual, label)
+            .across(begin, last));
+    figure.panels.back().y_axis.label = std::string("[") + si_unit(shown.quantity) + "]";
+    figure.panels.back().x_axis.label = "";
+  }
+  figure.panels.back().x_axis.label = "time [s]";
+  for (std::size_t i = 1; i < figure.panels.size() && largest > 0; ++i)
+    figure.panels[i].up(-largest, largest);
+  figure.rows = static_cast<int>(figure.panels.size());
+  figure.height = 340 + 120 * (figure.rows - 1);
+  figure.caption =
+      fmt::format("{}: record, its nearest and farthest reproduction, and what each run leaves of it.",
+                  channel_title(shown));
+  return figure;
 }
 
 }  // namespace
@@ -93,23 +127,18 @@ std::string name_of(const Comparison& comparison, const ComparedRun& run) {
 }
 
 std::vector<Figure> figures(const Comparison& comparison) {
-  std::vector<const ComparedRun*> runs = reproduced_runs(comparison);
+  const Runs runs = reproduced_runs(comparison);
   if (runs.empty()) return {};
-  const auto count = runs.front()->parameters.size();
-  Figure errors{"parameters", {}, 1, 1};
-  std::vector<const ComparedRun*> alike;  // the models may differ in what they ask about
+  std::vector<Figure> all;
+  for (Index channel = 0; channel < runs.front()->reproduced.rows(); ++channel)
+    all.push_back(motion_figure(comparison, runs, channel));
+  Runs alike;  // the models may differ in what they ask about
   for (const ComparedRun* run : runs)
-    if (run->parameters.size() == count && run->status == ComparedRun::Status::converged)
+    if (run->parameters.size() == runs.front()->parameters.size() &&
+        run->status == ComparedRun::Status::converged)
       alike.push_back(run);
-  for (std::size_t j = 0; !alike.empty() && j < count; ++j)
-    errors.panels.push_back(parameter_panel(comparison, alike, j));
-  errors.columns = errors.panels.size() > 1 ? 2 : 1;
-  errors.rows = static_cast<int>((errors.panels.size() + errors.columns - 1) / errors.columns);
-  if (runs.size() > most_curves) runs.resize(most_curves);
-  Figure motion{
-      "reproduction", {motion_panel(comparison, runs, false), motion_panel(comparison, runs, true)}, 2, 1};
-  std::vector<Figure> all{motion};
-  if (!errors.panels.empty()) all.push_back(errors);
+  if (!alike.empty() && !alike.front()->parameters.empty())
+    all.push_back(parameter_figure(comparison, alike));
   return all;
 }
 

@@ -147,8 +147,8 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
     results.values["runs"].push_back(comparison_values(run, outputs));
 
   results.heading(experiment.title.empty() ? "Reduced against continuum" : experiment.title);
-  for (const std::string& warning : record.warnings) results.paragraph(warning);
-  for (const std::string& warning : comparison.warnings) results.paragraph(warning);
+  for (const std::string& warning : record.warnings) results.warning(warning);
+  for (const std::string& warning : comparison.warnings) results.warning(warning);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} passes.{}",
                   comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],

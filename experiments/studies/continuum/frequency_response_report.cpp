@@ -66,26 +66,34 @@ Table response_table(const Experiment& experiment, const FrequencyResponses& fou
   return table;
 }
 
+// "x0.55m to tip" as "0.55 m to tip".
+std::string readable_pair(std::string pair) {
+  for (std::size_t at = pair.find('x'); at != std::string::npos; at = pair.find('x', at + 1)) {
+    const std::size_t end = pair.find_first_not_of("0123456789.", at + 1);
+    if ((at > 0 && pair[at - 1] != ' ') || end == std::string::npos || end == at + 1 || pair[end] != 'm')
+      continue;
+    pair.insert(end, " ").erase(at, 1);
+  }
+  return pair;
+}
+
 Figure response_figure(const Experiment& experiment, const FrequencyResponses& found) {
   const auto& settings = experiment.frequency_response;
   const double from = found.frequency_hz[0], to = found.frequency_hz[found.frequency_hz.size() - 1];
   const Axis frequency{"frequency [Hz]", settings.logarithmic, std::pair{from, to}};
-  Panel magnitude{"",
-                  frequency,
-                  {fmt::format("{} [{}]", to_string(settings.kind), unit_of(settings.kind)), true},
-                  {},
-                  Legend::none};
-  Panel phase{"",
-              frequency,
-              {"phase [deg]", false, std::pair{-185.0, 185.0}},
-              {},
-              found.pairs.size() > 1 ? Legend::below : Legend::none};
+  Panel magnitude{
+      "", frequency, {fmt::format("{} [{}]", to_string(settings.kind), unit_of(settings.kind)), true}};
+  Panel phase{"", frequency, {"phase [deg]", false, std::pair{-185.0, 185.0}, 90.0}};
+  magnitude.legend = Legend::none;
+  if (found.pairs.size() == 1) phase.legend = Legend::none;
   for (const PairResponse& pair : found.pairs) {
-    magnitude.curves.push_back({pair.name, found.frequency_hz, pair.response.cwiseAbs()});
-    phase.curves.push_back(
-        {pair.name, found.frequency_hz, degrees_per_radian * pair.response.cwiseArg().real()});
+    magnitude.line(readable_pair(pair.name), found.frequency_hz, pair.response.cwiseAbs());
+    phase.line(readable_pair(pair.name), found.frequency_hz,
+               degrees_per_radian * pair.response.cwiseArg().real());
   }
-  return {"frf_plot", {magnitude, phase}, 2, 1};
+  Figure figure{"frf_plot", {magnitude, phase}, 2, 1};
+  figure.caption = fmt::format("Magnitude and phase of the {}.", to_string(settings.kind));
+  return figure;
 }
 
 Json frequency_response_values(const Experiment& experiment, const FrequencyResponses& found) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/axis_label.hpp"
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
 #include "experiments/record/column_name.hpp"
@@ -12,6 +13,7 @@
 #include "experiments/record/units.hpp"
 #include "experiments/record/write_record.hpp"
 #include "experiments/results/file.hpp"
+#include "experiments/results/signal_panels.hpp"
 #include "experiments/results/vtk/field_history.hpp"
 #include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/spectrum.hpp"
@@ -147,24 +149,19 @@ Json simulation_values(const Experiment& experiment, const SimulatedTest& test) 
 Figure sensor_figure(const SimulatedTest& test, std::size_t i, const std::string& name) {
   const Sensor& sensor = test.sensors[i];
   const VectorXd signal = test.record.samples.row(static_cast<Index>(i));
-  const std::string label = fmt::format("{} [{}]", to_string(sensor.quantity), si_unit(sensor.quantity));
-  Figure figure{name, {}, 2, 1};
-  Panel history{sensor.name, {"time [s]"}, {label}, {}, Legend::none};
-  history.curves = {{"", test.record.time, signal}};
-  Panel spectrum{"",
-                 {"frequency [Hz]"},
-                 {"amplitude [" + std::string(si_unit(sensor.quantity)) + "]", true},
-                 {},
-                 Legend::none};
-  const AmplitudeSpectrum found = amplitude_spectrum(signal, test.record.interval());
-  const double highest = found.amplitude.maxCoeff();
-  const VectorXd shown = (found.amplitude.array() > 1e-8 * highest).select(found.amplitude, std::nan(""));
-  spectrum.curves = {{"", found.frequency_hz, shown}};
-  figure.panels = {history};
-  if (highest > 0.0 && test.acquisition.even())
-    figure.panels.push_back(spectrum);
-  else
-    figure.rows = 1;
+  const std::string label = axis_label(sensor.quantity);
+  Figure figure{name, {}, 1, 1};
+  figure.panels.push_back(Panel{sensor.name, {"time [s]"}, {label}}
+                              .line("", test.record.time, signal, Colour::blue)
+                              .across(test.record.time[0], test.record.time[test.record.size() - 1])
+                              .key(Legend::none));
+  if (test.acquisition.even())
+    if (auto spectrum = spectrum_panel({{"", signal}}, test.record.interval(), label, 8)) {
+      figure.panels.push_back(std::move(*spectrum));
+      figure.rows = 2;
+    }
+  figure.caption =
+      fmt::format("Simulated reading of the sensor '{}', and its amplitude spectrum.", sensor.name);
   return figure;
 }
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/axis_label.hpp"
 #include "experiments/config/description.hpp"
+#include "experiments/identify/damping_law/damping_law.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/record_inputs.hpp"
+#include "experiments/models/estimates.hpp"
 #include "experiments/studies/damping/report.hpp"
 
 namespace beamid::experiments {
@@ -164,20 +167,28 @@ std::string fit_words(const DampingLawStudy& study) {
       1e3 * study.first_amplitude);
 }
 
-Curve section_curve(const DampingLawStudy& study) {
+Colour law_colour(const FittedLaw& law) {
+  return law.name == "viscous"     ? Colour::blue
+         : law.name == "coulomb"   ? Colour::vermillion
+         : law.name == "quadratic" ? Colour::green
+                                   : Colour::purple;
+}
+
+void add_sections(const DampingLawStudy& study, Panel& panel) {
   const auto count = static_cast<Index>(study.sections.size());
   VectorXd a(count), xi(count), half(count);
   for (Index i = 0; i < count; ++i) {
     const AmplitudePoint& section = study.sections[static_cast<std::size_t>(i)];
     a[i] = 1e3 * section.amplitude;
     xi[i] = 100.0 * section.damping_ratio;
-    half[i] = 196.0 * section.damping_ratio_deviation;
+    half[i] = 100.0 * quantile_95 * section.damping_ratio_deviation;
   }
-  return {"sections of the decay", a, xi, CurveStyle::points, xi - half, xi + half};
+  panel.bars("sections of the decay, 95 %", a, xi, xi - half, xi + half, Colour::black);
 }
 
+// One colour for each law in both panels; the law that is supported is the full line.
 Figure figure(const Record& record, const DampingLawStudy& study) {
-  Panel ratios{"damping ratio by amplitude", {"amplitude [mm]", true}, {"damping ratio [%]"}, {}};
+  Panel ratios{"damping ratio by amplitude", {"amplitude [mm]", true}, {"damping ratio [%]"}};
   constexpr Index points = 60;
   for (const FittedLaw& law : study.laws) {
     if (law.state.size() == 0) continue;
@@ -187,20 +198,21 @@ Figure figure(const Record& record, const DampingLawStudy& study) {
       a[i] = study.first_amplitude * std::pow(study.last_amplitude / study.first_amplitude, part);
       xi[i] = 100.0 * law.damping_ratio(a[i]);
     }
-    const bool chosen = &law == &study.supported();
-    ratios.curves.push_back(
-        {title_of(law.name), 1e3 * a, xi, chosen ? CurveStyle::line : CurveStyle::dashed});
+    ratios.add(&law == &study.supported() ? CurveStyle::line : CurveStyle::dashed, title_of(law.name),
+               1e3 * a, xi, law_colour(law));
   }
-  if (!study.sections.empty()) ratios.curves.push_back(section_curve(study));
-  const Channel& channel = record.channels[output_channels(record)[0]];
-  Panel left{"what the laws leave of the record",
-             {"time [s]"},
-             {fmt::format("{} [{}]", to_string(channel.quantity), si_unit(channel.quantity))},
-             {}};
+  if (!study.sections.empty()) add_sections(study, ratios);
+  const Channel& channel = record.channels[static_cast<std::size_t>(output_channels(record)[0])];
+  Panel left{"residuals of the laws", {"time [s]"}, {axis_label(channel.quantity)}};
   for (const FittedLaw* law : {&study.laws.front(), &study.supported()})
     if (law->left.size() > 0 && (left.curves.empty() || law != &study.laws.front()))
-      left.curves.push_back({title_of(law->name), study.time, law->left.row(0)});
-  return {"damping_law", {ratios, left}, 2, 1};
+      left.line(title_of(law->name), study.time, law->left.row(0), law_colour(*law));
+  Figure both{"damping_law", {ratios, left}, 2, 1};
+  both.height = 720;
+  both.caption =
+      "Damping ratio by amplitude for each law and for sections of the decay, and what the laws leave of the "
+      "record.";
+  return both;
 }
 
 Json damping_law_values(const FittedLaw& law) {
@@ -254,7 +266,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
                     {"laws", Json::array()}};
   for (const FittedLaw& law : study.laws) results.values["laws"].push_back(damping_law_values(law));
   results.heading(experiment.title.empty() ? record_name : experiment.title);
-  for (const std::string& warning : study.warnings) results.paragraph(warning);
+  for (const std::string& warning : study.warnings) results.warning(warning);
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz; mode at {:.4f} Hz. Low-passed and decimated by "
       "{} to {} samples for the fits.",
@@ -265,7 +277,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
     results.values["inputs_between_samples"] = to_string(inputs->path);
     results.paragraph(words(*inputs));
   }
-  if (study.misfit.lacks) results.paragraph(fit_words(study));
+  if (study.misfit.lacks) results.warning(fit_words(study));
   results.paragraph(verdict(study));
   if (!study.misfit.lacks) results.paragraph(fit_words(study));
   results.table(law_table(study));

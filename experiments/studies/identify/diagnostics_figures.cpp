@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/models/estimates.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
 
 namespace beamid::experiments {
@@ -14,23 +15,15 @@ Panel autocorrelation(const filters::Diagnostics& found, std::size_t i, const st
   const VectorXd& correlation = found.whiteness[i].autocorrelation;
   const Index lags = correlation.size();
   const double counted = found.histogram.counts.row(static_cast<Index>(i)).sum();
-  const double bound = 1.96 / std::sqrt(std::max(counted, 1.0));
-  Panel panel{output, {"lag [samples]"}, {"autocorrelation"}, {}};
-  panel.x_axis.range = {0.0, static_cast<double>(lags) + 1.0};
-  panel.curves = {{"95 % of white noise",
-                   Eigen::Vector2d(0.0, static_cast<double>(lags) + 1.0),
-                   {},
-                   CurveStyle::band,
-                   Eigen::Vector2d(-bound, -bound),
-                   Eigen::Vector2d(bound, bound)},
-                  {"innovations",
-                   VectorXd::LinSpaced(lags, 1.0, static_cast<double>(lags)),
-                   correlation,
-                   CurveStyle::points,
-                   {},
-                   {},
-                   Colour::blue}};
-  return panel;
+  const double bound = quantile_95 / std::sqrt(std::max(counted, 1.0));
+  const double last = static_cast<double>(lags) + 1.0;
+  return Panel{output, {"lag [samples]"}, {"autocorrelation"}}
+      .across(0.0, last)
+      .band("95 % of white noise", Eigen::Vector2d(0.0, last), Eigen::Vector2d::Constant(-bound),
+            Eigen::Vector2d::Constant(bound), Colour::grey)
+      .line("", Eigen::Vector2d(0.0, last), Eigen::Vector2d::Zero(), Colour::grey)
+      .add(CurveStyle::stems, "innovations", VectorXd::LinSpaced(lags, 1.0, last - 1.0), correlation,
+           Colour::blue);
 }
 
 // A bar's outline: its value from edge to edge.
@@ -48,16 +41,10 @@ Curve outline(const VectorXd& edges, const VectorXd& counts) {
 Panel histogram(const filters::Diagnostics& found, std::size_t i, const std::string& output) {
   const auto& h = found.histogram;
   const auto row = static_cast<Index>(i);
-  Panel panel{output, {"innovation / its standard deviation"}, {"samples"}, {}};
-  panel.curves = {outline(h.edges, h.counts.row(row).transpose()),
-                  {"expected",
-                   0.5 * (h.edges.head(h.counts.cols()) + h.edges.tail(h.counts.cols())),
-                   h.expected.row(row).transpose(),
-                   CurveStyle::dashed,
-                   {},
-                   {},
-                   Colour::black}};
-  return panel;
+  const VectorXd middles = 0.5 * (h.edges.head(h.counts.cols()) + h.edges.tail(h.counts.cols()));
+  Panel panel{output, {"innovation / its standard deviation"}, {"samples"}};
+  panel.curves.push_back(outline(h.edges, h.counts.row(row).transpose()));
+  return panel.dashed("expected", middles, h.expected.row(row).transpose(), Colour::black);
 }
 
 }  // namespace
@@ -71,6 +58,9 @@ std::vector<Figure> figures(const filters::Diagnostics& found, const std::vector
     correlations.panels.push_back(autocorrelation(found, i, outputs[i]));
     histograms.panels.push_back(histogram(found, i, outputs[i]));
   }
+  correlations.caption =
+      "Autocorrelation of the innovations: of a filter whose model and noise are right, that of white noise.";
+  histograms.caption = "Innovations over their own standard deviation, and what is expected of normal ones.";
   return {correlations, histograms};
 }
 

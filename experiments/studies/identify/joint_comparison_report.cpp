@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/joint_comparison.hpp"
 #include "experiments/identify/joint_words.hpp"
-#include "experiments/studies/identify/joint_comparison_report.hpp"
-
+#include "experiments/results/forest_plot.hpp"
 #include "experiments/studies/compare/comparison_report.hpp"
+#include "experiments/studies/identify/joint_comparison_report.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::VectorXd;
+using Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
 
 bool converged(const Comparison& one) {
@@ -49,35 +51,19 @@ Table table_of(const JointComparison& joint, std::size_t which) {
 
 Panel panel_of(const JointComparison& joint, std::size_t which) {
   const Estimate& all = joint.parameters[which];
-  std::vector<double> number, value, lower, upper;
-  for (std::size_t r = 0; r < joint.records.size(); ++r) {
-    if (!converged(joint.records[r])) continue;
-    const Estimate& e = joint.records[r].runs[0].parameters.at(which).estimate;
-    number.push_back(static_cast<double>(r) + 1);
-    value.push_back(e.value);
-    lower.push_back(e.lower_95);
-    upper.push_back(e.upper_95);
+  std::string name = all.name;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  ForestPlot plot{"", name + (all.unit.empty() ? "" : " [" + all.unit + "]"), {}, {{}}};
+  for (const Comparison& one : joint.records) {
+    if (!converged(one)) continue;
+    const Estimate& e = one.runs[0].parameters.at(which).estimate;
+    plot.names.push_back(one.compared.name);
+    plot.series[0].value.push_back(e.value);
+    plot.series[0].lower.push_back(e.lower_95);
+    plot.series[0].upper.push_back(e.upper_95);
   }
-  const auto vector = [](const std::vector<double>& values) {
-    return VectorXd(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
-  };
-  const Eigen::Vector2d ends(0.5, static_cast<double>(joint.records.size()) + 0.5);
-  const auto level = [](double height) { return VectorXd(Eigen::Vector2d::Constant(height)); };
-  Panel panel{
-      "", {"record, in the order given"}, {all.name + (all.unit.empty() ? "" : " [" + all.unit + "]")}, {}};
-  panel.curves = {{"all together, 95 %",
-                   ends,
-                   {},
-                   CurveStyle::band,
-                   level(all.lower_95),
-                   level(all.upper_95),
-                   Colour::grey},
-                  {"all together", ends, level(all.value), CurveStyle::dashed, {}, {}, Colour::black},
-                  {"each record, 95 %", vector(number), vector(value), CurveStyle::points, vector(lower),
-                   vector(upper), Colour::blue}};
-  panel.x_axis.range = {ends[0], ends[1]};
-  panel.legend = Legend::none;
-  return panel;
+  plot.reference = ForestReference{"all together", all.value, std::pair{all.lower_95, all.upper_95}};
+  return forest_panel(plot);
 }
 
 Json joint_comparison_values_of(const JointComparison& joint, const std::vector<std::string>& names) {
@@ -131,14 +117,15 @@ Results report(const Experiment& experiment, const JointComparison& joint) {
     lost();
     return results;
   }
-  Figure figure{"agreement", {}, 0, 1};
+  Figure figure{"agreement", {}, 0, 1, 900};
   constexpr std::size_t most_panels = 4;
   for (std::size_t j = 0; j < names.size(); ++j) {
     results.table(table_of(joint, j));
     if (j < most_panels) figure.panels.push_back(panel_of(joint, j));
   }
   figure.rows = static_cast<int>(figure.panels.size());
-  figure.panels.back().legend = Legend::below;
+  figure.height = forest_height(figure.panels[0].remarks.size(), figure.panels.size());
+  figure.caption = "What each record alone gives, with 95 % intervals, and what all give together.";
   results.figures = {figure};
   results.paragraph(agreement_words(joint.estimate, names));
   lost();

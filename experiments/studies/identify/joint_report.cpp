@@ -1,14 +1,15 @@
 #include <fmt/format.h>
 
+#include "experiments/identify/joint_identification.hpp"
 #include "experiments/identify/joint_words.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/results/forest_plot.hpp"
 #include "experiments/studies/identify/joint_report.hpp"
 #include "experiments/studies/identify/record_values.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
 
 // Of the joint estimate; there is no modal analysis of all records.
@@ -66,33 +67,19 @@ std::string lost_text(const JointIdentification& joint) {
 }
 
 Panel panel_of(const JointIdentification& joint, std::size_t which, const char* label) {
-  std::vector<double> number, value, half;
-  for (std::size_t r = 0; r < joint.records.size(); ++r) {
-    if (joint.records[r].lost()) continue;
-    const Parameter p = parameters(joint.records[r].found)[which];
-    number.push_back(static_cast<double>(r) + 1);
-    value.push_back(p.shown * p.estimate);
-    half.push_back(p.shown * quantile_95 * p.deviation);
+  ForestPlot plot{"", label, {}, {{}}};
+  for (const IdentifiedRecord& one : joint.records) {
+    if (one.lost()) continue;
+    const Parameter p = parameters(one.found)[which];
+    plot.names.push_back(fmt::format("{}, {} s", one.name, window_of(one.record)));
+    plot.series[0].value.push_back(p.shown * p.estimate);
+    plot.series[0].lower.push_back(p.shown * p.lower_95());
+    plot.series[0].upper.push_back(p.shown * p.upper_95());
   }
-  const auto vector = [](const std::vector<double>& values) {
-    return VectorXd(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
-  };
   const Parameter all = joint_parameters(joint)[which];
-  const Eigen::Vector2d ends(0.5, static_cast<double>(joint.records.size()) + 0.5);
-  const auto level = [&](double height) { return VectorXd(Eigen::Vector2d::Constant(all.shown * height)); };
-  Panel panel{"", {"record, in the order given"}, {label}, {}};
-  panel.curves = {{"all together, 95 %",
-                   ends,
-                   {},
-                   CurveStyle::band,
-                   level(all.lower_95()),
-                   level(all.upper_95()),
-                   Colour::grey},
-                  {"all together", ends, level(all.estimate), CurveStyle::dashed, {}, {}, Colour::black},
-                  {"each record, 95 %", vector(number), vector(value), CurveStyle::points,
-                   vector(value) - vector(half), vector(value) + vector(half), Colour::blue}};
-  panel.x_axis.range = {ends[0], ends[1]};
-  return panel;
+  plot.reference = ForestReference{"all together", all.shown * all.estimate,
+                                   std::pair{all.shown * all.lower_95(), all.shown * all.upper_95()}};
+  return forest_panel(plot);
 }
 
 bool all_lost(const JointIdentification& joint) {
@@ -130,22 +117,24 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
   for (const IdentifiedRecord& one : joint.records) {
-    for (const std::string& text : one.found.judgement.messages) results.paragraph(one.name + ": " + text);
+    for (const std::string& text : one.found.judgement.messages)
+      results.warning(one.name + ": " + text, one.found.judgement.verdict == Verdict::diverged);
   }
   results.paragraph(fmt::format(
       "{} records of one beam, each with its own start, noise and window; {} on {}, discretisation {}.",
       joint.records.size(), experiment.filter.name, experiment.model.name, experiment.discretisation));
   if (all_lost(joint)) {
-    results.paragraph("No joint estimate: the filter lost the motion of every record.");
+    results.warning("No joint estimate: the filter lost the motion of every record.", true);
     return results;
   }
   results.table(table_of(joint, "records", "", 0));
   results.table(constants_of(joint));
   results.paragraph(agreement_words(joint.estimate, {"K", "C"}));
   if (const std::string text = lost_text(joint); !text.empty()) results.paragraph(text);
-  Figure figure{"agreement", {}, 2, 1};
+  Figure figure{"agreement", {}, 2, 1, 900};
   figure.panels = {panel_of(joint, 0, "frequency [Hz]"), panel_of(joint, 1, "damping ratio [%]")};
-  figure.panels[0].legend = Legend::none;
+  figure.height = forest_height(figure.panels[0].remarks.size(), 2);
+  figure.caption = "What each record alone gives, with 95 % intervals, and what all give together.";
   results.figures = {figure};
   return results;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/axis_label.hpp"
 #include "experiments/config/channel_places.hpp"
 #include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/models/discretisation_bias.hpp"
@@ -190,7 +191,8 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   const Record placed = with_places(record, experiment);
   results.values["channels"] = channel_values(placed);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
-  for (const std::string& text : found.judgement.messages) results.paragraph(text);
+  for (const std::string& text : found.judgement.messages)
+    results.warning(text, found.judgement.verdict == Verdict::diverged);
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
@@ -214,8 +216,10 @@ Results report(const Experiment& experiment, const Record& record, const std::st
       found.beam_frequency_hz, percent(found.identification.found.frequency_hz(), found.beam_frequency_hz)));
   if (const std::string text = companion_text(found); !text.empty()) results.paragraph(text);
   results.figures = figures(record, found);
+  std::vector<std::string> titles;
+  for (const Channel& channel : record.channels) titles.push_back(channel_title(channel));
   if (found.diagnostics)
-    for (Figure& figure : figures(*found.diagnostics, names)) results.figures.push_back(std::move(figure));
+    for (Figure& figure : figures(*found.diagnostics, titles)) results.figures.push_back(std::move(figure));
   if (!found.smoothed.empty()) {
     results.figures.push_back(smoothed_figure(record, found));
     results.attachments.push_back(smoothed_history(record, found));

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "experiments/models/estimates.hpp"
 #include "experiments/results/csv.hpp"
 #include "experiments/results/file.hpp"
 
@@ -39,22 +40,16 @@ History history(const std::vector<filters::Gaussian>& beliefs, Index state) {
   return result;
 }
 
-Curve band(const VectorXd& time, const History& h, const char* label, Colour colour) {
-  Curve curve{label, time, {}, CurveStyle::band, h.mean - 1.96 * h.deviation, h.mean + 1.96 * h.deviation};
-  curve.colour = colour;
-  return curve;
-}
-
 Panel panel_of(const VectorXd& time, const RecordIdentification& found, Index state) {
   const filters::Label label = found.model.motion->state_labels()[static_cast<std::size_t>(state)];
   const History filtered = history(found.identification.run.filtered, state),
                 after = history(found.smoothed, state);
-  Panel panel{"", {"time [s]"}, {label.name + " [" + label.unit + "]"}, {}};
-  panel.curves = {band(time, filtered, "filter, 95 %", Colour::grey),
-                  {"filter", time, filtered.mean, CurveStyle::dashed, {}, {}, Colour::black},
-                  band(time, after, "smoother, 95 %", Colour::sky),
-                  {"smoother", time, after.mean, CurveStyle::line, {}, {}, Colour::blue}};
-  return panel;
+  const VectorXd wide = quantile_95 * filtered.deviation, narrow = quantile_95 * after.deviation;
+  return Panel{"", {"time [s]"}, {label.name + " [" + label.unit + "]"}}
+      .band("filter, 95 %", time, filtered.mean - wide, filtered.mean + wide, Colour::grey)
+      .dashed("filter", time, filtered.mean, Colour::black)
+      .band("smoother, 95 %", time, after.mean - narrow, after.mean + narrow, Colour::sky)
+      .line("smoother", time, after.mean, Colour::blue);
 }
 
 }  // namespace
@@ -90,9 +85,9 @@ Figure smoothed_figure(const Record& record, const RecordIdentification& found) 
       const double half = 20.0 * found.smoothed.back().deviations()[state];
       if (half > 0.0) panel.y_axis.range = {last - half, last + half};
     }
-    panel.legend = state == 3 ? Legend::below : Legend::none;
     figure.panels.push_back(panel);
   }
+  figure.caption = "Filtered and smoothed displacement, stiffness and damping.";
   return figure;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "experiments/modal/amplitude_dependence.hpp"
+#include "experiments/models/estimates.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -123,7 +124,8 @@ Curve curve_of(const Dependence& one, const std::string& label, bool damping) {
     const AmplitudePoint& point = one.points[k];
     x[k] = point.amplitude;
     y[k] = damping ? 100 * point.damping_ratio : point.frequency_hz;
-    deviation[k] = 2 * (damping ? 100 * point.damping_ratio_deviation : point.frequency_deviation_hz);
+    deviation[k] =
+        quantile_95 * (damping ? 100 * point.damping_ratio_deviation : point.frequency_deviation_hz);
   }
   return {label, x, y, CurveStyle::points, y - deviation, y + deviation};
 }
@@ -135,13 +137,13 @@ Figure figure_of(const std::vector<Dependence>& all, const std::vector<RecordMod
   for (std::size_t m = 0; m < modes && figure.rows < static_cast<int>(most_modes); ++m) {
     std::vector<const Dependence*> shown;
     for (const Dependence& one : all)
-      if (one.mode == m && !one.points.empty()) shown.push_back(&one);
+      if (one.mode == m && one.points.size() > 1) shown.push_back(&one);  // the table has the single points
     if (shown.empty()) continue;
     const auto& channel = records[shown[0]->record].record.channels[shown[0]->channel];
     const std::string amplitude =
         fmt::format("amplitude of {} [{}]", to_string(channel.quantity), si_unit(channel.quantity));
-    Panel frequency{fmt::format("mode {}", m + 1), {amplitude, true}, {"frequency [Hz]"}, {}},
-        damping{fmt::format("mode {}", m + 1), {amplitude, true}, {"damping ratio [%]"}, {}};
+    Panel frequency{fmt::format("mode {}", m + 1), {amplitude, true}, {"frequency [Hz], bars: 95 %"}},
+        damping{fmt::format("mode {}", m + 1), {amplitude, true}, {"damping ratio [%], bars: 95 %"}};
     for (const Dependence* one : shown) {
       const std::string label = records.size() > 1 ? records[one->record].name : "";
       frequency.curves.push_back(curve_of(*one, label, false));
@@ -153,6 +155,7 @@ Figure figure_of(const std::vector<Dependence>& all, const std::vector<RecordMod
     ++figure.rows;
   }
   figure.height = 60 + 320 * figure.rows;
+  figure.caption = "Frequency and damping ratio of each mode against its amplitude, with 95 % intervals.";
   return figure;
 }
 
@@ -200,7 +203,8 @@ void tell_amplitude(const std::vector<RecordModes>& records, const std::vector<M
   Table table = table_of(all, records);
   if (table.rows() > 0) {
     results.table(std::move(table));
-    results.figures.push_back(figure_of(all, records, merged.size()));
+    if (Figure figure = figure_of(all, records, merged.size()); !figure.panels.empty())
+      results.figures.push_back(std::move(figure));
   }
   for (const Dependence& one : all)
     results.paragraph(one.points.empty() ? fmt::format("Mode {} of {} is not followed: {}.", one.mode + 1,

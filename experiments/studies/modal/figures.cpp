@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "experiments/results/signal_panels.hpp"
 #include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/studies/modal/report.hpp"
 
@@ -28,19 +30,18 @@ VectorXd joint_spectrum(const Eigen::MatrixXd& samples, double interval, VectorX
 }
 
 Figure diagram(const RecordModes& found, const std::string& suffix) {
-  Panel panel{found.name, {"frequency [Hz]"}, {"model order"}, {}};
+  Panel panel{found.name, {"frequency [Hz]"}, {"model order"}};
   const double top = found.search.orders.empty() ? 2 : found.search.orders.back().order + 1;
   VectorXd frequency;
   const VectorXd spectrum = joint_spectrum(found.target, found.interval, frequency);
   const VectorXd decibels = spectrum.cwiseMax(1e-300).array().log10();
   const double peak = decibels.maxCoeff(), floor = std::max(decibels.minCoeff(), peak - 4);
-  panel.curves.push_back({"spectrum (logarithmic, four decades at most)",
-                          frequency,
-                          (top * (decibels.array() - floor) / (peak - floor)).cwiseMax(0).matrix(),
-                          CurveStyle::line,
-                          {},
-                          {},
-                          Colour::grey});
+  panel.line("spectrum", frequency, (top * (decibels.array() - floor) / (peak - floor)).cwiseMax(0).matrix(),
+             Colour::grey);
+  panel.curves.back().style = CurveStyle::thin;
+  panel.across(found.band_hz.first, found.band_hz.second).up(0, top);
+  for (const ModeEstimate& mode : found.modes)  // behind the poles that they are chosen from
+    panel.upright(&mode == &found.modes.front() ? "mode" : "", mode.pole.frequency_hz(), Colour::vermillion);
   const struct {
     Stability stability;
     const char* label;
@@ -56,19 +57,14 @@ Figure diagram(const RecordModes& found, const std::string& suffix) {
       x.push_back(pole.pole.frequency_hz());
       y.push_back(pole.order);
     }
-    if (!x.empty()) panel.curves.push_back({kind.label, of(x), of(y), kind.style, {}, {}, kind.colour});
+    if (!x.empty()) panel.add(kind.style, kind.label, of(x), of(y), kind.colour);
   }
-  for (const ModeEstimate& mode : found.modes)
-    panel.curves.push_back({&mode == &found.modes.front() ? "mode" : "",
-                            Eigen::Vector2d::Constant(mode.pole.frequency_hz()),
-                            Eigen::Vector2d(0, top),
-                            CurveStyle::dashed,
-                            {},
-                            {},
-                            Colour::vermillion});
-  panel.x_axis.range = found.band_hz;
-  panel.y_axis.range = {0, top};
-  return {"stabilisation" + suffix, {panel}, 1, 1, 800, 520};
+  Figure figure{"stabilisation" + suffix, {panel}, 1, 1, 900, 520};
+  figure.caption =
+      "Stabilisation diagram: poles by model order, the modes chosen, and behind them the spectrum "
+      "(logarithmic, four "
+      "decades at most).";
+  return figure;
 }
 
 std::string modal_study_unit_of(const RecordModes& found, Index channel) {
@@ -88,36 +84,23 @@ Figure reproduction(const RecordModes& found, const std::string& suffix) {
     const Channel& channel = found.record.channels[i];
     const std::string what = found.free_decay ? to_string(channel.quantity) : "autocorrelation";
     const VectorXd measured = found.target.row(i), again = found.reproduced.row(i);
-    Panel motion{channel.name,
-                 {found.free_decay ? "time [s]" : "lag [s]"},
-                 {what + " [" + modal_study_unit_of(found, i) + "]"},
-                 {}};
-    motion.curves = {{"measured", time, measured, CurveStyle::line, {}, {}, Colour::grey},
-                     {"reproduced by the modes", time, again, CurveStyle::dashed, {}, {}, Colour::blue}};
-    motion.x_axis.range = {time[0], time[count - 1]};
-    const AmplitudeSpectrum a = amplitude_spectrum(measured, found.interval),
-                            b = amplitude_spectrum(again, found.interval);
-    Panel spectrum{"", {"frequency [Hz]"}, {"amplitude [" + modal_study_unit_of(found, i) + "]", true}, {}};
-    const double peak = a.amplitude.maxCoeff();
-    spectrum.curves = {{"measured",
-                        a.frequency_hz,
-                        a.amplitude.cwiseMax(1e-6 * peak),
-                        CurveStyle::line,
-                        {},
-                        {},
-                        Colour::grey},
-                       {"reproduced by the modes",
-                        b.frequency_hz,
-                        b.amplitude.cwiseMax(1e-6 * peak),
-                        CurveStyle::dashed,
-                        {},
-                        {},
-                        Colour::blue}};
-    spectrum.x_axis.range = {0, found.band_hz.second};
-    spectrum.y_axis.range = {1e-5 * peak, 2 * peak};
+    const std::string label = what + " [" + modal_study_unit_of(found, i) + "]";
+    Panel motion = reproduction_panel(channel.name, time, measured,
+                                      {{"reproduced by the modes", again, Colour::sky}}, label);
+    if (!found.free_decay) motion.x_axis.label = "lag [s]";
+    Panel spectrum = spectrum_panel({{"measured", measured, Colour::black},
+                                     {"reproduced by the modes", again, Colour::sky}},
+                                    found.interval, label, 5)
+                         .value_or(Panel{"", {"frequency [Hz]"}, {"no motion"}});
+    if (spectrum.curves.size() == 2) {
+      std::swap(spectrum.curves[0], spectrum.curves[1]);  // the record in front, as beside it
+      spectrum.curves[1].style = CurveStyle::thin;
+    }
+    spectrum.across(0, found.band_hz.second);
     figure.panels.push_back(std::move(motion));
     figure.panels.push_back(std::move(spectrum));
   }
+  figure.caption = "The record and what the modes make of it, in time and as amplitude spectra.";
   return figure;
 }
 
@@ -125,16 +108,14 @@ Figure singular_values(const RecordModes& found, const std::string& suffix) {
   const Index count =
       std::min<Index>(found.search.singular_values.size(), 2 * found.search.orders.back().order);
   const VectorXd relative = found.search.singular_values.head(count) / found.search.singular_values[0];
-  Panel panel{found.name, {"order"}, {"singular value of the Hankel matrix, relative", true}, {}};
-  panel.curves = {{"",
-                   VectorXd::LinSpaced(count, 1, static_cast<double>(count)),
-                   relative.cwiseMax(1e-16),
-                   CurveStyle::points,
-                   {},
-                   {},
-                   Colour::blue}};
-  panel.legend = Legend::none;
-  return {"singular_values" + suffix, {panel}};
+  Figure figure{"singular_values" + suffix,
+                {Panel{found.name, {"order"}, {"singular value of the Hankel matrix, relative", true}}
+                     .points("", VectorXd::LinSpaced(count, 1, static_cast<double>(count)),
+                             relative.cwiseMax(1e-16), Colour::blue)
+                     .key(Legend::none)}};
+  figure.caption =
+      "Singular values of the Hankel matrix: two for each mode stand above the slope of the noise.";
+  return figure;
 }
 
 }  // namespace

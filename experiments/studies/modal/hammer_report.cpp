@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "experiments/modal/study/hammer_study.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
 #include "experiments/studies/modal/hammer_report.hpp"
 #include "experiments/studies/modal/report.hpp"
 
@@ -91,6 +94,38 @@ Json hammer_values(const HammerStudy& study) {
   return json;
 }
 
+/// The phase [degrees] without jumps from line to line.
+VectorXd unwrapped_degrees(const Eigen::VectorXcd& h) {
+  VectorXd phase(h.size());
+  double turns = 0;
+  for (Index i = 0; i < h.size(); ++i) {
+    const double now = std::arg(h[i]) * 180 / std::numbers::pi;
+    if (i > 0) turns = 360 * std::round((phase[i - 1] - now) / 360);
+    phase[i] = now + turns;
+  }
+  return phase;
+}
+
+/// The phase [degrees] on the turn nearest to a reference, so that +179 and -179 degrees are drawn together.
+VectorXd near_degrees(const Eigen::VectorXcd& h, const VectorXd& reference) {
+  VectorXd phase(h.size());
+  for (Index i = 0; i < h.size(); ++i) {
+    const double now = std::arg(h[i]) * 180 / std::numbers::pi;
+    phase[i] = now + 360 * std::round((reference[i] - now) / 360);
+  }
+  return phase;
+}
+
+/// Ticks of 90 degrees, or of 360 over many turns, and an axis that ends on them.
+void show_degrees(Panel& panel) {
+  Extent extent;
+  for (const Curve& curve : panel.curves) extent.add(curve.y, false);
+  if (extent.empty()) return;
+  panel.y_axis.tick = extent.high - extent.low > 900 ? 360 : 90;
+  panel.up(std::floor(extent.low / 90) * 90,
+           std::max(std::ceil(extent.high / 90), std::floor(extent.low / 90) + 1) * 90);
+}
+
 std::vector<Figure> hammer_figures(const HammerStudy& study) {
   const VectorXd f = study.responses.frequency_hz.segment(study.first, study.lines);
   const Index shown = std::min<Index>(static_cast<Index>(study.channels.size()), 3);
@@ -103,35 +138,27 @@ std::vector<Figure> hammer_figures(const HammerStudy& study) {
       const auto part = [&](const Eigen::MatrixXcd& h) {
         return Eigen::VectorXcd(h.row(o).segment(study.first, study.lines).transpose());
       };
+      const VectorXd reference = unwrapped_degrees(part(study.responses.h1));
       const auto of = [&](const Eigen::VectorXcd& h) -> VectorXd {
-        return kind == 0 ? VectorXd(h.cwiseAbs()) : VectorXd(h.array().arg() * (180 / 3.14159265358979));
+        return kind == 0 ? VectorXd(h.cwiseAbs()) : near_degrees(h, reference);
       };
       const std::string unit = fmt::format("({})/N", si_unit(study.channels[o].quantity));
       Panel panel{kind == 0 ? study.channels[o].name : "",
                   {"frequency [Hz]"},
-                  kind == 0   ? Axis{"size [" + unit + "]", true}
+                  kind == 0   ? Axis{"|H| [" + unit + "]", true}
                   : kind == 1 ? Axis{"phase [degrees]"}
-                              : Axis{"coherence"},
-                  {}};
+                              : Axis{"coherence"}};
       if (kind == 2) {
-        panel.curves.push_back(
-            {"", f, study.responses.coherence.row(o).segment(study.first, study.lines).transpose()});
-        panel.y_axis.range = {0, 1.05};
-        panel.legend = Legend::none;
+        panel.line("", f, study.responses.coherence.row(o).segment(study.first, study.lines).transpose())
+            .up(0, 1)
+            .key(Legend::none);
       } else {
-        panel.curves.push_back(
-            {"H_{1}", f, of(part(study.responses.h1)), CurveStyle::line, {}, {}, Colour::grey});
-        if (averaged)
-          panel.curves.push_back(
-              {"H_{2}", f, of(part(study.responses.h2)), CurveStyle::dotted, {}, {}, Colour::orange});
+        panel.line("H_{1}", f, of(part(study.responses.h1)), Colour::grey);
+        if (averaged) panel.add(CurveStyle::dotted, "H_{2}", f, of(part(study.responses.h2)), Colour::orange);
         if (!study.modes.empty())
-          panel.curves.push_back({"of the modes",
-                                  f,
-                                  of(study.fit.reproduced.row(o).transpose()),
-                                  CurveStyle::dashed,
-                                  {},
-                                  {},
-                                  Colour::blue});
+          panel.dashed("modal fit", f, of(study.fit.reproduced.row(o).transpose()), Colour::blue);
+        if (kind == 1) show_degrees(panel);
+        if (kind == 0) panel.legend = Legend::none;
       }
       figure.panels.push_back(std::move(panel));
     }
@@ -143,17 +170,15 @@ std::vector<Figure> hammer_figures(const HammerStudy& study) {
     x[stable].push_back(pole.pole.frequency_hz());
     y[stable].push_back(pole.order);
   }
-  Panel diagram{"", {"frequency [Hz]"}, {"model order"}, {}};
+  Panel diagram{"", {"frequency [Hz]"}, {"model order"}};
   for (const int stable : {0, 1})
     if (!x[stable].empty())
-      diagram.curves.push_back({stable ? "stable" : "not stable",
-                                Eigen::Map<VectorXd>(x[stable].data(), static_cast<Index>(x[stable].size())),
-                                Eigen::Map<VectorXd>(y[stable].data(), static_cast<Index>(y[stable].size())),
-                                stable ? CurveStyle::points : CurveStyle::open_points,
-                                {},
-                                {},
-                                stable ? Colour::blue : Colour::grey});
+      diagram.add(stable ? CurveStyle::points : CurveStyle::open_points, stable ? "stable" : "not stable",
+                  Eigen::Map<VectorXd>(x[stable].data(), static_cast<Index>(x[stable].size())),
+                  Eigen::Map<VectorXd>(y[stable].data(), static_cast<Index>(y[stable].size())),
+                  stable ? Colour::blue : Colour::grey);
   diagram.x_axis.range = study.band_hz;
+  figure.caption = "Frequency responses to the hammer: magnitude, phase and coherence, with the modal fit.";
   std::vector<Figure> all{std::move(figure)};
   if (!diagram.curves.empty()) all.push_back({"stabilisation", {std::move(diagram)}});
   return all;
@@ -171,7 +196,7 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   for (const std::string& name : study.names) names += (names.empty() ? "" : ", ") + name;
   results.heading(names);
   for (const auto* warnings : {&study.record_warnings, &study.responses.warnings})
-    for (const std::string& warning : *warnings) results.paragraph(warning);
+    for (const std::string& warning : *warnings) results.warning(warning);
   std::string text = fmt::format(
       "Frequency responses of {} hit{} of {:.4g} s, {}. Band {:.4g} to {:.4g} Hz, {} lines. Method {}",
       study.responses.averages, study.responses.averages > 1 ? "s" : "", study.responses.duration,
@@ -200,7 +225,7 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
         "--order may show one.");
   else
     results.table(mode_table(study));
-  for (const std::string& warning : study.warnings) results.paragraph(warning);
+  for (const std::string& warning : study.warnings) results.warning(warning);
   for (Figure& figure : hammer_figures(study)) results.figures.push_back(std::move(figure));
   return results;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/results/signal_panels.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
 #include "experiments/studies/paper/errors.hpp"
 #include "experiments/studies/paper/report.hpp"
@@ -22,7 +23,7 @@ constexpr DrawnGuess first_guesses[] = {{300, 2}, {300, 20}, {700, 2}, {700, 20}
 Panel convergence(const Outcome& outcome, const char* scheme, const char* title, Index index) {
   constexpr double shown = 0.5;  // [s]
   const bool stiffness = index == 2;
-  Panel panel{title, {"time [s]"}, {stiffness ? "stiffness K [N/m]" : "damping C [N s/m]"}, {}};
+  Panel panel{title, {"time [s]"}, {stiffness ? "stiffness K [N/m]" : "damping C [N s/m]"}};
   panel.x_axis.range = {0.0, shown};
   panel.y_axis.range = stiffness ? std::pair{250.0, 750.0} : std::pair{2.0, 14.0};
   for (const auto& [first_stiffness, first_damping] : first_guesses) {
@@ -40,25 +41,26 @@ Panel convergence(const Outcome& outcome, const char* scheme, const char* title,
       time[k + 1] = static_cast<double>(k + 1) * validation_interval;
       value[k + 1] = result.run.filtered[k].mean[index];
     }
-    panel.curves.push_back({fmt::format("K_{{0}} = {:g}, C_{{0}} = {:g}", first_stiffness, first_damping),
-                            time, value, first_damping > 10.0 ? CurveStyle::dashed : CurveStyle::line});
+    panel.curves.push_back({fmt::format("from {:g} N/m and {:g} N s/m", first_stiffness, first_damping), time,
+                            value, first_damping > 10.0 ? CurveStyle::dashed : CurveStyle::line});
   }
   const double truth = stiffness ? outcome.truth.stiffness : outcome.truth.damping;
-  panel.curves.push_back({"true value",
-                          Eigen::Vector2d(0.0, shown),
-                          Eigen::Vector2d(truth, truth),
-                          CurveStyle::dashed,
-                          {},
-                          {},
-                          Colour::black});
-  return panel;
+  return panel.level("true value", truth);
 }
 
+// The whole at the left, its beginning at the right.
 Figure convergence_figure(const Outcome& outcome, const char* name, Index index) {
-  Figure figure{name, {}, 2, 1};
-  figure.panels.push_back(convergence(outcome, "forward_euler", "Forward Euler, as the paper", index));
-  figure.panels.push_back(convergence(outcome, "exponential", "Exact discretisation", index));
-  figure.panels.front().legend = Legend::none;
+  constexpr double beginning = 0.05;  // [s]
+  Figure figure{name, {}, 2, 2, 1100};
+  for (const auto& [scheme, title] :
+       {std::pair{"forward_euler", "Forward Euler, as the paper"}, {"exponential", "Exact discretisation"}}) {
+    Panel panel = convergence(outcome, scheme, title, index);
+    figure.panels.push_back(panel);
+    panel.title += ", its beginning";
+    figure.panels.push_back(panel.across(0.0, beginning));
+  }
+  figure.caption = fmt::format("{} from four initial estimates, with both discretisations.",
+                               index == 2 ? "Stiffness" : "Damping");
   return figure;
 }
 
@@ -79,29 +81,19 @@ Figure reproduction_figure(const BeamOutcome& o, const char* name) {
   const double begin = time[0], four_cycles = begin + 4.0 / o.beam.exact_frequency_hz;
   Figure figure{name, {}, 2, 1};
   for (const bool whole : {false, true}) {
-    Panel panel{std::string(o.beam.test.name) + (whole ? ", the whole record" : ", first four cycles"),
-                {"time [s]"},
-                {"tip displacement [mm]"},
-                {}};
-    panel.curves = {{"measured", time, measured, CurveStyle::line, {}, {}, Colour::grey},
-                    {"reproduced, EKF with exact discretisation",
-                     time,
-                     reproduce_paper(o.identified[1].found, o.motion),
-                     CurveStyle::dashed,
-                     {},
-                     {},
-                     Colour::blue},
-                    {"reproduced, EKF with forward Euler",
-                     time,
-                     reproduce_paper(o.identified[0].found, o.motion),
-                     CurveStyle::line,
-                     {},
-                     {},
-                     Colour::vermillion}};
-    panel.x_axis.range = {begin, whole ? time[time.size() - 1] : four_cycles};
-    panel.legend = whole ? Legend::below : Legend::none;
-    figure.panels.push_back(panel);
+    figure.panels.push_back(
+        reproduction_panel(
+            std::string(o.beam.test.name) + (whole ? ", the whole record" : ", first four cycles"), time,
+            measured,
+            {{"reproduced, EKF with forward Euler", reproduce_paper(o.identified[0].found, o.motion),
+              Colour::vermillion},
+             {"reproduced, EKF with exact discretisation", reproduce_paper(o.identified[1].found, o.motion),
+              Colour::sky}},
+            "tip displacement [mm]")
+            .across(begin, whole ? time[time.size() - 1] : four_cycles));
   }
+  figure.caption =
+      fmt::format("{}: measured displacement and what both identifications reproduce.", o.beam.test.name);
   return figure;
 }
 
@@ -121,13 +113,16 @@ Figure damping_law_figure(const Outcome& outcome) {
                dt = 1.0 / release_of(test_beams[0]).sampling_rate;
   const VectorXd x = VectorXd::LinSpaced(100, std::log(1e-3), std::log(1e-2)).array().exp();
   const VectorXd law = 50.0 * std::sqrt(stiffness) * dt * x.cwiseInverse();
-  Panel panel{"", {"ξ √M_{eq} [kg^{1/2}]", true, std::pair{1e-3, 1e-2}}, {"|error of C| [%]", true}, {}};
-  panel.curves = {{"law: √K Δt / (2 ξ √M_{eq})", x, law, CurveStyle::line, {}, {}, Colour::black},
-                  {"EKF, forward Euler", product, errors[0], CurveStyle::points, {}, {}, Colour::vermillion},
-                  {"UKF, forward Euler", product, errors[2], CurveStyle::open_points, {}, {}, Colour::orange},
-                  {"EKF, exact", product, errors[1], CurveStyle::points, {}, {}, Colour::blue},
-                  {"UKF, exact", product, errors[3], CurveStyle::open_points, {}, {}, Colour::sky}};
-  return {"damping_law", {panel}};
+  Panel panel{"", {"ξ √M_{eq} [kg^{1/2}]", true}, {"|error of C| [%]", true}};
+  panel.across(1e-3, 1e-2)
+      .line("law: √K Δt / (2 ξ √M_{eq})", x, law, Colour::black)
+      .points("EKF, forward Euler", product, errors[0], Colour::vermillion)
+      .open_points("UKF, forward Euler", product, errors[2], Colour::orange)
+      .points("EKF, exact", product, errors[1], Colour::blue)
+      .open_points("UKF, exact", product, errors[3], Colour::sky);
+  Figure figure{"damping_law", {panel}};
+  figure.caption = "Error of C against ξ √Meq: the law as a line, filters as points.";
+  return figure;
 }
 
 }  // namespace

@@ -3,25 +3,26 @@
 #include <optional>
 #include <stdexcept>
 
+#include "experiments/axis_label.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
+#include "experiments/results/signal_panels.hpp"
 #include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-std::string axis_label(const Channel& channel) {
-  return std::string(to_string(channel.quantity)) + " [" + si_unit(channel.quantity) + "]";
-}
-
 Panel time_panel(const Record& record, const std::string& title, Colour colour) {
   const Eigen::Index row = motion_row(record);
-  Panel panel{title, {"time [s]"}, {axis_label(record.channels[row])}, {}, Legend::none};
-  panel.curves = {{"", record.time, record.samples.row(row).transpose(), CurveStyle::line, {}, {}, colour}};
-  return panel;
+  const Channel& channel = record.channels[static_cast<std::size_t>(row)];
+  return Panel{title, {"time [s]"}, {axis_label(channel.quantity)}}
+      .line("", record.time, record.samples.row(row).transpose(), colour)
+      .across(record.time[0], record.time[record.size() - 1])
+      .key(Legend::none);
 }
 
-std::optional<Panel> spectrum_panel(const Record& record, const std::string& title, Colour colour) {
+std::optional<Panel> prepared_spectrum(const Record& record, const std::string& label, Colour colour) {
   double interval = 0;
   try {
     interval = even_interval(record);
@@ -29,22 +30,8 @@ std::optional<Panel> spectrum_panel(const Record& record, const std::string& tit
     return std::nullopt;
   }
   const Eigen::Index row = motion_row(record);
-  const AmplitudeSpectrum spectrum =
-      amplitude_spectrum(bridged_straight(record.samples.row(row).transpose()), interval);
-  const Eigen::Index bins = spectrum.frequency_hz.size() - 1;
-  const double highest = spectrum.amplitude.tail(bins).maxCoeff();
-  if (!(highest > 0)) return std::nullopt;
-  constexpr double shown = 1e-5;
-  Panel panel{title, {"frequency [Hz]"}, {axis_label(record.channels[row]), true}, {}, Legend::none};
-  panel.curves = {{"",
-                   spectrum.frequency_hz.tail(bins),
-                   spectrum.amplitude.tail(bins).cwiseMax(shown * highest),
-                   CurveStyle::line,
-                   {},
-                   {},
-                   colour}};
-  panel.y_axis.range = {shown * highest, 2 * highest};
-  return panel;
+  return spectrum_panel({{label, record.samples.row(row).transpose(), colour}}, interval,
+                        axis_label(record.channels[static_cast<std::size_t>(row)].quantity), 5);
 }
 
 }  // namespace
@@ -57,20 +44,35 @@ Eigen::Index motion_row(const Record& record) {
 
 Figure preparation_figure(const PreparedRecord& prepared) {
   Figure figure{"before_and_after", {}};
-  figure.panels.push_back(time_panel(prepared.raw, "as the file holds it", Colour::grey));
-  auto raw = spectrum_panel(prepared.raw, "its spectrum", Colour::grey);
-  const auto after = spectrum_panel(prepared.record, "its spectrum", Colour::blue);
-  const bool both = raw && after;
-  if (raw && after &&
-      prepared.raw.channels[motion_row(prepared.raw)].quantity ==
-          prepared.record.channels[motion_row(prepared.record)].quantity)
-    raw->x_axis.range = {0, 0.5 / prepared.raw.interval()};
-  if (raw) figure.panels.push_back(*raw);
-  figure.panels.push_back(time_panel(prepared.record, "prepared", Colour::blue));
-  if (after) figure.panels.push_back(*after);
-  figure.rows = both ? 2 : static_cast<int>(figure.panels.size());
-  figure.columns = both ? 2 : 1;
-  figure.width = both ? 1100 : 800;
+  Panel before = time_panel(prepared.raw, "as the file holds it", Colour::grey),
+        after = time_panel(prepared.record, "prepared", Colour::blue);
+  auto raw = prepared_spectrum(prepared.raw, "as the file holds it", Colour::grey);
+  const auto spectrum = prepared_spectrum(prepared.record, "prepared", Colour::blue);
+  const bool alike = before.y_axis.label == after.y_axis.label;
+  if (alike) {  // the same quantity: one scale for both
+    Extent both;
+    for (const Panel* panel : {&before, &after}) both.add(panel->curves[0].y, false);
+    const double margin = 0.05 * (both.high - both.low);
+    if (!both.empty() && margin > 0)
+      for (Panel* panel : {&before, &after}) panel->up(both.low - margin, both.high + margin);
+  }
+  figure.panels = {before, after};
+  if (raw && spectrum && alike) {
+    raw->title = "spectra";
+    raw->curves.push_back(spectrum->curves[0]);
+    raw->legend = Legend::below;
+    figure.panels.push_back(*raw);
+  } else {
+    for (const auto& [panel, title] :
+         {std::pair{raw, "spectrum as the file holds it"}, {spectrum, "prepared"}})
+      if (panel) {
+        figure.panels.push_back(*panel);
+        figure.panels.back().title = title;
+      }
+  }
+  figure.rows = static_cast<int>(figure.panels.size());
+  figure.height = 40 + 250 * figure.rows;
+  figure.caption = "The record as the file holds it and as it was prepared, with their amplitude spectra.";
   return figure;
 }
 

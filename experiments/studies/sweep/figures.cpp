@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "experiments/results/key_label.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/text/words.hpp"
 
@@ -74,26 +75,21 @@ constexpr Colour sweep_colours[most_sweep_curves] = {Colour::blue,   Colour::ver
 void add_panels(Figure& figure, const std::string& key, const std::string& parameter,
                 const std::vector<Series>& all) {
   const bool log_x = logarithmic(vector_of(all[0].x));
-  Panel errors{parameter, {key, log_x}, {"rms error [%]", true}, {}, Legend::below};
-  Panel coverage{parameter, {key, log_x}, {"truth in the 95 % interval [%]"}, {}, Legend::below};
+  std::string title = parameter;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  Panel errors{title, {key_label(key), log_x}, {"rms error [%]", true}};
+  Panel coverage{title, {key_label(key), log_x}, {"truth in the 95 % interval [%]"}};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Series& one = all[i];
     const VectorXd x = vector_of(one.x);
     const std::string label = one.name.empty() ? "filter" : one.name;
-    errors.curves.push_back({label, x, vector_of(one.rms), CurveStyle::points, {}, {}, sweep_colours[i]});
-    errors.curves.push_back({i == 0 ? "Cramér-Rao bound" : "",
-                             x,
-                             vector_of(one.bound),
-                             CurveStyle::dashed,
-                             {},
-                             {},
-                             sweep_colours[i]});
-    coverage.curves.push_back({label, x, vector_of(one.coverage), CurveStyle::points, vector_of(one.lower),
-                               vector_of(one.upper), sweep_colours[i]});
+    errors.points(label, x, vector_of(one.rms), sweep_colours[i])
+        .dashed(i == 0 ? "Cramér-Rao bound" : "", x, vector_of(one.bound), sweep_colours[i]);
+    coverage.bars(label, x, vector_of(one.coverage), vector_of(one.lower), vector_of(one.upper),
+                  sweep_colours[i]);
   }
-  const VectorXd ends = Eigen::Vector2d(vector_of(all[0].x).minCoeff(), vector_of(all[0].x).maxCoeff());
-  coverage.curves.push_back(
-      {"95 %", ends, VectorXd::Constant(2, 95.0), CurveStyle::dotted, {}, {}, Colour::grey});
+  coverage.level("95 %", 95.0, Colour::grey);
+  for (Panel& earlier : figure.panels) earlier.legend = Legend::none;  // said once, below the last parameter
   figure.panels.push_back(errors);
   figure.panels.push_back(coverage);
 }
@@ -108,10 +104,10 @@ Figure scattered(const SweepPlan& plan, const std::vector<SweepRow>& rows,
       x.push_back(number(row.values[key]).value_or(std::nan("")));
       error.push_back(100.0 * row.error / std::abs(row.truth));
     }
-    Panel panel{
-        parameter, {plan.varied[key].key, logarithmic(vector_of(x))}, {"error [%]"}, {}, Legend::none};
-    panel.curves = {{"", vector_of(x), vector_of(error), CurveStyle::points}};
-    figure.panels.push_back(panel);
+    figure.panels.push_back(
+        Panel{parameter, {key_label(plan.varied[key].key), logarithmic(vector_of(x))}, {"error [%]"}}
+            .points("", vector_of(x), vector_of(error))
+            .key(Legend::none));
   }
   return figure;
 }
@@ -127,6 +123,9 @@ std::vector<Figure> figures(const SweepPlan& plan, const std::vector<SweepRow>& 
     return drawn == plan.varied.size() ? std::vector<Figure>{}
                                        : std::vector<Figure>{scattered(plan, rows, parameters, drawn)};
   Figure figure{"sweep", {}, static_cast<int>(parameters.size()), 2};
+  figure.width = 1000;
+  figure.caption =
+      "Root mean square error with the Cramér-Rao bound, and how often the 95 % interval holds the truth.";
   for (const std::string& parameter : parameters)
     add_panels(figure, plan.varied[key].key, parameter, series_of(plan, statistics, parameter, key));
   return {figure};

@@ -8,6 +8,7 @@
 
 #include "experiments/results/html.hpp"
 #include "experiments/results/joined_report.hpp"
+#include "experiments/results/typeset.hpp"
 
 namespace beamid::experiments::report_page_test {
 namespace {
@@ -49,10 +50,10 @@ Results small_results(double stiffness) {
 
 TEST(ReportPage, HoldsAllThatWasPrintedAndNeedsNoNetwork) {
   const std::string page = report_page({report_section(small_results(509.394), ".")});
-  for (const char* text :
-       {"<h1>A beam &amp; its &lt;record&gt;</h1>",
-        "<pre>beamid identify 'my record.csv' --config a.toml</pre>", "<p>First line\nand second</p>",
-        "<th>K [N/m]</th>", "<td class=\"number\">509.39</td>", "<td class=\"number\">-</td>"})
+  for (const char* text : {"<h1>A beam &amp; its &lt;record&gt;</h1>",
+                           "<pre>beamid identify 'my record.csv' --config a.toml</pre>",
+                           "<p>First line\nand second</p>", "<th class=\"number\">K [N/m]</th>",
+                           "<td class=\"number\">509.39</td>", "<td class=\"number\">-</td>"})
     EXPECT_THAT(page, HasSubstr(text));
   for (const char* outside : {"http:", "https:", "src=\"/", "@import", "<script", "url("})
     EXPECT_THAT(page, Not(HasSubstr(outside)));
@@ -68,6 +69,63 @@ TEST(ReportPage, IsTakenApartAgain) {
     EXPECT_EQ(found[i].html, sections[i].html);
   }
   EXPECT_TRUE(sections_of("<html><h1>another page</h1></html>").empty());
+}
+
+TEST(ReportPage, ShowsWarningsAndFailuresInBoxes) {
+  Results results = small_results(1.0);
+  results.warning("Two modes beat.");
+  EXPECT_THAT(report_section(results, ".").html, HasSubstr("<p class=\"warning\">Two modes beat.</p>"));
+  EXPECT_THAT(report_section(results, ".").html, Not(HasSubstr("class=\"failure\"")));
+  results.warning("DIVERGED: the damping ratio is -0.87 %.", true);
+  EXPECT_THAT(report_section(results, ".").html, HasSubstr("<p class=\"failure\" role=\"alert\">DIVERGED"));
+}
+
+TEST(ReportPage, SaysHowItWasMadeAndNoDate) {
+  Results results = small_results(1.0);
+  results.experiment_file = "[beam]\nlength_m = 1.1  # <tip>\n";
+  results.seed = 7;
+  const std::string html = report_section(results, ".").html;
+  EXPECT_THAT(html, HasSubstr("<pre>[beam]\nlength_m = 1.1  # &lt;tip&gt;\n</pre>"));
+  EXPECT_THAT(html, HasSubstr("Seed 7"));
+  EXPECT_EQ(html, report_section(results, ".").html);
+  EXPECT_EQ(foreign_tag(html), "");
+}
+
+TEST(ReportPage, ListsItsPartsAndLinksToEach) {
+  Results results = small_results(1.0);
+  results.heading("The finding");
+  results.heading("Tables");
+  const std::string page = report_page({report_section(results, ".")});
+  EXPECT_THAT(page, HasSubstr("<li><a href=\"#section-1-2\">Tables</a></li>"));
+  EXPECT_THAT(page, HasSubstr("<h2 id=\"section-1-2\">Tables</h2>"));
+}
+
+TEST(ReportPage, IsMadeForTheDarkForPaperAndForNarrowScreens) {
+  const std::string page = report_page({report_section(small_results(1.0), ".")});
+  for (const char* rule :
+       {"@media screen and (prefers-color-scheme: dark)", "@media print",
+        "@media screen and (max-width: 40rem)", ".scroll { overflow: visible }", "position: sticky"})
+    EXPECT_THAT(page, HasSubstr(rule));
+  EXPECT_THAT(page, Not(HasSubstr("break-before: page")));
+}
+
+// Oracle: the widths. A figure space is as wide as a digit, a punctuation space as a point.
+TEST(HtmlTable, PutsDecimalPointsBelowEachOther) {
+  Table table{"t", ""};
+  table.column({"estimate", "estimate"}).column({"what", "what"});
+  table.row({"3.4555", "f"}).row({"-0.45", "xi"}).row({"12", "n"}).row({"-", "1.0 to 2.0"});
+  const std::string html = html_table(table);
+  EXPECT_THAT(html, HasSubstr("<td class=\"number\">-0.45<span class=\"pad\">\u2007\u2007</span></td>"));
+  EXPECT_THAT(html, HasSubstr("12<span class=\"pad\">\u2008\u2007\u2007\u2007\u2007</span></td>"));
+  EXPECT_THAT(html, HasSubstr("<td>1.0 to 2.0</td>"));
+}
+
+TEST(Typeset, RaisesExponentsOfUnitsAndLeavesNames) {
+  EXPECT_EQ(typeset("acceleration [m/s2]"), "acceleration [m/s²]");
+  EXPECT_EQ(typeset("EI [N m2], 0.00122 m2, N s2/m2"), "EI [N m²], 0.00122 m², N s²/m²");
+  EXPECT_EQ(typeset("10^-8, chi^2 = 3, 5 +- 1"), "10⁻⁸, χ² = 3, 5\u00a0±\u00a01");
+  for (const char* name : {"sensor m2", "m2", "test s2.csv", "massa1_test1-1", "^2", "a+b"})
+    EXPECT_EQ(typeset(name), name);
 }
 
 TEST(SideBySide, ShowsTheNumbersThatDiffer) {

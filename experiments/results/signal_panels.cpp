@@ -1,0 +1,45 @@
+#include "experiments/results/signal_panels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/signal/amplitude_spectrum.hpp"
+#include "experiments/signal/missing_samples.hpp"
+
+namespace beamid::experiments {
+
+std::optional<Panel> spectrum_panel(const std::vector<DrawnSignal>& signals, double interval,
+                                    const std::string& label, double decades) {
+  Panel panel{"", {"frequency [Hz]"}, {"amplitude of " + label, true}};
+  double highest = 0, last = 0;
+  for (const DrawnSignal& signal : signals) {
+    const AmplitudeSpectrum spectrum = amplitude_spectrum(bridged_straight(signal.samples), interval);
+    const Eigen::Index lines = spectrum.frequency_hz.size() - 1;  // without 0: the mean is taken off
+    if (lines < 1) continue;
+    highest = std::max(highest, spectrum.amplitude.tail(lines).maxCoeff());
+    last = std::max(last, spectrum.frequency_hz[lines]);
+    panel.line(signal.label, spectrum.frequency_hz.tail(lines), spectrum.amplitude.tail(lines),
+               signal.colour);
+  }
+  if (!(highest > 0)) return std::nullopt;
+  if (signals.size() == 1) panel.legend = Legend::none;
+  return panel.across(0, last).up(std::pow(10.0, -decades) * highest, 2 * highest);
+}
+
+Panel reproduction_panel(const std::string& title, const Eigen::VectorXd& time,
+                         const Eigen::VectorXd& measured, const std::vector<DrawnSignal>& reproduced,
+                         const std::string& label) {
+  Panel panel{title, {"time [s]"}, {label}};
+  for (const DrawnSignal& one : reproduced) panel.line(one.label, time, one.samples, one.colour);
+  return panel.thin("measured", time, measured, Colour::black).across(time[0], time[time.size() - 1]);
+}
+
+Panel residual_panel(const std::string& title, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
+                     const std::string& label) {
+  return Panel{title, {"time [s]"}, {"residual, " + label}}
+      .thin("", time, residual, Colour::black)
+      .across(time[0], time[time.size() - 1])
+      .key(Legend::none);
+}
+
+}  // namespace beamid::experiments
