@@ -28,8 +28,9 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   described.add_options()                                                                //
       ("out", options::value<std::string>()->value_name("FILE"), "the page: FILE.html")  //
       ("pdf", options::value<std::string>()->value_name("FILE"),
-       "the page printed to FILE.pdf, by chromium or google-chrome")  //
-      ("force", "replace FILE")                                       //
+       "the page printed to FILE.pdf, by chromium or google-chrome")    //
+      ("all", "also the numbers within lists: every run, every point")  //
+      ("force", "replace FILE")                                         //
       ("help", "show this help");
   options::variables_map values;
   if (!parse(command, arguments, described, {"dir..."}, values)) return 0;
@@ -43,7 +44,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
                             ? new_file(values, "out")
                             : fs::path(fmt::format("{}.partial-{}.html", pdf.string(), getpid()));
   if (!pdf.empty()) experiments::browser_for_pdf();
-  experiments::write_joined_report(folders, page);
+  experiments::write_joined_report(folders, page, values.count("all") > 0);
   if (!pdf.empty()) {
     const auto leave = [&] {
       std::error_code ignored;

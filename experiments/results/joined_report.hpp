@@ -18,15 +18,21 @@ struct NamedResults {
       nlohmann::ordered_json::object();  ///< compiler and libraries -> versions; empty: not known
 };
 
-/// The numbers that at least two of the results have under the same key, a row each; those that are the same
-/// everywhere are left out, of long lists all but the first entries. With two results their difference in
-/// per cent.
-Table side_by_side(const std::vector<NamedResults>& results);
+/// The estimates, with standard deviations, that at least two of the results have under one name
+/// (joined_numbers.hpp): each with half its 95 % interval, and of two results the difference, also in
+/// combined standard deviations, (b - a) / sqrt(sa^2 + sb^2).
+Table parameters_side_by_side(const std::vector<NamedResults>& results);
 
-/// Writes the page of all folders, whole or not at all: their numbers side by side, methods and versions
-/// (report_methods.hpp), then the page of each.
+/// The other numbers, a row each; those that are the same everywhere are left out. Of two results the
+/// difference in per cent.
+/// @param all also those within lists; else the numbers of a result as a whole, and errors of its runs
+Table numbers_side_by_side(const std::vector<NamedResults>& results, bool all);
+
+/// Writes the page of all folders, whole or not at all: what differs between their configurations, their
+/// parameters and numbers side by side, methods and versions (report_methods.hpp), then the page of each.
+/// @param all as numbers_side_by_side()
 /// @throws InputError naming a folder that holds no results of beamid, or none that has a page.
-void write_joined_report(const std::vector<std::filesystem::path>& folders,
-                         const std::filesystem::path& file);
+void write_joined_report(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& file,
+                         bool all = false);
 
 }  // namespace beamid::experiments

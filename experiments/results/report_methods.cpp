@@ -32,8 +32,13 @@ void collect(const Json& json, const std::string& place, Settings& settings) {
     for (const auto& [key, value] : json.items())
       collect(value, place.empty() ? key : place + "." + key, settings);
   } else if (tables) {
-    for (std::size_t i = 0; i < json.size(); ++i)
-      collect(json[i], fmt::format("{}[{}]", place, i + 1), settings);
+    for (std::size_t i = 0; i < json.size(); ++i) {  // an entry by its name, where it has one
+      const Json name = json[i].is_object() ? json[i].value("name", Json()) : Json();
+      collect(
+          json[i],
+          fmt::format("{}[{}]", place, name.is_string() ? name.get<std::string>() : std::to_string(i + 1)),
+          settings);
+    }
   } else {
     settings.emplace_back(place, cell_text_of(json));
   }
@@ -99,11 +104,6 @@ std::string methods_html(const std::vector<NamedResults>& results, const std::ve
   for (std::size_t i = 0; i < results.size(); ++i)
     if (!commands[i].empty())
       html += "<p><b>" + escaped(results[i].name) + "</b></p>\n<pre>" + escaped(commands[i]) + "</pre>\n";
-  const Table differences = configuration_differences(results);
-  if (differences.rows() > 0)
-    html += html_table(differences);
-  else if (results.size() > 1)
-    html += "<p>The configurations are the same.</p>\n";
   return html + html_table(run_versions(results));
 }
 

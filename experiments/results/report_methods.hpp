@@ -17,7 +17,7 @@ Table configuration_differences(const std::vector<NamedResults>& results);
 /// timing.json tells; a row each.
 Table run_versions(const std::vector<NamedResults>& results);
 
-/// The part of a page that shows both tables and the commands that repeat the runs.
+/// The part of a page that shows the commands that repeat the runs, and run_versions().
 /// @param commands as the pages of the runs show them; empty: not known
 std::string methods_html(const std::vector<NamedResults>& results, const std::vector<std::string>& commands);
 

@@ -59,7 +59,8 @@ TEST_F(Report, JoinsResultsAndComparesThem) {
   const Outcome outcome = place_.run("report early late --out both.html");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const std::string page = contents(place_.folder() / "both.html");
-  for (const char* text : {"<h1>Side by side</h1>", "stiffness_n_per_m.estimate", "--window 2 6",
+  for (const char* text : {"<h1>Side by side</h1>", "stiffness [N/m]",
+                           "<th class=\"number\">in combined standard deviations</th>", "--window 2 6",
                            "--window 6 10", "early: Steel cantilever", "late: Steel cantilever"})
     EXPECT_THAT(page, HasSubstr(text));
   EXPECT_EQ(place_.run("report early --out both.html").code, 2);  // it exists
@@ -74,6 +75,10 @@ TEST_F(Report, SaysHowTheRunsWereMadeAndWhatDiffers) {
   place_.run("identify --config other.toml --out second");
   ASSERT_EQ(place_.run("report first second --out both.html").code, 0);
   const std::string page = contents(place_.folder() / "both.html");
+  // What differs comes first.
+  const std::size_t side = page.find("<h1>Side by side</h1>"),
+                    differs = page.find("<td>filter.name</td>", side);
+  EXPECT_LT(differs, page.find("Parameters, with 95 % intervals"));
   const std::size_t begin = page.find("<h1>Methods and versions</h1>"), end = page.find("</section>", begin);
   ASSERT_NE(begin, std::string::npos);
   const std::string part = page.substr(begin, end - begin);

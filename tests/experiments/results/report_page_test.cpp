@@ -128,11 +128,61 @@ TEST(Typeset, RaisesExponentsOfUnitsAndLeavesNames) {
     EXPECT_EQ(typeset(name), name);
 }
 
-TEST(SideBySide, ShowsTheNumbersThatDiffer) {
+nlohmann::ordered_json compared(double rayleigh, double modal, bool turned) {
+  const auto run = [](const char* reduction, double value) {
+    return nlohmann::ordered_json{
+        {"reduction", reduction},
+        {"filter", "ekf"},
+        {"diagnostics", {{"whiteness", {{{"autocorrelation", {value, 0.5}}}}}}},
+        {"parameters",
+         {{"bending_stiffness", {{"unit", "N m2"}, {"estimate", value}, {"standard_deviation", 0.3}}}}},
+        {"response_error_percent", value / 10}};
+  };
+  nlohmann::ordered_json json{{"command", "compare"},
+                              {"configuration", {{"filter", {{"passes", turned ? 2 : 1}}}}}};
+  json["runs"] = turned ? nlohmann::ordered_json{run("modal_truncation", modal), run("rayleigh", rayleigh)}
+                        : nlohmann::ordered_json{run("rayleigh", rayleigh), run("modal_truncation", modal)};
+  return json;
+}
+
+// Oracle: by hand, (221 - 220) / sqrt(0.3^2 + 0.3^2) = 2.357. The runs stand in another order in the second
+// file.
+TEST(SideBySide, JoinsRunsByTheirNames) {
   const Table table =
-      side_by_side({{"one", to_json(small_results(500.0))}, {"two", to_json(small_results(505.0))}});
+      parameters_side_by_side({{"a", compared(220, 229, false)}, {"b", compared(221, 229, true)}});
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(std::get<std::string>(table.columns[0].cells[0]), "rayleigh, ekf: bending stiffness [N m2]");
+  EXPECT_EQ(std::get<std::string>(table.columns[1].cells[0]), "220.00 +- 0.59");
+  EXPECT_NEAR(std::get<double>(table.columns[4].cells[0]), 2.357, 1e-3);
+  EXPECT_EQ(std::get<double>(table.columns[4].cells[1]), 0.0);
+}
+
+TEST(SideBySide, LeavesHistoriesAndListsOut) {
+  const std::vector<NamedResults> both{{"a", compared(220, 229, false)}, {"b", compared(221, 229, true)}};
+  for (const bool all : {false, true}) {
+    const Table table = numbers_side_by_side(both, all);
+    ASSERT_EQ(table.rows(), 1u);
+    EXPECT_EQ(std::get<std::string>(table.columns[0].cells[0]), "rayleigh, ekf: response error [%]");
+  }
+}
+
+// A mode that one record lacks must not shift the others.
+TEST(SideBySide, JoinsModesByFrequency) {
+  const auto mode = [](double frequency) {
+    return nlohmann::ordered_json{{"frequency_hz", frequency}, {"frequency_standard_deviation_hz", 0.01}};
+  };
+  const nlohmann::ordered_json one{{"modes", {mode(3.46), mode(22.8), mode(65.7)}}},
+      two{{"modes", {mode(22.9), mode(65.8)}}};
+  const Table table = parameters_side_by_side({{"one", one}, {"two", two}});
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(std::get<std::string>(table.columns[0].cells[0]), "mode at 22.8 Hz: frequency [Hz]");
+}
+
+TEST(SideBySide, ShowsTheNumbersThatDiffer) {
+  const Table table = numbers_side_by_side(
+      {{"one", to_json(small_results(500.0))}, {"two", to_json(small_results(505.0))}}, false);
   ASSERT_EQ(table.rows(), 1u);
-  EXPECT_EQ(std::get<std::string>(table.columns[0].cells[0]), "stiffness_n_per_m");
+  EXPECT_EQ(std::get<std::string>(table.columns[0].cells[0]), "stiffness [N/m]");
   EXPECT_NEAR(std::get<double>(table.columns[3].cells[0]), 1.0, 1e-12);
 }
 
