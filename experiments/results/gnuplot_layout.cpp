@@ -87,7 +87,7 @@ std::vector<PanelPlace> panel_places(const Figure& figure, int height) {
     row.below = std::max(row.below, below_frame(panel));
     if (common >= 0 && i != common) continue;
     const auto labels = legend_labels(panel);
-    const int columns = legend_columns(labels, (common >= 0 ? figure.width : cell) - 110);
+    const int columns = legend_columns(labels, cell - 130);  // gnuplot makes it no wider than the frame
     places[static_cast<std::size_t>(i)].legend_columns = columns;
     double& key = (common >= 0 ? rows.back() : row).key;
     key = std::max(key, legend_height(labels, columns));
