@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/axis_label.hpp"
 #include "experiments/identify/model_setting.hpp"
+#include "experiments/record/axis_label.hpp"
 #include "experiments/results/forest_plot.hpp"
 #include "experiments/results/signal_panels.hpp"
 

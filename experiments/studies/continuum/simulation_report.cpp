@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/axis_label.hpp"
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
+#include "experiments/record/axis_label.hpp"
 #include "experiments/record/column_name.hpp"
 #include "experiments/record/record_places.hpp"
 #include "experiments/record/units.hpp"

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/axis_label.hpp"
 #include "experiments/config/description.hpp"
 #include "experiments/identify/damping_law/damping_law.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/record_inputs.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/record/axis_label.hpp"
 #include "experiments/studies/damping/report.hpp"
 
 namespace beamid::experiments {

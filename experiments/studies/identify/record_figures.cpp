@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "experiments/axis_label.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/record/axis_label.hpp"
 #include "experiments/results/signal_panels.hpp"
 
 namespace beamid::experiments {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/axis_label.hpp"
 #include "experiments/config/channel_places.hpp"
 #include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/models/discretisation_bias.hpp"
+#include "experiments/record/axis_label.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
 #include "experiments/studies/identify/record_figures.hpp"
 #include "experiments/studies/identify/record_values.hpp"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/axis_label.hpp"
+#include "experiments/record/axis_label.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/results/gnuplot_axes.hpp"
 #include "experiments/results/signal_panels.hpp"

@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "experiments/axis_label.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/record/axis_label.hpp"
 
 namespace beamid::experiments {
 namespace {
