@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "experiments/results/library_versions.hpp"
+#include "experiments/results/print.hpp"
 #include "experiments/results/report_page.hpp"
 #include "experiments/results/text.hpp"
 #include "experiments/results/vtk/drawing.hpp"
@@ -121,20 +122,25 @@ void write(const Results& results, ResultDirectory& directory) {
 }
 
 void print(std::ostream& terminal, const Results& results) {
+  print(terminal, results, Page());
+}
+
+void print(std::ostream& terminal, const Results& results, const Page& page) {
   std::ostringstream stream;
   bool first = true;
   for (const auto& part : results.report) {
     if (!std::exchange(first, false)) stream << '\n';
     if (const auto* heading = std::get_if<Heading>(&part)) {
-      stream << heading->text << '\n'
-             << std::string(std::min(width_of(heading->text), page_width), '=') << '\n';
+      for (const std::string& line : wrapped(heading->text, page.width)) stream << line << '\n';
+      stream << std::string(std::min(width_of(heading->text), page.width), '=') << '\n';
     } else if (const auto* paragraph = std::get_if<Paragraph>(&part)) {
-      for (const std::string& line : wrapped(paragraph->text)) stream << line << '\n';
+      for (const std::string& line : wrapped(paragraph->text, page.width)) stream << line << '\n';
     } else {
-      print(stream, std::get<Table>(part));
+      print(stream, std::get<Table>(part), page);
     }
   }
-  terminal << clean_lines(stream.str());  // names from files may not command a terminal
+  std::istringstream lines(clean_lines(stream.str()));  // names from files may not command a terminal
+  for (std::string line; std::getline(lines, line);) terminal << emphasised(line, page) << '\n';
 }
 
 void print_json(std::ostream& stream, const Results& results) {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "experiments/results/cell_text.hpp"
-#include "experiments/results/text.hpp"
+#include "experiments/results/print.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -60,17 +61,17 @@ std::size_t total(const std::vector<Strip>& strips) {
 }
 
 // Widens broken headings again as far as there is room, the tallest first.
-void relax_headings(std::vector<Strip>& strips) {
+void relax_headings(std::vector<Strip>& strips, std::size_t page) {
   for (bool changed = true; changed;) {
     changed = false;
     Strip& tallest = *std::max_element(strips.begin(), strips.end(), [](const Strip& a, const Strip& b) {
       return a.heading.size() < b.heading.size();
     });
-    for (std::size_t width = tallest.width; width <= page_width && tallest.heading.size() > 1; ++width) {
+    for (std::size_t width = tallest.width; width <= page && tallest.heading.size() > 1; ++width) {
       Strip wider = tallest;
       wider.wrap_heading(width);
       if (wider.heading.size() == tallest.heading.size()) continue;
-      if (total(strips) - tallest.width + wider.width <= page_width) {
+      if (total(strips) - tallest.width + wider.width <= page) {
         tallest = wider;
         changed = true;
       }
@@ -80,9 +81,9 @@ void relax_headings(std::vector<Strip>& strips) {
 }
 
 // Breaks columns of texts, the widest first, if that makes the table fit.
-void break_texts(std::vector<Strip>& strips) {
+void break_texts(std::vector<Strip>& strips, std::size_t page) {
   std::vector<Strip> narrower = strips;
-  while (total(narrower) > page_width) {
+  while (total(narrower) > page) {
     Strip* widest = nullptr;
     for (Strip& strip : narrower)
       if (!strip.right && (widest == nullptr || strip.width > widest->width)) widest = &strip;
@@ -96,18 +97,39 @@ void break_texts(std::vector<Strip>& strips) {
   }
 }
 
-// Blocks of columns that fit the page, each after the first with the leading columns of texts repeated.
-std::vector<std::vector<Strip>> folded(const std::vector<Strip>& strips) {
-  std::vector<Strip> leading;
-  for (const Strip& strip : strips) {
-    if (!leading.empty() && (strip.right || total(leading) + column_gap + strip.width > page_width / 2))
-      break;
-    leading.push_back(strip);
+// Whether the first columns alone tell every two rows apart.
+bool tell_rows_apart(const std::vector<Strip>& strips, std::size_t columns) {
+  std::set<std::vector<Lines>> seen;
+  for (std::size_t row = 0; row < strips[0].cells.size(); ++row) {
+    std::vector<Lines> key;
+    for (std::size_t i = 0; i < columns; ++i) key.push_back(strips[i].cells[row]);
+    if (!seen.insert(key).second) return false;
   }
+  return true;
+}
+
+// How many columns are repeated below: the first, as few as tell the rows apart. Where none do within two
+// thirds of the page, the texts before the first number.
+std::size_t key_columns(const std::vector<Strip>& strips, std::size_t page) {
+  std::size_t width = 0, texts = 0;
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    width += strips[i].width + column_gap;
+    if (width > page * 2 / 3) break;
+    if (strips[i].cells.size() > 1 && tell_rows_apart(strips, i + 1)) return i + 1;
+    if (texts == i && !strips[i].right && width <= page / 2) texts = i + 1;
+  }
+  return texts;
+}
+
+// Blocks of columns that fit the page, each after the first with the columns repeated that say which row it
+// is.
+std::vector<std::vector<Strip>> folded(const std::vector<Strip>& strips, std::size_t page) {
+  if (total(strips) <= page) return {strips};
+  const auto keys = static_cast<std::ptrdiff_t>(key_columns(strips, page));
+  const std::vector<Strip> leading(strips.begin(), strips.begin() + keys);
   std::vector<std::vector<Strip>> blocks{leading};
   for (std::size_t i = leading.size(); i < strips.size(); ++i) {
-    if (blocks.back().size() > leading.size() &&
-        total(blocks.back()) + column_gap + strips[i].width > page_width)
+    if (blocks.back().size() > leading.size() && total(blocks.back()) + column_gap + strips[i].width > page)
       blocks.push_back(leading);
     blocks.back().push_back(strips[i]);
   }
@@ -146,22 +168,28 @@ void print_block(std::ostream& stream, const std::vector<Strip>& strips, std::si
 }  // namespace
 
 void print(std::ostream& stream, const Table& table) {
+  print(stream, table, Page());
+}
+
+void print(std::ostream& stream, const Table& table, const Page& paper) {
+  const std::size_t page = paper.width;
   const std::size_t rows = table.rows();
-  for (const std::string& line : wrapped(table.title)) stream << line << '\n';
+  for (const std::string& line : wrapped(table.title, page)) stream << line << '\n';
   std::vector<Strip> strips;
   for (const Column& column : table.columns) strips.push_back(strip_of(column));
   if (!strips.empty()) {
-    if (total(strips) > page_width)
+    if (total(strips) > page)
       for (Strip& strip : strips) strip.wrap_heading(1);
-    if (total(strips) > page_width) break_texts(strips);
-    std::vector<std::vector<Strip>> blocks = folded(strips);
+    if (total(strips) > page) break_texts(strips, page);
+    std::vector<std::vector<Strip>> blocks = folded(strips, page);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       if (i > 0) stream << '\n';
-      relax_headings(blocks[i]);
+      if (total(blocks[i]) > page) break_texts(blocks[i], page);
+      relax_headings(blocks[i], page);
       print_block(stream, blocks[i], rows);
     }
   }
-  for (const std::string& line : wrapped(table.note)) stream << line << '\n';
+  for (const std::string& line : wrapped(table.note, page)) stream << line << '\n';
 }
 
 }  // namespace beamid::experiments

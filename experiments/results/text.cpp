@@ -1,6 +1,8 @@
 #include "experiments/results/text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <sstream>
 
 namespace beamid::experiments {
@@ -28,11 +30,42 @@ void wrap_line(const std::string& line, std::size_t width, std::vector<std::stri
   lines.push_back(current);
 }
 
+/// Words of verdicts. They stand in capitals; what stands in capitals before them, as in THE RECORDS
+/// DISAGREE, belongs to them.
+constexpr std::array verdicts{"DIVERGED", "CONTRADICTED", "DISAGREE", "ALIASED", "WRONG", "WARNING"};
+
+bool in_capitals(const std::string& line, std::size_t from, std::size_t to) {
+  return from < to &&
+         std::all_of(line.begin() + static_cast<long>(from), line.begin() + static_cast<long>(to),
+                     [](unsigned char c) { return std::isupper(c); });
+}
+
+bool is_letter(const std::string& line, std::size_t at) {
+  return at < line.size() && std::isalnum(static_cast<unsigned char>(line[at]));
+}
+
 }  // namespace
 
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+}
+
+std::string emphasised(const std::string& line, const Page& page) {
+  if (!page.colour) return line;
+  for (const std::string verdict : verdicts) {
+    const std::size_t at = line.find(verdict), end = at + verdict.size();
+    if (at == std::string::npos || is_letter(line, end) || (at > 0 && is_letter(line, at - 1))) continue;
+    std::size_t start = at;
+    while (start > 1 && line[start - 1] == ' ') {
+      const std::size_t blank = line.rfind(' ', start - 2), word = blank == std::string::npos ? 0 : blank + 1;
+      if (!in_capitals(line, word, start - 1)) break;
+      start = word;
+    }
+    return line.substr(0, start) + "\033[1;31m" + line.substr(start, end - start) + "\033[0m" +
+           line.substr(end);
+  }
+  return line;
 }
 
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {

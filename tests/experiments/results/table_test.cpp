@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "experiments/results/print.hpp"
 #include "experiments/results/text.hpp"
 
 namespace beamid::experiments::table_test {
@@ -88,6 +89,36 @@ TEST(Table, TheWidestTableOfAStudyStaysOnThePage) {
   EXPECT_NE(text.find("S(119.3)  UKF     exponential", text.find("+651.200")), std::string::npos) << text;
 }
 
+// Oracle: every row of every block begins with the numbers that say which row it is.
+TEST(Table, RepeatsAllColumnsThatTellItsRowsApart) {
+  Table table{"summary", ""};
+  table.column({"ratio", "ratio", "{:g}"}).column({"noise", "noise_m", "{:g}"}).column({"method", "method"});
+  for (int i = 0; i < 8; ++i) table.column({"some quantity", "key", "{:.6f}"});
+  for (const double ratio : {0.001, 0.01})
+    for (const double noise : {1e-5, 1e-4})
+      for (const char* method : {"ekf", "ukf"})
+        table.row({ratio, noise, method, 1., 2., 3., 4., 5., 6., 7., 8.});
+  std::ostringstream stream;
+  print(stream, table, Page{60, false});
+  const std::string text = stream.str();
+  EXPECT_LE(widest_line(text), 60u) << text;
+  std::size_t blocks = 0, keyed = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    blocks += line.starts_with("-");
+    keyed += line.find(" 0.0001  ukf ") != std::string::npos;
+  }
+  EXPECT_GE(blocks, 2u);
+  EXPECT_EQ(keyed, 2 * blocks) << text;
+}
+
+TEST(Table, FillsAWidePage) {
+  std::ostringstream stream;
+  print(stream, wide_table(), Page{200, false});
+  EXPECT_GT(widest_line(stream.str()), 120u);
+  EXPECT_EQ(stream.str().find("\n\n"), std::string::npos) << "one block";
+}
+
 // Oracle: the width of the page, and no word is lost.
 TEST(Table, BreaksLongTexts) {
   Table table{"filters", ""};
@@ -135,6 +166,16 @@ TEST(Table, NamesTheColumnThatIsTooShort) {
     EXPECT_STREQ(error.what(), "table 'table1': column 'second' has 1 cells; expected 2");
   }
   EXPECT_THROW(table.row({1.0}), std::invalid_argument);
+}
+
+// Oracle: ECMA-48, SGR 1, 31 and 0.
+TEST(Text, EmphasisesVerdictsWhereThereAreColours) {
+  const Page coloured{100, true};
+  EXPECT_EQ(emphasised("DIVERGED: no.", coloured), "\033[1;31mDIVERGED\033[0m: no.");
+  EXPECT_EQ(emphasised("See: THE RECORDS DISAGREE by", coloured),
+            "See: \033[1;31mTHE RECORDS DISAGREE\033[0m by");
+  EXPECT_EQ(emphasised("an UNDIVERGED one, DIVERGEDX", coloured), "an UNDIVERGED one, DIVERGEDX");
+  EXPECT_EQ(emphasised("DIVERGED: no.", Page()), "DIVERGED: no.");
 }
 
 TEST(Text, WrapsAtBlanksAndIndentsListItems) {
