@@ -1,4 +1,6 @@
 // The error budget of a pipeline from acceleration to K and C: of the five beams, or of a user's own.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
 
@@ -76,9 +78,10 @@ class BudgetStudy final : public Study {
 
   Results run(const Progress& progress) const override {
     std::vector<Budget> budgets;
-    for (const auto& [name, settings] : beams_) {
-      progress(name);
-      budgets.push_back(make_budget(name, settings, orders_));
+    for (std::size_t i = 0; i < beams_.size(); ++i) {
+      const std::string part = beams_.size() > 1 ? fmt::format("beam {} of {}, ", i + 1, beams_.size()) : "";
+      budgets.push_back(make_budget(beams_[i].name, beams_[i].settings, orders_,
+                                    [&](const std::string& what) { progress(part + what); }));
     }
     return report(budgets, orders_);
   }

@@ -1,10 +1,6 @@
 #include "experiments/sweep/sweep.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <exception>
 #include <optional>
@@ -13,10 +9,6 @@
 
 namespace beamid::experiments {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Threads beside this one. Where the system refuses one, half of those that it allowed go at once, and all
 /// that have no core of their own: the work needs the memory that they would take. None works before that is
@@ -103,27 +95,6 @@ std::size_t CaseQueue::cases() const {
   std::size_t count = 0;
   for (const CaseBlock& block : blocks_) count += block.size();
   return count;
-}
-
-std::string duration_text(double seconds) {
-  const auto whole = std::lround(seconds);
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
-  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
-}
-
-CaseProgress::CaseProgress(std::size_t before, std::size_t all, const Progress& progress)
-    : before_(before), all_(all), progress_(progress), started_(now()) {}
-
-void CaseProgress::count(std::size_t cases) {
-  done_ += cases;
-  const double time = now();
-  if (time - shown_ < 0.2) return;
-  shown_ = time;
-  const double rate = static_cast<double>(done_) / std::max(time - started_, 1e-9);
-  const std::size_t left = all_ - before_ - done_;
-  progress_(fmt::format("{} of {} cases, {:.3g} per second, {} left", before_ + done_, all_, rate,
-                        duration_text(static_cast<double>(left) / rate)));
 }
 
 void run_cases(CaseQueue& queue, int threads, const CaseRunner& run, const CaseSink& sink) {

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <functional>
 #include <mutex>
-#include <string>
 #include <vector>
 
 #include "experiments/sweep/rows.hpp"
@@ -35,18 +34,6 @@ class CaseQueue {
   std::size_t given_ = 0;
 };
 
-/// "137 of 1000 cases, 12.3 per second, 1 min 10 s left"; at most five times a second.
-class CaseProgress {
- public:
-  CaseProgress(std::size_t before, std::size_t all, const Progress& progress);
-  void count(std::size_t cases);  ///< so many more are finished
-
- private:
-  std::size_t before_, all_, done_ = 0;
-  const Progress& progress_;
-  double started_, shown_ = 0.0;
-};
-
 using CaseRunner = std::function<std::vector<SweepRow>(const CaseBlock& block)>;
 using CaseSink = std::function<void(std::vector<SweepRow> rows)>;
 
@@ -58,8 +45,5 @@ void run_cases(CaseQueue& queue, int threads, const CaseRunner& run, const CaseS
 
 /// Rows in the order of their cases.
 void sort_rows(std::vector<SweepRow>& rows);
-
-/// "1 min 10 s"
-std::string duration_text(double seconds);
 
 }  // namespace beamid::experiments

@@ -8,6 +8,7 @@
 
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/read_reduction.hpp"
+#include "experiments/countdown.hpp"
 #include "experiments/identify/compare/compared_run.hpp"
 #include "experiments/identify/compare/started_model.hpp"
 #include "experiments/identify/compare/true_value.hpp"
@@ -167,12 +168,15 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
         "shows it at {:.5g} Hz, as it would show any mode at a multiple of {:.5g} Hz plus or minus that: "
         "which of them it is only the initial estimates say.",
         beam_frequency, 0.5 * rate, shown_at(beam_frequency, rate), rate));
+  Countdown countdown(
+      progress, experiment.reductions.size() * experiment.filters.size() * experiment.discretisations.size(),
+      "runs");
   for (const Choice& reduction : experiment.reductions) {
     std::optional<ModelSetting> setting;
     std::optional<StartedModel> started;
     double mass = 0.0;
     std::string refusal;
-    progress(to_text(reduction));
+    countdown.begin(to_text(reduction));
     try {
       setting = model_setting(experiment, samples, reduction, folder);
       started = started_model(experiment.model, *setting, measurements(samples),
@@ -191,10 +195,11 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
         const std::string scheme = mesh                            ? form_for_the_mesh(discretisation)
                                    : model && is_nonlinear(*model) ? form_for_nonlinear(discretisation)
                                                                    : discretisation;
-        progress(fmt::format("{}, {}, {}", to_text(reduction), used.name, scheme));
+        countdown.begin(fmt::format("{}, {}, {}", to_text(reduction), used.name, scheme));
         comparison.runs.push_back(
             started ? run_once(context, *setting, *started, {used, scheme, experiment.passes, mass})
                     : refused(refusal));
+        countdown.count();
         ComparedRun& run = comparison.runs.back();
         run.reduction = to_text(reduction);
         run.filter = choice_text(used, filters::filter_registry().find(used.name).options);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/countdown.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
 
@@ -93,8 +94,9 @@ Atlas make_atlas(const AtlasSettings& settings, const Progress& progress) {
                                 std::to_string(step) +
                                 " rad of the motion; expected above 0 and less than half a period");
   Atlas atlas{settings, {}, {}};
+  Countdown countdown(progress, paper::compared_schemes().size() * settings.damping_ratios.size(), "rows");
   for (const std::string& scheme : paper::compared_schemes()) {
-    progress(scheme);
+    countdown.begin(scheme);
     atlas.own.push_back(point(scheme, beam, settings.interval, true));
     for (const double ratio : settings.damping_ratios) {
       const int last = static_cast<int>(per_decade * std::log10(2.0 / finest_atlas_step));
@@ -102,6 +104,7 @@ Atlas make_atlas(const AtlasSettings& settings, const Progress& progress) {
         atlas.map.push_back(point(scheme, unit_oscillator(ratio),
                                   finest_atlas_step * std::pow(10.0, k / per_decade),
                                   k >= 2 * measured_every && k % measured_every == 0));
+      countdown.count();
     }
   }
   return atlas;

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "experiments/countdown.hpp"
 #include "filters/random.hpp"
 
 namespace beamid::experiments {
@@ -39,7 +40,8 @@ std::vector<Causes> chain(const Order& order) {
 
 }  // namespace
 
-Budget make_budget(const std::string& name, const PipelineSettings& settings, int orders) {
+Budget make_budget(const std::string& name, const PipelineSettings& settings, int orders,
+                   const Progress& progress) {
   if (orders < 2) throw std::invalid_argument("orders: " + std::to_string(orders) + "; expected 2 or more");
   Budget budget{name, Pipeline(settings), {}, {}, std::vector<Contribution>(cause_count), {}, 0};
   const std::vector<Order> sequences = chosen_orders(orders, settings.seed);
@@ -53,8 +55,12 @@ Budget make_budget(const std::string& name, const PipelineSettings& settings, in
   }
   const std::vector<unsigned long> sets(needed.begin(), needed.end());
   std::vector<ParameterErrors> found(sets.size());
-  tbb::parallel_for(std::size_t{0}, sets.size(),
-                    [&](std::size_t i) { found[i] = budget.pipeline.errors(Causes(sets[i])); });
+  Countdown countdown(progress, sets.size(), "runs");
+  countdown.begin(name);
+  tbb::parallel_for(std::size_t{0}, sets.size(), [&](std::size_t i) {
+    found[i] = budget.pipeline.errors(Causes(sets[i]));
+    countdown.count();
+  });
   std::map<unsigned long, ParameterErrors> errors;
   for (std::size_t i = 0; i < sets.size(); ++i) errors[sets[i]] = found[i];
   const auto error = [&](const Causes& on) { return errors.at(on.to_ulong()); };

@@ -32,7 +32,9 @@ struct Budget {
 /// The average is Shapley's value [shapley1953] over all orders, here over `orders` of them: the pipeline's
 /// own, its reverse, then random ones in pairs with their reverses, seeded as the noise is.
 /// @throws std::invalid_argument when orders < 2
-Budget make_budget(const std::string& name, const PipelineSettings& settings, int orders);
+Budget make_budget(
+    const std::string& name, const PipelineSettings& settings, int orders,
+    const Progress& progress = [](const std::string&) {});
 
 /// Index of the cause whose contribution is largest in absolute value.
 std::size_t largest(const std::vector<Contribution>& contributions, ParameterErrors Contribution::*way,

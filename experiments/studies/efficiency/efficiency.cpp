@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/countdown.hpp"
 #include "experiments/studies/efficiency/lengthening_passes.hpp"
 #include "filters/filter_run.hpp"
 
@@ -19,6 +20,16 @@ const std::vector<Index> constants{2, 3};  // K and C in [x, v, K, C]
 
 bool has(const Choice& filter, const char* contract) {
   return filters::filter_registry().find(filter.name).contracts.count(contract) > 0;
+}
+
+int runs_with(const EfficiencySettings& settings, const Choice& filter) {
+  return has(filter, filters::contract::sampled_on_linear_gaussian) ? settings.sampled_runs : settings.runs;
+}
+
+std::size_t all_runs(const EfficiencySettings& settings) {
+  std::size_t runs = 0;
+  for (const Choice& filter : settings.filters) runs += static_cast<std::size_t>(runs_with(settings, filter));
+  return runs * settings.damping_ratios.size() * settings.passes.size();
 }
 
 std::optional<filters::Gaussian> estimate(const Choice& choice, Passes passes, const FreeDecays& decays,
@@ -38,17 +49,17 @@ std::optional<filters::Gaussian> estimate(const Choice& choice, Passes passes, c
 }
 
 EfficiencyCase measure(const EfficiencySettings& settings, const Choice& filter, Passes passes,
-                       const FreeDecays& decays) {
+                       const FreeDecays& decays, Countdown& countdown) {
   const Oscillator& truth = decays.truth();
   const Eigen::Vector2d constant(truth.stiffness, truth.damping);
   EfficiencyCase one{filter, passes, decays.settings().damping_ratio, truth, decays.bound(), {}, {}};
   one.largest = (10.0 * decays.bound()).cwiseMax(Eigen::Vector2d(0.05, 0.5).cwiseProduct(constant));
-  const int runs =
-      has(filter, filters::contract::sampled_on_linear_gaussian) ? settings.sampled_runs : settings.runs;
+  const int runs = runs_with(settings, filter);
   std::vector<std::optional<filters::Gaussian>> found(static_cast<std::size_t>(runs));
   tbb::parallel_for(0, runs, [&](int run) {
     found[static_cast<std::size_t>(run)] =
         estimate(filter, passes, decays, settings.seed + static_cast<std::uint64_t>(run));
+    countdown.count();
   });
   // what the runs found, told in their order
   std::size_t next = 0;
@@ -89,15 +100,16 @@ std::vector<Choice> applicable_filters() {
 Efficiency find_efficiency(const EfficiencySettings& settings, const Progress& progress) {
   check_efficiency(settings);
   Efficiency all{settings, {}};
+  Countdown countdown(progress, all_runs(settings), "runs");
   for (const double damping_ratio : settings.damping_ratios) {
     DecaySettings decay = settings.decay;
     decay.damping_ratio = damping_ratio;
     const FreeDecays decays(decay);
     for (const Passes passes : settings.passes)
       for (const Choice& filter : settings.filters) {
-        progress(fmt::format("{}, {} passes, damping ratio {:g} %", filter.name, to_string(passes),
-                             100.0 * damping_ratio));
-        all.cases.push_back(measure(settings, filter, passes, decays));
+        countdown.begin(fmt::format("{}, {} passes, damping ratio {:g} %", filter.name, to_string(passes),
+                                    100.0 * damping_ratio));
+        all.cases.push_back(measure(settings, filter, passes, decays, countdown));
       }
   }
   return all;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "experiments/countdown.hpp"
 #include "experiments/identify/higher_modes.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/models/estimates.hpp"
@@ -126,14 +127,16 @@ Coverage interval_coverage(const CoverageSettings& settings, const Progress& pro
   const Experiment experiment = covered_experiment();
   const double frequency = covered_frequency();
   Coverage result{settings, {}};
+  Countdown countdown(progress, settings.colours.size() * static_cast<std::size_t>(settings.runs), "runs");
   for (const NoiseColour colour : settings.colours) {
-    progress(std::string("intervals in noise that is ") + to_string(colour));
+    countdown.begin(std::string("intervals in noise that is ") + to_string(colour));
     std::vector<std::optional<Errors>> errors(static_cast<std::size_t>(settings.runs));
     tbb::parallel_for(0, settings.runs, [&](int run) {
       Record record = covered_record(settings, colour, settings.seed + static_cast<std::uint64_t>(run));
       if (const auto step = step_against_higher_modes(experiment, record)) record = prepare(record, {*step});
       errors[static_cast<std::size_t>(run)] =
           errors_of(identify_record(experiment, record), frequency, settings.damping_ratio);
+      countdown.count();
     });
     result.cases.push_back(summary(colour, errors));
   }

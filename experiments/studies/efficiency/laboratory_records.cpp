@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/countdown.hpp"
 #include "experiments/identify/identification_request.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/record/write_record.hpp"
@@ -150,10 +151,12 @@ LaboratoryRecords laboratory_records(const LaboratorySettings& settings, const P
     throw std::invalid_argument(fmt::format("records: {} of them; expected at least one", settings.records));
   LaboratoryRecords all{settings, {}};
   all.tests.resize(static_cast<std::size_t>(settings.records));
-  progress(fmt::format("{} laboratory records", settings.records));
+  Countdown countdown(progress, all.tests.size(), "records");
+  countdown.begin("laboratory records");
   tbb::parallel_for(0, settings.records, [&](int number) {
     all.tests[static_cast<std::size_t>(number)] =
         identify_laboratory_test(laboratory_test(settings.seed, number)).found;
+    countdown.count();
   });
   return all;
 }

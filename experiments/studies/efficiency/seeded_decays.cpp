@@ -10,6 +10,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "experiments/countdown.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/random.hpp"
@@ -113,10 +114,12 @@ int DecayOutcomes::damping_inside() const {
 DecayOutcomes seeded_decays(const SeededDecays& settings, const Progress& progress) {
   if (settings.runs < 1)
     throw std::invalid_argument("decays: " + std::to_string(settings.runs) + " runs; expected at least 1");
-  progress("free decays");
+  Countdown countdown(progress, static_cast<std::size_t>(settings.runs), "runs");
+  countdown.begin("free decays");
   DecayOutcomes outcomes{settings, std::vector<DecayOutcome>(static_cast<std::size_t>(settings.runs))};
   tbb::parallel_for(0, settings.runs, [&](int run) {
     outcomes.runs[static_cast<std::size_t>(run)] = identify_decay(seeded_decay(settings, run));
+    countdown.count();
   });
   return outcomes;
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/countdown.hpp"
 #include "experiments/signal/positive.hpp"
 
 namespace beamid::experiments {
@@ -77,7 +78,10 @@ bool harmless(const NoiseStatistics& s) {
   return s.failed == 0 && s.damping_rms_percent < 1.0 && s.damping_ratio < 3.0;
 }
 
-NoiseCase examine(const NoiseSettings& settings, std::size_t beam, Blow blow, Quantity observed, int modes) {
+namespace {
+
+NoiseCase examine(const NoiseSettings& settings, std::size_t beam, Blow blow, Quantity observed, int modes,
+                  Countdown& countdown) {
   const NoiseBeam& tested = settings.beams[beam];
   const ModalMotion motion = modal_motion(tested.beam, settings.elements, tested.damping_ratios.head(modes),
                                           blow, settings.deflection, settings.blow);
@@ -98,6 +102,7 @@ NoiseCase examine(const NoiseSettings& settings, std::size_t beam, Blow blow, Qu
                             ? identify_first_mode(record, motion, observed, noise, treatments[i])
                             : identify_first_mode(record, motion, observed, noise, Treatment::white,
                                                   settings.factors[i - treatments.size()]);
+    countdown.count();
   });
   NoiseCase result{beam, blow, observed, modes, 0.0, {}, {}, 1.0};
   for (int i = 1; i < modes; ++i)
@@ -114,20 +119,31 @@ NoiseCase examine(const NoiseSettings& settings, std::size_t beam, Blow blow, Qu
   return result;
 }
 
+}  // namespace
+
+NoiseCase examine(const NoiseSettings& settings, std::size_t beam, Blow blow, Quantity observed, int modes) {
+  const Progress unseen = [](const std::string&) {};
+  Countdown countdown(unseen, static_cast<std::size_t>(settings.trials), "trials");
+  return examine(settings, beam, blow, observed, modes, countdown);
+}
+
 NoiseStudy study_higher_modes(const NoiseSettings& settings, const Progress& progress) {
   check_noise_study(settings);
   NoiseStudy study{settings, {}, {}};
   constexpr Quantity sensors[] = {Quantity::displacement, Quantity::velocity, Quantity::acceleration};
+  const std::size_t cases = 2 * std::size(sensors) * settings.beams.size() +
+                            std::size(sensors) * static_cast<std::size_t>(settings.modes);
+  Countdown countdown(progress, cases * static_cast<std::size_t>(settings.trials), "trials");
   for (std::size_t beam = 0; beam < settings.beams.size(); ++beam) {
-    progress(settings.beams[beam].name);
+    countdown.begin(settings.beams[beam].name);
     for (const Blow blow : {Blow::release, Blow::hammer})
       for (const Quantity observed : sensors)
-        study.cases.push_back(examine(settings, beam, blow, observed, settings.modes));
+        study.cases.push_back(examine(settings, beam, blow, observed, settings.modes, countdown));
   }
-  progress("number of modes");
+  countdown.begin("number of modes");
   for (const Quantity observed : sensors)
     for (int modes = 1; modes <= settings.modes; ++modes)
-      study.kept.push_back(examine(settings, 0, Blow::release, observed, modes));
+      study.kept.push_back(examine(settings, 0, Blow::release, observed, modes, countdown));
   return study;
 }
 

@@ -1,5 +1,6 @@
 #include "experiments/studies/paper/outcome.hpp"
 
+#include "experiments/countdown.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 
 namespace beamid::experiments::paper {
@@ -53,9 +54,11 @@ Outcome investigate(std::uint64_t seed, int trials, const Progress& progress) {
   outcome.literal_variance_large = validate("ekf", "forward_euler", literal);
   literal.release = release_of(test_beams[0]).tip_deflection;
   outcome.literal_variance = validate("ekf", "forward_euler", literal);
+  Countdown countdown(progress, test_beams.size() * static_cast<std::size_t>(trials), "trials");
   for (std::size_t i = 0; i < test_beams.size(); ++i) {
-    progress(std::string("beam ") + test_beams[i].name + ", " + std::to_string(trials) + " trials");
+    countdown.begin(std::string("beam ") + test_beams[i].name);
     outcome.beams.push_back(examine_case(test_beams[i], static_cast<int>(i), seed, trials));
+    countdown.count(static_cast<std::size_t>(trials));
   }
   return outcome;
 }

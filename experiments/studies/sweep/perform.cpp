@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/countdown.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/job.hpp"
 #include "experiments/sweep/journal.hpp"
@@ -66,7 +67,7 @@ std::vector<SweepRow> perform(const SweepSource& source, const SweepPlan& plan, 
   }
   CaseQueue queue(blocks_of(plan, left(plan, settings.shard, rows)));
   const std::size_t before = cases_in(rows);
-  CaseProgress shown(before, before + queue.cases(), progress);
+  Countdown shown(progress, before + queue.cases(), "cases", before);
   const CaseSink keep = [&](std::vector<SweepRow> found) {
     if (journal) journal->append(found);
     shown.count(cases_in(found));

@@ -291,7 +291,6 @@ TEST(RunCases, EndsAllThreadsWithTheFirstTrouble) {
                    }),
                std::runtime_error);
   EXPECT_LT(kept, 1000);
-  EXPECT_EQ(duration_text(70.2), "1 min 10 s");
 }
 
 // Oracle: the filter's own promise. 200 runs of 95 % lie between 90.5 % and 99 % in 99 % of such tests.
