@@ -150,10 +150,10 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   for (const std::string& warning : record.warnings) results.warning(warning);
   for (const std::string& warning : comparison.warnings) results.warning(warning);
   results.paragraph(
-      fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} passes.{}",
+      fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} pass{}.{}",
                   comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],
                   1.0 / record.interval(), channels_text(record), experiment.model.name, experiment.passes,
-                  inputs ? " " + words(*inputs) : ""));
+                  experiment.passes == 1 ? "" : "es", inputs ? " " + words(*inputs) : ""));
   results.table(run_table(comparison));
   for (const std::string& name : parameter_names(comparison))
     results.table(parameter_table(comparison, name));

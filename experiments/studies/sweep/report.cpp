@@ -180,7 +180,8 @@ std::string below_bound_text(const SweepPlan& plan, const std::vector<PointStati
 std::string plan_text(const SweepPlan& plan) {
   std::string keys;
   for (const VariedKey& key : plan.varied) keys += (keys.empty() ? "" : "; ") + key.text;
-  return fmt::format("{} cases: {} {}{} x {} {} from {} on. {}", plan.cases(), plan.points(),
+  return fmt::format("{} {}: {} {}{} x {} {} from {} on. {}", plan.cases(),
+                     plan.cases() == 1 ? "case" : "cases", plan.points(),
                      plan.points() == 1 ? "point" : "points",
                      plan.samples > 1 ? fmt::format(" x {} samples", plan.samples) : "", plan.seeds,
                      plan.seeds == 1 ? "seed" : "seeds", plan.seed,
