@@ -1,5 +1,6 @@
 #include "apps/beam_options.hpp"
 
+#include "experiments/config/read_beam.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/plausibility.hpp"
 
@@ -19,140 +20,124 @@ density_kg_per_m3 = 7714.646464646465
 )toml";
 
 const std::vector<KeyOption>& beam_keys() {
-  const std::vector<std::string> round{"diameter_m", "end_diameter_m"};
+  const Words round{"diameter_m", "end_diameter_m"};
   static const std::vector<KeyOption> keys{
-      {"length", "beam", "length_m", {}, "M", "length of the beam [m]"},
-      {"width", "beam", "width_m", round, "M", "section across the direction of bending [m]"},
-      {"height", "beam", "height_m", round, "M", "section along the direction of bending [m]"},
-      {"diameter",
+      {number("length", "M", "length of the beam [m]"), "beam", "length_m"},
+      {number("width", "M", "section across the direction of bending [m]"), "beam", "width_m", round},
+      {number("height", "M", "section along the direction of bending [m]"), "beam", "height_m", round},
+      {number("diameter", "M", "of a round section, instead of width and height [m]"),
        "beam",
        "diameter_m",
-       {"width_m", "height_m", "end_width_m", "end_height_m"},
-       "M",
-       "of a round section, instead of width and height [m]"},
-      {"youngs-modulus",
+       {"width_m", "height_m", "end_width_m", "end_height_m"}},
+      {number("youngs-modulus", "PA", "Young's modulus [Pa]"),
        "beam",
        "youngs_modulus_pa",
-       {"bending_stiffness_n_m2"},
-       "PA",
-       "Young's modulus [Pa]"},
-      {"density",
+       {"bending_stiffness_n_m2"}},
+      {number("density", "KG/M3", "density [kg/m3]"),
        "beam",
        "density_kg_per_m3",
-       {"mass_kg", "mass_per_length_kg_per_m"},
-       "KG/M3",
-       "density [kg/m3]"},
-      {"beam-mass",
+       {"mass_kg", "mass_per_length_kg_per_m"}},
+      {number("beam-mass", "KG", "mass of the beam alone, instead of its density [kg]"),
        "beam",
        "mass_kg",
-       {"density_kg_per_m3", "mass_per_length_kg_per_m"},
-       "KG",
-       "mass of the beam alone, instead of its density [kg]"},
-      {"tip-mass", "beam", "tip_mass_kg", {}, "KG", "rigid mass at the tip [kg]"},
-      {"tip-inertia",
-       "beam",
-       "tip_rotary_inertia_kg_m2",
-       {},
-       "KG M2",
-       "of the tip mass about its own centre [kg m2]"},
-      {"tip-eccentricity",
-       "beam",
-       "tip_eccentricity_m",
-       {},
-       "M",
-       "distance of the tip mass's centre beyond the tip, along the axis [m]"},
-      {"axial-load", "beam", "axial_load_n", {}, "N", "dead axial load, positive in compression [N]"},
-      {"root-rotational-stiffness",
-       "beam",
-       "root_rotational_stiffness_n_m_per_rad",
-       {},
-       "NM/RAD",
-       "of a spring that holds the root's rotation in place of the clamp [N m/rad]"},
-      {"support",
-       "beam",
-       "support",
-       {},
-       "ROOT-TIP",
-       "how the ends are held: clamped-free, clamped-clamped, pinned-pinned, free-free, ... every pair of "
-       "clamped, pinned, guided, free",
-       true},
-      {"damping-ratio",
+       {"density_kg_per_m3", "mass_per_length_kg_per_m"}},
+      {number("tip-mass", "KG", "rigid mass at the tip [kg]"), "beam", "tip_mass_kg"},
+      {number("tip-inertia", "KG_M2", "of the tip mass about its own centre [kg m2]"), "beam",
+       "tip_rotary_inertia_kg_m2"},
+      {number("tip-eccentricity", "M",
+              "distance of the tip mass's centre beyond the tip, along the axis [m]"),
+       "beam", "tip_eccentricity_m"},
+      {number("axial-load", "N", "dead axial load, positive in compression [N]"), "beam", "axial_load_n"},
+      {number("root-rotational-stiffness", "NM/RAD",
+              "of a spring that holds the root's rotation in place of the clamp [N m/rad]"),
+       "beam", "root_rotational_stiffness_n_m_per_rad"},
+      {text("support", "ROOT-TIP",
+            "how the ends are held: clamped-free, clamped-clamped, pinned-pinned, free-free, ... every pair "
+            "of "
+            "clamped, pinned, guided, free")
+           .such_as(end_supports()),
+       "beam", "support"},
+      {number("damping-ratio", "XI", "damping ratio of every mode"),
        "damping",
        "ratio",
-       {"law", "ratios", "anchors", "loss_factor"},
-       "XI",
-       "damping ratio of every mode"}};
+       {"law", "ratios", "anchors", "loss_factor"}}};
   return keys;
 }
 
-void add_overrides(const std::vector<KeyOption>& keys, const options::variables_map& values,
+void add_overrides(const std::vector<KeyOption>& keys, const Values& values,
                    std::vector<Override>& overrides) {
-  for (const KeyOption& key : keys) {
-    if (!values.count(key.option)) continue;
+  for (const auto& [option, table, key, instead_of] : keys) {
+    if (!values.has(option.name)) continue;
     filters::OptionValue value;
-    if (key.is_text)
-      value = values[key.option].as<std::string>();
+    if (option.type == Option::Type::text)
+      value = values.text(option.name);
     else
-      value = values[key.option].as<double>();
-    overrides.push_back({key.table, key.key, value, std::string("--") + key.option, key.instead_of});
+      value = values.number(option.name);
+    overrides.push_back({table, key, value, "--" + option.name, instead_of});
   }
 }
 
-void refuse_both(const Command& command, const options::variables_map& values, const char* one,
-                 const char* other) {
-  if (values.count(one) && values.count(other))
-    throw UsageError(command.name + ": --" + one + " and --" + other +
-                     " exclude each other; expected one of them");
+/// "--tip-mass 0.65 --length 1"
+std::string changes(const Values& values) {
+  std::string text;
+  for (const KeyOption& key : beam_keys())
+    if (values.has(key.option.name))
+      text += (text.empty() ? "--" : " --") + key.option.name + " " + values.text(key.option.name);
+  return text;
+}
+
+void refuse_both(const Values& values, const std::string& one, const std::string& other) {
+  if (values.has(one) && values.has(other))
+    throw UsageError("--" + one + " and --" + other + " exclude each other; expected one of them");
 }
 
 }  // namespace
 
-void describe(const std::vector<KeyOption>& keys, options::options_description& described) {
-  for (const KeyOption& key : keys)
-    if (key.is_text)
-      described.add_options()(key.option, options::value<std::string>()->value_name(key.value_name),
-                              key.help);
-    else
-      described.add_options()(key.option, options::value<double>()->value_name(key.value_name), key.help);
+OptionGroup key_options(const std::vector<KeyOption>& keys, std::vector<Option> more) {
+  for (auto key = keys.rbegin(); key != keys.rend(); ++key) more.insert(more.begin(), key->option);
+  return {"Options", std::move(more)};
 }
 
-options::options_description beam_options() {
-  options::options_description described(
+Option surface_option() {
+  return flag("surface", "draw the real sections in the meshes for ParaView");
+}
+
+std::vector<KeyOption> record_length_keys() {
+  return {{number("duration", "S", "of the record [s]"), "simulation", "duration_s"},
+          {number("sampling-rate", "HZ", "of the record [Hz]"), "simulation", "sampling_rate_hz"}};
+}
+
+OptionGroup beam_options() {
+  OptionGroup group = key_options(
+      beam_keys(),
+      {whole("elements", "N", 1, most_elements, "finite elements along the beam").by_default("40")});
+  group.title =
       "Beam (without any: the study's steel beam, 1.10 m x 60 mm x 6 mm, 2.12e11 Pa, 3.055 kg; each option "
-      "takes the place of one quantity of it, or of FILE)");
-  described.add_options()("config", options::value<std::string>()->value_name("FILE"),
-                          "experiment file (docs/configuration.md)");
-  describe(beam_keys(), described);
-  described.add_options()("elements", options::value<int>()->value_name("N"),
-                          "finite elements along the beam [40]");
-  return described;
+      "takes the place of one quantity of it, or of FILE)";
+  group.options.insert(group.options.begin(), config_option());
+  return group;
 }
 
-BeamSource read_beam(const Command& command, const options::variables_map& values,
-                     const std::vector<KeyOption>& more) {
-  refuse_both(command, values, "diameter", "width");
-  refuse_both(command, values, "diameter", "height");
-  refuse_both(command, values, "density", "beam-mass");
+BeamSource read_beam(const Values& values, const std::vector<KeyOption>& more) {
+  refuse_both(values, "diameter", "width");
+  refuse_both(values, "diameter", "height");
+  refuse_both(values, "density", "beam-mass");
   std::vector<Override> overrides;
   add_overrides(beam_keys(), values, overrides);
   const bool changed = !overrides.empty();
   add_overrides(more, values, overrides);
 
   BeamSource source;
-  if (values.count("config")) {
-    source.config = values["config"].as<std::string>();
+  if (values.has("config")) {
+    source.config = values.text("config");
     source.experiment = read_experiment(source.config, overrides);
+    if (std::string& title = source.experiment.title; changed && !title.empty())
+      title += " (with " + changes(values) + ")";
   } else {
     source.experiment = read_experiment(TomlTable::parse(study_beam, "the study's beam", overrides));
     if (!changed) source.experiment.title = "The study's steel beam (no --config and no other beam given)";
   }
-  if (values.count("elements")) {
-    const int elements = values["elements"].as<int>();
-    if (elements < 1 || elements > most_elements)
-      throw InputError({"--elements"}, std::to_string(elements) + "; expected a whole number from 1 to " +
-                                           std::to_string(most_elements));
-    source.experiment.elements = elements;
-  }
+  if (values.has("elements")) source.experiment.elements = values.whole("elements");
   return source;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "apps/command.hpp"
+#include "apps/values.hpp"
 #include "experiments/config/experiment.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/toml_table.hpp"
@@ -13,21 +14,23 @@ namespace beamid::apps {
 
 /// --config, --length, --width, ... Each option takes the place of one quantity of the file, however the file
 /// gives it; the rest of the file stays. Without a file they change the study's steel beam.
-options::options_description beam_options();
+OptionGroup beam_options();
 
 /// An option that sets one key of the experiment file.
 struct KeyOption {
-  const char* option;
+  Option option;
   const char* table;
   const char* key;
-  std::vector<std::string> instead_of;  ///< keys of the same quantity
-  const char* value_name;               ///< "M"; a number where `is_text` is false
-  const char* help;
-  bool is_text = false;
+  std::vector<std::string> instead_of = {};  ///< keys of the same quantity
 };
 
-/// Describes such options, for parse().
-void describe(const std::vector<KeyOption>& keys, options::options_description& described);
+/// Those options alone, with `more`.
+OptionGroup key_options(const std::vector<KeyOption>& keys, std::vector<Option> more = {});
+
+/// --surface, of commands that write meshes.
+Option surface_option();
+/// --duration and --sampling-rate: the keys of [simulation].
+std::vector<KeyOption> record_length_keys();
 
 struct BeamSource {
   experiments::Experiment experiment;
@@ -36,8 +39,7 @@ struct BeamSource {
 
 /// @param more options of the command's own.
 /// @throws UsageError, and InputError with the option in the place of the file.
-BeamSource read_beam(const Command& command, const options::variables_map& values,
-                     const std::vector<KeyOption>& more = {});
+BeamSource read_beam(const Values& values, const std::vector<KeyOption>& more = {});
 
 /// Runs `find`; its results begin with what is implausible about the beam. What a library finds wrong with
 /// the experiment becomes an InputError of its file, if there is one.

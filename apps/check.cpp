@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
+#include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/model_check/observed_modes.hpp"
 #include "experiments/identify/plausibility.hpp"
@@ -11,6 +13,7 @@
 #include "experiments/studies/check/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/choice_text.hpp"
+#include "experiments/text/spelling.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -25,54 +28,37 @@ struct Request {
   std::vector<fs::path> records;
 };
 
-std::vector<Request> requests_of(const options::variables_map& values) {
-  if (!values.count("config")) throw UsageError("check: --config FILE is missing");
-  const auto configs = values["config"].as<std::vector<std::string>>();
-  const auto records =
-      values.count("record") ? values["record"].as<std::vector<std::string>>() : std::vector<std::string>{};
+std::vector<Request> requests_of(const Values& values) {
+  const Words configs = values.texts("config"), records = values.texts("record");
   if (configs.size() > 1 && !records.empty() && records.size() != configs.size())
     throw UsageError(
-        fmt::format("check: {} records for {} --config files; expected one for each, or one file "
+        fmt::format("{} records for {} --config files; expected one for each, or one file "
                     "for all",
                     records.size(), configs.size()));
   std::vector<Request> requests;
   for (std::size_t k = 0; k < configs.size(); ++k) {
     Request request{configs[k], read_experiment(configs[k]), {}};
-    if (records.empty() && !request.experiment.record_file)
-      throw UsageError("check: no RECORD on the command line, and no 'file' under [record] in " + configs[k]);
-    if (records.empty())
-      request.records = {request.config.parent_path() / *request.experiment.record_file};
-    else if (configs.size() > 1)
-      request.records = {records[k]};
-    else
-      request.records.assign(records.begin(), records.end());
+    request.records = require_record_files(values, request.config, request.experiment.record_file);
+    if (configs.size() > 1 && !records.empty()) request.records = {request.records[k]};
     requests.push_back(std::move(request));
   }
   return requests;
 }
 
-ModalStudySettings modal_settings(const options::variables_map& values) {
+ModalStudySettings modal_settings(const Values& values) {
   ModalStudySettings settings;
-  settings.method = parse_choice(values["method"].as<std::string>(), "--method", modal_method_registry());
+  settings.method = parse_choice(values.text("method"), "--method", modal_method_registry());
   if (modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response))
-    throw UsageError("check: --method " + settings.method.name +
+    throw UsageError("--method " + settings.method.name +
                      " needs a measured force; expected one of motion alone, era or ssi_cov");
-  if (values.count("band")) {
-    const auto& band = values["band"].as<std::vector<double>>();
-    if (band.size() != 2 || !(band[0] >= 0 && band[0] < band[1]))
-      throw UsageError("check: --band needs two frequencies [Hz], the first below the second: FROM TO");
-    settings.band_hz = {band[0], band[1]};
-  }
+  settings.band_hz = values.from_to("band");
   return settings;
 }
 
-ModelCheckSettings check_settings(const options::variables_map& values) {
+ModelCheckSettings check_settings(const Values& values) {
   ModelCheckSettings settings;
-  const double percent = values["model-error"].as<double>();
-  if (!(percent >= 0.01 && percent <= 20))
-    throw UsageError(fmt::format("check: --model-error is {:g}; expected 0.01 to 20 percent", percent));
-  settings.model_error = percent / 100;
-  if (values.count("candidate")) settings.candidates = values["candidate"].as<std::vector<std::string>>();
+  settings.model_error = values.number("model-error") / 100;
+  settings.candidates = values.texts("candidate");
   return settings;
 }
 
@@ -112,25 +98,38 @@ CheckedStructure structure_of(const Request& request, const ModalStudySettings& 
   return structure;
 }
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described("Options");
-  described.add_options()  //
-      ("config", options::value<std::vector<std::string>>()->multitoken()->value_name("FILE..."),
-       "experiment file with beam and record; several, one for each record: beams that share what is wrong "
-       "with them, such as one clamp under several tip masses")  //
-      ("model-error", options::value<double>()->value_name("PERCENT")->default_value(0.5),
-       "what a predicted frequency is trusted to, one standard deviation [%]")  //
-      ("candidate", options::value<std::vector<std::string>>()->multitoken()->value_name("NAME..."),
-       "what may be wrong: bending_stiffness, beam_mass, free_length, tip_mass, tip_rotary_inertia, "
-       "tip_offset, "
-       "root_rotational_compliance, root_translational_compliance; else all that the beam can have")  //
-      ("method", options::value<std::string>()->value_name("NAME[:OPTION=VALUE,...]")->default_value("era"),
-       "of modal analysis: era for free decays, ssi_cov for random vibration")  //
-      ("band", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
-       "frequencies to look at [Hz]; after RECORD");
-  described.add(output_options());
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"record..."}, values)) return 0;
+OptionGroup check_options() {
+  const Words candidates{"bending_stiffness",
+                         "beam_mass",
+                         "free_length",
+                         "tip_mass",
+                         "tip_rotary_inertia",
+                         "tip_offset",
+                         "root_rotational_compliance",
+                         "root_translational_compliance"};
+  return {
+      "Options",
+      {config_option("experiment file with beam and record; several, one for each record: beams that share "
+                     "what is wrong with them, such as one clamp under several tip masses")
+           .several()
+           .repeated()
+           .needed(),
+       number("model-error", "PERCENT",
+              "what a predicted frequency is trusted to, one standard deviation [%]")
+           .from(0.01)
+           .up_to(20)
+           .by_default("0.5"),
+       text("candidate", "NAME...",
+            "what may be wrong: " + joined(candidates) + "; else all that the beam can have")
+           .several()
+           .repeated()
+           .such_as(candidates),
+       modal_method_option("of modal analysis: era for free decays, ssi_cov for random vibration")
+           .by_default("era"),
+       band_option("frequencies to look at [Hz]")}};
+}
+
+int run(const Values& values) {
   const ModalStudySettings modal = modal_settings(values);
   const ModelCheckSettings settings = check_settings(values);
   const std::vector<Request> requests = requests_of(values);
@@ -153,8 +152,11 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command check_command() {
-  return {"check", "[RECORD...] --config FILE... [--model-error PERCENT] [--out DIR]",
+  return {"check",
+          "[RECORD...] --config FILE... [--model-error PERCENT] [--out DIR]",
           "a beam's predicted modes against those of records, and what would explain the difference",
+          {record_argument(true)},
+          {check_options(), output_options()},
           "  beamid check tip_acceleration.csv --config cantilever.toml\n"
           "  beamid check run1.csv run2.csv --config cantilever.toml --model-error 1 --out results\n"
           "  beamid check light.csv heavy.csv --config light.toml heavy.toml --out results\n"

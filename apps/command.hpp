@@ -1,19 +1,24 @@
-// The subcommands of `beamid`.
+// A command of `beamid`: what it takes, stated once, and what it does with it.
 #pragma once
 
-#include <boost/program_options.hpp>
-#include <stdexcept>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "apps/option.hpp"
+#include "apps/values.hpp"
+
 namespace beamid::apps {
 
-namespace options = boost::program_options;
+/// A word that is no option.
+struct Argument {
+  std::string name;      ///< under which Values has it: "record"
+  bool several = false;  ///< all that are left
+  bool required = false;
+  std::string hint = {};  ///< said where it is missing
+  Words choices = {};     ///< for completion; without any, files
 
-/// Words on the command line that make no sense: printed with a hint to --help, exit code 2.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
+  std::string shown() const;  ///< "RECORD"
 };
 
 /// One subcommand: a short file of its own.
@@ -21,22 +26,42 @@ struct Command {
   std::string name;
   std::string arguments;  ///< in the synopsis: "RECORD --config FILE"
   std::string summary;    ///< one line
-  std::string examples;   ///< shown by --help, a line each
-  int (*run)(const Command& command, const std::vector<std::string>& arguments);
+  std::vector<Argument> words;
+  std::vector<OptionGroup> options;
+  std::string examples;  ///< a line each
+  int (*run)(const Values& values);
+  std::string notes = {};       ///< paragraphs below the examples
+  std::string exit_codes = {};  ///< beyond those of every command: "3  the filter diverged\n"
+  /// What surrounds the reading of the words and the run, where something does; it calls `work` once, or not.
+  int (*around)(const std::function<int()>& work) = nullptr;
+
+  /// Its own, then --help and --version.
+  std::vector<Option> all_options() const;
+};
+
+struct CommandGroup {
+  std::string title;  ///< empty: not shown in the help
+  std::vector<Command> commands;
 };
 
 /// All of them, in the order in which help shows them.
-std::vector<Command> commands();
+const std::vector<CommandGroup>& command_groups();
+
+/// @throws UsageError "unknown command 'mods'; did you mean 'modes'?"
+const Command& find_command(const std::string& name);
 
 Command check_command();
 Command compare_command();
+Command completion_command();
 Command efficiency_command();
 Command frame_command();
 Command frf_command();
+Command help_command();
 Command identifiability_command();
 Command identify_command();
 Command inspect_command();
 Command list_command();
+Command man_command();
 Command modal_command();
 Command modes_command();
 Command new_command();
@@ -50,18 +75,5 @@ Command track_command();
 Command validate_command();
 /// Every registered study is a command of its own.
 std::vector<Command> study_commands();
-
-/// The options every command that finds something has: --out, --force, --json.
-options::options_description output_options();
-
-/// Where parse() keeps the command that was given, without its output options.
-inline constexpr const char* command_line_key = "the command line";
-
-/// Parses `arguments`; with --help prints the command's help and returns false.
-/// @param positional names of the words without one; "record..." takes all that are left, a vector of them
-/// @throws UsageError on words that are neither options nor as many positional ones as named.
-bool parse(const Command& command, const std::vector<std::string>& arguments,
-           const options::options_description& described, const std::vector<std::string>& positional,
-           options::variables_map& values);
 
 }  // namespace beamid::apps

@@ -6,52 +6,47 @@
 #include <system_error>
 
 #include "apps/command.hpp"
+#include "apps/help.hpp"
+#include "apps/suggestion.hpp"
+#include "apps/terminal.hpp"
 #include "experiments/text/clean_text.hpp"
 #include "experiments/text/input_error.hpp"
 
 namespace beamid::apps {
 namespace {
 
-void print_help(std::ostream& stream) {
-  stream << "beamid " BEAMID_VERSION
-            ": what a vibration record tells about a beam, and how far to trust it\n\n"
-            "  beamid COMMAND [OPTIONS]\n\nCommands\n";
-  for (const Command& command : commands()) {
-    std::string name = command.name;
-    name.resize(17, ' ');
-    stream << "  " << name << command.summary << "\n";
-  }
-  stream << "\n  beamid COMMAND --help   options and examples of a command\n"
-            "  beamid --version        the version\n";
-}
-
 /// Says what was wrong. Names of files and what they hold may not command a terminal.
 int refuse(const char* before, const std::exception& error, const std::string& after = "") {
-  std::cerr << before << experiments::clean_lines(error.what() + after) << "\n";
+  std::cerr << before << experiments::clean_lines(with_suggestions(error.what()) + after) << "\n";
   return 2;
 }
 
-int run(const std::vector<std::string>& words) {
-  if (words.empty() || words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
-    print_help(words.empty() ? std::cerr : std::cout);
-    return words.empty() ? 2 : 0;
+int print_version() {
+  std::cout << "beamid " BEAMID_VERSION "\n";
+  return 0;
+}
+
+int run(const Words& words) {
+  const std::string first = words.empty() ? "" : words[0];
+  if (first.empty() || first == "--help" || first == "-h") {
+    print_overview(first.empty() ? std::cerr : std::cout, terminal_page().width);
+    return first.empty() ? 2 : 0;
   }
-  if (words[0] == "--version") {
-    std::cout << "beamid " BEAMID_VERSION "\n";
+  if (first == "--version" || first == "-V") return print_version();
+  const Command& command = find_command(first);
+  const auto work = [&] {
+    const Values values(command, {words.begin() + 1, words.end()});
+    if (values.has("version")) return print_version();
+    if (!values.has("help")) return command.run(values);
+    print_help(std::cout, command, terminal_page().width);
     return 0;
+  };
+  try {
+    return command.around ? command.around(work) : work();
+  } catch (const UsageError& error) {
+    return refuse(("beamid: " + command.name + ": ").c_str(), error,
+                  "\nTry: beamid " + command.name + " --help");
   }
-  std::string known;
-  for (const Command& command : commands()) {
-    if (command.name == words[0]) {
-      try {
-        return command.run(command, {words.begin() + 1, words.end()});
-      } catch (const UsageError& error) {
-        return refuse("beamid: ", error, "\nTry: beamid " + command.name + " --help");
-      }
-    }
-    known += (known.empty() ? "" : ", ") + command.name;
-  }
-  throw UsageError("unknown command '" + words[0] + "'; known: " + known);
 }
 
 }  // namespace

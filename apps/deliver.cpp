@@ -1,7 +1,5 @@
 #include "apps/deliver.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <boost/any.hpp>
 #include <filesystem>
@@ -10,13 +8,19 @@
 #include <iterator>
 #include <optional>
 
+#include "experiments/results/print.hpp"
 #include "experiments/text/clean_text.hpp"
 
 namespace beamid::apps {
 
 namespace {
 
-constexpr const char* clear_line = "\r\033[K";
+/// To the first table and what stands above it.
+void shorten(experiments::Results& results) {
+  const auto is_table = [](const auto& part) { return std::holds_alternative<experiments::Table>(part); };
+  const auto first = std::find_if(results.report.begin(), results.report.end(), is_table);
+  if (first != results.report.end()) results.report.erase(first + 1, results.report.end());
+}
 
 void warn_of_undrawn(const experiments::Results& results, const std::filesystem::path& folder) {
   const auto undrawn =
@@ -31,12 +35,9 @@ void warn_of_undrawn(const experiments::Results& results, const std::filesystem:
 }
 
 // What --config names, for the page: it repeats the run.
-std::string experiment_text(const options::variables_map& values) {
-  if (!values.count("config")) return "";
-  const auto& given = values["config"].value();
-  std::vector<std::string> files;
-  if (const auto* one = boost::any_cast<std::string>(&given)) files = {*one};
-  if (const auto* many = boost::any_cast<std::vector<std::string>>(&given)) files = *many;
+std::string experiment_text(const Values& values) {
+  if (!values.has("config")) return "";
+  const Words files = values.texts("config");
   std::string text;
   for (const std::string& file : files) {
     std::ifstream stream(file, std::ios::binary);
@@ -49,36 +50,31 @@ std::string experiment_text(const options::variables_map& values) {
 
 }  // namespace
 
-experiments::Progress show_progress() {
-  if (!isatty(STDERR_FILENO)) return [](const std::string&) {};
-  return [](const std::string& what) {
-    std::cerr << clear_line << experiments::clean_text(what) << " ..." << std::flush;
-  };
-}
-
-void deliver(const options::variables_map& values, const std::function<experiments::Results()>& find) {
+void deliver(const Values& values, const std::function<experiments::Results()>& find) {
   std::optional<experiments::ResultDirectory> directory;
-  const bool writes = values.count("out") > 0;
-  if (writes) directory.emplace(values["out"].as<std::string>(), values.count("force") > 0);
+  const bool writes = values.has("out"), quiet = values.has("quiet");
+  if (writes) directory.emplace(values.text("out"), values.has("force"));
 
   experiments::Results results = find();
-  results.command_line = values[command_line_key].as<std::string>();
+  results.command_line = values.command_line();
   results.experiment_file = experiment_text(values);
-  if (isatty(STDERR_FILENO)) std::cerr << clear_line;
+  if (!quiet && !values.has("verbose") && !values.has("no-progress")) clear_progress();
   if (directory) {
     experiments::write(results, *directory);
     warn_of_undrawn(results, directory->path());
     directory->commit();
   }
-  if (values.count("json")) {
+  if (values.has("json")) {
     experiments::print_json(std::cout, results);
     return;
   }
-  experiments::print(std::cout, results);
-  if (writes)
-    std::cout << "\nWritten to " << experiments::clean_text(values["out"].as<std::string>()) << "\n";
-  else
-    std::cout << "\nA page with figures, CSV tables and results.json: add --out DIR\n";
+  if (quiet) shorten(results);
+  experiments::print(std::cout, results, terminal_page());
+  if (quiet) return;
+  const std::string last = writes ? "Written to " + experiments::clean_text(values.text("out"))
+                                  : "A page with figures, CSV tables and results.json: add --out DIR";
+  std::cout << "\n";
+  for (const std::string& line : experiments::wrapped(last, terminal_page().width)) std::cout << line << "\n";
 }
 
 }  // namespace beamid::apps

@@ -4,6 +4,8 @@
 #include <functional>
 
 #include "apps/command.hpp"
+#include "apps/terminal.hpp"
+#include "apps/values.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/progress.hpp"
 
@@ -11,9 +13,6 @@ namespace beamid::apps {
 
 /// Checks --out before any work is done, runs `find`, prints its results (text, or results.json with --json)
 /// and writes them to --out.
-void deliver(const options::variables_map& values, const std::function<experiments::Results()>& find);
-
-/// Shows what is being done on one line of standard error, where that is a terminal.
-experiments::Progress show_progress();
+void deliver(const Values& values, const std::function<experiments::Results()>& find);
 
 }  // namespace beamid::apps

@@ -1,7 +1,10 @@
 // beamid frame: natural frequencies and mode shapes of a plane frame.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
+#include "apps/command.hpp"
 #include "apps/deliver.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_frame.hpp"
@@ -11,35 +14,20 @@
 namespace beamid::apps {
 namespace {
 
-int whole_number(const options::variables_map& values, const std::string& option, int most) {
-  const int number = values[option].as<int>();
-  if (number < 1 || number > most)
-    throw UsageError("frame: --" + option + " is " + std::to_string(number) +
-                     "; expected a whole number from 1 to " + std::to_string(most));
-  return number;
-}
-
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described("Options");
-  described.add_options()                                                                           //
-      ("modes", options::value<int>()->value_name("K")->default_value(10), "how many, the lowest")  //
-      ("elements", options::value<int>()->value_name("N"),
-       "finite elements of each member, instead of the file's");
-  described.add(output_options());
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"file"}, values)) return 0;
-  if (!values.count("file")) throw UsageError("frame: which FILE? (docs/configuration.md, [frame])");
-  constexpr int most_modes = 1000;
-  const int count = whole_number(values, "modes", most_modes);
-  const std::filesystem::path file = values["file"].as<std::string>();
+int run(const Values& values) {
+  const std::filesystem::path file = values.texts("file")[0];
   experiments::FrameExperiment experiment = experiments::read_frame(file);
   const auto members = static_cast<int>(experiment.frame.members.size());
-  if (values.count("elements"))
-    experiment.elements_per_member =
-        whole_number(values, "elements", std::max(1, experiments::most_elements / members));
+  if (values.has("elements")) {
+    const int most = std::max(1, experiments::most_elements / members);
+    experiment.elements_per_member = values.whole("elements");
+    if (experiment.elements_per_member > most)
+      throw UsageError(fmt::format("--elements is {}; expected a whole number from 1 to {}",
+                                   experiment.elements_per_member, most));
+  }
   deliver(values, [&] {
     return experiments::at_place({file.string()}, [&] {
-      const auto found = experiments::frame_modes(experiment, count, show_progress());
+      const auto found = experiments::frame_modes(experiment, values.whole("modes"), show_progress(values));
       return experiments::report(experiment, found);
     });
   });
@@ -49,8 +37,15 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command frame_command() {
-  return {"frame", "FILE [--modes K] [--elements N] [--out DIR]",
+  return {"frame",
+          "FILE [--modes K] [--elements N] [--out DIR]",
           "natural frequencies and mode shapes of a plane frame, with their errors",
+          {{.name = "file", .required = true, .hint = "(docs/configuration.md, [frame])"}},
+          {{"Options",
+            {whole("modes", "K", 1, 1000, "how many, the lowest").by_default("10"),
+             whole("elements", "N", 1, experiments::most_elements,
+                   "finite elements of each member, instead of the file's")}},
+           output_options()},
           "  beamid frame portal.toml\n"
           "  beamid frame portal.toml --modes 5 --elements 40 --out results\n",
           run};

@@ -1,9 +1,11 @@
 // beamid identify: a real record in, stiffness and damping with intervals out.
 #include <filesystem>
 
+#include "apps/command.hpp"
 #include "apps/deliver.hpp"
 #include "apps/identify_family.hpp"
 #include "apps/identify_request.hpp"
+#include "apps/record_options.hpp"
 #include "experiments/config/failure_response.hpp"
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/compare/run_verdict.hpp"
@@ -37,19 +39,18 @@ constexpr const char* trouble = "The filter had trouble (--on-failure says what 
 
 /// Any other model than K and C of a free decay: a comparison of one run.
 Comparison identify_by_comparison(Experiment experiment, const Record& record, const fs::path& file,
-                                  const fs::path& folder) {
+                                  const fs::path& folder, const Progress& progress) {
   experiment.reductions = {experiment.reduction};
   experiment.filters = {experiment.filter};
   experiment.discretisations = {experiment.discretisation};
-  Comparison found =
-      compare(experiment, measured_record(file.filename().string(), record), folder, show_progress());
+  Comparison found = compare(experiment, measured_record(file.filename().string(), record), folder, progress);
   judge_runs(found);
   return found;
 }
 
 Results identify_generally(const Experiment& experiment, const Record& record, const fs::path& file,
-                           const fs::path& folder) {
-  const Comparison found = identify_by_comparison(experiment, record, file, folder);
+                           const fs::path& folder, const Progress& progress) {
+  const Comparison found = identify_by_comparison(experiment, record, file, folder, progress);
   Results results = report(experiment, found);
   results.command = "identify";
   results.values["status"] = to_string(found.runs.at(0).status);
@@ -87,7 +88,8 @@ Eigen::VectorXd quiet_noise(const Experiment& experiment, const PreparedRecord& 
   }
 }
 
-Results identify_one(const IdentifyRequest& one, const std::string& law, const fs::path& folder) {
+Results identify_one(const IdentifyRequest& one, const std::string& law, const fs::path& folder,
+                     const Progress& progress) {
   const Experiment& experiment = one.experiment;
   const Record& record = one.prepared.record;
   const std::string name = one.file.filename().string();
@@ -96,7 +98,7 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
                     : one.is_free_oscillator()
                         ? report(experiment, record, name,
                                  identify_record(experiment, record, quiet_noise(experiment, one.prepared)))
-                        : identify_generally(experiment, record, one.file, folder);
+                        : identify_generally(experiment, record, one.file, folder, progress);
   if (!one.window.empty()) results.paragraph(one.window);
   if (one.thinned) results.paragraph(higher_modes);
   tell_preparation(results, told_of(one), experiment.format);
@@ -105,9 +107,9 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
 
 void refuse_what_needs_one_record(const std::vector<IdentifyRequest>& requests) {
   const Experiment& experiment = requests[0].experiment;
-  if (!experiment.smoother.empty()) throw UsageError("identify: a smoother takes one RECORD");
+  if (!experiment.smoother.empty()) throw UsageError("a smoother takes one RECORD");
   if (experiment.estimator != "filter")
-    throw UsageError("identify: estimator " + experiment.estimator + " takes one RECORD");
+    throw UsageError("estimator " + experiment.estimator + " takes one RECORD");
 }
 
 /// Every record's damping law, and whether one holds for all.
@@ -126,9 +128,8 @@ Results laws_of(const std::vector<IdentifyRequest>& requests, const std::string&
   return report(requests[0].experiment, studied);
 }
 
-JointIdentification oscillator_of(const std::vector<IdentifyRequest>& requests) {
+JointIdentification oscillator_of(const std::vector<IdentifyRequest>& requests, const Progress& progress) {
   std::vector<IdentifiedRecord> found;
-  const Progress progress = show_progress();
   for (const IdentifyRequest& one : requests) {
     const std::string name = one.file.filename().string();
     progress("identifying " + name);
@@ -143,20 +144,21 @@ JointIdentification oscillator_of(const std::vector<IdentifyRequest>& requests) 
   return joint_identification(std::move(found));
 }
 
-JointComparison model_of(const std::vector<IdentifyRequest>& requests, const fs::path& folder) {
+JointComparison model_of(const std::vector<IdentifyRequest>& requests, const fs::path& folder,
+                         const Progress& progress) {
   std::vector<Comparison> found;
   for (const IdentifyRequest& one : requests)
-    found.push_back(identify_by_comparison(one.experiment, one.prepared.record, one.file, folder));
+    found.push_back(identify_by_comparison(one.experiment, one.prepared.record, one.file, folder, progress));
   return joint_comparison(std::move(found));
 }
 
 Results identify_together(const std::vector<IdentifyRequest>& requests, const std::string& law,
-                          const fs::path& folder) {
+                          const fs::path& folder, const Progress& progress) {
   bool free = true;
   for (const IdentifyRequest& one : requests) free = free && one.is_free_oscillator();
   Results results = !law.empty() ? laws_of(requests, law, folder)
-                    : free       ? report(requests[0].experiment, oscillator_of(requests))
-                                 : report(requests[0].experiment, model_of(requests, folder));
+                    : free       ? report(requests[0].experiment, oscillator_of(requests, progress))
+                                 : report(requests[0].experiment, model_of(requests, folder, progress));
   std::string thinned;
   for (const IdentifyRequest& one : requests)
     if (!one.window.empty()) results.paragraph(one.file.filename().string() + ": " + one.window);
@@ -173,14 +175,8 @@ int exit_code(const Results& results) {
   return results.values.value("status", "converged") == "converged" ? 0 : 3;
 }
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described = identify_options();
-  described.add(output_options());
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"record..."}, values)) return 0;
-  if (!values.count("config")) throw UsageError("identify: --config FILE is missing");
-
-  const auto& configs = values["config"].as<std::vector<std::string>>();
+int run(const Values& values) {
+  const Words configs = values.texts("config");
   if (configs.size() > 1) {
     deliver(values, [&] {
       try {
@@ -195,11 +191,12 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
   const std::string law = damping_law(values);
   const std::vector<IdentifyRequest> requests = identify_requests(values, config);
   if (requests.size() > 1) refuse_what_needs_one_record(requests);
+  const Progress progress = show_progress(values);
   int code = 0;
   deliver(values, [&] {
     try {
-      Results results = requests.size() > 1 ? identify_together(requests, law, config.parent_path())
-                                            : identify_one(requests[0], law, config.parent_path());
+      Results results = requests.size() > 1 ? identify_together(requests, law, config.parent_path(), progress)
+                                            : identify_one(requests[0], law, config.parent_path(), progress);
       warn(results, requests[0].experiment);
       code = exit_code(results);
       return results;
@@ -213,20 +210,26 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command identify_command() {
-  return {
-      "identify", "[RECORD...] --config FILE [--window FROM TO]... [--out DIR]",
-      "stiffness, damping, frequency and damping ratio from vibration records",
-      "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
-      "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
-      "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"
-      "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
-      "  beamid identify --config cantilever.toml --estimator both\n"
-      "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
-      "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
-      "  beamid identify hard.csv soft.csv --config cantilever.toml --damping-law auto\n\n"
-      "Exit code 3, and \"status\" in results.json: the filter \"diverged\", or the modal analysis\n"
-      "\"contradicted\" it, with less than half or more than twice the damping. The first lines say why.\n",
-      run};
+  return {"identify",
+          "[RECORD...] --config FILE [--window FROM TO]... [--out DIR]",
+          "stiffness, damping, frequency and damping ratio from vibration records",
+          {record_argument(true)},
+          {identify_options(), output_options()},
+          "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
+          "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
+          "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"
+          "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
+          "  beamid identify --config cantilever.toml --estimator both\n"
+          "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
+          "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
+          "  beamid identify hard.csv soft.csv --config cantilever.toml --damping-law auto\n"
+          "  logger | beamid identify - --config cantilever.toml\n",
+          run,
+          "",
+          "3  no estimate to rely on, and \"status\" in results.json says which: the filter \"diverged\", or "
+          "the modal "
+          "analysis \"contradicted\" it, with less than half or more than twice the damping. The first lines "
+          "say why.\n"};
 }
 
 }  // namespace beamid::apps

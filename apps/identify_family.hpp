@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/command.hpp"
+#include "apps/values.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::apps {
@@ -12,7 +13,6 @@ namespace beamid::apps {
 /// One record for each experiment file, in their order: those of the command line, or those that the files
 /// name.
 /// @throws UsageError, InputError
-experiments::Results identify_family(const options::variables_map& values,
-                                     const std::vector<std::filesystem::path>& configs);
+experiments::Results identify_family(const Values& values, const std::vector<std::filesystem::path>& configs);
 
 }  // namespace beamid::apps

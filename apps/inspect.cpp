@@ -8,12 +8,8 @@
 namespace beamid::apps {
 namespace {
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described("Options");
-  described.add(record_options()).add(output_options());
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"record"}, values)) return 0;
-  const RecordRequest request = record_request(values, command.name);
+int run(const Values& values) {
+  const RecordRequest request = record_requests(values).front();
   deliver(values, [&] { return experiments::report(experiments::inspect(request.file, request.format)); });
   return 0;
 }
@@ -22,11 +18,15 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 
 Command inspect_command() {
   return {
-      "inspect", "RECORD [OPTIONS]",
+      "inspect",
+      "RECORD [OPTIONS]",
       "what is in a record's file: channels, sampling, noise, clipping, drop-outs, events",
+      {record_argument()},
+      {record_options(), output_options()},
       "  beamid inspect hammer_test.txt\n"
       "  beamid inspect impulse.lvm --rate 1651.6129 --out results\n"
-      "  beamid inspect massa1.txt --time 1 --column 3 --quantity acceleration --unit g --window 0.2 1.2\n",
+      "  beamid inspect massa1.txt --time 1 --column 3 --quantity acceleration --unit g --window 0.2 1.2\n"
+      "  logger | beamid inspect -\n",
       run};
 }
 

@@ -3,11 +3,13 @@
 
 #include "apps/command.hpp"
 #include "apps/method_list.hpp"
+#include "apps/terminal.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/record_reader.hpp"
 #include "experiments/studies/study.hpp"
+#include "experiments/text/spelling.hpp"
 #include "fem/response/response.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
@@ -57,44 +59,47 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
+Words kind_names() {
+  Words names;
+  for (const Kind& kind : kinds()) names.push_back(kind.name);
+  return names;
+}
+
 void print_all() {
   for (const Kind& kind : kinds()) {
     std::cout << (&kind == &kinds().front() ? "" : "\n") << kind.name << "\n\n";
-    print(std::cout, kind.list());
+    print(std::cout, kind.list(), terminal_page());
   }
 }
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described("Options");
-  described.add_options()("help", "show this help");
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"kind", "name"}, values)) return 0;
-  if (!values.count("kind")) {
+int run(const Values& values) {
+  if (!values.has("kind")) {
     print_all();
     return 0;
   }
-  const std::string asked = values["kind"].as<std::string>();
-  std::string known;
+  const std::string asked = values.texts("kind")[0];
   for (const Kind& kind : kinds()) {
-    known += (known.empty() ? "" : ", ") + kind.name;
     if (kind.name != asked) continue;
-    if (values.count("name"))
-      print(std::cout, kind.list().find(values["name"].as<std::string>()));
+    if (values.has("name"))
+      print(std::cout, kind.list().find(values.texts("name")[0]), terminal_page());
     else
-      print(std::cout, kind.list());
+      print(std::cout, kind.list(), terminal_page());
     return 0;
   }
-  throw UsageError("list: unknown kind '" + asked + "'; known: " + known);
+  throw UsageError("unknown kind '" + asked + "'; known: " + experiments::joined(kind_names()));
 }
 
 }  // namespace
 
 Command list_command() {
   return {"list",
-          "[discretisations|filters|modal_methods|models|readers|reductions|responses|smoothers|steps|"
-          "studies [NAME]]",
+          "[KIND [NAME]]",
           "what can be chosen by name, and the options of each",
-          "  beamid list\n  beamid list filters\n  beamid list filters ukf\n", run};
+          {{.name = "kind", .choices = kind_names()}, {.name = "name"}},
+          {},
+          "  beamid list\n  beamid list filters\n  beamid list filters ukf\n",
+          run,
+          "KIND is one of " + experiments::joined(kind_names()) + "."};
 }
 
 }  // namespace beamid::apps

@@ -6,6 +6,7 @@
 
 #include "apps/reference.hpp"
 #include "experiments/modal/modal_method.hpp"
+#include "experiments/results/print.hpp"
 #include "experiments/results/table.hpp"
 #include "experiments/results/text.hpp"
 #include "filters/filter.hpp"
@@ -13,6 +14,8 @@
 
 namespace beamid::apps {
 namespace {
+
+using experiments::Page;
 
 std::string to_text(const filters::OptionValue& value) {
   if (const double* number = std::get_if<double>(&value)) {
@@ -54,8 +57,8 @@ std::string promise(std::string contract) {
   return contract;
 }
 
-void print_wrapped(std::ostream& stream, const std::string& text) {
-  for (const std::string& line : experiments::wrapped(text)) stream << line << "\n";
+void print_wrapped(std::ostream& stream, const std::string& text, const Page& page) {
+  for (const std::string& line : experiments::wrapped(text, page.width)) stream << line << "\n";
 }
 
 }  // namespace
@@ -69,7 +72,7 @@ const Method& MethodList::find(const std::string& name) const {
   throw std::invalid_argument("unknown " + kind + " '" + name + "'; known: " + known);
 }
 
-void print(std::ostream& stream, const MethodList& list) {
+void print(std::ostream& stream, const MethodList& list, const Page& page) {
   experiments::Table table{list.kind, ""};
   table.column({"name", "name"}).column({"what it is", "summary"}).column({"options", "options"});
   for (const Method& method : list.methods) {
@@ -81,16 +84,16 @@ void print(std::ostream& stream, const MethodList& list) {
     }
     table.row({method.name, method.summary, options.empty() ? "-" : options});
   }
-  experiments::print(stream, table);
+  experiments::print(stream, table, page);
 }
 
-void print(std::ostream& stream, const Method& method) {
-  print_wrapped(stream, method.name + ": " + method.summary);
-  if (!method.source.empty()) print_wrapped(stream, "source: " + method.source);
+void print(std::ostream& stream, const Method& method, const Page& page) {
+  print_wrapped(stream, method.name + ": " + method.summary, page);
+  if (!method.source.empty()) print_wrapped(stream, "source: " + method.source, page);
   for (const std::string& reference : full_references(method.source))
-    if (reference != method.source) print_wrapped(stream, "- " + reference);
+    if (reference != method.source) print_wrapped(stream, "- " + reference, page);
   if (!method.contracts.empty()) stream << "\npromises, to which the tests hold it:\n";
-  for (const std::string& contract : method.contracts) print_wrapped(stream, "- " + promise(contract));
+  for (const std::string& contract : method.contracts) print_wrapped(stream, "- " + promise(contract), page);
   if (method.options.empty()) {
     stream << "\nno options\n";
     return;
@@ -104,7 +107,7 @@ void print(std::ostream& stream, const Method& method) {
     table.row(
         {option.name, to_text(option.fallback), option.unit.empty() ? "-" : option.unit, option.description});
   stream << "\n";
-  experiments::print(stream, table);
+  experiments::print(stream, table, page);
 }
 
 }  // namespace beamid::apps

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/results/text.hpp"
 #include "filters/options.hpp"
 
 namespace beamid::apps {
@@ -29,10 +30,10 @@ struct MethodList {
 };
 
 /// A line or two for each method.
-void print(std::ostream& stream, const MethodList& list);
+void print(std::ostream& stream, const MethodList& list, const experiments::Page& page);
 
 /// All about one: what it is, its sources in full words, its options with defaults, units and meaning, and
 /// the promises that the conformance tests hold it to.
-void print(std::ostream& stream, const Method& method);
+void print(std::ostream& stream, const Method& method, const experiments::Page& page);
 
 }  // namespace beamid::apps

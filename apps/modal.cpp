@@ -1,10 +1,10 @@
 // beamid modal: modes from vibration records, without a beam.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 
 #include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
@@ -20,46 +20,34 @@ namespace {
 
 using namespace experiments;
 
-options::options_description modal_options() {
-  options::options_description described("Options");
-  described.add_options()  //
-      ("method", options::value<std::string>()->value_name("NAME[:OPTION=VALUE,...]")->default_value("era"),
-       "era for free decays, ssi_cov for random vibration, frf_lscf for hammer hits with a measured force; "
-       "at the peaks of the spectrum: damped_sine, hilbert_envelope, logarithmic_decrement, half_power, "
-       "frf_half_power (beamid list modal_methods)")  //
-      ("band", options::value<std::vector<double>>()->multitoken()->value_name("FROM TO"),
-       "frequencies to look at [Hz]; else all where the spectrum shows something; after RECORD")  //
-      ("order", options::value<double>()->value_name("N")->default_value(30), "largest model order, 4 to 80")(
-          "modes", options::value<double>()->value_name("N"), "the N strongest modes only")             //
-      ("amplitude", "frequency and damping ratio of every mode against its amplitude along the decay")  //
-      ("polish", "refine a free decay's modes by least squares, all together (the default for era)")(
-          "no-polish", "take them as the method finds them");
-  return described;
+OptionGroup modal_options() {
+  return {
+      "Options",
+      {modal_method_option(
+           "era for free decays, ssi_cov for random vibration, frf_lscf for hammer hits with a measured "
+           "force; "
+           "at the peaks of the spectrum: damped_sine, hilbert_envelope, logarithmic_decrement, half_power, "
+           "frf_half_power (beamid list modal_methods)")
+           .by_default("era"),
+       band_option("frequencies to look at [Hz]; else all where the spectrum shows something"),
+       whole("order", "N", 4, 80, "largest model order").by_default("30"),
+       whole("modes", "N", 1, 1000, "the N strongest modes only"),
+       flag("amplitude", "frequency and damping ratio of every mode against its amplitude along the decay"),
+       flag("polish",
+            "refine a free decay's modes by least squares, all together (without the option for era only)"),
+       flag("no-polish", "take them as the method finds them")}};
 }
 
-double whole(const options::variables_map& values, const char* name, double least, double most) {
-  const double value = values[name].as<double>();
-  if (!(value >= least && value <= most && value == std::floor(value)))
-    throw UsageError(fmt::format("modal: --{} is {:g}; expected a whole number from {:g} to {:g}", name,
-                                 value, least, most));
-  return value;
-}
-
-ModalStudySettings settings_of(const options::variables_map& values) {
+ModalStudySettings settings_of(const Values& values) {
   ModalStudySettings settings;
-  settings.method = parse_choice(values["method"].as<std::string>(), "--method", modal_method_registry());
-  if (values.count("band")) {
-    const auto& band = values["band"].as<std::vector<double>>();
-    if (band.size() != 2 || !(band[0] >= 0 && band[0] < band[1]))
-      throw UsageError("modal: --band needs two frequencies [Hz], the first below the second: FROM TO");
-    settings.band_hz = {band[0], band[1]};
-  }
-  settings.largest_order = static_cast<int>(whole(values, "order", 4, 80));
-  if (values.count("modes")) settings.modes = static_cast<int>(whole(values, "modes", 1, 1000));
-  if (values.count("polish") && values.count("no-polish"))
-    throw UsageError("modal: --polish and --no-polish exclude each other");
-  if (values.count("polish")) settings.polish = true;
-  if (values.count("no-polish")) settings.polish = false;
+  settings.method = parse_choice(values.text("method"), "--method", modal_method_registry());
+  settings.band_hz = values.from_to("band");
+  settings.largest_order = values.whole("order");
+  if (values.has("modes")) settings.modes = values.whole("modes");
+  if (values.has("polish") && values.has("no-polish"))
+    throw UsageError("--polish and --no-polish exclude each other");
+  if (values.has("polish")) settings.polish = true;
+  if (values.has("no-polish")) settings.polish = false;
   return settings;
 }
 
@@ -110,23 +98,18 @@ Results decay_results(const std::vector<RecordRequest>& requests, const std::vec
   try {
     if (amplitude) tell_amplitude(found, merge_modes(found), results);
   } catch (const std::invalid_argument& error) {
-    throw UsageError(std::string("modal: ") + error.what());
+    throw UsageError(error.what());
   }
   return results;
 }
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described = modal_options();
-  described.add(record_options());
-  described.add(output_options());
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"record..."}, values)) return 0;
+int run(const Values& values) {
   const ModalStudySettings settings = settings_of(values);
-  const std::vector<RecordRequest> requests = record_requests(values, command.name);
+  const std::vector<RecordRequest> requests = record_requests(values);
   const bool hammer =
       modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response);
-  if (hammer && values.count("amplitude"))
-    throw UsageError("modal: --amplitude follows a free decay; take --method era for it");
+  if (hammer && values.has("amplitude"))
+    throw UsageError("--amplitude follows a free decay; take --method era for it");
   deliver(values, [&] {
     std::vector<PreparedRecord> prepared;
     std::vector<Record> records;
@@ -140,7 +123,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
     Results results;
     try {
       results = hammer ? hammer_results(names, records, settings)
-                       : decay_results(requests, names, records, settings, values.count("amplitude") > 0);
+                       : decay_results(requests, names, records, settings, values.has("amplitude"));
     } catch (const std::invalid_argument& error) {
       throw InputError({requests[0].file.string()}, error.what());
     }
@@ -154,8 +137,11 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command modal_command() {
-  return {"modal", "RECORD... [--window FROM TO] [--band FROM TO] [--method NAME] [--out DIR]",
+  return {"modal",
+          "RECORD... [--window FROM TO] [--band FROM TO] [--method NAME] [--out DIR]",
           "frequencies, damping ratios and shapes of all modes in vibration records",
+          {record_argument(true)},
+          {modal_options(), record_options(), output_options()},
           "  beamid modal tip_acceleration.csv\n"
           "  beamid modal run1.csv run2.csv --window 0.5 4 --band 2 60 --out results\n"
           "  beamid modal export.txt --column 3 --quantity acceleration --unit g --rate 1651.6129\n"

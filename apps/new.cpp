@@ -82,23 +82,15 @@ discretisation = "exponential"      # beamid list discretisations; forward_euler
 # acceleration_m_per_s2 = 0.05
 )toml";
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described("Options");
-  described.add_options()                      //
-      ("force", "replace a file that exists")  //
-      ("help", "show this help");
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"file"}, values)) return 0;
-  if (!values.count("file")) throw UsageError("new: which FILE? ('-' for standard output)");
-
-  const fs::path file = values["file"].as<std::string>();
+int run(const Values& values) {
+  const fs::path file = values.texts("file")[0];
   if (file == "-") {
     std::cout << starter;
     return 0;
   }
   if (fs::is_directory(file))
     throw InputError({file.string()}, "a directory; expected the name of a new file");
-  if (fs::exists(file) && !values.count("force"))
+  if (fs::exists(file) && !values.has("force"))
     throw InputError({file.string()}, "exists; choose another name, or replace it with --force");
   const fs::path folder = fs::absolute(file).parent_path();
   if (!fs::is_directory(folder)) throw InputError({file.string()}, "no folder '" + folder.string() + "'");
@@ -111,8 +103,13 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command new_command() {
-  return {"new", "FILE [--force]", "a commented experiment file to start from",
-          "  beamid new cantilever.toml\n  beamid new - | less\n", run};
+  return {"new",
+          "FILE [--force]",
+          "a commented experiment file to start from",
+          {{.name = "file", .required = true, .hint = "('-' for standard output)"}},
+          {{"Options", {flag("force", "replace a file that exists")}}},
+          "  beamid new cantilever.toml\n  beamid new - | less\n",
+          run};
 }
 
 }  // namespace beamid::apps

@@ -10,8 +10,21 @@
 
 namespace beamid::apps {
 
+/// The word RECORD, "-" for standard input; or several.
+Argument record_argument(bool several = false);
+
 /// --column, --quantity, --unit, --time, --rate, --window, --reader, --skip-malformed, --stamps, --config.
-options::options_description record_options();
+OptionGroup record_options();
+
+/// The RECORDs of the command line, or else the `file` under [record] of the experiment file, if it names
+/// one. Standard input, "-", is copied to a file that is removed when the program ends.
+std::vector<std::filesystem::path> record_files(const Values& values, const std::filesystem::path& config,
+                                                const std::optional<std::string>& named);
+
+/// The same where there must be one. @throws UsageError
+std::vector<std::filesystem::path> require_record_files(const Values& values,
+                                                        const std::filesystem::path& config,
+                                                        const std::optional<std::string>& named);
 
 /// A record's file and how to read it.
 struct RecordRequest {
@@ -21,16 +34,11 @@ struct RecordRequest {
 
 /// The table [record] of the --config file, where there is one, and what the command line puts in its place:
 /// any --column replaces all channels of the file, --quantity and --unit belong to the columns in their order
-/// or, given once, to all of them. The record is the positional word "record", else the configuration's
-/// `file`.
+/// or, given once, to all of them. One request for each RECORD, all read alike; without one that of the
+/// configuration's `file`.
 ///
 /// A column without --quantity is what the record's file says it is (ColumnDescription::stated is false).
-/// @param command its name, for messages.
 /// @throws UsageError on words that make no sense; InputError on the --config file.
-RecordRequest record_request(const options::variables_map& values, const std::string& command);
-
-/// The same of a command that takes several, parsed with the positional words "record...": one request for
-/// each word, all read alike; without a word that of the configuration's `file`.
-std::vector<RecordRequest> record_requests(const options::variables_map& values, const std::string& command);
+std::vector<RecordRequest> record_requests(const Values& values);
 
 }  // namespace beamid::apps

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "apps/command.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/config/failure_response.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/model_setting.hpp"
@@ -26,13 +27,12 @@ namespace {
 namespace fs = std::filesystem;
 using namespace experiments;
 
-Record earlier_record(const options::variables_map& values, const Experiment& experiment,
-                      const fs::path& config) {
-  if (values.count("like")) return prepared_record(values["like"].as<std::string>(), experiment.format);
+Record earlier_record(const Values& values, const Experiment& experiment, const fs::path& config) {
+  if (values.has("like")) return prepared_record(values.text("like"), experiment.format);
   if (experiment.record_file)
     return prepared_record(config.parent_path() / *experiment.record_file, experiment.format);
   throw UsageError(
-      "stream: an earlier record of the rig tells noise, amplitude and sampling interval: --like "
+      "an earlier record of the rig tells noise, amplitude and sampling interval: --like "
       "RECORD, or 'file' under [record] in " +
       config.string());
 }
@@ -64,8 +64,7 @@ void require_replaceable(const fs::path& file) {
     if (fs::is_regular_file(status) && read_json(file, "a state").contains("covariance")) return;
   } catch (const InputError&) {
   }
-  throw UsageError("stream: " + file.string() +
-                   " exists and is no state that --save-state wrote; expected another name");
+  throw UsageError(file.string() + " exists and is no state that --save-state wrote; expected another name");
 }
 
 // Beside the file first: a state is there as a whole or not at all.
@@ -107,32 +106,23 @@ void tell_end(const StreamedIdentification& stream, bool failed) {
     std::cerr << "The estimates had not settled at the end: they are not to be used.\n";
 }
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described("Options");
-  described.add_options()  //
-      ("config", options::value<std::string>()->value_name("FILE"),
-       "experiment file: beam, columns, filter (docs/configuration.md)")  //
-      ("like", options::value<std::string>()->value_name("RECORD"),
-       "an earlier record of the rig, which tells noise, amplitude and sampling interval; default: that of "
-       "the experiment file")  //
-      ("on-failure", options::value<std::string>()->value_name("WHAT"),
-       "when the filter fails: stop (default), inflate its covariance and go on, report and go on")  //
-      ("resume", options::value<std::string>()->value_name("STATE"), "go on from a saved state")     //
-      ("save-state", options::value<std::string>()->value_name("STATE"),
-       "save the state at the end, whatever ends the stream: the input, a signal, a failure, a bad line")  //
-      ("help", "show this help");
-  options::variables_map values;
-  if (!parse(command, arguments, described, {}, values)) return 0;
-  if (!values.count("config")) throw UsageError("stream: --config FILE is missing");
-  const fs::path config = values["config"].as<std::string>();
+OptionGroup stream_options() {
+  return {"Options",
+          {config_option("experiment file: beam, columns, filter (docs/configuration.md)").needed(),
+           text("like", "RECORD",
+                "an earlier record of the rig, which gives noise, amplitude and sampling interval; without "
+                "it that of "
+                "the experiment file"),
+           on_failure_option(), text("resume", "STATE", "go on from a saved state"),
+           text("save-state", "STATE",
+                "save the state at the end, whatever ends the stream: the input, a signal, a failure, a bad "
+                "line")}};
+}
+
+int run(const Values& values) {
+  const fs::path config = values.text("config");
   Experiment experiment = read_experiment(config);
-  if (values.count("on-failure")) {
-    try {
-      experiment.on_failure = failure_response(values["on-failure"].as<std::string>());
-    } catch (const std::invalid_argument& error) {
-      throw UsageError(std::string("stream: ") + error.what());
-    }
-  }
+  choose_failure_response(values, experiment);
   const Record earlier = earlier_record(values, experiment, config);
   if (experiment.model.name != "sdof" || !experiment.parameters.empty() || !force_channels(earlier).empty())
     throw InputError(experiment.model.place.file.empty() ? Place{config.string()} : experiment.model.place,
@@ -141,13 +131,13 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
   tell(implausible(experiment));
   tell_preparation(experiment, earlier);
-  if (values.count("save-state")) {
+  if (values.has("save-state")) {
     at_place(experiment.filter.place, [&] { stream.check_can_be_saved(); });
-    require_replaceable(values["save-state"].as<std::string>());
+    require_replaceable(values.text("save-state"));
   }
-  if (values.count("resume")) resume(stream, values["resume"].as<std::string>());
+  if (values.has("resume")) resume(stream, values.text("resume"));
   const auto keep = [&] {
-    if (values.count("save-state")) save(stream, values["save-state"].as<std::string>());
+    if (values.has("save-state")) save(stream, values.text("save-state"));
   };
   int signal = 0;
   bool failed = false;
@@ -174,21 +164,24 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 
 Command stream_command() {
   return {
-      "stream", "--config FILE [--like RECORD] [--resume STATE] [--save-state STATE] < SAMPLES",
+      "stream",
+      "--config FILE [--like RECORD] [--resume STATE] [--save-state STATE] < SAMPLES",
       "stiffness and damping while samples arrive on standard input",
+      {},
+      {stream_options()},
       "  beamid stream --config cantilever.toml < tip_acceleration.csv\n"
       "  logger | beamid stream --config cantilever.toml --save-state now.json\n"
-      "  logger | beamid stream --config cantilever.toml --resume now.json\n\n"
-      "A sample is a line 'time,output[,output...]', in seconds and SI units, the outputs in the order "
-      "of the\n"
-      "record's channels; an output that is empty or nan was not measured. One line of estimates and\n"
-      "standard deviations follows each, from one pass of the filter. Its last fields are the mean\n"
-      "normalised square of the innovations over 50 outputs (1 where the filter is right) and the status:\n"
-      "settling, settled, left_out (an outlier) or begun_anew. Use estimates that have settled only: in the\n"
+      "  logger | beamid stream --config cantilever.toml --resume now.json\n",
+      run,
+      "A sample is a line 'time,output[,output...]', in seconds and SI units, the outputs in the order of "
+      "the "
+      "record's channels; an output that is empty or nan was not measured. One line of estimates and "
+      "standard deviations follows each, from one pass of the filter. Its last fields are the mean "
+      "normalised square of the innovations over 50 outputs (1 where the filter is right) and the status: "
+      "settling, settled, left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
       "first example the higher modes of the release keep the filter from it until 2.4 s.\n"
-      "[[record.prepare]] prepares the earlier record; samples are expected to arrive as it leaves them.\n"
-      "Exit code 1 when the filter failed.\n",
-      run};
+      "[[record.prepare]] prepares the earlier record; samples are expected to arrive as it leaves them.\n",
+      "1  the filter failed as well\n"};
 }
 
 }  // namespace beamid::apps

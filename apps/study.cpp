@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "apps/command.hpp"
 #include "apps/deliver.hpp"
 
 namespace beamid::apps {
@@ -10,43 +13,31 @@ namespace {
 
 using experiments::study_registry;
 
-std::string flag(std::string name) {  // first_guess -> first-guess
-  for (char& letter : name)
-    if (letter == '_') letter = '-';
+std::string option_name(std::string name) {  // first_guess -> first-guess
+  std::replace(name.begin(), name.end(), '_', '-');
   return name;
 }
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  const auto& study = study_registry().find(command.name);
-  options::options_description described("Options");
-  for (const auto& option : study.options) {
-    const std::string help = option.description + (option.unit.empty() ? "" : " [" + option.unit + "]");
-    if (const double* number = std::get_if<double>(&option.fallback))
-      described.add_options()(
-          flag(option.name).c_str(),
-          options::value<double>()->default_value(*number, fmt::format("{}", *number))->value_name("N"),
-          help.c_str());
-    else
-      described.add_options()(flag(option.name).c_str(),
-                              options::value<std::string>()
-                                  ->default_value(std::get<std::string>(option.fallback))
-                                  ->value_name("NAME"),
-                              help.c_str());
-  }
-  described.add(output_options());
-  options::variables_map values;
-  if (!parse(command, arguments, described, {}, values)) return 0;
+Option option_of(const filters::OptionSpec& spec) {
+  const std::string name = option_name(spec.name),
+                    help = spec.description + (spec.unit.empty() ? "" : " [" + spec.unit + "]");
+  if (const double* fallback = std::get_if<double>(&spec.fallback))
+    return number(name, "N", help).by_default(fmt::format("{}", *fallback));
+  const Option option = text(name, name == "config" ? "FILE" : "NAME", help);
+  return (name == "config" ? option.as('c') : option).by_default(std::get<std::string>(spec.fallback));
+}
 
+int run(const Values& values) {
   filters::Options chosen;
-  for (const auto& option : study.options) {
-    const auto& value = values[flag(option.name)];
-    if (std::holds_alternative<double>(option.fallback))
-      chosen.set(option.name, value.as<double>());
+  for (const auto& spec : study_registry().find(values.command().name).options) {
+    const std::string name = option_name(spec.name);
+    if (std::holds_alternative<double>(spec.fallback))
+      chosen.set(spec.name, values.number(name));
     else
-      chosen.set(option.name, value.as<std::string>());
+      chosen.set(spec.name, values.text(name));
   }
-  const auto ready = study_registry().make(command.name, chosen);
-  deliver(values, [&] { return ready->run(show_progress()); });
+  const auto ready = study_registry().make(values.command().name, chosen);
+  deliver(values, [&] { return ready->run(show_progress(values)); });
   return 0;
 }
 
@@ -54,11 +45,18 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 
 std::vector<Command> study_commands() {
   std::vector<Command> result;
-  for (const auto& [name, entry] : study_registry().entries())
-    result.push_back({name, "[OPTIONS] [--out DIR]", entry.summary,
+  for (const auto& [name, entry] : study_registry().entries()) {
+    OptionGroup own{"Options", {}};
+    for (const auto& spec : entry.options) own.options.push_back(option_of(spec));
+    result.push_back({name,
+                      "[OPTIONS] [--out DIR]",
+                      entry.summary,
+                      {},
+                      {own, output_options()},
                       "  beamid " + name + "\n  beamid " + name + " --out results\n  beamid " + name +
                           " --json | python3 -m json.tool\n",
                       run});
+  }
   return result;
 }
 

@@ -2,10 +2,11 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <cmath>
 #include <thread>
 
+#include "apps/command.hpp"
 #include "apps/deliver.hpp"
+#include "apps/interruption.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_sweep.hpp"
 #include "experiments/identify/plausibility.hpp"
@@ -20,46 +21,40 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace experiments;
-using Words = std::vector<std::string>;
 
-options::options_description sweep_options() {
-  options::options_description described("Options");
-  described.add_options()  //
-      ("config", options::value<std::string>()->value_name("FILE"),
-       "experiment file; its [sweep] may hold the plan (docs/configuration.md)")  //
-      ("truth", options::value<std::string>()->value_name("FILE"),
-       "experiment file of the beam that records are simulated from; without it the beam as described")  //
-      ("vary", options::value<Words>()->value_name("KEY=..."),
-       "a key of FILE, as beam.tip_mass_kg or sensors[1].noise_m: KEY=FROM:TO:STEPS[:log], KEY=A,B,C; drawn: "
-       "KEY=uniform:FROM:TO, log_uniform:FROM:TO, normal:MEAN:DEVIATION; truth.KEY: of the record's beam "
-       "only. Repeat for more")                                                                          //
-      ("random", options::value<double>()->value_name("N"), "samples of what is drawn, at every point")  //
-      ("seeds", options::value<double>()->value_name("N"), "cases for every sample, each with its own noise")(
-          "seed", options::value<double>()->value_name("N"), "of the first case [1]")  //
-      ("once",
-       "filter every record once from what is believed, as the 2009 study did: model sdof, many records "
-       "at a time; without it as `beamid compare` does")                                //
-      ("threads", options::value<double>()->value_name("N"), "to work on [all cores]")  //
-      ("resume", "go on with a sweep that was interrupted; needs its --out DIR")        //
-      ("shard", options::value<std::string>()->value_name("I/N"),
-       "this part only, from 1/N to N/N, each in a DIR of its own")  //
-      ("merge", options::value<Words>()->multitoken()->value_name("DIR..."),
-       "join the results of all shards; with --out only");
-  return described;
+int cores() {
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-int whole(const options::variables_map& values, const char* name, double least, double most) {
-  const double value = values[name].as<double>();
-  if (!(value >= least && value <= most && value == std::floor(value)))
-    throw UsageError(fmt::format("sweep: --{} is {:g}; expected a whole number from {:g} to {:g}", name,
-                                 value, least, most));
-  return static_cast<int>(value);
+OptionGroup sweep_options() {
+  return {
+      "Options",
+      {config_option("experiment file; its [sweep] may hold the plan (docs/configuration.md)"),
+       text("truth", "FILE",
+            "experiment file of the beam that records are simulated from; without it the beam as described"),
+       text("vary", "KEY=...",
+            "a key of FILE, as beam.tip_mass_kg or sensors[1].noise_m: KEY=FROM:TO:STEPS[:log], KEY=A,B,C; "
+            "drawn: "
+            "KEY=uniform:FROM:TO, log_uniform:FROM:TO, normal:MEAN:DEVIATION; truth.KEY: of the record's "
+            "beam only")
+           .repeated(),
+       whole("random", "N", 1, most_samples, "samples of what is drawn, at every point"),
+       whole("seeds", "N", 1, most_samples, "cases for every sample, each with its own noise"),
+       whole("seed", "N", 0, 2e9, "of the first case").by_default("1"),
+       flag("once",
+            "filter every record once from what is assumed, as the 2009 study did: model sdof, many records "
+            "at a "
+            "time; without it as `beamid compare` does"),
+       whole("threads", "N", 1, 4096, "to work on").by_default(std::to_string(cores())).unrecorded(),
+       flag("resume", "go on with a sweep that was interrupted; needs its --out DIR").unrecorded(),
+       text("shard", "I/N", "this part only, from 1/N to N/N, each in a DIR of its own"),
+       text("merge", "DIR...", "join the results of all shards; with --out only").several()}};
 }
 
 /// That of the file, and what the command line adds to it or puts in its place.
-SweepPlan plan_of(const options::variables_map& values, SweepPlan plan) {
+SweepPlan plan_of(const Values& values, SweepPlan plan) {
   std::vector<VariedKey> given;
-  for (const std::string& text : values.count("vary") ? values["vary"].as<Words>() : Words()) {
+  for (const std::string& text : values.texts("vary")) {
     const VariedKey varied = at_place(Place{"--vary"}, [&] {
       VariedKey read = parse_varied(text);
       refuse_unknown(read);
@@ -69,17 +64,17 @@ SweepPlan plan_of(const options::variables_map& values, SweepPlan plan) {
     given.push_back(varied);
   }
   plan.varied.insert(plan.varied.end(), given.begin(), given.end());
-  if (values.count("random")) plan.samples = whole(values, "random", 1, most_samples);
-  if (values.count("seeds")) plan.seeds = whole(values, "seeds", 1, most_samples);
-  if (values.count("seed")) plan.seed = static_cast<std::uint64_t>(whole(values, "seed", 0, 2e9));
-  if (values.count("once")) plan.once = true;
+  if (values.has("random")) plan.samples = values.whole("random");
+  if (values.has("seeds")) plan.seeds = values.whole("seeds");
+  if (values.has("seed")) plan.seed = static_cast<std::uint64_t>(values.whole("seed"));
+  if (values.has("once")) plan.once = true;
   at_place(Place{"sweep"}, [&] { check(plan); });
   return plan;
 }
 
-Shard shard_of(const options::variables_map& values) {
-  if (!values.count("shard")) return {};
-  const std::string text = values["shard"].as<std::string>();
+Shard shard_of(const Values& values) {
+  if (!values.has("shard")) return {};
+  const std::string text = values.text("shard");
   const std::size_t slash = text.find('/');
   int index = 0, count = 0;
   const char* const end = text.data() + text.size();
@@ -87,7 +82,7 @@ Shard shard_of(const options::variables_map& values) {
   const bool read = slash != std::string::npos && std::from_chars(text.data(), middle, index).ptr == middle &&
                     std::from_chars(middle + 1, end, count).ptr == end;
   if (!read || index < 1 || count < index)
-    throw UsageError("sweep: --shard is '" + text + "'; expected I/N, as 1/4 to 4/4");
+    throw UsageError("--shard is '" + text + "'; expected I/N, as 1/4 to 4/4");
   return {static_cast<std::size_t>(index - 1), static_cast<std::size_t>(count)};
 }
 
@@ -98,13 +93,12 @@ fs::path journal_of(const fs::path& out) {
   return plain.string() + ".partial";
 }
 
-int merge_folders(const options::variables_map& values) {
+int merge_folders(const Values& values) {
   for (const char* other :
        {"config", "truth", "vary", "random", "seeds", "seed", "once", "threads", "resume", "shard"})
-    if (values.count(other))
-      throw UsageError(
-          fmt::format("sweep: --merge takes the plan from the folders; expected no --{}", other));
-  const Words words = values["merge"].as<Words>();
+    if (values.has(other))
+      throw UsageError(fmt::format("--merge takes the plan from the folders; expected no --{}", other));
+  const Words words = values.texts("merge");
   deliver(values, [&] { return merge({words.begin(), words.end()}); });
   return 0;
 }
@@ -114,57 +108,68 @@ bool is_complete(const fs::path& out, const nlohmann::ordered_json& manifest) {
   if (!fs::exists(out / "manifest.json")) return false;
   const nlohmann::ordered_json found = read_manifest(out / "manifest.json");
   if (found["hash"] != manifest["hash"] || found["shard"] != manifest["shard"])
-    throw UsageError("sweep: '" + out.string() +
-                     "' holds the results of another sweep; expected another --out");
+    throw UsageError("'" + out.string() + "' holds the results of another sweep; expected another --out");
   return true;
 }
 
-int run(const Command& command, const Words& arguments) {
+Processes* all_processes = nullptr;  // while the command runs
+
+/// Processes that mpirun started beside the first do nothing but help it.
+int with_processes(const std::function<int()>& work) {
   Processes processes;
   if (!processes.first()) {
     help(processes);
     return 0;
   }
-  options::options_description described = sweep_options();
-  described.add(output_options());
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"record"}, values)) return 0;
-  if (values.count("merge")) return merge_folders(values);
-  if (!values.count("config")) throw UsageError("sweep: which --config FILE?");
-  if (values.count("resume") && !values.count("out"))
-    throw UsageError("sweep: --resume needs the --out DIR of the sweep that was interrupted");
-  SweepSource source{read_experiment_text(values["config"].as<std::string>()), {}, {}};
-  if (values.count("truth")) source.truth = read_experiment_text(values["truth"].as<std::string>());
-  if (values.count("record") && values.count("truth"))
-    throw UsageError("sweep: RECORD and --truth exclude each other; expected one of them");
+  all_processes = &processes;
+  return work();
+}
+
+int run(const Values& given) {
+  Values values = given;
+  if (values.has("merge")) return merge_folders(values);
+  if (!values.has("config")) throw UsageError("which --config FILE?");
+  if (values.has("resume") && !values.has("out"))
+    throw UsageError("--resume needs the --out DIR of the sweep that was interrupted");
+  SweepSource source{read_experiment_text(values.text("config")), {}, {}};
+  if (values.has("truth")) source.truth = read_experiment_text(values.text("truth"));
+  if (values.has("record") && values.has("truth"))
+    throw UsageError("RECORD and --truth exclude each other; expected one of them");
   const Experiment experiment = read_experiment(source.config.file);
-  if (values.count("record"))
-    source.record = values["record"].as<std::string>();
+  if (values.has("record"))
+    source.record = values.texts("record")[0];
   else if (!source.truth && experiment.record_file)
     source.record = source.config.file.parent_path() / *experiment.record_file;
   const SweepPlan plan = plan_of(values, experiment.sweep);
   if (plan.once) at_place(Place{"sweep"}, [&] { require_once(source, plan); });
-  SweepSettings settings{shard_of(values), 1, {}, {}, values.count("resume") > 0, &processes};
-  if (processes.count() > 1 && values.count("threads"))
+  SweepSettings settings{shard_of(values), 1, {}, {}, values.has("resume"), all_processes};
+  if (all_processes->count() > 1 && values.has("threads"))
     throw UsageError(
-        "sweep: --threads has no use under mpirun, where each process runs one case at a time; expected a "
+        "--threads has no use under mpirun, where each process runs one case at a time; expected a "
         "process more than there are cores");
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  settings.threads = values.count("threads") ? whole(values, "threads", 1, 4096) : cores;
+  settings.threads = values.whole("threads");
   const nlohmann::ordered_json manifest = manifest_of(source, plan, settings.shard);
-  if (values.count("out")) {
-    const fs::path out = values["out"].as<std::string>();
+  if (values.has("out")) {
+    const fs::path out = values.text("out");
     settings.journal = journal_of(out);
     if (settings.resume && !fs::exists(*settings.journal / "manifest.json") && is_complete(out, manifest)) {
       settings.done = out / "cases.csv";
-      values.insert({"force", options::variable_value(true, false)});
+      values.set("force");
     }
-    if (values.count("force") && !settings.resume && !discard_journal(*settings.journal))
-      throw UsageError("sweep: another beamid sweep is running on '" + out.string() +
-                       "'; expected another --out");
+    if (values.has("force") && !settings.resume && !discard_journal(*settings.journal))
+      throw UsageError("another beamid sweep is running on '" + out.string() + "'; expected another --out");
   }
+  const std::string kept = settings.journal
+                               ? fmt::format("are kept in '{}': the same command with --resume goes on",
+                                             settings.journal->string())
+                               : "were finished; with --out DIR they are kept, and --resume goes on";
+  Interruption interruption("interrupted; no case was finished");
   deliver(values, [&] {
-    Results results = report(manifest, plan, perform(source, plan, settings, show_progress()));
+    const Progress progress = [&, shown = show_progress(values)](const std::string& what) {
+      interruption.say(fmt::format("interrupted; {} cases {}", what.substr(0, what.find(" cases")), kept));
+      shown(what);
+    };
+    Results results = report(manifest, plan, perform(source, plan, settings, progress));
     warn(results, experiment);
     return results;
   });
@@ -176,8 +181,11 @@ int run(const Command& command, const Words& arguments) {
 
 Command sweep_command() {
   return {
-      "sweep", "[RECORD | --truth FILE] --config FILE [--vary KEY=...]... [--seeds N] [--out DIR]",
+      "sweep",
+      "[RECORD | --truth FILE] --config FILE [--vary KEY=...]... [--seeds N] [--out DIR]",
       "an experiment over a grid, random samples and seeds: bias, rms, bound, coverage, divergence",
+      {{.name = "record"}},
+      {sweep_options(), output_options()},
       "  beamid sweep --config rig.toml --vary damping.ratio=0.001:0.1:5:log --seeds 200 --out swept\n"
       "  beamid sweep --config rig.toml --vary filter.method=ekf,ukf --vary sensors[1].noise_m=1e-5,1e-4\n"
       "  beamid sweep --config rig.toml --vary truth.beam.tip_mass_kg=uniform:0.3:0.4 --random 500\n"
@@ -185,7 +193,10 @@ Command sweep_command() {
       "  beamid sweep --config rig.toml --seeds 1000 --shard 3/8 --out part3\n"
       "  beamid sweep --merge part1 part2 part3 --out all\n"
       "  mpirun -n 9 beamid sweep --config rig.toml --seeds 1000 --out swept    # 8 cores\n",
-      run};
+      run,
+      "",
+      "",
+      with_processes};
 }
 
 }  // namespace beamid::apps

@@ -49,11 +49,55 @@ std::string record_text(const fs::path& file, const Record& record) {
                      readings_text(record));
 }
 
-// What the model says of the record's channels shows only when it is made.
-void check_model(const Experiment& experiment, const fs::path& folder, const Record& record) {
+std::string value_text(const std::string& name, std::optional<double> value, std::optional<double> deviation,
+                       const std::string& unit) {
+  std::string text = name;
+  if (value) text += fmt::format(" {:.6g}", *value);
+  if (value && deviation) text += fmt::format(" +- {:.3g}", *deviation);
+  return text + (value && !unit.empty() ? " " + unit : "");
+}
+
+// Model sdof starts from [prior] and, for what that leaves open, from the record.
+std::string prior_text(const PriorBelief& prior) {
+  return value_text("stiffness", prior.stiffness, prior.stiffness_deviation, "N/m") + ", " +
+         value_text("damping ratio", prior.damping_ratio, prior.damping_ratio_deviation, "") +
+         (prior.stiffness || prior.damping_ratio ? " (initial estimates; the others from the record)"
+                                                 : " (initial estimates from the record)");
+}
+
+// What the experiment file says; the model fills in the rest when it has a record.
+std::string parameters_text(const Experiment& experiment) {
+  if (experiment.model.name == "sdof" && experiment.parameters.empty()) return prior_text(experiment.prior);
+  std::string text;
+  for (const ParameterChoice& choice : experiment.parameters)
+    text += (text.empty() ? "" : ", ") + value_text(choice.name.empty() ? choice.quantity : choice.name,
+                                                    choice.guess, choice.deviation,
+                                                    parameter_quantity(choice.quantity).unit);
+  return text.empty() ? "what model " + experiment.model.name + " asks about by itself" : text;
+}
+
+// What the model says of the record's channels, and what it asks about, shows only when it is made.
+std::string parameters_text(const Experiment& experiment, const fs::path& folder, const Record& record) {
   const ModelSetting setting = model_setting(experiment, record, experiment.reduction, folder);
-  at_place(experiment.model.place,
-           [&] { return model_registry().make(experiment.model.name, experiment.model.options, setting); });
+  const auto model = at_place(experiment.model.place, [&] {
+    return model_registry().make(experiment.model.name, experiment.model.options, setting);
+  });
+  if (experiment.model.name == "sdof" && experiment.parameters.empty()) return prior_text(experiment.prior);
+  std::string text;
+  for (const Unknown& unknown : model->unknowns)
+    text +=
+        (text.empty() ? "" : ", ") + value_text(unknown.name, unknown.guess, unknown.deviation, unknown.unit);
+  return text + " (initial estimates)";
+}
+
+std::string sensors_text(const Experiment& experiment) {
+  std::string text;
+  for (const Sensor& sensor : experiment.sensors) {
+    text += (text.empty() ? "" : ", ") + sensor.name + (sensor.name.empty() ? "" : ": ") +
+            to_string(sensor.quantity);
+    if (sensor.position) text += fmt::format(" at {:g} m", *sensor.position);
+  }
+  return text;
 }
 
 int validate_frame(const fs::path& file, const TomlTable& root) {
@@ -66,33 +110,25 @@ int validate_frame(const fs::path& file, const TomlTable& root) {
   return 0;
 }
 
-int run(const Command& command, const std::vector<std::string>& arguments) {
-  options::options_description described("Options");
-  described.add_options()  //
-      ("record", options::value<std::string>()->value_name("RECORD"),
-       "read this record too, instead of the one the file names")  //
-      ("help", "show this help");
-  options::variables_map values;
-  if (!parse(command, arguments, described, {"file"}, values)) return 0;
-  if (!values.count("file")) throw UsageError("validate: which FILE?");
-
-  const fs::path file = values["file"].as<std::string>();
+int run(const Values& values) {
+  const fs::path file = values.texts("file")[0];
   const TomlTable root = TomlTable::read(file);
-  if (root.contains("frame") && !root.contains("beam") && !values.count("record"))
+  if (root.contains("frame") && !root.contains("beam") && !values.has("record"))
     return validate_frame(file, root);
   const Experiment experiment = read_experiment(root);
   const fem::StructuralSystem system =
       at_place({file.string()}, [&] { return fem::assemble(experiment.beam, experiment.elements); });
   std::string record_line = "none named; " + columns_text(experiment.format);
+  std::string parameters = parameters_text(experiment);
   fs::path record_file;
-  if (values.count("record"))
-    record_file = values["record"].as<std::string>();
+  if (values.has("record"))
+    record_file = values.text("record");
   else if (experiment.record_file)
     record_file = file.parent_path() / *experiment.record_file;
-  if (values.count("record") || (!record_file.empty() && fs::exists(record_file))) {
+  if (values.has("record") || (!record_file.empty() && fs::exists(record_file))) {
     const Record read = prepared_record(record_file, experiment.format);
     const Record record = at_place({file.string()}, [&] { return with_places(read, experiment); });
-    check_model(experiment, file.parent_path(), record);
+    parameters = parameters_text(experiment, file.parent_path(), record);
     record_line = record_text(record_file, record);
   } else if (!record_file.empty()) {
     record_line = fmt::format("'{}' is not there and was not checked; {}", record_file.string(),
@@ -108,10 +144,12 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
              "{:.4f} Hz\n",
              beam.length(), bending_stiffness_text(beam), beam.mass(), beam.tip_mass(),
              fem::modes(system, 1).frequency_hz()[0])
+      << (experiment.sensors.empty() ? "" : "  sensors  " + clean_text(sensors_text(experiment)) + "\n")
       << "  record   " << clean_text(record_line) << "\n"
       << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
                      experiment.reduction.name, experiment.model.name, experiment.filter.name,
-                     experiment.discretisation);
+                     experiment.discretisation)
+      << "  asks for " << clean_text(parameters) << "\n";
   return 0;
 }
 
@@ -119,9 +157,13 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
 
 Command validate_command() {
   return {
-      "validate", "FILE [--record RECORD]",
+      "validate",
+      "FILE [--record RECORD]",
       "is an experiment file, and its record, right? what was understood",
-      "  beamid validate cantilever.toml\n  beamid validate cantilever.toml --record tip_acceleration.csv\n",
+      {{.name = "file", .required = true}},
+      {{"Options", {text("record", "RECORD", "read this record too, instead of the one the file names")}}},
+      "  beamid validate cantilever.toml\n"
+      "  beamid validate cantilever.toml --record tip_acceleration.csv\n",
       run};
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "experiments/config/known_names.hpp"
 #include "experiments/config/vocabulary.hpp"
 #include "experiments/text/method_choice.hpp"
 #include "experiments/text/spelling.hpp"
@@ -48,10 +49,8 @@ void refuse_unknown(const VariedKey& varied) {
     throw std::invalid_argument(fmt::format("'{}' is in no table of an experiment file", varied.key));
   if (known->has_options) return;  // its method knows them
   if (std::find(known->keys.begin(), known->keys.end(), key) != known->keys.end()) return;
-  const auto meant = nearest(key, known->keys);
-  throw std::invalid_argument(fmt::format("unknown key '{}' in {};{} known: {}", key, table,
-                                          meant ? " did you mean '" + *meant + "'?" : "",
-                                          joined(known->keys)));
+  throw std::invalid_argument(
+      fmt::format("unknown key '{}' in {}; {}", key, table, known_names(key, known->keys)));
 }
 
 }  // namespace beamid::experiments

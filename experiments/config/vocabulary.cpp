@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/config/known_names.hpp"
 #include "experiments/config/read_frame.hpp"
 #include "experiments/config/read_parameters.hpp"
 #include "experiments/config/read_segment.hpp"
@@ -27,11 +28,9 @@ void collect(const TomlTable& table, const std::string& name, std::vector<Unknow
     if (std::find(known->keys.begin(), known->keys.end(), key) != known->keys.end()) {
       for (const TomlTable& below : table.tables_below(key)) collect(below, table.path(key), unknown);
     } else if (!known->has_options) {
-      const auto meant = nearest(key, known->keys);
       unknown.push_back(
-          {table.key_place(key),
-           fmt::format("unknown key '{}'{};{} known: {}", key, name.empty() ? "" : " in " + name,
-                       meant ? " did you mean '" + *meant + "'?" : "", joined(known->keys))});
+          {table.key_place(key), fmt::format("unknown key '{}'{}; {}", key, name.empty() ? "" : " in " + name,
+                                             known_names(key, known->keys))});
     }
   }
 }

@@ -62,23 +62,13 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NegativeMass", toml, "mass_kg = 3.055", "mass_kg = -3.055",
               "cantilever.toml:10:11: beam.mass_kg is -3.055; expected a positive number"},
         Fault{"UnknownFilter", toml, "\"ekf\"", "\"ufk\"",
-              "cantilever.toml:18:10: unknown filter 'ufk'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, "
-              "iekf, kf, low_rank_ekf, "
-              "low_rank_ukf, particle, robust_ekf, srckf, srukf, ukf"},
+              "cantilever.toml:18:10: unknown filter 'ufk'; did you mean 'ukf'?"},
         Fault{"UnknownDiscretisation", toml, "\"exponential\"", "\"euler\"",
               "cantilever.toml:19:18: unknown discretisation 'euler'; known: backward_euler, cvode, "
               "exponential, forward_euler, implicit_midpoint, pade, runge_kutta_2, runge_kutta_4, "
               "runge_kutta_4_differences"},
-        Fault{
-            "UnknownKey", toml, "length_m", "lenght_m",
-            "cantilever.toml:6:1: unknown key 'lenght_m' in beam; did you mean 'length_m'? known: length_m, "
-            "width_m, height_m, diameter_m, end_width_m, end_height_m, end_diameter_m, youngs_modulus_pa, "
-            "bending_stiffness_n_m2, mass_kg, mass_per_length_kg_per_m, density_kg_per_m3, theory, "
-            "poissons_ratio, shear_modulus_pa, shear_factor, shear_stiffness_n, rotary_inertia, "
-            "rotary_inertia_kg_m, support, root_rotational_stiffness_n_m_per_rad, "
-            "root_translational_stiffness_n_per_m, tip_mass_kg, tip_rotary_inertia_kg_m2, "
-            "tip_eccentricity_m, sensor_mass_kg, axial_load_n, mass_model, elements, segments, bodies, "
-            "supports, springs, dashpots, absorbers, damages, added_masses"},
+        Fault{"UnknownKey", toml, "length_m", "lenght_m",
+              "cantilever.toml:6:1: unknown key 'lenght_m' in beam; did you mean 'length_m'?"},
         Fault{"WrongUnit", toml, "\\[record\\]",
               "[record]\nchannels = [{ quantity = \"acceleration\", column = 2, unit = \"m/s\" }]",
               "cantilever.toml:14:61: record.channels[1].unit is the text \"m/s\"; expected a unit of "

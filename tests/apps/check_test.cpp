@@ -64,7 +64,7 @@ TEST_F(Check, RefusesWhatMakesNoSense) {
   for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
            {"check", "beamid: check: --config FILE is missing"},
            {"check --config cantilever.toml --model-error 0",
-            "beamid: check: --model-error is 0; expected 0.01 to 20 percent"},
+            "beamid: check: --model-error is 0; expected a number from 0.01 to 20"},
            {"check a.csv b.csv c.csv --config cantilever.toml cantilever.toml",
             "beamid: check: 3 records for 2 --config files; expected one for each, or one file for all"},
            {"check --config cantilever.toml --method frf_lscf",

@@ -75,17 +75,18 @@ TEST(Efficiency, CountsCleanDecaysThatFail) {
 
 TEST(Efficiency, NamesWhatItRefuses) {
   const std::pair<const char*, const char*> refused[] = {
-      {"--runs 1", "--runs is 1; expected a whole number from 2 to 1e+06"},
-      {"--damping-ratio 1", "--damping-ratio is 1; expected a number between 0 and 1"},
+      {"--runs 1", "--runs is 1; expected a whole number from 2 to 1000000"},
+      {"--damping-ratio 1", "--damping-ratio is 1; expected a number above 0 and below 1"},
       {"--study all", "--study is 'all'; expected filters, coverage, decays or records"},
       {"--study records --noise 0.1", "--study records takes no --noise"},
       {"--study records --runs 5 --only 5", "--only is 5; expected a whole number from 0 to 4"},
       {"--only 3", "--only goes with --study records"},
       {"--study coverage --filter ekf", "--study coverage takes no --filter"},
-      {"--study coverage --damping-ratio 0.2", "--damping-ratio is 0.2; expected a number between 0 and 0.1"},
+      {"--study coverage --damping-ratio 0.2",
+       "--damping-ratio is 0.2; expected 0.1 at most for --study coverage"},
       {"--passes twice", "--passes is 'twice'; expected lengthening, single or both"},
       {"--guess bad", "--guess is 'bad'; expected drawn or ends"},
-      {"--noise 0", "--noise is 0; expected a number above 0, 1 at most"},
+      {"--noise 0", "--noise is 0; expected a number above 0 and at most 1"},
       {"--filter ufk", "--filter: unknown filter 'ufk'"},
       {"--filter kf", "filter 'kf' takes linear models only"}};
   for (const auto& [words, message] : refused) {

@@ -84,7 +84,28 @@ TEST(Validate, ReadsTheRecordToo) {
       "3.4555 Hz\n"
       "  record   tip_acceleration.csv: 2001 samples from 2 to 10 s at 250 Hz; tip: acceleration at "
       "1.1 m up to 4.581 m/s2\n"
-      "  methods  reduction rayleigh, model sdof, filter ekf, discretisation exponential\n");
+      "  methods  reduction rayleigh, model sdof, filter ekf, discretisation exponential\n"
+      "  asks for stiffness, damping ratio (initial estimates from the record)\n");
+}
+
+// Oracle: what the file says.
+TEST(Validate, ShowsSensorsPriorsAndParameters) {
+  Workplace place;
+  fs::copy(source("docs/tutorials/02_identify_a_record"), place.folder(), fs::copy_options::recursive);
+  const std::string file = contents(place.folder() / "cantilever.toml");
+  place.write("prior.toml", file + "\n[prior]\nstiffness_n_per_m = 510\nstiffness_deviation_n_per_m = 150\n");
+  EXPECT_THAT(
+      place.run("validate prior.toml").out,
+      HasSubstr("  asks for stiffness 510 +- 150 N/m, damping ratio (initial estimates; the others from "
+                "the record)\n"));
+  place.write("beam.toml",
+              file +
+                  "\n[model]\nname = \"beam\"\n[[sensors]]\nname = \"mid\"\nposition_m = 0.5\n"
+                  "quantity = \"displacement\"\n[[parameters]]\nquantity = \"bending_stiffness\"\n"
+                  "guess_n_m2 = 200\nrelative_deviation = 0.1\n");
+  const std::string shown = place.run("validate beam.toml").out;
+  EXPECT_THAT(shown, HasSubstr("  sensors  mid: displacement at 0.5 m\n"));
+  EXPECT_THAT(shown, HasSubstr("bending_stiffness 200 +- 20 N m2"));
 }
 
 TEST(Validate, RefusesARecordThatDoesNotFit) {

@@ -38,30 +38,29 @@ TEST_P(EveryCommand, ExplainsItselfWithExamples) {
 }
 
 TEST_P(EveryCommand, RefusesAnUnknownOption) {
-  const Outcome outcome = Workplace().run(GetParam() + std::string(" --sed 1"));
+  const Outcome outcome = Workplace().run(GetParam() + std::string(" --zzzzzz 1"));
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(outcome.first_error_line(),
-            "beamid: " + std::string(GetParam()) + ": unrecognised option '--sed'");
+            "beamid: " + std::string(GetParam()) + ": unrecognised option '--zzzzzz'");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryCommand,
                          testing::Values("budget", "noise", "paper", "inspect", "prepare", "modal",
                                          "identify", "check", "track", "stream", "compare", "identifiability",
                                          "efficiency", "sweep", "modes", "frame", "simulate", "frf", "reduce",
-                                         "new", "validate", "list"),
+                                         "new", "validate", "list", "report", "help", "completion"),
                          [](const auto& tested) { return std::string(tested.param); });
 
+// The everyday ones stand first.
 TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
-  const Outcome outcome = Workplace().run("indentify");
+  const Outcome outcome = Workplace().run("quaternion");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(outcome.first_error_line(),
-            "beamid: unknown command 'indentify'; known: atlas, budget, noise, paper, inspect, prepare, "
-            "modal, identify, check, track, "
-            "stream, compare, identifiability, efficiency, sweep, modes, frame, simulate, frf, reduce, "
-            "report, new, "
-            "validate, list");
+            "beamid: unknown command 'quaternion'; known: modes, simulate, identify, modal, compare, report, "
+            "inspect, prepare, track, stream, check, frf, frame, reduce, identifiability, sweep, efficiency, "
+            "atlas, budget, noise, paper, new, validate, list, completion, help");
 }
 
 struct Kind {
@@ -141,13 +140,14 @@ TEST(List, WithoutAKindShowsEveryEntryWithItsOptions) {
 }
 
 TEST(List, RefusesUnknownKindsAndNames) {
-  EXPECT_EQ(Workplace().run("list fliters").first_error_line(),
-            "beamid: list: unknown kind 'fliters'; known: discretisations, filters, modal_methods, models, "
-            "readers, reductions, responses, smoothers, steps, studies");
   EXPECT_EQ(
-      Workplace().run("list filters ufk").first_error_line(),
-      "beamid: unknown filter 'ufk'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, iekf, kf, low_rank_ekf, "
-      "low_rank_ukf, particle, robust_ekf, srckf, srukf, ukf");
+      Workplace().run("list quaternions").first_error_line(),
+      "beamid: list: unknown kind 'quaternions'; known: discretisations, filters, modal_methods, models, "
+      "readers, reductions, responses, smoothers, steps, studies");
+  EXPECT_EQ(Workplace().run("list filters quaternion").first_error_line(),
+            "beamid: unknown filter 'quaternion'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, iekf, kf, "
+            "low_rank_ekf, "
+            "low_rank_ukf, particle, robust_ekf, srckf, srukf, ukf");
   EXPECT_EQ(Workplace().run("list filters ufk").code, 2);
 }
 

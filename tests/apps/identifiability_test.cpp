@@ -48,7 +48,7 @@ TEST(IdentifiabilityCommand, RefusesWhatItDoesNotKnow) {
   const Workplace place;
   const Outcome model = place.run("identifiability --model sdf");
   EXPECT_EQ(model.code, 2);
-  EXPECT_THAT(model.err, HasSubstr("--model: unknown model 'sdf'; known: "));
+  EXPECT_THAT(model.err, HasSubstr("--model: unknown model 'sdf'; did you mean 'sdof'? known: "));
   const Outcome reduction = place.run("identifiability --reduction modal");
   EXPECT_EQ(reduction.code, 2);
   EXPECT_THAT(reduction.err, HasSubstr("--reduction: unknown reduction 'modal'"));

@@ -61,7 +61,7 @@ TEST(Inspect, RefusesWhatIsNoRecord) {
   for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
            {"inspect", "beamid: inspect: which RECORD?"},
            {"inspect gone.csv", "gone.csv: no such file; expected a record of numbers in columns"},
-           {"inspect a.csv b.csv", "beamid: inspect: too many words"},
+           {"inspect a.csv b.csv", "beamid: inspect: unexpected argument 'b.csv'"},
            {"inspect words.csv", "words.csv"}}) {
     const Outcome outcome = place.run(words);
     EXPECT_EQ(outcome.code, 2) << words;

@@ -129,7 +129,7 @@ TEST(Modes, TakeOptionsBeforeTheFile) {
       "elements = 10\n");
   const json changed =
       json_of(place.run("modes --json --config beam.toml --length 1 --beam-mass 4 --elements 20"));
-  EXPECT_EQ(changed["configuration"]["title"], "a beam");
+  EXPECT_EQ(changed["configuration"]["title"], "a beam (with --length 1 --beam-mass 4)");
   EXPECT_EQ(changed["configuration"]["beam"]["length_m"], 1.0);
   EXPECT_EQ(changed["configuration"]["beam"]["mass_kg"], 4.0);
   EXPECT_EQ(changed["elements"], 20);
@@ -179,14 +179,11 @@ TEST(Modes, OfAFineMeshAreDrawnOnACoarserOne) {
 
 TEST(BeamOptions, AreRefusedWhenTheyMakeNoSense) {
   const std::pair<const char*, const char*> cases[] = {
-      {"modes --support clamped-fre",
-       "--support: unknown 'clamped-fre'; known: clamped-clamped, clamped-pinned, clamped-guided, "
-       "clamped-free, pinned-clamped, pinned-pinned, pinned-guided, pinned-free, guided-clamped, "
-       "guided-pinned, guided-guided, guided-free, free-clamped, free-pinned, free-guided, free-free"},
+      {"modes --support clamped-fre", "--support: unknown 'clamped-fre'; did you mean 'clamped-free'?"},
       {"modes --length -1", "--length: beam.length_m is -1; expected a positive number"},
-      {"modes --height nan", "--height: beam.height_m is nan; expected a finite number"},
-      {"modes --length long", "beamid: modes: the argument ('long') for option '--length' is invalid"},
-      {"modes --elements 0", "--elements: 0; expected a whole number from 1 to 1000000"},
+      {"modes --height nan", "beamid: modes: --height is 'nan'; expected a number"},
+      {"modes --length long", "beamid: modes: --length is 'long'; expected a number"},
+      {"modes --elements 0", "beamid: modes: --elements is 0; expected a whole number from 1 to 1000000"},
       {"modes --modes 0", "beamid: modes: --modes is 0; expected a whole number from 1 to 1000"},
       {"modes --diameter 0.1 --width 0.1",
        "beamid: modes: --diameter and --width exclude each other; expected one of them"},

@@ -74,7 +74,7 @@ TEST(DampingLawOption, RefusesOtherLaws) {
   const Outcome outcome =
       Workplace().run("identify --config '" + tutorial("rubbed.toml").string() + "' --damping-law air");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("unknown damping law 'air'; known: auto, viscous, coulomb"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("--damping-law is 'air'; expected auto, viscous, coulomb"));
 }
 
 // Oracle: damping ratios of independent fits over later and later windows, which rise with falling amplitude

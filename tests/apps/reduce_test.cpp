@@ -97,7 +97,7 @@ TEST(Reduce, TakesAShapeFromAFile) {
 TEST(Reduce, RefusesWhatMakesNoSense) {
   const std::pair<const char*, const char*> cases[] = {
       {"reduce --modes 0", "beamid: reduce: --modes is 0; expected a whole number from 1 to 100"},
-      {"reduce --band 1", "beamid: reduce: --band is 1; expected a number above 1, 1000 at most"},
+      {"reduce --band 1", "beamid: reduce: --band is 1; expected a number above 1 and at most 1000"},
       {"reduce --reduction rayleigh:shape=given",
        "--reduction: reduction 'rayleigh' is to take a given shape, and none is given; expected shape_file, "
        "or "

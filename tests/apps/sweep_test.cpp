@@ -72,6 +72,20 @@ TEST_F(Sweep, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(contents(place_.folder() / "one/report.html"), contents(place_.folder() / "three/report.html"));
 }
 
+// Not SIGINT: a shell ignores that for what it starts in the background. Both are handled alike.
+TEST_F(Sweep, SaysWhatIsKeptWhenItIsInterrupted) {
+  place_.write("stop.sh",
+               "\"$1\" sweep --config rig.toml --seeds 3000 --threads 1 --out broken 2>said & started=$!\n"
+               "until [ \"$(wc -l 2>/dev/null <broken.partial/cases.csv || echo 0)\" -gt 8 ]; do :; done\n"
+               "kill -TERM $started\nwait $started\necho $? >code\n");
+  place_.run("--version >version; sh stop.sh '" BEAMID_COMMAND "'");
+  EXPECT_EQ(contents(place_.folder() / "code"), "143\n");
+  EXPECT_THAT(
+      contents(place_.folder() / "said"),
+      testing::MatchesRegex("\ninterrupted; [0-9]+ of 6000 cases are kept in 'broken.partial': the same "
+                            "command with --resume goes on\n"));
+}
+
 TEST_F(Sweep, GoesOnWhereItWasKilled) {
   expect_success(sweep("--seeds 60 --out whole"));
   place_.write("kill.sh",

@@ -82,7 +82,7 @@ inline const std::vector<Library>& libraries() {
       {"matio", {"matio"}, {"experiments/record/files/"}},
       {"oneTBB", {"tbb/", "oneapi/"}, {"experiments/"}},
       {"Boost.Math", {"boost/math/"}, {"fem/", "filters/", "experiments/"}},
-      {"Boost.Program_options", {"boost/program_options"}, {"apps/"}, true},
+      {"Boost.Program_options", {"boost/program_options"}, {"apps/values.cpp"}},
       {"POSIX", {"unistd.h", "fcntl.h", "poll.h", "spawn.h", "signal.h", "sys/"}, {"experiments/", "apps/"}}};
   return known;
 }

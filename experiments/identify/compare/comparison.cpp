@@ -8,7 +8,6 @@
 
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/read_reduction.hpp"
-#include "experiments/countdown.hpp"
 #include "experiments/identify/compare/compared_run.hpp"
 #include "experiments/identify/compare/started_model.hpp"
 #include "experiments/identify/compare/true_value.hpp"
@@ -19,6 +18,7 @@
 #include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "experiments/text/choice_text.hpp"
+#include "experiments/text/countdown.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "filters/filter.hpp"

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/countdown.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
+#include "experiments/text/countdown.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "experiments/countdown.hpp"
+#include "experiments/text/countdown.hpp"
 #include "filters/random.hpp"
 
 namespace beamid::experiments {

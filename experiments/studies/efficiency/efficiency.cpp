@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/countdown.hpp"
 #include "experiments/studies/efficiency/lengthening_passes.hpp"
+#include "experiments/text/countdown.hpp"
 #include "filters/filter_run.hpp"
 
 namespace beamid::experiments {

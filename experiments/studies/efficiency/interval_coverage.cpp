@@ -8,12 +8,12 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/countdown.hpp"
 #include "experiments/identify/higher_modes.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/signal/random.hpp"
+#include "experiments/text/countdown.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 

@@ -11,12 +11,12 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/countdown.hpp"
 #include "experiments/identify/identification_request.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/record/write_record.hpp"
 #include "experiments/studies/efficiency/laboratory_identification.hpp"
 #include "experiments/studies/identify/record_report.hpp"
+#include "experiments/text/countdown.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/countdown.hpp"
 #include "experiments/signal/positive.hpp"
+#include "experiments/text/countdown.hpp"
 
 namespace beamid::experiments {
 namespace {

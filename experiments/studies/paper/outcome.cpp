@@ -1,7 +1,7 @@
 #include "experiments/studies/paper/outcome.hpp"
 
-#include "experiments/countdown.hpp"
 #include "experiments/models/discretisation_bias.hpp"
+#include "experiments/text/countdown.hpp"
 
 namespace beamid::experiments::paper {
 namespace {

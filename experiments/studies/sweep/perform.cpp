@@ -8,12 +8,12 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/countdown.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/job.hpp"
 #include "experiments/sweep/journal.hpp"
 #include "experiments/sweep/repeats.hpp"
 #include "experiments/sweep/sweep.hpp"
+#include "experiments/text/countdown.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -167,11 +167,7 @@ TEST(ReadExperiment, RefusesUnknownKeysAndOffersTheNearest) {
   expect_refused(
       {{"title = \"x\"\n", "bad.toml: beam is missing; expected a table"},
        {"beam = 3\n", "bad.toml:1:8: beam is 3; expected a table"},
-       {BEAM "[fliter]\n",
-        "bad.toml:5:2: unknown key 'fliter'; did you mean 'filter'? known: title, beam, damping, "
-        "excitation, sensors, acquisition, simulation, frequency_response, record, reduction, reductions, "
-        "model, "
-        "parameters, filter, filters, compare, identifiability, prior, noise, frame, sweep"},
+       {BEAM "[fliter]\n", "bad.toml:5:2: unknown key 'fliter'; did you mean 'filter'?"},
        {BEAM "  colour = 1\n", "bad.toml:5:3: unknown key 'colour' in beam; known: " BEAM_KEYS},
        {"[prior]\ndamping_ration = 1\nstiffness = 2\n[beam]\n",
         "bad.toml:2:1: unknown key 'damping_ration' in prior; did you mean 'damping_ratio'? known: "

@@ -1,4 +1,4 @@
-#include "experiments/countdown.hpp"
+#include "experiments/text/countdown.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,20 @@
+// What is said when a long command is interrupted.
+#pragma once
+
+#include <string>
+
+namespace beamid::apps {
+
+/// While it lives, Ctrl-C or a request to end prints a sentence on standard error; the program then ends as
+/// it would without. One at a time.
+class Interruption {
+ public:
+  explicit Interruption(const std::string& sentence);
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  void say(const std::string& sentence);  ///< from now on; from one thread at a time
+};
+
+}  // namespace beamid::apps

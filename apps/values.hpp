@@ -1,0 +1,60 @@
+// What stands on the command line, checked against the options of its command.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "apps/option.hpp"
+
+namespace beamid::apps {
+
+struct Command;
+
+/// Words on the command line that make no sense: printed after the command's name and with a hint to its
+/// --help, exit code 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Values {
+ public:
+  /// Long options as --name VALUE or --name=VALUE, short ones as -n VALUE or -nVALUE, flags joined as in -qv;
+  /// behind "--" nothing is an option. Numbers are no options either, so that values may be negative.
+  ///
+  /// --help and --version end the reading: what stands behind them is not looked at.
+  /// @param command lives longer.
+  /// @throws UsageError on an option that the command does not have, with the one that was probably meant, on
+  ///     values that are missing, of the wrong type or out of range, on words too many or too few.
+  Values(const Command& command, const Words& words);
+
+  /// Whether the option, or a word of this name, is on the command line.
+  bool has(const std::string& name) const { return given_.contains(name); }
+  /// Its value, the last of several, or its default.
+  const std::string& text(const std::string& name) const;
+  Words texts(
+      const std::string& name) const;  ///< all of them; empty where it is neither given nor has a default
+  double number(const std::string& name) const;
+  int whole(const std::string& name) const { return static_cast<int>(number(name)); }
+  std::vector<double> numbers(const std::string& name) const;
+  std::optional<std::pair<double, double>> from_to(const std::string& name) const;
+  void set(const std::string& flag) { given_[flag]; }  ///< as if it were on the command line
+
+  const Command& command() const { return *command_; }
+  /// What repeats the command: "beamid modes --modes 5". Where its results went is no part of it.
+  const std::string& command_line() const { return line_; }
+
+ private:
+  const Option& option(const std::string& name) const;
+  void check(const Option& option) const;
+
+  const Command* command_;
+  std::map<std::string, Words> given_;
+  std::string line_;
+};
+
+}  // namespace beamid::apps
