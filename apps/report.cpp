@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "experiments/results/joined_report.hpp"
+#include "experiments/studies/report/joined_report.hpp"
 #include "experiments/results/report_pdf.hpp"
 #include "experiments/text/clean_text.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/results/joined_report.hpp"
+#include "experiments/studies/report/joined_report.hpp"
 
 namespace beamid::experiments {
 

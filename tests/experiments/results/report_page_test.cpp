@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "experiments/results/html.hpp"
-#include "experiments/results/joined_report.hpp"
+#include "experiments/studies/report/joined_report.hpp"
 #include "experiments/results/typeset.hpp"
 
 namespace beamid::experiments::report_page_test {

@@ -1,4 +1,4 @@
-#include "experiments/results/joined_report.hpp"
+#include "experiments/studies/report/joined_report.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -12,7 +12,7 @@
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/results/html.hpp"
-#include "experiments/results/joined_numbers.hpp"
+#include "experiments/studies/report/joined_numbers.hpp"
 #include "experiments/results/report_methods.hpp"
 #include "experiments/results/report_page.hpp"
 #include "experiments/text/input_error.hpp"

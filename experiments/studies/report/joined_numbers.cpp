@@ -1,4 +1,4 @@
-#include "experiments/results/joined_numbers.hpp"
+#include "experiments/studies/report/joined_numbers.hpp"
 
 #include <fmt/format.h>
 
