@@ -113,7 +113,7 @@ double log_likelihood(double z, double freedom) {
 /// @param usual standard deviation beforehand of the change over the decay, where there is one
 SectionTrend trend_of(const std::vector<AmplitudeLaw>& laws, LawLine AmplitudeLaw::*line, double usual,
                       const Scatter& scatter) {
-  constexpr double odds = 0.3;                                     // that a quantity varies, beforehand
+  constexpr double odds = 0.05;                                    // that a quantity varies, beforehand
   constexpr std::array<double, 5> z{0, -1.57, 1.57, -0.73, 0.73};  // slopes: their variance is one
   SectionTrend trend;
   if (laws.empty()) return trend;
@@ -238,9 +238,9 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
       sections == count ? interval * static_cast<double>(signal.size()) : result.sections.back().to;
   const std::vector<AmplitudeLaw> laws = laws_of(coarse, sections * length, end, result.sections, shapes,
                                                  log_amplitude.mean(), frequency, damping);
-  // What joints, clamps and air commonly do to a beam over a decay: 0.2 % of its frequency, two fifths of its
-  // damping.
-  constexpr double usual_frequency = 0.002, usual_damping = 0.4;
+  // What joints, clamps and air commonly do to a beam over a decay: 0.4 % of its frequency, four fifths of
+  // its damping.
+  constexpr double usual_frequency = 0.004, usual_damping = 0.8;
   result.frequency = trend_of(laws, &AmplitudeLaw::frequency_hz, usual_frequency * modal.frequency_hz,
                               scatter_about_lines(shapes, frequency, freedom));
   result.damping = trend_of(laws, &AmplitudeLaw::damping_ratio, usual_damping * std::abs(modal.damping_ratio),

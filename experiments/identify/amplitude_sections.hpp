@@ -43,9 +43,9 @@ struct AmplitudeSections {
 /// motion (amplitude_law.hpp), g(A) = A^2, A, sqrt A, log A and 1/A (friction that grows with velocity, ...,
 /// Coulomb's). With the likelihood L of the constant and L_g of each law,
 ///
-///     P(constant) = L / (L + sum_g w L_g),   w = 0.3 / 5,   b_g ~ N(0, B_g^2) beforehand,
+///     P(constant) = L / (L + sum_g w L_g),   w = 0.05 / 5,   b_g ~ N(0, B_g^2) beforehand,
 ///
-/// B_g making a change over the decay of 0.2 % of the frequency or two fifths of the damping ratio. A report
+/// B_g making a change over the decay of 0.4 % of the frequency or four fifths of the damping ratio. A report
 /// says that the quantity varies where the best law's b is not zero, or the sections scatter about their
 /// lines, with a probability below 1 %. Sections whose amplitude has fallen to three deviations of the noise
 /// are left out; none are made beside a companion mode, whose beat is not a matter of amplitude.
