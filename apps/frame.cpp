@@ -8,6 +8,7 @@
 #include "apps/deliver.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_frame.hpp"
+#include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/continuum/frame_modes.hpp"
 #include "experiments/text/method_choice.hpp"
 
@@ -28,7 +29,9 @@ int run(const Values& values) {
   deliver(values, [&] {
     return experiments::at_place({file.string()}, [&] {
       const auto found = experiments::frame_modes(experiment, values.whole("modes"), show_progress(values));
-      return experiments::report(experiment, found);
+      experiments::Results results = experiments::report(experiment, found);
+      experiments::warn(results, experiment);
+      return results;
     });
   });
   return 0;

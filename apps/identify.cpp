@@ -166,7 +166,7 @@ Results identify_together(const std::vector<IdentifyRequest>& requests, const st
     if (one.thinned) thinned += (thinned.empty() ? "" : ", ") + one.file.filename().string();
   if (!thinned.empty()) results.paragraph(thinned + ": " + higher_modes);
   for (const IdentifyRequest& one : requests)
-    tell_cost(results, one.file.filename().string(), one.prepared, one.experiment.format);
+    tell_cost(results, one.file.filename().string(), told_of(one), one.experiment.format);
   return results;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/config/read_experiment.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 
@@ -18,7 +19,9 @@ using Sentences = std::vector<std::string>;
 constexpr double slenderest = 0.2, least_modulus = 1e8, most_modulus = 1e12, least_density = 100,
                  most_density = 25000, lowest_hz = 0.01, highest_hz = 20000;
 
-void check_segment(const fem::Section& section, double length, const std::string& of, Sentences& found) {
+/// @param whole "beam", or what else has this length.
+void check_segment(const fem::Section& section, double length, const std::string& of, const char* whole,
+                   Sentences& found) {
   const fem::Outline& outline = section.outline;
   if (outline.shape == fem::Outline::Shape::none) return;
   constexpr double middle = 0.5;
@@ -29,14 +32,20 @@ void check_segment(const fem::Section& section, double length, const std::string
   const double modulus = section.bending_stiffness(middle) / second_moment,
                density = section.mass_per_length(middle) / area;
   if (height > slenderest * length)
-    found.push_back(fmt::format("{}{} of {:.4g} m is more than a fifth of the beam's length of {:.4g} m.", of,
-                                round ? "diameter" : "height", height, length));
+    found.push_back(fmt::format("{}{} of {:.4g} m is more than a fifth of the {}'s length of {:.4g} m.", of,
+                                round ? "diameter" : "height", height, whole, length));
   if (!(modulus >= least_modulus && modulus <= most_modulus))
     found.push_back(fmt::format("{}Young's modulus is {:.4g} Pa; materials have {:g} to {:g} Pa.", of,
                                 modulus, least_modulus, most_modulus));
   if (!(density >= least_density && density <= most_density))
     found.push_back(fmt::format("{}density is {:.4g} kg/m3; materials have {:g} to {:g} kg/m3.", of, density,
                                 least_density, most_density));
+}
+
+void check_frequency(double first, Sentences& found) {
+  if (first < lowest_hz || first > highest_hz)
+    found.push_back(fmt::format("The first frequency is {:.4g} Hz; expected {:g} Hz to {:g} kHz.", first,
+                                lowest_hz, 1e-3 * highest_hz));
 }
 
 void check_modes(const Experiment& experiment, Sentences& found) {
@@ -46,10 +55,7 @@ void check_modes(const Experiment& experiment, Sentences& found) {
         fem::assemble(experiment.beam, std::min(experiment.elements, enough_elements));
     const fem::Modes modes = fem::modes(system, std::min<Eigen::Index>(rigid_motions + 1, system.size()));
     if (modes.rigid >= modes.size()) return;
-    const double first = modes.frequency_hz()[modes.rigid];
-    if (first < lowest_hz || first > highest_hz)
-      found.push_back(fmt::format("The first frequency is {:.4g} Hz; expected {:g} Hz to {:g} kHz.", first,
-                                  lowest_hz, 1e-3 * highest_hz));
+    check_frequency(modes.frequency_hz()[modes.rigid], found);
     const double ratio =
         fem::damping_ratios(experiment.damping, modes.angular_frequency.tail(modes.size() - modes.rigid))[0];
     if (ratio >= 1.0)
@@ -82,28 +88,77 @@ void check_damages(const fem::Beam& beam, Sentences& found) {
     }
 }
 
-}  // namespace
+void check_modes(const FrameExperiment& experiment, Sentences& found) {
+  constexpr int enough_elements = 4, rigid_motions = 3;
+  try {
+    const fem::StructuralSystem system =
+        fem::assemble(experiment.frame, std::min(experiment.elements_per_member, enough_elements));
+    const fem::Modes modes = fem::modes(system, std::min<Eigen::Index>(rigid_motions + 1, system.size()));
+    if (modes.rigid < modes.size()) check_frequency(modes.frequency_hz()[modes.rigid], found);
+  } catch (const std::exception&) {  // the command itself says so
+  }
+}
 
-Sentences implausible(const Experiment& experiment) {
-  const fem::Beam& beam = experiment.beam;
-  Sentences units, found;
-  for (std::size_t i = 0; i < beam.segments.size(); ++i)
-    check_segment(beam.segments[i].section, beam.length(),
-                  beam.segments.size() == 1 ? "the beam's " : fmt::format("segment {}: the ", i + 1), units);
-  check_modes(experiment, units);
+/// Diagonal of the rectangle around all joints [m].
+double extent(const fem::Frame& frame) {
+  const auto [left, right] = std::minmax_element(frame.joints.begin(), frame.joints.end(),
+                                                 [](const auto& a, const auto& b) { return a.x < b.x; });
+  const auto [low, high] = std::minmax_element(frame.joints.begin(), frame.joints.end(),
+                                               [](const auto& a, const auto& b) { return a.y < b.y; });
+  return std::hypot(right->x - left->x, high->y - low->y);
+}
+
+Sentences as_wrong_units(const Sentences& units) {
+  Sentences found;
   for (const std::string& sentence : units) found.push_back("Implausible, check the units: " + sentence);
-  check_supports(beam, found);
-  check_damages(beam, found);
   return found;
 }
 
-void warn(Results& results, const Experiment& experiment) {
-  const Sentences found = implausible(experiment);
+void lead_with(Results& results, const Sentences& found) {
   if (found.empty()) return;
   auto place = results.report.begin();
   if (place != results.report.end() && std::holds_alternative<Heading>(*place)) ++place;
   for (const std::string& sentence : found) place = results.report.insert(place, Paragraph{sentence}) + 1;
   for (const std::string& sentence : found) results.values["beam_warnings"].push_back(sentence);
+}
+
+}  // namespace
+
+Sentences implausible(const Experiment& experiment) {
+  const fem::Beam& beam = experiment.beam;
+  Sentences units;
+  for (std::size_t i = 0; i < beam.segments.size(); ++i)
+    check_segment(beam.segments[i].section, beam.length(),
+                  beam.segments.size() == 1 ? "the beam's " : fmt::format("segment {}: the ", i + 1), "beam",
+                  units);
+  check_modes(experiment, units);
+  Sentences found = as_wrong_units(units);
+  check_supports(beam, found);
+  check_damages(beam, found);
+  return found;
+}
+
+Sentences implausible(const FrameExperiment& experiment) {
+  const fem::Frame& frame = experiment.frame;
+  Sentences units;
+  if (frame.joints.empty()) return units;
+  for (std::size_t i = 0; i < frame.members.size(); ++i)
+    check_segment(frame.members[i].section, extent(frame), fmt::format("member {}: the ", i + 1), "frame",
+                  units);
+  check_modes(experiment, units);
+  return as_wrong_units(units);
+}
+
+void warn(Results& results, const Experiment& experiment) {
+  lead_with(results, implausible(experiment));
+}
+
+void warn(Results& results, const FrameExperiment& experiment) {
+  lead_with(results, implausible(experiment));
+}
+
+void warn_of_file(Results& results, const std::string& file) {
+  if (!file.empty()) warn(results, read_experiment(file));
 }
 
 }  // namespace beamid::experiments

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/atlas/report.hpp"
 #include "experiments/studies/study.hpp"
 #include "fem/assembly.hpp"
@@ -31,14 +32,19 @@ class AtlasStudy final : public Study {
     if (!(ratio > 0.0 && ratio < 1.0)) throw std::invalid_argument("damping_ratio must be between 0 and 1");
     settings_.beam = Oscillator::from_frequency(1.0, 2.0 * std::numbers::pi * frequency, ratio);
     settings_.interval = options.number("interval");
-    if (const std::string& file = options.text("config"); !file.empty())
-      settings_ = described(file, settings_);
+    config_ = options.text("config");
+    if (!config_.empty()) settings_ = described(config_, settings_);
   }
 
-  Results run(const Progress& progress) const override { return report(make_atlas(settings_, progress)); }
+  Results run(const Progress& progress) const override {
+    Results results = report(make_atlas(settings_, progress));
+    warn_of_file(results, config_);
+    return results;
+  }
 
  private:
   AtlasSettings settings_;
+  std::string config_;
 };
 
 const bool atlas_registered = study_registry().add(

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/budget/report.hpp"
 #include "experiments/studies/paper/beam_identification.hpp"
 #include "experiments/studies/paper/monte_carlo.hpp"
@@ -72,8 +73,8 @@ class BudgetStudy final : public Study {
     if (!(common.sensor_mass >= 0.0)) throw std::invalid_argument("sensor_mass must not be negative");
     if (!(common.amplitude_damping >= 0.0))
       throw std::invalid_argument("amplitude_damping must not be negative");
-    const std::string& file = options.text("config");
-    beams_ = file.empty() ? five_beams(common) : std::vector<Named>{described(file, common)};
+    config_ = options.text("config");
+    beams_ = config_.empty() ? five_beams(common) : std::vector<Named>{described(config_, common)};
   }
 
   Results run(const Progress& progress) const override {
@@ -83,12 +84,15 @@ class BudgetStudy final : public Study {
       budgets.push_back(make_budget(beams_[i].name, beams_[i].settings, orders_,
                                     [&](const std::string& what) { progress(part + what); }));
     }
-    return report(budgets, orders_);
+    Results results = report(budgets, orders_);
+    warn_of_file(results, config_);
+    return results;
   }
 
  private:
   std::vector<Named> beams_;
   int orders_ = 2;
+  std::string config_;
 };
 
 const bool budget_registered = study_registry().add(

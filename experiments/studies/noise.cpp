@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/noise/report.hpp"
 #include "experiments/studies/paper/test_beams.hpp"
 #include "experiments/studies/study.hpp"
@@ -57,17 +58,20 @@ class HigherModeStudy final : public Study {
     settings_.blow = options.number("blow");
     settings_.interval = options.number("interval");
     settings_.duration = options.number("duration");
-    const std::string& file = options.text("config");
-    settings_.beams =
-        file.empty() ? five_beams(settings_.modes) : std::vector<NoiseBeam>{described(file, settings_.modes)};
+    config_ = options.text("config");
+    settings_.beams = config_.empty() ? five_beams(settings_.modes)
+                                      : std::vector<NoiseBeam>{described(config_, settings_.modes)};
   }
 
   Results run(const Progress& progress) const override {
-    return report(study_higher_modes(settings_, progress));
+    Results results = report(study_higher_modes(settings_, progress));
+    warn_of_file(results, config_);
+    return results;
   }
 
  private:
   NoiseSettings settings_;
+  std::string config_;
 };
 
 const bool noise_registered = study_registry().add(

@@ -184,6 +184,9 @@ void tell_preparation(Results& results, const PreparedRecord& prepared, const Re
 void tell_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
                const RecordFormat& format) {
   lead_with(results, record_name, prepared.record);
+  std::string text;
+  for (const std::string& remark : prepared.record.remarks) text += (text.empty() ? "" : " ") + remark;
+  if (!text.empty()) results.paragraph(fmt::format("Record {}: {}", record_name, text));
   if (format.preparation.empty()) return;
   const DominantCost found = dominant_cost(prepared, format);
   Json one{{"record", record_name}};
