@@ -129,7 +129,7 @@ OptionGroup check_options() {
        band_option("frequencies to look at [Hz]")}};
 }
 
-int run(const Values& values) {
+int run_check(const Values& values) {
   const ModalStudySettings modal = modal_settings(values);
   const ModelCheckSettings settings = check_settings(values);
   const std::vector<Request> requests = requests_of(values);
@@ -161,7 +161,7 @@ Command check_command() {
           "  beamid check run1.csv run2.csv --config cantilever.toml --model-error 1 --out results\n"
           "  beamid check light.csv heavy.csv --config light.toml heavy.toml --out results\n"
           "  beamid check --config cantilever.toml --candidate tip_mass root_rotational_compliance\n",
-          run};
+          run_check};
 }
 
 }  // namespace beamid::apps

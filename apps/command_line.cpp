@@ -26,7 +26,7 @@ int print_version() {
   return 0;
 }
 
-int run(const Words& words) {
+int dispatch(const Words& words) {
   const std::string first = words.empty() ? "" : words[0];
   if (first.empty() || first == "--help" || first == "-h") {
     print_overview(first.empty() ? std::cerr : std::cout, terminal_page().width);
@@ -53,7 +53,7 @@ int run(const Words& words) {
 
 int run_command_line(int count, char** words) {
   try {
-    const int code = run({words + 1, words + count});
+    const int code = dispatch({words + 1, words + count});
     std::cout.flush();
     if (!std::cout) throw std::runtime_error("standard output cannot be written");
     return code;

@@ -25,7 +25,7 @@ using namespace experiments;
 
 /// What the command line says replaces what the file says; where neither does, the continuum stands beside
 /// its smallest reductions.
-void complete(const Values& values, Experiment& experiment) {
+void complete_compare(const Values& values, Experiment& experiment) {
   const Words reductions = values.texts("reduction");
   if (!reductions.empty()) experiment.reductions.clear();
   for (const std::string& text : reductions)
@@ -57,11 +57,11 @@ OptionGroup compare_options() {
        discretisation_option("likewise").repeated(), model_option()}};
 }
 
-int run(const Values& values) {
+int run_compare(const Values& values) {
   if (values.has("record") && values.has("truth"))
     throw UsageError("RECORD and --truth exclude each other; expected one of them");
   BeamSource source = read_beam(values);
-  complete(values, source.experiment);
+  complete_compare(values, source.experiment);
   const fs::path folder = source.config.parent_path();
   std::vector<fs::path> file;
   if (!values.has("truth")) file = record_files(values, source.config, source.experiment.record_file);
@@ -102,7 +102,7 @@ Command compare_command() {
           "  beamid compare --config cantilever.toml --out results\n"
           "  beamid compare tip.csv --config cantilever.toml --reduction none --reduction rayleigh\n"
           "  beamid compare --config believed.toml --truth damaged.toml --filter ekf --filter ukf\n",
-          run};
+          run_compare};
 }
 
 }  // namespace beamid::apps

@@ -84,7 +84,7 @@ complete -o default -F _beamid beamid
 )";
 }
 
-int run(const Values& values) {
+int run_completion(const Values& values) {
   const std::string shell = values.texts("shell")[0];
   if (shell != "bash") throw UsageError("unknown shell '" + shell + "'; known: bash");
   std::cout << bash_script();
@@ -100,7 +100,7 @@ Command completion_command() {
           {{.name = "shell", .required = true, .hint = "Expected bash", .choices = {"bash"}}},
           {},
           "  beamid completion bash >> ~/.bash_completion\n  source <(beamid completion bash)\n",
-          run};
+          run_completion};
 }
 
 }  // namespace beamid::apps

@@ -110,7 +110,7 @@ LaboratorySettings laboratory_settings(const Values& values) {
   return settings;
 }
 
-EfficiencySettings settings_of(const Values& values) {
+EfficiencySettings efficiency_settings_of(const Values& values) {
   EfficiencySettings settings;
   for (const std::string& text : values.texts("filter"))
     settings.filters.push_back(parse_choice(text, "--filter", filters::filter_registry()));
@@ -126,7 +126,7 @@ EfficiencySettings settings_of(const Values& values) {
   return settings;
 }
 
-int run(const Values& values) {
+int run_efficiency(const Values& values) {
   const std::string study = values.text("study");
   if (study == "coverage") {
     const CoverageSettings settings = coverage_settings(values);
@@ -151,7 +151,7 @@ int run(const Values& values) {
     return 0;
   }
   if (values.has("only")) throw UsageError("--only goes with --study records");
-  const EfficiencySettings settings = settings_of(values);
+  const EfficiencySettings settings = efficiency_settings_of(values);
   deliver(values, [&] { return report(find_efficiency(settings, show_progress(values))); });
   return 0;
 }
@@ -173,7 +173,7 @@ Command efficiency_command() {
       "  beamid efficiency --study decays --runs 2000 --out decays\n"
       "  beamid efficiency --study records --out records\n"
       "  beamid efficiency --study records --only 7 --out record_7\n",
-      run};
+      run_efficiency};
 }
 
 }  // namespace beamid::apps

@@ -15,7 +15,7 @@
 namespace beamid::apps {
 namespace {
 
-int run(const Values& values) {
+int run_frame(const Values& values) {
   const std::filesystem::path file = values.texts("file")[0];
   experiments::FrameExperiment experiment = experiments::read_frame(file);
   const auto members = static_cast<int>(experiment.frame.members.size());
@@ -51,7 +51,7 @@ Command frame_command() {
            output_options()},
           "  beamid frame portal.toml\n"
           "  beamid frame portal.toml --modes 5 --elements 40 --out results\n",
-          run};
+          run_frame};
 }
 
 }  // namespace beamid::apps

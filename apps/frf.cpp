@@ -17,7 +17,7 @@ const std::vector<KeyOption>& response_keys() {
   return keys;
 }
 
-int run(const Values& values) {
+int run_frf(const Values& values) {
   const BeamSource source = read_beam(values, response_keys());
   deliver(values, [&] {
     return blame_config(source, [&] {
@@ -39,7 +39,7 @@ Command frf_command() {
           "  beamid frf --damping-ratio 0.01\n"
           "  beamid frf --damping-ratio 0.01 --kind accelerance --from 1 --to 200 --out results\n"
           "  beamid frf --config rig.toml --out results\n",
-          run};
+          run_frf};
 }
 
 }  // namespace beamid::apps

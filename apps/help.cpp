@@ -26,7 +26,7 @@ void print_text(std::ostream& stream, const std::string& text, std::size_t width
   for (const std::string& line : wrapped(text, width)) stream << line << "\n";
 }
 
-int run(const Values& values) {
+int run_help(const Values& values) {
   const std::size_t width = terminal_page().width;
   if (values.has("command"))
     print_help(std::cout, find_command(values.texts("command")[0]), width);
@@ -99,7 +99,7 @@ Command help_command() {
           {{.name = "command"}},
           {},
           "  beamid help modes\n",
-          run};
+          run_help};
 }
 
 }  // namespace beamid::apps

@@ -13,7 +13,7 @@ using namespace experiments;
 
 /// What the command line says replaces what the file says; where neither does, the beam itself is asked about
 /// on its first three modes.
-void complete(const Values& values, Experiment& experiment) {
+void complete_identifiability(const Values& values, Experiment& experiment) {
   choose_model(values, experiment);
   if (values.has("reduction"))
     experiment.reduction = parse_reduction(values.text("reduction"), "--reduction");
@@ -22,9 +22,9 @@ void complete(const Values& values, Experiment& experiment) {
         experiment.model.name == "sdof" ? "rayleigh" : "modal_truncation:modes=3", "default reduction");
 }
 
-int run(const Values& values) {
+int run_identifiability(const Values& values) {
   BeamSource source = read_beam(values, record_length_keys());
-  complete(values, source.experiment);
+  complete_identifiability(values, source.experiment);
   deliver(values, [&] {
     return blame_config(source, [&] {
       return report(source.experiment, find_identifiability(source.experiment, source.config.parent_path(),
@@ -51,7 +51,7 @@ Command identifiability_command() {
           "  beamid identifiability --tip-mass 3.644615 --damping-ratio 0.0015 --duration 25\n"
           "  beamid identifiability --model sdof --out results\n"
           "  beamid identifiability --config rig.toml --reduction modal_truncation:modes=5 --out results\n",
-          run};
+          run_identifiability};
 }
 
 }  // namespace beamid::apps

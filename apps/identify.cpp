@@ -175,7 +175,7 @@ int exit_code(const Results& results) {
   return results.values.value("status", "converged") == "converged" ? 0 : 3;
 }
 
-int run(const Values& values) {
+int run_identify(const Values& values) {
   const Words configs = values.texts("config");
   if (configs.size() > 1) {
     deliver(values, [&] {
@@ -224,7 +224,7 @@ Command identify_command() {
           "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
           "  beamid identify hard.csv soft.csv --config cantilever.toml --damping-law auto\n"
           "  logger | beamid identify - --config cantilever.toml\n",
-          run,
+          run_identify,
           "",
           "3  no estimate to rely on, and \"status\" in results.json says which: the filter \"diverged\", or "
           "the modal "

@@ -8,7 +8,7 @@
 namespace beamid::apps {
 namespace {
 
-int run(const Values& values) {
+int run_inspect(const Values& values) {
   const RecordRequest request = record_requests(values).front();
   deliver(values, [&] { return experiments::report(experiments::inspect(request.file, request.format)); });
   return 0;
@@ -27,7 +27,7 @@ Command inspect_command() {
       "  beamid inspect impulse.lvm --rate 1651.6129 --out results\n"
       "  beamid inspect massa1.txt --time 1 --column 3 --quantity acceleration --unit g --window 0.2 1.2\n"
       "  logger | beamid inspect -\n",
-      run};
+      run_inspect};
 }
 
 }  // namespace beamid::apps

@@ -72,7 +72,7 @@ void print_all() {
   }
 }
 
-int run(const Values& values) {
+int run_list(const Values& values) {
   if (!values.has("kind")) {
     print_all();
     return 0;
@@ -98,7 +98,7 @@ Command list_command() {
           {{.name = "kind", .choices = kind_names()}, {.name = "name"}},
           {},
           "  beamid list\n  beamid list filters\n  beamid list filters ukf\n",
-          run,
+          run_list,
           "KIND is one of " + experiments::joined(kind_names()) + "."};
 }
 

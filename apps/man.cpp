@@ -87,7 +87,7 @@ std::string overview() {
   return page.str();
 }
 
-int run(const Values& values) {
+int run_man(const Values& values) {
   if (!values.has("all")) {
     std::cout << (values.has("command") ? page_of(find_command(values.texts("command")[0])) : overview());
     return 0;
@@ -111,7 +111,7 @@ Command man_command() {
           {{.name = "command"}},
           {{"Options", {text("all", "DIR", "write the pages of all commands there")}}},
           "  beamid man modes | man -l -\n",
-          run};
+          run_man};
 }
 
 }  // namespace beamid::apps

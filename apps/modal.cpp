@@ -38,7 +38,7 @@ OptionGroup modal_options() {
        flag("no-polish", "take them as the method finds them")}};
 }
 
-ModalStudySettings settings_of(const Values& values) {
+ModalStudySettings modal_settings_of(const Values& values) {
   ModalStudySettings settings;
   settings.method = parse_choice(values.text("method"), "--method", modal_method_registry());
   settings.band_hz = values.from_to("band");
@@ -103,8 +103,8 @@ Results decay_results(const std::vector<RecordRequest>& requests, const std::vec
   return results;
 }
 
-int run(const Values& values) {
-  const ModalStudySettings settings = settings_of(values);
+int run_modal(const Values& values) {
+  const ModalStudySettings settings = modal_settings_of(values);
   const std::vector<RecordRequest> requests = record_requests(values);
   const bool hammer =
       modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response);
@@ -149,7 +149,7 @@ Command modal_command() {
           "  beamid modal tip_acceleration.csv --amplitude --out results\n"
           "  beamid modal --config cantilever.toml --method half_power --out results\n"
           "  beamid modal hits.csv more_hits.csv --method frf_lscf --band 5 200 --out results\n",
-          run};
+          run_modal};
 }
 
 }  // namespace beamid::apps

@@ -7,7 +7,7 @@
 namespace beamid::apps {
 namespace {
 
-int run(const Values& values) {
+int run_modes(const Values& values) {
   const BeamSource source = read_beam(values);
   deliver(values, [&] {
     return blame_config(source, [&] {
@@ -34,7 +34,7 @@ Command modes_command() {
       "  beamid modes --tip-mass 0.36 --axial-load 100 --modes 5\n"
       "  beamid modes --support clamped-clamped --diameter 0.02 --elements 200\n"
       "  beamid modes --config wing.toml --surface --out results\n",
-      run};
+      run_modes};
 }
 
 }  // namespace beamid::apps

@@ -82,7 +82,7 @@ discretisation = "exponential"      # beamid list discretisations; forward_euler
 # acceleration_m_per_s2 = 0.05
 )toml";
 
-int run(const Values& values) {
+int run_new(const Values& values) {
   const fs::path file = values.texts("file")[0];
   if (file == "-") {
     std::cout << starter;
@@ -109,7 +109,7 @@ Command new_command() {
           {{.name = "file", .required = true, .hint = "('-' for standard output)"}},
           {{"Options", {flag("force", "replace a file that exists")}}},
           "  beamid new cantilever.toml\n  beamid new - | less\n",
-          run};
+          run_new};
 }
 
 }  // namespace beamid::apps

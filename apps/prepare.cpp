@@ -9,7 +9,7 @@ namespace {
 
 using namespace experiments;
 
-int run(const Values& values) {
+int run_prepare(const Values& values) {
   const std::filesystem::path config = values.text("config");
   const Experiment experiment = read_experiment(config);
   const std::filesystem::path file = require_record_files(values, config, experiment.record_file)[0];
@@ -35,7 +35,7 @@ Command prepare_command() {
            output_options()},
           "  beamid prepare tip_acceleration.csv --config cantilever.toml --out results\n"
           "  beamid list steps\n",
-          run};
+          run_prepare};
 }
 
 }  // namespace beamid::apps

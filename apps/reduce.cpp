@@ -55,7 +55,7 @@ std::vector<Choice> chosen(const BeamSource& source, const Values& values) {
   return choices;
 }
 
-int run(const Values& values) {
+int run_reduce(const Values& values) {
   const ReductionComparisonSettings settings{values.whole("modes"), values.number("band")};
   const BeamSource source = read_beam(values);
   const std::vector<Choice> choices = chosen(source, values);
@@ -81,7 +81,7 @@ Command reduce_command() {
           "  beamid reduce --tip-mass 0.0198575 --reduction rayleigh --reduction modal_truncation:modes=3\n"
           "  beamid reduce --reduction guyan:masters_m=0.4/0.8/1.1 --elements 200 --modes 8 --out results\n"
           "  beamid reduce --config rig.toml --reduction rayleigh:shape=given --shape-file shape.csv\n",
-          run};
+          run_reduce};
 }
 
 }  // namespace beamid::apps

@@ -6,8 +6,8 @@
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "experiments/studies/report/joined_report.hpp"
 #include "experiments/results/report_pdf.hpp"
+#include "experiments/studies/report/joined_report.hpp"
 #include "experiments/text/clean_text.hpp"
 
 namespace beamid::apps {
@@ -23,7 +23,7 @@ fs::path new_file(const Values& values, const char* option) {
   return file;
 }
 
-int run(const Values& values) {
+int run_report(const Values& values) {
   if (!values.has("out") && !values.has("pdf"))
     throw UsageError("--out FILE is missing; expected it, --pdf FILE, or both");
   const Words words = values.texts("dir");
@@ -68,7 +68,7 @@ Command report_command() {
          flag("force", "replace FILE")}}},
       "  beamid report results/massa1 results/massa2 --out masses.html\n"
       "  beamid report results/massa1 results/massa2 --pdf masses.pdf\n",
-      run};
+      run_report};
 }
 
 }  // namespace beamid::apps

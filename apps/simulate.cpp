@@ -18,7 +18,7 @@ std::vector<KeyOption> simulation_keys() {
   return keys;
 }
 
-int run(const Values& values) {
+int run_simulate(const Values& values) {
   const BeamSource source = read_beam(values, simulation_keys());
   experiments::Acquisition acquisition;
   if (!source.config.empty())
@@ -45,7 +45,7 @@ Command simulate_command() {
           "  beamid simulate --damping-ratio 0.002 --duration 25 --out results\n"
           "  beamid simulate --config rig.toml --out results\n"
           "  beamid simulate --config rig.toml --method newmark --sampling-rate 5000\n",
-          run};
+          run_simulate};
 }
 
 }  // namespace beamid::apps

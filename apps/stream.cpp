@@ -119,7 +119,7 @@ OptionGroup stream_options() {
                 "line")}};
 }
 
-int run(const Values& values) {
+int run_stream(const Values& values) {
   const fs::path config = values.text("config");
   Experiment experiment = read_experiment(config);
   choose_failure_response(values, experiment);
@@ -172,7 +172,7 @@ Command stream_command() {
       "  beamid stream --config cantilever.toml < tip_acceleration.csv\n"
       "  logger | beamid stream --config cantilever.toml --save-state now.json\n"
       "  logger | beamid stream --config cantilever.toml --resume now.json\n",
-      run,
+      run_stream,
       "A sample is a line 'time,output[,output...]', in seconds and SI units, the outputs in the order of "
       "the "
       "record's channels; an output that is empty or nan was not measured. One line of estimates and "

@@ -27,7 +27,7 @@ Option option_of(const filters::OptionSpec& spec) {
   return (name == "config" ? option.as('c') : option).by_default(std::get<std::string>(spec.fallback));
 }
 
-int run(const Values& values) {
+int run_study(const Values& values) {
   filters::Options chosen;
   for (const auto& spec : study_registry().find(values.command().name).options) {
     const std::string name = option_name(spec.name);
@@ -55,7 +55,7 @@ std::vector<Command> study_commands() {
                       {own, output_options()},
                       "  beamid " + name + "\n  beamid " + name + " --out results\n  beamid " + name +
                           " --json | python3 -m json.tool\n",
-                      run});
+                      run_study});
   }
   return result;
 }

@@ -125,7 +125,7 @@ int with_processes(const std::function<int()>& work) {
   return work();
 }
 
-int run(const Values& given) {
+int run_sweep(const Values& given) {
   Values values = given;
   if (values.has("merge")) return merge_folders(values);
   if (!values.has("config")) throw UsageError("which --config FILE?");
@@ -193,7 +193,7 @@ Command sweep_command() {
       "  beamid sweep --config rig.toml --seeds 1000 --shard 3/8 --out part3\n"
       "  beamid sweep --merge part1 part2 part3 --out all\n"
       "  mpirun -n 9 beamid sweep --config rig.toml --seeds 1000 --out swept    # 8 cores\n",
-      run,
+      run_sweep,
       "",
       "",
       with_processes};

@@ -28,7 +28,7 @@ OptionGroup track_options() {
        number("shortest", "CYCLES", "fewest cycles of a plateau").from(3).less_than(1e6).by_default("8")}};
 }
 
-TrackSettings settings_of(const Values& values) {
+TrackSettings track_settings_of(const Values& values) {
   TrackSettings settings;
   settings.band_hz = values.from_to("band");
   if (values.has("walk")) settings.walk = values.number("walk");
@@ -37,8 +37,8 @@ TrackSettings settings_of(const Values& values) {
   return settings;
 }
 
-int run(const Values& values) {
-  const TrackSettings settings = settings_of(values);
+int run_track(const Values& values) {
+  const TrackSettings settings = track_settings_of(values);
   const RecordRequest request = record_requests(values).front();
   deliver(values, [&] {
     PreparedRecord prepared = read_and_prepare(request.file, request.format);
@@ -73,7 +73,7 @@ Command track_command() {
           "  beamid track tip_acceleration.csv --out results\n"
           "  beamid track --config moving_support.toml --band 20 60 --out results\n"
           "  beamid track export.txt --column 1 --quantity acceleration --unit m/s2 --walk 0.01\n",
-          run};
+          run_track};
 }
 
 }  // namespace beamid::apps

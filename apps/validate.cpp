@@ -110,7 +110,7 @@ int validate_frame(const fs::path& file, const TomlTable& root) {
   return 0;
 }
 
-int run(const Values& values) {
+int run_validate(const Values& values) {
   const fs::path file = values.texts("file")[0];
   const TomlTable root = TomlTable::read(file);
   if (root.contains("frame") && !root.contains("beam") && !values.has("record"))
@@ -164,7 +164,7 @@ Command validate_command() {
       {{"Options", {text("record", "RECORD", "read this record too, instead of the one the file names")}}},
       "  beamid validate cantilever.toml\n"
       "  beamid validate cantilever.toml --record tip_acceleration.csv\n",
-      run};
+      run_validate};
 }
 
 }  // namespace beamid::apps

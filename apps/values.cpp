@@ -50,7 +50,7 @@ Found option_of(const Command& command, const std::string& word) {
   return nullptr;
 }
 
-po::options_description described(const Command& command) {
+po::options_description description_of(const Command& command) {
   po::options_description all;
   for (const Found option : options_of(command)) {
     const std::string names = option->name + (option->letter ? std::string{',', option->letter} : "");
@@ -112,7 +112,7 @@ Words up_to_help(const Words& words) {
 /// Options, and words that are none, in their order.
 std::vector<po::option> parsed(const Command& command, const Words& words) {
   using namespace po::command_line_style;
-  const po::options_description known = described(command);
+  const po::options_description known = description_of(command);
   try {
     return po::command_line_parser(up_to_help(words))
         .options(known)

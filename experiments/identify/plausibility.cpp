@@ -114,7 +114,7 @@ Sentences as_wrong_units(const Sentences& units) {
   return found;
 }
 
-void lead_with(Results& results, const Sentences& found) {
+void put_first(Results& results, const Sentences& found) {
   if (found.empty()) return;
   auto place = results.report.begin();
   if (place != results.report.end() && std::holds_alternative<Heading>(*place)) ++place;
@@ -150,11 +150,11 @@ Sentences implausible(const FrameExperiment& experiment) {
 }
 
 void warn(Results& results, const Experiment& experiment) {
-  lead_with(results, implausible(experiment));
+  put_first(results, implausible(experiment));
 }
 
 void warn(Results& results, const FrameExperiment& experiment) {
-  lead_with(results, implausible(experiment));
+  put_first(results, implausible(experiment));
 }
 
 void warn_of_file(Results& results, const std::string& file) {

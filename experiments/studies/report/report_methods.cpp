@@ -1,4 +1,4 @@
-#include "experiments/results/report_methods.hpp"
+#include "experiments/studies/report/report_methods.hpp"
 
 #include <fmt/format.h>
 
