@@ -19,7 +19,7 @@ std::atomic<int> current{0};
 
 extern "C" void say_and_end(int signal) {
   const char* const text = sentences[static_cast<std::size_t>(current.load())].data();
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, std::strlen(text));
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
   struct sigaction fallback {};
   fallback.sa_handler = SIG_DFL;
   sigaction(signal, &fallback, nullptr);

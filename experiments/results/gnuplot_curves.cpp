@@ -97,14 +97,14 @@ std::vector<std::vector<std::string>> colours_of(const Figure& figure) {
     std::size_t next = 0;
     for (std::size_t i = panel.curves.size(); i-- > 0;) {  // from behind: a band has the colour of its curve
       const Curve& curve = panel.curves[i];
-      if (curve.colour != Colour::automatic) names[i] = colours[static_cast<std::size_t>(curve.colour)];
+      if (curve.colour != Colour::automatic) names[i] = colour_names[static_cast<std::size_t>(curve.colour)];
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
       const Curve& curve = panel.curves[i];
       const bool band = curve.style == CurveStyle::band && i + 1 < names.size();
       if (!names[i].empty() || band) continue;
       const auto at = known.find(curve.label);
-      names[i] = !curve.label.empty() && at != known.end() ? at->second : colours[1 + next % 6];
+      names[i] = !curve.label.empty() && at != known.end() ? at->second : colour_names[1 + next % 6];
       ++next;
     }
     for (std::size_t i = names.size(); i-- > 0;)

@@ -180,7 +180,7 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
 
 Curve mode_curve(const fem::StructuralSystem& system, const Eigen::VectorXd& shape) {
   const Shape drawn = shape_of(system.mesh, nodal_places(system), scaled_mode(system, shape), 1.0);
-  Line line = drawn.deformed;
+  ModeLine line = drawn.deformed;
   scale(line.y);
   return line.curve(Colour::automatic);
 }

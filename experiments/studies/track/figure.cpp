@@ -48,7 +48,7 @@ VectorXd informed(const Tracking& found, const VectorXd& values) {
   constexpr double widest = 3;
   return (2 * quantile_95 * found.damping_ratio_deviation.array() <
           widest * found.damping_ratio.array().abs())
-      .select(values.array(), gap);
+      .select(values.array(), curve_gap);
 }
 
 }  // namespace
