@@ -12,6 +12,7 @@
 
 #include "experiments/identify/amplitude_law.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/studies/identify/record_report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::amplitude_sections_test {

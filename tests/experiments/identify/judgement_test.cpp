@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "experiments/models/discretisation_bias.hpp"
+#include "experiments/studies/identify/record_report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "experiments/identify/higher_modes.hpp"
+#include "experiments/studies/identify/record_report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::noise_source_test {

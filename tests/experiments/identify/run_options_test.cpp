@@ -5,6 +5,7 @@
 
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/record/read_record.hpp"
+#include "experiments/studies/identify/record_report.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 

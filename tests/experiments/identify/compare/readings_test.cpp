@@ -11,6 +11,7 @@
 #include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/joint_comparison.hpp"
 #include "experiments/signal/random.hpp"
+#include "experiments/studies/identify/joint_comparison_report.hpp"
 
 namespace beamid::experiments::readings_test {
 namespace {
