@@ -1,7 +1,6 @@
 #include "apps/deliver.hpp"
 
 #include <algorithm>
-#include <boost/any.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>

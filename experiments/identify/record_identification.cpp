@@ -137,6 +137,7 @@ void take_quiet_noise(const Eigen::VectorXd& quiet_noise, const Record& record, 
 // its sections leave is.
 double factor_of(const RecordIdentification& found, const SectionTrend& trend, double estimate,
                  double deviation) {
+  if (found.sections.sections.empty()) return found.interval_factor;
   const double noise = std::min(found.interval_factor, found.sections.noise / found.noise_deviation[0]);
   const double half =
       section_half_width(trend, estimate, found.interval_factor * deviation, noise * deviation);

@@ -147,7 +147,7 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
     const Outcome outcome = Workplace().run("validate '" + entry.path().string() + "'");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
-  EXPECT_EQ(found, 22);
+  EXPECT_EQ(found, 24);
 }
 
 }  // namespace

@@ -181,7 +181,11 @@ TEST_F(Tutorial, IdentifiesAnyModelFromSeveralRecords) {
   double weights = 0.0;
   for (const json& one : both.at("records"))
     weights += std::pow(one.at("parameters").at("frequency_1").at("standard_deviation").get<double>(), -2);
-  EXPECT_NEAR(frequency.at("standard_deviation").get<double>() * std::sqrt(weights), 1.0, 0.01);
+  // below 1: the noise at the mode is known with the degrees of freedom of both records, so that Student's
+  // factor, 1.02 to 1.05 for one record alone, is nearer to 1
+  const double ratio = frequency.at("standard_deviation").get<double>() * std::sqrt(weights);
+  EXPECT_LT(ratio, 1.0);
+  EXPECT_GT(ratio, 0.97);
 }
 
 TEST_F(Tutorial, RefusesWhatSeveralRecordsCannotHave) {
