@@ -66,8 +66,9 @@ TEST_P(ManualPage, HasTheSectionsOfAManualPage) {
   }
   std::istringstream lines(outcome.out);
   for (std::string line; std::getline(lines, line);)
-    if (line.starts_with(".") || line.starts_with("'"))
+    if (line.starts_with(".") || line.starts_with("'")) {
       EXPECT_TRUE(std::regex_search(line, std::regex("^\\.(TH|SH|SS|TP|B|BR|nf|fi)( |$)"))) << line;
+    }
 }
 
 // Oracle: --help.

@@ -34,7 +34,7 @@ class Terminal : public testing::Test {
 };
 
 TEST_F(Terminal, TextIsAsWideAsItIs) {
-  for (const unsigned short columns : {60, 80, 132})
+  for (const auto columns : std::initializer_list<unsigned short>{60, 80, 132})
     for (const char* words : {"modes --no-progress", "--help", "sweep --help", "list filters",
                               "identify --config cantilever.toml --no-progress"}) {
       std::string seen = seen_in_terminal(place_, words, columns);
