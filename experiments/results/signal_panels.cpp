@@ -34,12 +34,30 @@ Panel reproduction_panel(const std::string& title, const Eigen::VectorXd& time,
   return panel.thin("measured", time, measured, Colour::black).across(time[0], time[time.size() - 1]);
 }
 
+namespace {
+
+/// The next of ..., 1, 2, 5, 10, ... that is not below the size of any value; 1 of values that are all zero.
+double round_size(const Eigen::VectorXd& values) {
+  const double most = values.array().isFinite().select(values.array().abs(), 0.0).maxCoeff();
+  if (!(most > 0)) return 1;
+  const double decade = std::pow(10.0, std::floor(std::log10(most)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (most <= step * decade) return step * decade;
+  return 10 * decade;
+}
+
+}  // namespace
+
 Panel residual_panel(const std::string& title, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                      const std::string& label) {
-  return Panel{title, {"time [s]"}, {"residual, " + label}}
-      .thin("", time, residual, Colour::black)
-      .across(time[0], time[time.size() - 1])
-      .key(Legend::none);
+  const double most = residual.size() > 0 ? round_size(residual) : 1;
+  Panel panel = Panel{title, {"time [s]"}, {"residual, " + label}}
+                    .thin("", time, residual, Colour::black)
+                    .across(time[0], time[time.size() - 1])
+                    .up(-most, most)
+                    .key(Legend::none);
+  panel.y_axis.tick = most;
+  return panel;
 }
 
 }  // namespace beamid::experiments

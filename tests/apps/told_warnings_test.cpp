@@ -27,7 +27,7 @@ TEST_P(Warned, OfImplausibleUnitsFirst) {
               HasSubstr("Implausible, check the units: the beam's height of 2.1 m"));
 }
 INSTANTIATE_TEST_SUITE_P(Studies, Warned,
-                         testing::Values("atlas --config beam.toml", "budget --config beam.toml",
+                         testing::Values("atlas --config beam.toml",
                                          "noise --config beam.toml --trials 2 --modes 1"));
 
 TEST(Frame, IsWarnedOfImplausibleUnitsFirst) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/identify/record_identification.hpp"
+#include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
 
