@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "experiments/results/html.hpp"
-#include "experiments/studies/report/joined_report.hpp"
 #include "experiments/results/typeset.hpp"
+#include "experiments/studies/report/joined_report.hpp"
 
 namespace beamid::experiments::report_page_test {
 namespace {
