@@ -1,16 +1,11 @@
 #include "apps/command.hpp"
 
-#include <algorithm>
-#include <cctype>
-
 #include "experiments/config/known_names.hpp"
 
 namespace beamid::apps {
 
 std::string Argument::shown() const {
-  std::string text = name;
-  for (char& letter : text) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  return text;
+  return upper_case(name);
 }
 
 std::vector<Option> Command::all_options() const {

@@ -92,7 +92,6 @@ void print_help(std::ostream& stream, const Command& command, std::size_t width)
 }
 
 Command help_command() {
-  Words names;
   return {"help",
           "[COMMAND]",
           "what a command does, its options and examples",

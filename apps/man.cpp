@@ -1,6 +1,5 @@
 // beamid man: manual pages, written from what the commands say of themselves. It is no part of the help: the
 // build runs it.
-#include <cctype>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
@@ -27,13 +26,8 @@ std::string troff(const std::string& text) {
   return result;
 }
 
-std::string upper(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return text;
-}
-
 void begin(std::ostream& page, const std::string& name, const std::string& summary) {
-  page << ".TH " << troff(upper(name)) << " 1 \"\" \"beamid " BEAMID_VERSION "\" \"beamid\"\n.SH NAME\n"
+  page << ".TH " << troff(upper_case(name)) << " 1 \"\" \"beamid " BEAMID_VERSION "\" \"beamid\"\n.SH NAME\n"
        << troff(name) << " \\- " << troff(summary) << "\n";
 }
 

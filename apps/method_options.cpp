@@ -14,13 +14,6 @@ namespace {
 
 constexpr const char* with_options = "NAME[:OPTION=VALUE,...]";
 
-template <class Registry>
-Words names_in(const Registry& registry) {
-  Words names;
-  for (const auto& [name, entry] : registry.entries()) names.push_back(name);
-  return names;
-}
-
 }  // namespace
 
 Option filter_option(const std::string& help) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 
 namespace beamid::apps {
@@ -13,6 +14,11 @@ Option changed(Option option, const auto& change) {
 }
 
 }  // namespace
+
+std::string upper_case(std::string text) {
+  for (char& letter : text) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return text;
+}
 
 Option Option::by_default(const std::string& word) const {
   return changed(*this, [&](Option& option) { option.fallback = word; });

@@ -59,6 +59,17 @@ Option whole(const std::string& name, const std::string& value, double least, do
 /// Two numbers, the first below the second: --window FROM TO.
 Option from_to(const std::string& name, const std::string& help);
 
+/// "RECORD" of "record".
+std::string upper_case(std::string text);
+
+/// Names of all that is registered.
+template <class Registry>
+Words names_in(const Registry& registry) {
+  Words names;
+  for (const auto& [name, entry] : registry.entries()) names.push_back(name);
+  return names;
+}
+
 /// Options under one heading of the help.
 struct OptionGroup {
   std::string title;

@@ -124,12 +124,6 @@ Words quantity_names() {
   return names;
 }
 
-Words reader_names() {
-  Words names;
-  for (const auto& [name, entry] : record_reader_registry().entries()) names.push_back(name);
-  return names;
-}
-
 }  // namespace
 
 Argument record_argument(bool several) {
@@ -154,7 +148,7 @@ OptionGroup record_options() {
                .one_of({"even", "as_they_are"}),
            flag("skip-malformed", "leave malformed lines out, counted and located"),
            text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
-               .one_of(reader_names()),
+               .one_of(names_in(record_reader_registry())),
            config_option("take all this from [record] of an experiment file (docs/configuration.md)")}};
 }
 

@@ -120,12 +120,14 @@ SectionTrend trend_of(const std::vector<AmplitudeLaw>& laws, LawLine AmplitudeLa
   const auto best = std::min_element(laws.begin(), laws.end(),
                                      [](const auto& a, const auto& b) { return a.squares < b.squares; });
   const double share = 1 / static_cast<double>(laws.size());
+  const auto prior_of = [usual](const AmplitudeLaw& law) {
+    return usual / (law.shape.maxCoeff() - law.shape.minCoeff());
+  };
   double constant = 0, all = 0;
   std::vector<double> weights;
   for (const AmplitudeLaw& law : laws) {
     const LawLine& l = law.*line;
-    const double prior = usual / (law.shape.maxCoeff() - law.shape.minCoeff()),
-                 together = std::hypot(prior, l.slope_deviation);
+    const double prior = prior_of(law), together = std::hypot(prior, l.slope_deviation);
     const double as_good = share * std::exp(-0.5 * law.freedom * (law.squares / best->squares - 1));
     constant += as_good * std::exp(log_likelihood(l.slope / l.slope_deviation, law.freedom));
     weights.push_back(odds * as_good * l.slope_deviation / together *
@@ -139,7 +141,7 @@ SectionTrend trend_of(const std::vector<AmplitudeLaw>& laws, LawLine AmplitudeLa
   trend.weight.resize(trend.possible.cols());
   for (std::size_t i = 0; i < laws.size(); ++i) {
     const LawLine& l = laws[i].*line;
-    const double prior = usual / (laws[i].shape.maxCoeff() - laws[i].shape.minCoeff()),
+    const double prior = prior_of(laws[i]),
                  kept = prior * prior / (prior * prior + l.slope_deviation * l.slope_deviation);
     trend.weight[static_cast<Index>(i)] = weights[i] / all;
     for (Index r = 0; r < rounds; ++r) {

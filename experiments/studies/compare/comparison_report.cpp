@@ -1,3 +1,5 @@
+#include "experiments/studies/compare/comparison_report.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/record_inputs.hpp"
 #include "experiments/studies/compare/comparison_figures.hpp"
-#include "experiments/studies/compare/comparison_report.hpp"
 #include "experiments/studies/compare/comparison_words.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
 

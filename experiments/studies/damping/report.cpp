@@ -1,3 +1,5 @@
+#include "experiments/studies/damping/report.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "experiments/identify/record_inputs.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/axis_label.hpp"
-#include "experiments/studies/damping/report.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,10 +1,11 @@
+#include "experiments/studies/identify/family_report.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "experiments/config/description.hpp"
 #include "experiments/identify/joint_words.hpp"
-#include "experiments/studies/identify/family_report.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,3 +1,5 @@
+#include "experiments/studies/identify/joint_comparison_report.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include "experiments/identify/joint_words.hpp"
 #include "experiments/results/forest_plot.hpp"
 #include "experiments/studies/compare/comparison_report.hpp"
-#include "experiments/studies/identify/joint_comparison_report.hpp"
 
 namespace beamid::experiments {
 namespace {

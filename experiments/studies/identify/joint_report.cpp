@@ -1,10 +1,11 @@
+#include "experiments/studies/identify/joint_report.hpp"
+
 #include <fmt/format.h>
 
 #include "experiments/identify/joint_identification.hpp"
 #include "experiments/identify/joint_words.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/forest_plot.hpp"
-#include "experiments/studies/identify/joint_report.hpp"
 #include "experiments/studies/identify/record_values.hpp"
 
 namespace beamid::experiments {

@@ -1,3 +1,5 @@
+#include "experiments/studies/modal/hammer_report.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/results/gnuplot_axes.hpp"
-#include "experiments/studies/modal/hammer_report.hpp"
 #include "experiments/studies/modal/report.hpp"
 
 namespace beamid::experiments {
