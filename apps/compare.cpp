@@ -9,7 +9,7 @@
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/identify/compare/chosen_channels.hpp"
 #include "experiments/identify/compare/comparison.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/identify/identification_request.hpp"
 #include "experiments/studies/compare/comparison_report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/choice_text.hpp"
@@ -70,10 +70,19 @@ int run_compare(const Values& values) {
       const Progress progress = show_progress(values);
       ComparedRecord compared;
       PreparedRecord prepared;
+      std::vector<std::string> decisions;
       if (!file.empty()) {
-        prepared = read_and_prepare(file[0], source.experiment.format);
+        IdentificationRequest request{file[0], source.experiment, {}, {}};
+        request.prepared = read_and_prepare(file[0], source.experiment.format);
+        cut_decay(request);
+        if (source.experiment.reductions.size() == 1) {  // the question that identify would ask
+          request.experiment.reduction = source.experiment.reductions[0];
+          keep_out_higher_modes(request);
+        }
+        source.experiment.format = request.experiment.format;
+        prepared = request.prepared;
+        decisions = request.decisions();
         compared = measured_record(file[0].filename().string(), prepared.record);
-        prepared.record = compared.record;
       } else if (values.has("truth")) {
         const fs::path truth = values.text("truth");
         compared = simulated_record(read_experiment(truth), truth.parent_path(), progress);
@@ -84,6 +93,7 @@ int run_compare(const Values& values) {
       if (values.has("channel")) compared = chosen_channels(std::move(compared), values.texts("channel"));
       Results results =
           report(source.experiment, compare(source.experiment, std::move(compared), folder, progress));
+      for (const std::string& text : decisions) results.paragraph(text);
       if (!file.empty()) tell_preparation(results, prepared, source.experiment.format);
       return results;
     });

@@ -32,6 +32,12 @@ OptionGroup efficiency_options() {
            "enough, --seed and --only)")
            .one_of({"filters", "coverage", "decays", "records"})
            .by_default("filters"),
+       text(
+           "model", "NAME",
+           "--study coverage: K and C of one degree of freedom, or the beam on one mode, on three, or on its "
+           "mesh")
+           .one_of({"sdof", "one_mode", "three_modes", "mesh"})
+           .by_default("sdof"),
        whole("only", "N", 0, 1e5, "--study records: this record alone, from 0, with its files"),
        filter_option("one to examine; without any all but kf (beamid list filters)").repeated(),
        number("damping-ratio", "XI", "one to simulate; without any 0.0015, 0.01 and 0.1")
@@ -84,6 +90,7 @@ CoverageSettings coverage_settings(const Values& values) {
   settings.runs = runs_of(values, 2, 1000000);
   settings.seed = seed_of(values);
   settings.noise = values.number("noise");
+  settings.model = coverage_model(values.text("model"));
   for (const auto& [name, value] :
        {std::pair("damping-ratio", settings.damping_ratio), std::pair("noise", settings.noise)})
     if (value > largest)
@@ -94,7 +101,7 @@ CoverageSettings coverage_settings(const Values& values) {
 
 /// --study decays: of all lengths and dampings, drawn.
 SeededDecays decay_settings(const Values& values) {
-  refuse(values, {"filter", "passes", "guess", "sampled-runs", "damping-ratio", "noise"});
+  refuse(values, {"filter", "passes", "guess", "sampled-runs", "damping-ratio", "noise", "model"});
   SeededDecays settings;
   settings.runs = runs_of(values, 1, 1000000);
   settings.seed = seed_of(values);
@@ -103,7 +110,7 @@ SeededDecays decay_settings(const Values& values) {
 
 /// --study records: a hundred of them unless --runs says another number.
 LaboratorySettings laboratory_settings(const Values& values) {
-  refuse(values, {"filter", "passes", "guess", "sampled-runs", "damping-ratio", "noise"});
+  refuse(values, {"filter", "passes", "guess", "sampled-runs", "damping-ratio", "noise", "model"});
   LaboratorySettings settings;
   if (values.has("runs")) settings.records = runs_of(values, 1, 100000);
   settings.seed = seed_of(values);
@@ -151,6 +158,7 @@ int run_efficiency(const Values& values) {
     return 0;
   }
   if (values.has("only")) throw UsageError("--only goes with --study records");
+  if (values.has("model")) throw UsageError("--model goes with --study coverage");
   const EfficiencySettings settings = efficiency_settings_of(values);
   deliver(values, [&] { return report(find_efficiency(settings, show_progress(values))); });
   return 0;
@@ -170,6 +178,7 @@ Command efficiency_command() {
       "  beamid efficiency --filter ekf --guess ends --noise 0.002 --passes single\n"
       "  beamid efficiency --runs 4000 --out results\n"
       "  beamid efficiency --study coverage --runs 2000 --out intervals\n"
+      "  beamid efficiency --study coverage --model three_modes --runs 500\n"
       "  beamid efficiency --study decays --runs 2000 --out decays\n"
       "  beamid efficiency --study records --out records\n"
       "  beamid efficiency --study records --only 7 --out record_7\n",

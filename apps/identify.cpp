@@ -6,24 +6,20 @@
 #include "apps/identify_family.hpp"
 #include "apps/identify_request.hpp"
 #include "apps/record_options.hpp"
-#include "experiments/config/failure_response.hpp"
 #include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/joint_comparison.hpp"
 #include "experiments/identify/joint_identification.hpp"
-#include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/noise_source.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/identify/record_identification.hpp"
-#include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
-#include "experiments/studies/compare/comparison_report.hpp"
 #include "experiments/studies/damping/compared_laws.hpp"
-#include "experiments/studies/identify/diagnostics_report.hpp"
+#include "experiments/studies/identify/identification_report.hpp"
 #include "experiments/studies/identify/joint_comparison_report.hpp"
 #include "experiments/studies/identify/joint_report.hpp"
 #include "experiments/studies/identify/record_report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
+#include "experiments/text/method_choice.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -31,61 +27,33 @@ namespace {
 namespace fs = std::filesystem;
 using namespace experiments;
 
-constexpr const char* higher_modes =
-    "Higher modes are a large part of this record. A filter of one mode would take them for white noise: the "
-    "record was low-passed and decimated first, which changes neither frequency nor damping. Any "
-    "[[record.prepare]] of the experiment file takes the place of this.";
-constexpr const char* trouble = "The filter had trouble (--on-failure says what it then does). ";
-
-/// Any other model than K and C of a free decay: a comparison of one run.
-Comparison identify_by_comparison(Experiment experiment, const Record& record, const fs::path& file,
-                                  const fs::path& folder, const Progress& progress) {
-  experiment.reductions = {experiment.reduction};
-  experiment.filters = {experiment.filter};
-  experiment.discretisations = {experiment.discretisation};
-  Comparison found = compare(experiment, measured_record(file.filename().string(), record), folder, progress);
-  judge_runs(found);
-  return found;
+ComparedRecord compared_record(const IdentifyRequest& one) {
+  ComparedRecord compared = measured_record(one.file.filename().string(), one.prepared.record);
+  const Experiment& experiment = one.experiment;
+  if (experiment.noise_method.name == "before_event")  // of the whole record behind its preparation
+    compared.quiet_noise = at_place(experiment.noise_method.place, [&] {
+      return noise_before_event(prepare(one.prepared.raw, experiment.format.preparation));
+    });
+  return compared;
 }
 
-Results identify_generally(const Experiment& experiment, const Record& record, const fs::path& file,
-                           const fs::path& folder, const Progress& progress) {
-  const Comparison found = identify_by_comparison(experiment, record, file, folder, progress);
-  Results results = report(experiment, found);
-  results.command = "identify";
-  results.values["status"] = to_string(found.runs.at(0).status);
-  results.configuration["on_failure"] = to_string(experiment.on_failure);
-  for (const ComparedRun& one : found.runs) {
-    if (const std::string text = failure_sentences(one.run.events); !text.empty())
-      results.paragraph(trouble + text);
-    if (!one.diagnostics) continue;
-    std::vector<std::string> outputs;
-    for (const Eigen::Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
-    results.paragraph(words(*one.diagnostics, outputs));
-    for (Figure& figure : figures(*one.diagnostics, outputs)) results.figures.push_back(std::move(figure));
-  }
-  return results;
+Comparison identified(const IdentifyRequest& one, const fs::path& folder, const Progress& progress) {
+  return identify_with_model(one.experiment, compared_record(one), folder, progress);
+}
+
+/// K and C of a free decay have a report of their own. @throws where no mode is near the beam's
+const RecordIdentification& oscillator_in(const Comparison& found) {
+  if (!found.analysis.modal_refusal.empty()) throw std::invalid_argument(found.analysis.modal_refusal);
+  return *found.runs.at(0).oscillator;
 }
 
 /// With what the modal analysis beside the filter needed of the record: the filter takes it as it is.
 PreparedRecord told_of(const IdentifyRequest& one) {
   PreparedRecord prepared = one.prepared;
-  if (!one.is_free_oscillator()) {
-    prepared.record = made_analysable(prepared.record);
-  } else if (const std::string remark = analysable(prepared.record).remark; !remark.empty()) {
-    prepared.record.remarks.push_back("For the modal analysis: " + remark);
+  if (const std::string remark = analysable(prepared.record).remark; !remark.empty()) {
+    prepared.record.remarks.push_back("For the modal analysis and first estimates: " + remark);
   }
   return prepared;
-}
-
-/// Of the whole record behind its preparation, where the experiment wants it.
-Eigen::VectorXd quiet_noise(const Experiment& experiment, const PreparedRecord& prepared) {
-  if (experiment.noise_method.name != "before_event") return {};
-  try {
-    return noise_before_event(prepare(prepared.raw, experiment.format.preparation));
-  } catch (const std::invalid_argument& error) {
-    throw InputError(experiment.noise_method.place, error.what());
-  }
 }
 
 Results identify_one(const IdentifyRequest& one, const std::string& law, const fs::path& folder,
@@ -93,14 +61,15 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
   const Experiment& experiment = one.experiment;
   const Record& record = one.prepared.record;
   const std::string name = one.file.filename().string();
-  Results results = !law.empty()
-                        ? report(experiment, record, name, study_damping_law(experiment, record, law, folder))
-                    : one.is_free_oscillator()
-                        ? report(experiment, record, name,
-                                 identify_record(experiment, record, quiet_noise(experiment, one.prepared)))
-                        : identify_generally(experiment, record, one.file, folder, progress);
-  if (!one.window.empty()) results.paragraph(one.window);
-  if (one.thinned) results.paragraph(higher_modes);
+  Results results;
+  if (!law.empty()) {
+    results = report(experiment, record, name, study_damping_law(experiment, record, law, folder));
+  } else {
+    const Comparison found = identified(one, folder, progress);
+    results = one.is_free_oscillator() ? report(experiment, record, name, oscillator_in(found))
+                                       : identification_report(experiment, found);
+  }
+  for (const std::string& text : one.decisions()) results.paragraph(text);
   tell_preparation(results, told_of(one), experiment.format);
   return results;
 }
@@ -128,43 +97,43 @@ Results laws_of(const std::vector<IdentifyRequest>& requests, const std::string&
   return report(requests[0].experiment, studied);
 }
 
-JointIdentification oscillator_of(const std::vector<IdentifyRequest>& requests, const Progress& progress) {
-  std::vector<IdentifiedRecord> found;
+std::vector<Comparison> identified(const std::vector<IdentifyRequest>& requests, const fs::path& folder,
+                                   const Progress& progress) {
+  std::vector<Comparison> found;
   for (const IdentifyRequest& one : requests) {
-    const std::string name = one.file.filename().string();
-    progress("identifying " + name);
+    progress("identifying " + one.file.filename().string());
     try {
-      const Record& record = one.prepared.record;
-      found.push_back(
-          {name, record, identify_record(one.experiment, record, quiet_noise(one.experiment, one.prepared))});
+      found.push_back(identified(one, folder, progress));
+      if (one.is_free_oscillator()) oscillator_in(found.back());
     } catch (const std::invalid_argument& error) {
       throw InputError({one.file.string()}, error.what());
     }
   }
-  return joint_identification(std::move(found));
+  return found;
 }
 
-JointComparison model_of(const std::vector<IdentifyRequest>& requests, const fs::path& folder,
-                         const Progress& progress) {
-  std::vector<Comparison> found;
-  for (const IdentifyRequest& one : requests)
-    found.push_back(identify_by_comparison(one.experiment, one.prepared.record, one.file, folder, progress));
-  return joint_comparison(std::move(found));
+JointIdentification oscillators(const std::vector<Comparison>& found) {
+  std::vector<IdentifiedRecord> records;
+  for (const Comparison& one : found)
+    records.push_back({one.compared.name, one.compared.record, oscillator_in(one)});
+  return joint_identification(std::move(records));
 }
 
 Results identify_together(const std::vector<IdentifyRequest>& requests, const std::string& law,
                           const fs::path& folder, const Progress& progress) {
   bool free = true;
   for (const IdentifyRequest& one : requests) free = free && one.is_free_oscillator();
-  Results results = !law.empty() ? laws_of(requests, law, folder)
-                    : free       ? report(requests[0].experiment, oscillator_of(requests, progress))
-                                 : report(requests[0].experiment, model_of(requests, folder, progress));
-  std::string thinned;
+  Results results;
+  if (!law.empty()) {
+    results = laws_of(requests, law, folder);
+  } else {
+    std::vector<Comparison> found = identified(requests, folder, progress);
+    results = free ? report(requests[0].experiment, oscillators(found))
+                   : report(requests[0].experiment, joint_comparison(std::move(found)));
+  }
   for (const IdentifyRequest& one : requests)
-    if (!one.window.empty()) results.paragraph(one.file.filename().string() + ": " + one.window);
-  for (const IdentifyRequest& one : requests)
-    if (one.thinned) thinned += (thinned.empty() ? "" : ", ") + one.file.filename().string();
-  if (!thinned.empty()) results.paragraph(thinned + ": " + higher_modes);
+    for (const std::string& text : one.decisions())
+      results.paragraph(one.file.filename().string() + ": " + text);
   for (const IdentifyRequest& one : requests)
     tell_cost(results, one.file.filename().string(), told_of(one), one.experiment.format);
   return results;

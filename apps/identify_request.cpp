@@ -18,15 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace experiments;
 
-void refuse_what_needs_an_oscillator(const Experiment& experiment) {
-  if (!experiment.smoother.empty()) throw UsageError(std::string("a smoother") + only_for_free_oscillators);
-  if (experiment.estimator != "filter")
-    throw UsageError("estimator " + experiment.estimator + only_for_free_oscillators);
-  if (experiment.noise_method.name != "residual")
-    throw InputError(experiment.noise_method.place,
-                     "noise.method " + experiment.noise_method.name + only_for_free_oscillators);
-}
-
 /// What the command line says in place of the experiment file.
 void take_words(const Values& values, Experiment& experiment) {
   if (values.has("estimator")) experiment.estimator = values.text("estimator");
@@ -101,7 +92,6 @@ std::vector<IdentifyRequest> identify_requests(const Values& values, const fs::p
     } catch (const std::invalid_argument& error) {
       throw InputError({config.string()}, error.what());
     }
-    if (!one.is_free_oscillator()) refuse_what_needs_an_oscillator(one.experiment);
     requests.push_back(std::move(one));
   }
   return requests;

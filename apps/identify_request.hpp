@@ -11,10 +11,6 @@
 
 namespace beamid::apps {
 
-/// Ends a sentence on what other models do not have.
-inline constexpr const char* only_for_free_oscillators =
-    " is there for model sdof without [[parameters]] on a free decay";
-
 /// One record of the command; its experiment includes what the command line says.
 using IdentifyRequest = experiments::IdentificationRequest;
 

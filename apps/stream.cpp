@@ -81,7 +81,7 @@ void tell(const std::vector<std::string>& news) {
 
 /// Until the samples end, the filter fails or nobody reads what is written; whether the filter failed.
 bool follow(StreamedIdentification& stream, SampleSource& source) {
-  std::cout << stream_header() << std::flush;
+  std::cout << stream_header(stream) << std::flush;
   std::string line;
   while (source.next(line) && std::cout) {
     const bool heading = source.number() == 1 && line.starts_with("time");
@@ -124,9 +124,6 @@ int run_stream(const Values& values) {
   Experiment experiment = read_experiment(config);
   choose_failure_response(values, experiment);
   const Record earlier = earlier_record(values, experiment, config);
-  if (experiment.model.name != "sdof" || !experiment.parameters.empty() || !force_channels(earlier).empty())
-    throw InputError(experiment.model.place.file.empty() ? Place{config.string()} : experiment.model.place,
-                     "beamid stream follows model sdof without [[parameters]] in a free decay");
   StreamedIdentification stream =
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
   tell(implausible(experiment));
@@ -166,7 +163,7 @@ Command stream_command() {
   return {
       "stream",
       "--config FILE [--like RECORD] [--resume STATE] [--save-state STATE] < SAMPLES",
-      "stiffness and damping while samples arrive on standard input",
+      "stiffness, damping and other unknowns while samples arrive on standard input",
       {},
       {stream_options()},
       "  beamid stream --config cantilever.toml < tip_acceleration.csv\n"

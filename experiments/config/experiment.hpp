@@ -11,6 +11,7 @@
 #include "experiments/config/settings.hpp"
 #include "experiments/config/sweep_plan.hpp"
 #include "experiments/models/parameter_choice.hpp"
+#include "experiments/models/prior.hpp"
 #include "experiments/record/record_format.hpp"
 #include "experiments/text/choice.hpp"
 #include "fem/beam.hpp"
@@ -18,12 +19,6 @@
 #include "filters/running_filter.hpp"
 
 namespace beamid::experiments {
-
-/// What is believed before the record is seen; absent values are worked out from the model and the record.
-struct PriorBelief {
-  std::optional<double> stiffness, stiffness_deviation;  ///< [N/m]
-  std::optional<double> damping_ratio, damping_ratio_deviation;
-};
 
 struct Experiment {
   std::string title;

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/analysis.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/signal/local_motion.hpp"
@@ -143,7 +143,7 @@ std::string DecayWindow::words() const {
 std::optional<DecayWindow> decay_window(const Experiment& experiment, const Record& whole) {
   const Record record = analysable(whole).record;
   const double last = record.time[record.size() - 1];
-  const double period = 1 / expected_frequency_hz(experiment, record);
+  const double period = 1 / described_frequency_hz(experiment, record);
   auto happened = last_event(record.samples.row(0).transpose(), record.interval(), period);
   const bool begins_behind_gap = record.time[0] > whole.time[0] + record.interval();
   if (!happened && begins_behind_gap) happened = DecayEvent{0.0, DecayWindow::Behind::gap};

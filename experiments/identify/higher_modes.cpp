@@ -4,12 +4,12 @@
 #include <bit>
 #include <cmath>
 #include <complex>
+#include <stdexcept>
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/analysis.hpp"
 #include "experiments/modal/shape_fit.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 
 namespace beamid::experiments {
@@ -39,11 +39,13 @@ double largest_line(const Record& record, const ModalEstimate& modal) {
 std::optional<Choice> step_against_higher_modes(const Experiment& experiment, const Record& record) {
   constexpr double too_large = 6, samples_per_cycle = 8;
   constexpr Eigen::Index enough = 50;  // samples to be left, as the modal analysis wants them
-  const RecordIdentification found = prepare_identification(experiment, record);
-  if (!(largest_line(analysable(record).record, found.modal) > too_large * found.near_mode.deviation))
+  const RecordAnalysis found = analyse(experiment, record);
+  if (!found.modal_refusal.empty()) throw std::invalid_argument(found.modal_refusal);
+  if (!found.modal ||
+      !(largest_line(found.even.record, *found.modal) > too_large * found.near_mode->deviation))
     return {};
   const auto factor =
-      static_cast<int>(std::min(1 / (samples_per_cycle * found.modal.frequency_hz * record.interval()),
+      static_cast<int>(std::min(1 / (samples_per_cycle * found.modal->frequency_hz * record.interval()),
                                 static_cast<double>(record.size() / enough)));
   constexpr int least = 2, most = 1000;  // of the step
   if (factor < least || factor > most) return {};

@@ -13,6 +13,17 @@ bool IdentificationRequest::is_free_oscillator() const {
          force_channels(prepared.record).empty();
 }
 
+std::vector<std::string> IdentificationRequest::decisions() const {
+  std::vector<std::string> said;
+  if (!window.empty()) said.push_back(window);
+  if (thinned)
+    said.push_back(
+        "Higher modes are a large part of this record. A filter of one mode would take them for white noise: "
+        "the record was low-passed and decimated first, which changes neither frequency nor damping. Any "
+        "[[record.prepare]] of the experiment file takes the place of this.");
+  return said;
+}
+
 namespace {
 
 // Whether higher modes are noise to the model, as they are to one degree of freedom.
@@ -30,7 +41,7 @@ bool is_beam_of_one_mode(const IdentificationRequest& one) {
 
 void cut_decay(IdentificationRequest& one) {
   RecordFormat& format = one.experiment.format;
-  if (format.window || !one.is_free_oscillator()) return;
+  if (format.window || !force_channels(one.prepared.record).empty()) return;
   const auto window = decay_window(one.experiment, one.prepared.record);
   if (!window) return;
   format.window = {window->from, window->to};

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "experiments/config/experiment.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
@@ -17,11 +18,13 @@ struct IdentificationRequest {
   std::string window = {};  ///< what was chosen, in words, where the experiment does not say
   bool thinned = false;     ///< by a step against higher modes, which the experiment does not have
 
+  /// A paragraph for each thing that was decided.
+  std::vector<std::string> decisions() const;
   /// K and C of a free decay have a report of their own.
   bool is_free_oscillator() const;
 };
 
-/// Cuts a free decay out of a record that the experiment does not cut.
+/// Cuts a free decay out of a record that the experiment does not cut, and in which no force was measured.
 /// @throws as decay_window(); InputError at the window
 void cut_decay(IdentificationRequest& one);
 

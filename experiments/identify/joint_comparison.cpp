@@ -8,7 +8,16 @@ namespace {
 
 using Eigen::Index;
 
-RecordBelief joint_belief_of(const ComparedRun& run) {
+bool same(const std::vector<Unknown>& a, const std::vector<Unknown>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t j = 0; j < a.size(); ++j)
+    if (a[j].name != b[j].name || a[j].form != b[j].form) return false;
+  return true;
+}
+
+}  // namespace
+
+RecordBelief record_belief(const ComparedRun& run) {
   RecordBelief belief{run.unknown_state, run.unknown_start.covariance};
   belief.start = run.unknown_start.mean;
   belief.noise_ratio = run.noise_ratio;
@@ -22,29 +31,20 @@ RecordBelief joint_belief_of(const ComparedRun& run) {
   return belief;
 }
 
-bool same(const std::vector<Unknown>& a, const std::vector<Unknown>& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t j = 0; j < a.size(); ++j)
-    if (a[j].name != b[j].name || a[j].form != b[j].form) return false;
-  return true;
-}
-
-}  // namespace
-
 JointComparison joint_comparison(std::vector<Comparison> records) {
   JointComparison joint{std::move(records), {}, {}};
   std::vector<RecordBelief> beliefs;
   const ComparedRun* kept = nullptr;
   for (const Comparison& record : joint.records) {
     const ComparedRun& run = record.runs.at(0);
-    if (run.status != ComparedRun::Status::converged) continue;
+    if (!run.has_estimate()) continue;
     if (!kept) kept = &run;
     if (!same(run.unknowns, kept->unknowns))
       throw std::invalid_argument(
           "joint estimate: " + record.compared.name +
           " has other unknowns than the records before it; expected the same channels "
           "in all records");
-    beliefs.push_back(joint_belief_of(run));
+    beliefs.push_back(record_belief(run));
   }
   if (!kept) return joint;
   joint.estimate = joint_estimate(beliefs);

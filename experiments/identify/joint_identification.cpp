@@ -13,7 +13,7 @@ constexpr Index first = 2, joint_unknowns = 2;  // K and C in [x, v, K, C, ...]
 RecordBelief belief_of(const RecordIdentification& found) {
   const filters::Gaussian& last = found.identification.run.last;
   RecordBelief belief{{last.mean.segment(first, joint_unknowns), last.marginal(first, joint_unknowns)},
-                      found.last_start.marginal(first, joint_unknowns)};
+                      found.settings.initial.marginal(first, joint_unknowns)};
   // R counts, unless the record shows more noise at the mode
   if (found.interval_factor == 1.0) return belief;
   belief.noise_ratio = found.interval_factor / found.near_mode.student();
@@ -24,7 +24,7 @@ RecordBelief belief_of(const RecordIdentification& found) {
 }  // namespace
 
 bool IdentifiedRecord::lost() const {
-  return found.judgement.verdict == Verdict::diverged;
+  return found.judgement.verdict == ComparedRun::Status::diverged;
 }
 
 JointIdentification joint_identification(std::vector<IdentifiedRecord> records) {

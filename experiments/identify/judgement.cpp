@@ -142,8 +142,9 @@ bool modal_analysis_is_worse(const Record& record, const RecordIdentification& f
 }
 
 std::string cause_of(const Experiment& experiment, const Record& record, const RecordIdentification& found) {
-  for (const std::string& text : {by_discretisation(record, found), by_prior(experiment.prior, found),
-                                  by_companion(found), by_amplitude(found), by_unsteady_noise(found)})
+  for (const std::string& text :
+       {by_discretisation(record, found), by_prior(experiment.prior, found), by_stated_noise(found),
+        by_companion(found), by_amplitude(found), by_unsteady_noise(found)})
     if (!text.empty()) return text;
   return {};
 }
@@ -168,7 +169,7 @@ std::string by_overtone(const RecordIdentification& found) {
 
 void take_divergence(const std::string& condition, const Experiment& experiment, const Record& record,
                      const RecordIdentification& found, Judgement& judgement) {
-  judgement.verdict = Verdict::diverged;
+  judgement.verdict = ComparedRun::Status::diverged;
   std::string text = fmt::format("DIVERGED: {}. ", condition);
   const std::string& scheme = found.settings.discretisation;
   const FoundMode mode{found.modal.frequency_hz, found.modal.damping_ratio, 0.0};
@@ -227,17 +228,6 @@ std::string undetermined_text(const RecordIdentification& found) {
 
 }  // namespace
 
-const char* to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::contradicted:
-      return "contradicted";
-    case Verdict::diverged:
-      return "diverged";
-    default:
-      return "converged";
-  }
-}
-
 Judgement judge(const Experiment& experiment, const Record& record, const RecordIdentification& found) {
   constexpr double rounding_of_frequency = 1e-5, rounding_of_damping = 1e-3, twice = 2;
   constexpr double most_of_it = 50;  // [%]
@@ -258,7 +248,7 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   }
   if (alone) {
     if (!(found.response_error_percent(record) > most_of_it)) return judgement;
-    judgement.verdict = Verdict::diverged;
+    judgement.verdict = ComparedRun::Status::diverged;
     judgement.messages.push_back(fmt::format(
         "DIVERGED: its motion leaves {:.0f} % of the record. The record is no free decay of this beam, "
         "or [prior] is far from it.",
@@ -283,7 +273,7 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   if (doubtful)
     text += ". The modal analysis is the doubtful one: its modes leave more of the record than the filter's";
   else if (damping && !(ratio < twice * modal_ratio && twice * ratio > modal_ratio))
-    judgement.verdict = Verdict::contradicted;
+    judgement.verdict = ComparedRun::Status::contradicted;
   if (!cause.empty())
     text += (doubtful ? "; " : ": ") + cause;
   else if (!doubtful)

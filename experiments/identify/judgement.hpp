@@ -4,21 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/identify/compare/comparison.hpp"
 
 namespace beamid::experiments {
 
 struct RecordIdentification;
 
-enum class Verdict {
-  converged,
-  contradicted,  ///< the modal analysis of the same record has less than half or more than twice the damping
-  diverged       ///< divergence.hpp
-};
-const char* to_string(Verdict verdict);
-
 struct Judgement {
-  Verdict verdict = Verdict::converged;
+  ComparedRun::Status verdict = ComparedRun::Status::converged;
   std::vector<std::string> messages;  ///< for the first lines of a report, the worst first; empty: none
 };
 

@@ -98,6 +98,7 @@ ModelSetting model_setting(const Experiment& experiment, const Record& record, c
   setting.system.output_names = names;
   setting.damping = experiment.damping;
   setting.parameters = experiment.parameters;
+  setting.prior = experiment.prior;
   setting.continuum = ModelSetting::Continuum{beam, experiment.elements, points.all()};
   at_place(reduction.place, [&] {
     setting.reduction = reduction::reduction_registry().make(reduction.name, reduction.options);

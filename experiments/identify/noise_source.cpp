@@ -43,41 +43,40 @@ VectorXd noise_before_event(const Record& record) {
   return noise;
 }
 
-void take_likeliest_noise(const Experiment& experiment, const Record& record, RecordIdentification& found) {
+LikeliestNoise likeliest_noise(const Experiment& experiment, const Record& record, const JointModel& model,
+                               const IdentificationSettings& settings, const filters::Gaussian& last) {
+  const std::vector<Index> channels = output_channels(record);
   std::map<Quantity, std::vector<Index>> groups;
-  for (std::size_t i = 0; i < record.channels.size(); ++i)
-    if (!experiment.noise.contains(record.channels[i].quantity))
-      groups[record.channels[i].quantity].push_back(static_cast<Index>(i));
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const Quantity quantity = record.channels[static_cast<std::size_t>(channels[i])].quantity;
+    if (!experiment.noise.contains(quantity)) groups[quantity].push_back(static_cast<Index>(i));
+  }
   if (groups.empty())
     throw std::invalid_argument("noise.method is likelihood, but [noise] states the noise of every channel");
-  const filters::Measurements measured = measurements(record);
-  const double dt = record.interval();
-  const IdentificationSettings& settings = found.settings;
   const Index states = settings.initial.mean.size();
   filters::NoiseSettings search;
   search.guess = {Eigen::MatrixXd::Zero(states, states), settings.output_noise};
   search.output_groups.clear();
   for (const auto& [quantity, members] : groups) search.output_groups.push_back(members);
   search.max_iterations = 50;
-  const filters::Gaussian initial = next_start(found.model, settings.initial, found.identification.run.last);
   const filters::NoiseEstimate estimate = filters::estimate_noise(
       [&](const filters::Noise& noise) {
         return filters::filter_registry().make(
             settings.filter, settings.filter_options,
-            filters::discretise(found.model.motion, dt, settings.discretisation, noise));
+            filters::discretise(model.motion, record.interval(), settings.discretisation, noise));
       },
-      initial, measured, search);
+      next_start(model, settings.initial, last), measurements(record), search);
   if (estimate.status == filters::NoiseStatus::failed)
     throw std::invalid_argument("noise.method is likelihood, but the search for it failed: " +
                                 estimate.reason);
-  found.settings.output_noise = estimate.noise.output;
-  found.noise_deviation = estimate.noise.output.diagonal().cwiseSqrt();
-  found.noise_relative_deviation = VectorXd::Zero(found.noise_deviation.size());
+  LikeliestNoise found{estimate.noise.output.diagonal().cwiseSqrt(), {}};
+  found.relative_deviation = VectorXd::Zero(found.deviation.size());
   Index group = 0;
   for (const auto& [quantity, members] : groups) {
-    for (const Index i : members) found.noise_relative_deviation[i] = estimate.relative_deviations[group];
+    for (const Index i : members) found.relative_deviation[i] = estimate.relative_deviations[group];
     ++group;
   }
+  return found;
 }
 
 }  // namespace beamid::experiments

@@ -1,9 +1,8 @@
 // Noise from where it is alone, or from what the filter makes of the whole record.
 #pragma once
 
-#include <Eigen/Core>
-
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/models/identification.hpp"
 
 namespace beamid::experiments {
 
@@ -13,10 +12,16 @@ namespace beamid::experiments {
 /// @throws std::invalid_argument when no event is found or fewer than 32 samples lie before it.
 Eigen::VectorXd noise_before_event(const Record& whole);
 
+struct LikeliestNoise {
+  Eigen::VectorXd deviation;           ///< of every output, stated ones as stated (p)
+  Eigen::VectorXd relative_deviation;  ///< standard errors of it, relative; 0: stated (p)
+};
+
 /// Noise levels that maximise the filter's log-likelihood of the record, one for every quantity whose noise
-/// the experiment does not state (filters/noise_estimation.hpp), from the parameters that `found` has. Sets
-/// the noise in `found` and the standard errors of it; all else remains.
+/// the experiment does not state (filters/noise_estimation.hpp), from the unknowns that a run ended with.
+/// @param last of that run
 /// @throws std::invalid_argument when the filter cannot go through the record or every noise is stated.
-void take_likeliest_noise(const Experiment& experiment, const Record& record, RecordIdentification& found);
+LikeliestNoise likeliest_noise(const Experiment& experiment, const Record& record, const JointModel& model,
+                               const IdentificationSettings& settings, const filters::Gaussian& last);
 
 }  // namespace beamid::experiments

@@ -7,7 +7,9 @@
 #include <stdexcept>
 
 #include "filters/batch_estimator.hpp"
+#include "filters/interval_kept.hpp"
 #include "filters/output_error.hpp"
+#include "filters/sample_clock.hpp"
 
 namespace beamid::experiments {
 
@@ -64,18 +66,20 @@ Reproduction reproduce_nonlinear(const JointModel& model, filters::DiscreteModel
   result.initial_state = found.state;
   result.outputs.resize(record.outputs.rows(), samples);
   VectorXd x = found.state, next, output, input;
+  const filters::IntervalKept kept(discrete);
+  filters::SampleClock clock(discrete.interval(), record.time_resolution);
+  clock.start(record.time[0]);
   for (Index k = 0; k < samples; ++k) {
+    if (k > 0) {
+      discrete.set_interval(clock.advance(record.time[k]));
+      discrete.transition(x, input, next);
+      x.swap(next);
+    }
     if (record.inputs.size() > 0) input = record.inputs.col(k);
     discrete.output(x, input, output);
     result.outputs.col(k) = output;
-    discrete.transition(x, input, next);
-    x.swap(next);
   }
-  const MatrixXd left = record.outputs - result.outputs;
-  result.residual_deviation = (left.rowwise().squaredNorm() / static_cast<double>(samples)).cwiseSqrt();
-  const VectorXd share =
-      left.rowwise().norm().cwiseQuotient(record.outputs.rowwise().norm().cwiseMax(1e-300));
-  result.response_error_percent = 100.0 * share.norm() / std::sqrt(static_cast<double>(share.size()));
+  take_misfit(record, result);
   return result;
 }
 

@@ -5,22 +5,16 @@
 
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/amplitude_sections.hpp"
+#include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/judgement.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/models/identification.hpp"
-#include "filters/batch_estimator.hpp"
 #include "filters/diagnostics.hpp"
 
 namespace beamid::experiments {
 
-/// What all samples at once tell.
-struct BatchIdentification {
-  filters::BatchEstimate estimate;
-  std::optional<Identification> identification;  ///< without a run; absent unless the record determines all
-};
-
-/// What a record told, before it is put into words.
+/// What a free decay shows of one degree of freedom, before it is put into words.
 struct RecordIdentification {
   JointModel model;
   double beam_frequency_hz = 0;     ///< first mode of the finite-element beam
@@ -33,11 +27,9 @@ struct RecordIdentification {
   NoiseNearMode near_mode;                   ///< of the first channel
   double interval_factor = 1;  ///< of deviations: what counts is the noise near the mode, not R; 1 at least
   AmplitudeSections sections;  ///< of the first channel
-  IdentificationSettings settings;  ///< of all passes but the last
-  filters::Gaussian last_start;     ///< what the last pass began with
+  IdentificationSettings settings;  ///< of the last pass
   Identification identification;
-
-  int passes() const { return settings.passes + 1; }
+  int passes = 3;
   std::optional<filters::InnovationConsistency> consistency;  ///< absent when the filter failed early
   std::optional<filters::Diagnostics> diagnostics;            ///< absent below 100 samples
   Judgement judgement;
@@ -53,18 +45,13 @@ struct RecordIdentification {
   double response_error_percent(const Record& record) const;
 };
 
-/// Of the mode that is looked for: as prior.stiffness, else the beam as described, leads to expect [Hz].
-/// @throws std::invalid_argument when the beam cannot be assembled or reduced to one coordinate
-double expected_frequency_hz(const Experiment& experiment, const Record& record);
+/// K and C of a free decay: a run of model sdof, judged beside the modal analysis.
+/// @param run that the filter was not refused
+RecordIdentification oscillator_of(const Experiment& experiment, const RecordAnalysis& analysis,
+                                   const ComparedRun& run);
 
-/// All but the filtering: model, modal analysis, noise, initial belief and settings. A modal analysis that
-/// does not converge gives way to the expected mode; its reason is kept. @throws as identify_record()
-RecordIdentification prepare_identification(const Experiment& experiment, const Record& record);
-
-/// Assemble, reduce, analyse, filter, judge. The initial belief and the noise come from the experiment where
-/// it gives them, else from the beam and the record: K and C start where the modal analysis has them. Without
-/// a modal analysis they start from the beam, and the noise is what the filter's own motion leaves, pass
-/// after pass. Samples that are NaN were not measured.
+/// Identified by the one engine (compare()), with the experiment's own filter. Samples that are NaN were not
+/// measured.
 /// @throws InputError at the model's or filter's place in the experiment file; std::invalid_argument when the
 /// record shows no mode near the beam's, or the noise cannot be had as the experiment says.
 /// @param quiet_noise of the channels (p), by noise_before_event(); needed where the experiment wants it.

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "filters/information_factor.hpp"
+#include "filters/interval_kept.hpp"
+#include "filters/sample_clock.hpp"
 
 namespace beamid::experiments {
 
@@ -26,6 +28,16 @@ VectorXd solution(const filters::InformationFactor& equations) {
 
 }  // namespace
 
+void take_misfit(const filters::Measurements& record, Reproduction& motion) {
+  const auto read = record.outputs.array().isFinite();
+  const MatrixXd left = read.select(record.outputs - motion.outputs, 0.0),
+                 finite = read.select(record.outputs, 0.0);
+  const VectorXd counts = read.cast<double>().rowwise().sum().matrix();
+  motion.residual_deviation = left.rowwise().squaredNorm().cwiseQuotient(counts.cwiseMax(1.0)).cwiseSqrt();
+  const VectorXd share = left.rowwise().norm().cwiseQuotient(finite.rowwise().norm().cwiseMax(1e-300));
+  motion.response_error_percent = 100.0 * share.norm() / std::sqrt(static_cast<double>(share.size()));
+}
+
 Reproduction reproduce(filters::DiscreteModel& model, const VectorXd& state,
                        const StartDirections& directions, const filters::Measurements& record) {
   const Index samples = record.time.size(), p = record.outputs.rows(), k = directions.motion.cols();
@@ -40,7 +52,15 @@ Reproduction reproduce(filters::DiscreteModel& model, const VectorXd& state,
   VectorXd x = start, next, output(p), input;
   filters::InformationFactor equations(k + 1);
   MatrixXd rows(p, k + 1);
+  const filters::IntervalKept kept(model);
+  filters::SampleClock clock(model.interval(), record.time_resolution);
+  clock.start(record.time[0]);
   for (Index step = 0; step < samples; ++step) {
+    if (step > 0) {
+      model.set_interval(clock.advance(record.time[step]));
+      model.move(x, input, next, moved);
+      x.swap(next);
+    }
     if (record.inputs.size() > 0) input = record.inputs.col(step);
     model.output(x, input, output);
     model.output_jacobian(x, input, sensor);
@@ -50,21 +70,17 @@ Reproduction reproduce(filters::DiscreteModel& model, const VectorXd& state,
       throw std::runtime_error("the reproduced motion grows beyond all bounds at " +
                                std::to_string(record.time[step]) + " s");
     rows << read.middleRows(step * p, p), record.outputs.col(step) - output;
+    for (Index i = 0; i < p; ++i)
+      if (std::isnan(record.outputs(i, step))) rows.row(i).setZero();  // channels' noises are independent
     noise.matrixL().solveInPlace(rows);
     equations.add(rows);
-    model.move(x, input, next, moved);
-    x.swap(next);
   }
   const VectorXd found = solution(equations);
 
   Reproduction result;
   result.initial_state = start + directions.motion * found;
   result.outputs = forced + (read * found).reshaped(p, samples);
-  const MatrixXd left = record.outputs - result.outputs;
-  result.residual_deviation = (left.rowwise().squaredNorm() / static_cast<double>(samples)).cwiseSqrt();
-  const VectorXd size = record.outputs.rowwise().norm();
-  const VectorXd share = left.rowwise().norm().cwiseQuotient(size.cwiseMax(1e-300));
-  result.response_error_percent = 100.0 * share.norm() / std::sqrt(static_cast<double>(p));
+  take_misfit(record, result);
   return result;
 }
 

@@ -18,7 +18,11 @@ struct Reproduction {
   double response_error_percent = 0.0;  ///< 100 ||y - outputs|| / ||y||, channels weighed by their size
 };
 
+/// What the outputs leave of the samples that were read.
+void take_misfit(const filters::Measurements& record, Reproduction& motion);
+
 /// @param state parameters to move with, in their places (n); its motion and offsets are not looked at.
+/// Stamps may be uneven; outputs that are NaN were not read. R is diagonal.
 /// @throws std::runtime_error when the motion does not stay finite.
 Reproduction reproduce(filters::DiscreteModel& model, const Eigen::VectorXd& state,
                        const StartDirections& directions, const filters::Measurements& record);

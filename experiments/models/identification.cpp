@@ -56,6 +56,13 @@ filters::FilterRun filter_record(const JointModel& model, const filters::Measure
   return run;
 }
 
+bool is_oscillator(const JointModel& model) {
+  const auto& unknowns = model.unknowns;
+  return unknowns.size() == 2 && unknowns[0].quantity == "stiffness" && unknowns[1].quantity == "damping" &&
+         model.equivalent_mass > 0.0 && model.unknown_places == std::vector<Eigen::Index>{2, 3} &&
+         dynamic_cast<const filters::LinearMotion*>(model.motion.get());
+}
+
 Identification identification_at(const JointModel& model, const filters::Gaussian& belief) {
   Identification result;
   const Eigen::VectorXd& mean = belief.mean;

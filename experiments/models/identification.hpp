@@ -45,6 +45,9 @@ struct Identification {
   filters::FilterRun run;  ///< of the last pass
 };
 
+/// Whether a model asks about K and C of one degree of freedom alone, in the state [x, v, K, C, ...].
+bool is_oscillator(const JointModel& model);
+
 /// K, C and what follows from them, at a belief about [x, v, K, C, ...]; without a run.
 Identification identification_at(const JointModel& model, const filters::Gaussian& belief);
 

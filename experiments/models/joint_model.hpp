@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/models/parameter_choice.hpp"
+#include "experiments/models/prior.hpp"
 #include "experiments/models/unknown.hpp"
 #include "experiments/record/record.hpp"
 #include "fem/assembly.hpp"
@@ -33,6 +34,7 @@ struct ModelSetting {
   std::vector<Eigen::Index> forces = {};  ///< inputs of the system that the record holds, in its order (m)
   std::vector<ParameterChoice> parameters = {};  ///< none: what the model asks about by itself
   fem::DampingLaw damping = {};                  ///< as described; guesses of damping ratios come from it
+  PriorBelief prior = {};                        ///< of one degree of freedom
 
   /// What the system was assembled from, for models that ask about the beam itself.
   struct Continuum {

@@ -130,17 +130,21 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
   }
 };
 
-// The beam's own stiffness and damping, to 30 % and to as much again, and its mass to 10 %, unless the
-// setting believes otherwise.
+// The beam's own stiffness and damping, to 30 % and to as much again, and its mass to 10 %, unless the prior
+// or a parameter says otherwise.
 std::vector<Unknown> unknowns(const Known& known, double stiffness, const ModelSetting& setting) {
   constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1, usual_damping_ratio = 0.01;
+  const PriorBelief& prior = setting.prior;
+  stiffness = prior.stiffness.value_or(stiffness);
   const double omega = std::sqrt(stiffness / known.mass);
   const bool described = !std::holds_alternative<fem::Undamped>(setting.damping);
-  const double ratio =
-      described ? fem::damping_ratios(setting.damping, VectorXd::Constant(1, omega))[0] : usual_damping_ratio;
-  const double damping = 2.0 * ratio * omega * known.mass;
-  std::vector<Unknown> unknowns{{"stiffness", "N/m", stiffness, stiffness_doubt * stiffness},
-                                {"damping", "N s/m", damping, damping}};
+  const double ratio = prior.damping_ratio.value_or(
+      described ? fem::damping_ratios(setting.damping, VectorXd::Constant(1, omega))[0]
+                : usual_damping_ratio);
+  const double to_damping = 2.0 * omega * known.mass;
+  std::vector<Unknown> unknowns{
+      {"stiffness", "N/m", stiffness, prior.stiffness_deviation.value_or(stiffness_doubt * stiffness)},
+      {"damping", "N s/m", ratio * to_damping, prior.damping_ratio_deviation.value_or(ratio) * to_damping}};
   if (known.mass_unknown) unknowns.push_back({"mass", "kg", known.mass, mass_doubt * known.mass});
   for (Unknown& unknown : unknowns) unknown.quantity = unknown.name;
   for (const ParameterChoice& choice : setting.parameters) {
@@ -214,7 +218,8 @@ std::unique_ptr<JointModel> make_sdof(const ModelSetting& setting, const filters
   for (Index j = 0; j < unknown_count; ++j) model->unknown_places.push_back(2 + j);
   model->motion = std::make_shared<SingleDegreeOfFreedom>(known, observed, !model->offsets.empty());
   model->mode_shapes = MatrixXd::Ones(1, 1);
-  model->mode_frequencies = VectorXd::Constant(1, std::sqrt(stiffness / known.mass));
+  model->mode_frequencies =
+      VectorXd::Constant(1, std::sqrt(setting.prior.stiffness.value_or(stiffness) / known.mass));
   model->equivalent_mass = known.mass;
   return model;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/signal/missing_samples.hpp"
+
 namespace beamid::experiments {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -50,7 +52,7 @@ StartScale start_scale(const JointModel& model, const std::vector<Observation>& 
     if (observations[i].quantity != Quantity::strain && std::abs(unit) < 0.05 * usual) continue;
     if (unit != 0.0)
       scale.displacement =
-          std::max(scale.displacement, samples.row(i).cwiseAbs().maxCoeff() / std::abs(unit));
+          std::max(scale.displacement, largest_measured(samples.row(i)) / std::abs(unit));
   }
   return scale;
 }

@@ -13,4 +13,7 @@ std::string csv_field(std::string_view text);
 /// The shortest decimal number that reads back as the same double; empty when it is NaN.
 std::string csv_field(double value);
 
+/// Name of a column: "stiffness" in "N/m" is "stiffness_n_per_m", of no unit "stiffness".
+std::string column_key(const std::string& name, const std::string& unit);
+
 }  // namespace beamid::experiments

@@ -9,4 +9,7 @@ namespace beamid::experiments {
 /// Called with a few words whenever another part of the work begins.
 using Progress = std::function<void(const std::string&)>;
 
+/// Nobody watches.
+inline void unwatched(const std::string&) {}
+
 }  // namespace beamid::experiments

@@ -29,7 +29,6 @@ ComparedRecord chosen_channels(ComparedRecord compared, const std::vector<std::s
   record.channels.clear();
   for (const Eigen::Index i : kept) record.channels.push_back(all.channels[static_cast<std::size_t>(i)]);
   if (compared.sensor_noise.size() > 0) compared.sensor_noise = compared.sensor_noise(kept).eval();
-  if (compared.filled.size() > 0) compared.filled = compared.filled(kept, Eigen::all).eval();
   compared.record = std::move(record);
   return compared;
 }

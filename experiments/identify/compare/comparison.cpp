@@ -6,54 +6,24 @@
 #include <cmath>
 #include <utility>
 
-#include "experiments/config/channel_places.hpp"
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/identify/compare/compared_run.hpp"
+#include "experiments/identify/compare/run_noise.hpp"
+#include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/compare/started_model.hpp"
 #include "experiments/identify/compare/true_value.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/recorded_frequency.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "experiments/models/motion/following_motion.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "experiments/text/choice_text.hpp"
 #include "experiments/text/countdown.hpp"
-#include "fem/assembly.hpp"
-#include "fem/modes.hpp"
 #include "filters/filter.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-
-// The mode of the record's first channel near the beam's first one, whatever model looks at it. Nothing where
-// a measured force moves the beam: the record is then no decay of its modes.
-std::optional<ModalEstimate> modal_analysis(const Record& record, double beam_hz) {
-  if (!force_channels(record).empty()) return {};
-  try {
-    ModalAnalysisSettings settings;
-    settings.expected_frequency_hz = shown_at(beam_hz, 1.0 / record.interval());
-    return dominant_mode(record.samples.row(output_channels(record)[0]), record.interval(), settings);
-  } catch (const std::invalid_argument&) {
-    return {};
-  } catch (const std::runtime_error&) {  // its least squares do not converge
-    return {};
-  }
-}
-
-void refuse_dead_channels(const Record& record) {
-  for (const Index i : output_channels(record)) {
-    const Channel& channel = record.channels[static_cast<std::size_t>(i)];
-    const double first = record.samples(i, 0);
-    if ((record.samples.row(i).array() == first).all())
-      throw std::invalid_argument(
-          fmt::format("channel '{}' is dead: it shows {:g} {} throughout; expected motion, or other channels "
-                      "(--channel, record.channels)",
-                      channel.name, first, si_unit(channel.quantity)));
-  }
-}
 
 // The same filter with its covariance as a factor: a mesh has too many coordinates for another form, its
 // modes are of sizes too different.
@@ -74,10 +44,73 @@ std::string form_for_nonlinear(const std::string& discretisation) {
   return discretisation == "exponential" ? "runge_kutta_4" : discretisation;
 }
 
-ComparedRun refused(const std::string& reason) {
+ComparedRun refused(const std::string& reason, const Place& place) {
   ComparedRun run;
+  run.refused_at = place;
   run.status = ComparedRun::Status::refused;
   run.reason = reason;
+  return run;
+}
+
+/// One reduction, its model made once for all filters.
+struct ReducedBeam {
+  std::optional<ModelSetting> setting;
+  std::optional<StartedModel> started;
+  double mass = 0.0;    ///< of one degree of freedom of the beam simulated [kg]
+  std::string refusal;  ///< why there is none
+};
+
+ReducedBeam reduced_beam(const RunContext& context, const Choice& reduction,
+                         const std::filesystem::path& folder) {
+  ReducedBeam made;
+  const RecordAnalysis& analysis = context.analysis;
+  try {
+    made.setting = model_setting(context.experiment, analysis.record, reduction, folder);
+    made.started = started_model(
+        context.experiment.model, *made.setting, measurements(analysis.even.record),
+        analysis.mode && !analysis.aliased ? analysis.mode->frequency_hz : analysis.beam_frequency_hz);
+    if (const auto& truth = context.compared.truth; truth && made.started->model.equivalent_mass > 0.0)
+      made.mass = true_mass(*truth, analysis.record, reduction, folder);
+  } catch (const std::invalid_argument& error) {
+    made.refusal = error.what();
+  }
+  return made;
+}
+
+// The filter and the scheme that such a model can have.
+void fit_to_model(const JointModel& model, RunSettings& settings) {
+  const bool mesh = is_whole_mesh(model);
+  if (mesh || dynamic_cast<const FollowingMotion*>(model.motion.get()))
+    settings.filter = by_factor(settings.filter);
+  if (mesh)
+    settings.discretisation = form_for_the_mesh(settings.discretisation);
+  else if (is_nonlinear(model))
+    settings.discretisation = form_for_nonlinear(settings.discretisation);
+}
+
+// Noise stated so far below the record's would make of any start a certainty.
+bool noise_is_stated_well(const RunContext& context) {
+  constexpr double absurd = 1e-3;
+  const RecordAnalysis& analysis = context.analysis;
+  const KnownNoise known = known_noise(context.experiment, analysis, context.compared);
+  return assumed_noise(known, analysis.mode_noise)[0] > absurd * analysis.near_mode->deviation;
+}
+
+// A filter of one mode starts from the modal analysis, unless this has separated two: the filter would follow
+// the beat, and starts there only where it is lost otherwise.
+ComparedRun run_from_best_start(const RunContext& context, const ReducedBeam& made,
+                                const RunSettings& settings) {
+  const RecordAnalysis& analysis = context.analysis;
+  std::optional<StartedModel> from_mode;
+  if (analysis.modal && !analysis.aliased && context.experiment.parameters.empty() &&
+      noise_is_stated_well(context))
+    from_mode = started_from_mode(made.started->model, context.experiment.prior, *analysis.modal,
+                                  settings.discretisation, analysis.record.interval());
+  if (from_mode && analysis.modal->companions.empty())
+    return run_once(context, *made.setting, *from_mode, settings);
+  ComparedRun run = run_once(context, *made.setting, *made.started, settings);
+  if (from_mode && run.status == ComparedRun::Status::diverged)
+    run = run_once(context, *made.setting, *from_mode, settings);
   return run;
 }
 
@@ -87,6 +120,8 @@ const char* to_string(ComparedRun::Status status) {
   switch (status) {
     case ComparedRun::Status::converged:
       return "converged";
+    case ComparedRun::Status::contradicted:
+      return "contradicted";
     case ComparedRun::Status::diverged:
       return "diverged";
     case ComparedRun::Status::refused:
@@ -120,97 +155,60 @@ ComparedRecord simulated_record(const Experiment& truth, const std::filesystem::
 }
 
 ComparedRecord measured_record(std::string name, const Record& record) {
-  AnalysableRecord even = analysable(record);
-  if (!even.remark.empty()) even.record.remarks.push_back(even.remark);
   ComparedRecord compared;
   compared.name = std::move(name);
-  compared.record = std::move(even.record);
-  compared.filled = std::move(even.filled);
+  compared.record = record;
   return compared;
 }
 
 Comparison compare(const Experiment& experiment, ComparedRecord record, const std::filesystem::path& folder,
-                   const Progress& progress) {
-  Comparison comparison{std::move(record), {}};
-  comparison.compared.record = with_places(std::move(comparison.compared.record), experiment);
-  const Record& samples = comparison.compared.record;
-  if (output_channels(samples).empty())
-    throw std::invalid_argument("the record holds forces only; expected at least one channel of motion");
-  refuse_dead_channels(samples);
-  RunContext context{experiment, comparison.compared, {}};
-  const double beam_frequency =
-      fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
-  const double rate = 1.0 / samples.interval();
-  comparison.modal = modal_analysis(samples, beam_frequency);
-  if (const auto& modal = comparison.modal) {
-    context.modal = FoundMode{};
-    context.modal->frequency_hz = modal->frequency_hz;
-    context.modal->damping_ratio = modal->damping_ratio;
-  } else {
-    const filters::Measurements measured = measurements(samples);
-    const RecordedFrequency recorded =
-        recorded_frequency(measured.outputs.row(0).transpose(), measured.inputs, samples.interval(),
-                           shown_at(beam_frequency, rate));
-    if (recorded.value_hz) {
-      context.modal = FoundMode{};
-      context.modal->frequency_hz = *recorded.value_hz;
-    } else {
-      comparison.compared.notes.push_back(
-          "The record's own frequency could not be had without a model (" + recorded.failure +
-          "): the beam's takes its place as a first estimate, and runs are not checked against it.");
-    }
-  }
-  const bool aliased = 2.0 * beam_frequency > rate;
-  if (aliased)
-    comparison.warnings.push_back(fmt::format(
-        "ALIASED: the beam's first mode, at {:.5g} Hz, lies above half the sampling rate, {:.5g} Hz. The "
-        "record "
-        "shows it at {:.5g} Hz, as it would show any mode at a multiple of {:.5g} Hz plus or minus that: "
-        "which of them it is only the initial estimates say.",
-        beam_frequency, 0.5 * rate, shown_at(beam_frequency, rate), rate));
+                   const Progress& progress, filters::Keep keep) {
+  Comparison comparison{std::move(record), {}, {}};
+  comparison.analysis = analyse(experiment, comparison.compared.record);
+  const RecordAnalysis& analysis = comparison.analysis;
+  comparison.compared.record = analysis.record;
+  comparison.compared.notes.insert(comparison.compared.notes.end(), analysis.notes.begin(),
+                                   analysis.notes.end());
+  comparison.warnings = analysis.warnings;
+  const RunContext context{experiment, comparison.compared, analysis};
   Countdown countdown(
       progress, experiment.reductions.size() * experiment.filters.size() * experiment.discretisations.size(),
       "runs");
   for (const Choice& reduction : experiment.reductions) {
-    std::optional<ModelSetting> setting;
-    std::optional<StartedModel> started;
-    double mass = 0.0;
-    std::string refusal;
     countdown.begin(to_text(reduction));
-    try {
-      setting = model_setting(experiment, samples, reduction, folder);
-      started = started_model(experiment.model, *setting, measurements(samples),
-                              context.modal && !aliased ? context.modal->frequency_hz : beam_frequency);
-      if (const auto& truth = comparison.compared.truth; truth && started->model.equivalent_mass > 0.0)
-        mass = true_mass(*truth, samples, reduction, folder);
-    } catch (const std::invalid_argument& error) {
-      refusal = error.what();
-    }
+    const ReducedBeam made = reduced_beam(context, reduction, folder);
     for (const Choice& filter : experiment.filters)
       for (const std::string& discretisation : experiment.discretisations) {
-        const JointModel* model = started ? &started->model : nullptr;
-        const bool mesh = model && is_whole_mesh(*model);
-        const bool follows = model && dynamic_cast<const FollowingMotion*>(model->motion.get());
-        const Choice used = mesh || follows ? by_factor(filter) : filter;
-        const std::string scheme = mesh                            ? form_for_the_mesh(discretisation)
-                                   : model && is_nonlinear(*model) ? form_for_nonlinear(discretisation)
-                                                                   : discretisation;
-        countdown.begin(fmt::format("{}, {}, {}", to_text(reduction), used.name, scheme));
-        comparison.runs.push_back(
-            started ? run_once(context, *setting, *started, {used, scheme, experiment.passes, mass})
-                    : refused(refusal));
+        RunSettings settings{filter, discretisation, experiment.passes, made.mass, keep};
+        if (made.started) fit_to_model(made.started->model, settings);
+        countdown.begin(
+            fmt::format("{}, {}, {}", to_text(reduction), settings.filter.name, settings.discretisation));
+        ComparedRun run = made.started ? run_from_best_start(context, made, settings)
+                                       : refused(made.refusal, experiment.model.place);
         countdown.count();
-        ComparedRun& run = comparison.runs.back();
         run.reduction = to_text(reduction);
-        run.filter = choice_text(used, filters::filter_registry().find(used.name).options);
-        run.discretisation = scheme;
+        run.filter =
+            choice_text(settings.filter, filters::filter_registry().find(settings.filter.name).options);
+        run.discretisation = settings.discretisation;
+        judge_run(context, run);
+        comparison.runs.push_back(std::move(run));
       }
   }
   const bool any = std::any_of(comparison.runs.begin(), comparison.runs.end(), [](const ComparedRun& run) {
     return run.status != ComparedRun::Status::refused;
   });
-  if (!any) throw std::invalid_argument(comparison.runs.front().reason);
-  return comparison;
+  if (any) return comparison;
+  const ComparedRun& first = comparison.runs.front();
+  if (first.refused_at.file.empty()) throw std::invalid_argument(first.reason);
+  throw InputError(first.refused_at, first.reason);
+}
+
+Comparison identify_with_model(Experiment experiment, ComparedRecord record,
+                               const std::filesystem::path& folder, const Progress& progress) {
+  experiment.reductions = {experiment.reduction};
+  experiment.filters = {experiment.filter};
+  experiment.discretisations = {experiment.discretisation};
+  return compare(experiment, std::move(record), folder, progress, filters::Keep::all_beliefs);
 }
 
 }  // namespace beamid::experiments

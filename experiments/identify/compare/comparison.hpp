@@ -2,18 +2,23 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/config/experiment.hpp"
-#include "experiments/modal/dominant_mode.hpp"
+#include "experiments/identify/analysis.hpp"
+#include "experiments/identify/batch.hpp"
+#include "experiments/identify/noise_in_estimates.hpp"
 #include "experiments/models/divergence.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/text/progress.hpp"
 #include "filters/diagnostics.hpp"
 
 namespace beamid::experiments {
+
+struct RecordIdentification;
 
 /// What is identified, and what is known of it.
 struct ComparedRecord {
@@ -22,11 +27,12 @@ struct ComparedRecord {
   Eigen::VectorXd sensor_noise;     ///< standard deviation of every channel where it is known, else 0 (p)
   std::optional<Experiment> truth;  ///< the beam it was simulated from
   std::vector<std::string> notes;   ///< of the simulation
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> filled =
-      {};  ///< samples that were missing: no readings to a filter; empty: none
+  /// Noise of the channels of motion, from before an event (p): noise_before_event(); needed where the
+  /// experiment wants it.
+  Eigen::VectorXd quiet_noise = {};
 };
 
-/// Stamps made even and missing samples filled in, as finding a start and a modal analysis need it.
+/// A record of a file.
 ComparedRecord measured_record(std::string name, const Record& record);
 
 /// Simulated from the beam of `truth`, as `beamid simulate` does. @throws as simulate().
@@ -47,52 +53,77 @@ struct ComparedParameter {
 struct ComparedRun {
   enum class Status {
     converged,
-    diverged,  ///< the filter failed, or its motion is not the record's
-    refused    ///< the model cannot be made this way
+    contradicted,  ///< the modal analysis of the same record has less than half or more than twice the
+                   ///< damping
+    diverged,      ///< the filter failed, or its motion is not the record's
+    refused        ///< the model cannot be made this way
   };
   std::string reduction, filter, discretisation;  ///< with the options that were chosen
   Status status = Status::converged;
   std::string reason;               ///< where it did not converge
+  Place refused_at = {};            ///< what of the experiment file is at fault; empty: not known
   std::string step_cause;           ///< what the discretisation alone does to the mode; empty: nothing much
   Eigen::Index coordinates = 0;     ///< r, of the model
   double observed_per_freedom = 0;  ///< p / r, the paper's O/F ratio
   std::vector<ComparedParameter> parameters;
   double response_error_percent = 0.0;
-  Eigen::VectorXd noise;       ///< standard deviation assumed in the last pass (p)
-  Eigen::VectorXd noise_left;  ///< root mean square of what the best motion leaves of the readings (p)
-  std::optional<double> frequency_hz;  ///< of the model's first mode at the estimate
-  std::optional<FoundMode> mode;       ///< likewise, where its equations tell it
-  double noise_ratio = 1;         ///< deviation of the noise that counts over that assumed (run_verdict.hpp)
-  double noise_freedom = 1e9;     ///< degrees of freedom that this ratio is known with
-  double seconds = 0.0;           ///< all passes of the filter
-  double response_seconds = 0.0;  ///< the reproduction and the bound
-  Eigen::MatrixXd reproduced;     ///< (p x N)
+  Eigen::VectorXd noise;              ///< standard deviation assumed in the last pass (p)
+  Eigen::VectorXd noise_left;         ///< root mean square of what the best motion leaves of the readings (p)
+  std::vector<bool> noise_is_stated;  ///< in the experiment file, rather than taken from the record (p)
+  Eigen::VectorXd noise_relative_deviation;  ///< standard errors of it (p); empty: not known
+  std::optional<double> frequency_hz;        ///< of the model's first mode at the estimate
+  std::optional<FoundMode> mode;             ///< likewise, where its equations tell it
+  std::optional<NoiseNearMode> near_mode;    ///< of the first output, at the record's mode
+  std::vector<NoiseInEstimate> noise_in;  ///< how much of it reaches each unknown (q); empty: by `near_mode`
+  double interval_factor = 1;             ///< of deviations, the largest: what counts is not R; 1 at least
+  double noise_ratio = 1;                 ///< deviation of the noise that counts over that assumed
+  double noise_freedom = 1e9;             ///< degrees of freedom that this ratio is known with
+  double seconds = 0.0;                   ///< all passes of the filter
+  double response_seconds = 0.0;          ///< the reproduction and the bound
+  Eigen::MatrixXd reproduced;             ///< (p x N)
+  std::shared_ptr<JointModel> model;      ///< on the basis of the last pass; absent where it was refused
+  IdentificationSettings settings;        ///< of the last pass
   filters::FilterRun run;
   std::vector<Unknown> unknowns;                    ///< of the model, in the order of the parameters (q)
   filters::Gaussian unknown_state, unknown_start;   ///< of what the filter's state carries for them: at the
                                                     ///< end, and at the start of the last pass (q)
   std::optional<filters::Diagnostics> diagnostics;  ///< of the last pass; absent below 100 samples
+  std::vector<filters::Gaussian> smoothed;          ///< of every sample, where a smoother was asked for
+  std::optional<BatchIdentification> batch;         ///< where it was asked for
   std::vector<std::string> remarks;
+  std::vector<std::string> warnings;  ///< for the first lines of a report, the worst first
+  std::shared_ptr<const RecordIdentification> oscillator;  ///< K and C of a free decay, judged; else absent
+
+  bool has_estimate() const { return status == Status::converged || status == Status::contradicted; }
 };
 
 struct Comparison {
   ComparedRecord compared;
+  RecordAnalysis analysis;
   std::vector<ComparedRun> runs;
-  std::optional<ModalEstimate> modal = {};  ///< of the first output, near the beam's mode; absent: none found
-  std::vector<std::string> warnings = {};   ///< for the first lines of a report
+  std::vector<std::string> warnings = {};  ///< for the first lines of a report
 };
 
 const char* to_string(ComparedRun::Status status);
 
-/// Every reduction x filter x discretisation of the experiment on the record.
+/// Every reduction x filter x discretisation of the experiment on the record: the one engine, whatever model
+/// is asked.
 ///
-/// Each model gets a first guess (first_guess.hpp), and from it the motion nearest to the record
-/// (reproduction.hpp), about which the first pass of every filter is linearised; further passes likewise from
-/// what the one before found. The noise of a channel is [noise] where given, else what that motion leaves of
-/// the record, never less than the sensor's own: what a reduced model cannot follow is noise to it.
+/// The record is analysed once (analysis.hpp). Each model gets a first guess (first_guess.hpp, or the modal
+/// analysis for one degree of freedom), and from it the motion nearest to the record (reproduction.hpp),
+/// about which the first pass of every filter is linearised; further passes likewise from what the one before
+/// found. The noise of a channel is [noise] where given, else what that motion leaves of the record, never
+/// less than the sensor's own: what a reduced model cannot follow is noise to it. Each run is judged beside
+/// the modal analysis (run_verdict.hpp).
 /// @param folder in which the files of given shapes are looked for.
+/// @param keep beliefs of every sample, for histories; a smoother asks for them anyway
 /// @throws InputError, std::invalid_argument when no run can be made of the experiment at all.
 Comparison compare(const Experiment& experiment, ComparedRecord record, const std::filesystem::path& folder,
-                   const Progress& progress);
+                   const Progress& progress, filters::Keep keep = filters::Keep::last_belief);
+
+/// The experiment's own reduction, filter and discretisation: a comparison of one run, what was not measured
+/// counted at every sample.
+Comparison identify_with_model(Experiment experiment, ComparedRecord record,
+                               const std::filesystem::path& folder, const Progress& progress);
 
 }  // namespace beamid::experiments

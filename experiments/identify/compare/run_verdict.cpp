@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
+#include "experiments/identify/record_identification.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -25,37 +25,55 @@ std::string innovations_text(const filters::InnovationConsistency& c) {
 
 // What counts for frequency and damping is the density of the noise at the mode, whatever R says of all of
 // it.
-double widening(const Comparison& comparison, ComparedRun& run, std::vector<std::string>& notes) {
-  const Record& record = comparison.compared.record;
-  const Eigen::Index first = output_channels(record)[0];
-  const NoiseNearMode near =
-      noise_near_mode(record.samples.row(first).transpose(), record.interval(), *comparison.modal);
+std::vector<double> by_mode(const RunContext& context, ComparedRun& run) {
+  const NoiseNearMode& near = *context.analysis.near_mode;
   const double density = near.deviation / run.noise[0], factor = near.student() * density;
-  if (!(factor > 1.0)) return 1.0;
-  run.noise_ratio = density;
-  run.noise_freedom = near.freedom;
-  notes.push_back(fmt::format(
-      "Near the mode the noise density, from {} spectral lines, is {:.3g} times that of white noise of the "
-      "deviation assumed: intervals are widened by {:.3g}.",
-      near.lines, density, factor));
-  return factor;
+  run.near_mode = near;
+  if (factor > 1.0) {
+    run.noise_ratio = density;
+    run.noise_freedom = near.freedom;
+    run.interval_factor = factor;
+    run.remarks.push_back(fmt::format(
+        "Near the mode the noise density, from {} spectral lines, is {:.3g} times that of white noise of the "
+        "deviation assumed: intervals are widened by {:.3g}.",
+        near.lines, density, factor));
+  }
+  return std::vector<double>(run.parameters.size(), run.interval_factor);
 }
 
-void widen(ComparedRun& run, double factor) {
-  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
-    Estimate& e = run.parameters[j].estimate;
-    const Unknown& unknown = run.unknowns[j];
-    const auto place = static_cast<Eigen::Index>(j);
-    const double mean = run.unknown_state.mean[place];
-    const double half = quantile_95 * factor * std::sqrt(run.unknown_state.covariance(place, place));
-    e.deviation *= factor;
-    e.lower_95 = unknown.to_physical(mean - half);
-    e.upper_95 = unknown.to_physical(mean + half);
+std::vector<double> by_influence(ComparedRun& run) {
+  std::vector<double> factors(run.parameters.size(), 1.0);
+  std::string widened;
+  for (std::size_t j = 0; j < factors.size() && j < run.noise_in.size(); ++j) {
+    const NoiseInEstimate& noise = run.noise_in[j];
+    factors[j] = std::max(1.0, student_factor(noise.freedom) * noise.ratio);
+    if (factors[j] > run.interval_factor) {
+      run.interval_factor = factors[j];
+      run.noise_ratio = std::max(noise.ratio, 1.0);
+      run.noise_freedom = noise.freedom;
+    }
+    constexpr double worth_saying = 1.1;
+    if (factors[j] > worth_saying)
+      widened += fmt::format("{}{} by {:.3g}", widened.empty() ? "" : ", ", run.parameters[j].estimate.name,
+                             factors[j]);
   }
-  if (run.mode) {
-    run.mode->damping_ratio_deviation *= factor;
-    run.mode->frequency_deviation_hz *= factor;
-  }
+  if (!widened.empty())
+    run.remarks.push_back(
+        "The record's noise is denser where these are determined than white noise of the deviation assumed: "
+        "intervals are widened, " +
+        widened + ".");
+  return factors;
+}
+
+void widen(ComparedRun& run, std::size_t j, double factor) {
+  Estimate& e = run.parameters[j].estimate;
+  const Unknown& unknown = run.unknowns[j];
+  const auto place = static_cast<Eigen::Index>(j);
+  const double mean = run.unknown_state.mean[place];
+  const double half = quantile_95 * factor * std::sqrt(run.unknown_state.covariance(place, place));
+  e.deviation *= factor;
+  e.lower_95 = unknown.to_physical(mean - half);
+  e.upper_95 = unknown.to_physical(mean + half);
 }
 
 // "the damping ratio 0.56 % (modal analysis 0.40 %, 12 standard deviations)", where it is many of them.
@@ -71,9 +89,7 @@ void add_difference(const char* what, double found, double deviation, double mod
       apart);
 }
 
-std::string difference_text(const Comparison& comparison, const ComparedRun& run) {
-  if (!run.mode) return {};
-  const ModalEstimate& modal = *comparison.modal;
+std::string difference_text(const ModalEstimate& modal, const ComparedRun& run) {
   std::string text;
   add_difference("frequency", run.mode->frequency_hz, run.mode->frequency_deviation_hz, modal.frequency_hz,
                  modal.frequency_standard_deviation_hz, 1.0, "Hz", text);
@@ -84,22 +100,55 @@ std::string difference_text(const Comparison& comparison, const ComparedRun& run
          ". The modal analysis knows no model: trust it, or give the model the modes that it lacks.";
 }
 
+// Of the general model: its lowest mode beside the modal analysis, its innovations.
+void judge_model(const RunContext& context, ComparedRun& run) {
+  const auto& modal = context.analysis.modal;
+  const std::vector<double> factors =
+      run.noise_in.empty() && modal ? by_mode(context, run) : by_influence(run);
+  for (std::size_t j = 0; j < factors.size(); ++j) widen(run, j, factors[j]);
+  if (run.mode) {
+    run.mode->damping_ratio_deviation *= run.interval_factor;
+    run.mode->frequency_deviation_hz *= run.interval_factor;
+  }
+  // A model that has the mode's companions does not have its frequency alone.
+  const bool one_mode = run.coordinates == 1 || (modal && modal->companions.empty());
+  if (modal && run.mode && one_mode)
+    if (const std::string text = difference_text(*modal, run); !text.empty()) run.warnings.push_back(text);
+  if (run.diagnostics && run.diagnostics->consistency)
+    if (const std::string text = innovations_text(*run.diagnostics->consistency); !text.empty())
+      run.warnings.push_back(text);
+}
+
+// K and C of a free decay: with what is known of one mode and its amplitude.
+void judge_oscillator(const RunContext& context, ComparedRun& run) {
+  const auto found =
+      std::make_shared<const RecordIdentification>(oscillator_of(context.experiment, context.analysis, run));
+  run.warnings = found->judgement.messages;
+  run.near_mode = found->near_mode;
+  run.interval_factor = found->interval_factor;
+  if (found->interval_factor > 1.0) {
+    run.noise_ratio = found->interval_factor / found->near_mode.student();
+    run.noise_freedom = found->near_mode.freedom;
+  }
+  if (run.has_estimate()) run.status = found->judgement.verdict;
+  run.oscillator = found;
+  if (run.parameters.size() != 2) return;
+  widen(run, 0, found->frequency_factor());
+  widen(run, 1, found->damping_factor());
+  if (!run.mode) return;
+  run.mode->frequency_deviation_hz *= found->frequency_factor();
+  run.mode->damping_ratio_deviation *= found->damping_factor();
+}
+
 }  // namespace
 
-void judge_runs(Comparison& comparison) {
-  for (ComparedRun& run : comparison.runs) {
-    if (run.status != ComparedRun::Status::converged) continue;
-    // To a model that has the mode's companions, or a frequency that amplitude changes, they are no noise.
-    const bool one_mode = run.coordinates == 1 || (comparison.modal && comparison.modal->companions.empty());
-    if (comparison.modal && run.mode && one_mode) {
-      widen(run, widening(comparison, run, comparison.compared.notes));
-      if (const std::string text = difference_text(comparison, run); !text.empty())
-        comparison.warnings.push_back(text);
-    }
-    if (run.diagnostics && run.diagnostics->consistency)
-      if (const std::string text = innovations_text(*run.diagnostics->consistency); !text.empty())
-        comparison.warnings.push_back(text);
-  }
+void judge_run(const RunContext& context, ComparedRun& run) {
+  if (run.status == ComparedRun::Status::refused) return;
+  const Experiment& experiment = context.experiment;
+  if (experiment.model.name == "sdof" && experiment.parameters.empty() && !context.analysis.forced())
+    judge_oscillator(context, run);
+  else if (run.status == ComparedRun::Status::converged)
+    judge_model(context, run);
 }
 
 }  // namespace beamid::experiments

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/identify/joint_comparison.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -19,29 +21,17 @@ const ComparedRun& run_of(const Comparison& one) {
 }
 
 Comparison identified(const FamilyMember& member, const Progress& progress) {
-  Experiment experiment = member.experiment;
-  experiment.reductions = {experiment.reduction};
-  experiment.filters = {experiment.filter};
-  experiment.discretisations = {experiment.discretisation};
-  ComparedRecord compared;
-  compared.name = member.record_name;
-  compared.record = member.record;
-  Comparison found = compare(experiment, std::move(compared), member.folder, progress);
-  if (run_of(found).status != ComparedRun::Status::converged)
+  Comparison found = identify_with_model(
+      member.experiment, measured_record(member.record_name, member.record), member.folder, progress);
+  if (!run_of(found).has_estimate())
     throw std::invalid_argument(
         fmt::format("{} with {}: {}", member.name, member.record_name, run_of(found).reason));
   return found;
 }
 
-NamedBelief belief_of(const ComparedRun& run) {
-  NamedBelief named;
-  named.belief.unknowns = run.unknown_state;
-  named.belief.prior = run.unknown_start.covariance;
-  named.belief.start = run.unknown_start.mean;
-  for (const Unknown& unknown : run.unknowns) {
-    named.names.push_back(unknown.name);
-    named.belief.nuisance.push_back(unknown.nuisance);
-  }
+NamedBelief named_belief(const ComparedRun& run) {
+  NamedBelief named{{}, record_belief(run)};
+  for (const Unknown& unknown : run.unknowns) named.names.push_back(unknown.name);
   return named;
 }
 
@@ -85,7 +75,7 @@ Estimate estimate_of(const Unknown& unknown, double mean, double deviation) {
 // What all say, and the physical numbers at it.
 void add_up(BeamFamily& family) {
   std::vector<NamedBelief> beliefs;
-  for (const Comparison& one : family.alone) beliefs.push_back(belief_of(run_of(one)));
+  for (const Comparison& one : family.alone) beliefs.push_back(named_belief(run_of(one)));
   family.estimate = shared_estimate(beliefs);
   const Eigen::VectorXd deviations = family.estimate.unknowns.deviations();
   family.parameters.clear();

@@ -45,7 +45,8 @@ SharedEstimate shared_estimate(const std::vector<NamedBelief>& records) {
   for (const NamedBelief& record : records) {
     EstimatePart part;
     Index rank = 0;
-    part.information = information_of(record.belief, rank);
+    part.information =
+        information_of(record.belief, rank) / (record.belief.noise_ratio * record.belief.noise_ratio);
     told_in_all += rank;
     for (std::size_t i = 0; i < record.names.size(); ++i) {
       const auto found = std::find(result.names.begin(), result.names.end(), record.names[i]);

@@ -70,6 +70,12 @@ InnovationWatch::Verdict InnovationWatch::begin_anew(Verdict why) {
   return why;
 }
 
+bool InnovationWatch::begin_anew_after_failure() {
+  if (settled_ || degrees_ < window || in_bounds()) return false;
+  begin_anew(Verdict::gave_up);
+  return true;
+}
+
 bool InnovationWatch::in_bounds() const {
   return mean_square() * static_cast<double>(degrees_) <= limit(bounds_, degrees_, unlikely);
 }

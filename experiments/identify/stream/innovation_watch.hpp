@@ -37,6 +37,10 @@ class InnovationWatch {
   /// @param outputs that were measured; none: keep
   Verdict judge(double normalised_square, Eigen::Index outputs);
 
+  /// The filter failed: whether it is to begin anew, as one that had been out of its bound for a window and
+  /// never settled, rather than to end there.
+  bool begin_anew_after_failure();
+
   bool settled() const { return settled_; }
   /// Normalised square per output over the window, 1 where the filter is right; NaN before the first.
   double mean_square() const;

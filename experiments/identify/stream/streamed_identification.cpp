@@ -7,6 +7,7 @@
 
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/run_diagnostics.hpp"
+#include "experiments/models/estimates.hpp"
 #include "experiments/results/csv.hpp"
 #include "experiments/text/method_choice.hpp"
 
@@ -20,18 +21,6 @@ bool carries_its_belief_alone(const std::string& filter) {
   const auto& contracts = filters::filter_registry().find(filter).contracts;
   return contracts.contains(filters::contract::exact_on_linear_gaussian) &&
          !contracts.contains(filters::contract::sampled_on_linear_gaussian);
-}
-
-// The path of a force from sample to sample is known when the next one has come: not before, if it is
-// band-limited.
-std::vector<std::string> names_of_free_motion(const Record& earlier) {
-  const std::vector<Index> forces = force_channels(earlier);
-  if (!forces.empty())
-    throw std::invalid_argument(
-        fmt::format("a stream takes free motion; found the measured force '{}', of which a band-limited path "
-                    "needs the samples to come. Leave its channel out, or identify a record",
-                    earlier.channels[static_cast<std::size_t>(forces.front())].name));
-  return earlier.channel_names();
 }
 
 std::vector<std::string> state_names(const JointModel& model) {
@@ -68,8 +57,8 @@ constexpr Index outliers_told = 5;  // one by one
 }  // namespace
 
 StreamedIdentification::StreamedIdentification(const Experiment& experiment, const Record& earlier)
-    : names_(names_of_free_motion(earlier)),
-      prepared_(prepare_identification(experiment, earlier)),
+    : names_(earlier.channel_names()),
+      prepared_(stream_start(experiment, earlier)),
       choice_(experiment.filter),
       interval_(earlier.interval()) {
   const auto& settings = prepared_.settings;
@@ -89,7 +78,17 @@ bool StreamedIdentification::take_in(const filters::Sample& sample) {
   const filters::Gaussian predicted = moved ? running_->belief() : filters::Gaussian{};
   const bool goes_on = moved && running_->correct(sample);
   list_failures();
-  if (!goes_on) return false;
+  if (!goes_on) {
+    if (good_.step == 0 || !watch_.begin_anew_after_failure()) return false;
+    filters::SavedRun again = good_;
+    again.belief = first_belief(at_first());
+    again.alarm = {};
+    running_->resume(again);
+    told_ = 0;
+    begin_anew(InnovationWatch::Verdict::gave_up);
+    good_ = running_->save();
+    return true;
+  }
   heed(predicted);
   good_ = running_->save();
   return true;
@@ -155,14 +154,14 @@ void StreamedIdentification::begin_anew(InnovationWatch::Verdict why) {
   Known start = at_first();
   if (newer_ && watch_.unsettled() <= forget_after) {
     start = *newer_;
-    said += " The motion begins anew, with K and C as they were known.";
+    said += " The motion begins anew, with the unknowns as they were known.";
   } else {
     const Known now = newer_.value_or(known_now());
     const VectorXd far = (now.mean - start.mean).cwiseAbs2() - 9.0 * start.covariance.diagonal();
     if (why != Watched::gave_up && (far.array() <= 0.0).all()) start.mean = now.mean;
     newer_.reset();
     older_.reset();
-    said += " The filter begins anew, K and C as uncertain as at first.";
+    said += " The filter begins anew, the unknowns as uncertain as at first.";
   }
   filter_->reset(first_belief(start));
   news_.push_back(said);
@@ -284,22 +283,31 @@ const char* word(StreamedIdentification::Status status) {
   }
 }
 
-std::string stream_header() {
-  return "time_s,stiffness_n_per_m,stiffness_deviation_n_per_m,damping_n_s_per_m,damping_deviation_n_s_per_m,"
-         "frequency_hz,frequency_deviation_hz,damping_ratio,damping_ratio_deviation,mean_normalised_square,"
-         "status\n";
+std::vector<StreamedIdentification::Shown> StreamedIdentification::shown() const {
+  const filters::Gaussian belief = running_->belief();
+  std::vector<Shown> all;
+  for (const Estimate& one : estimates(prepared_.model, belief))
+    all.push_back({one.name, one.unit, one.value, one.deviation});
+  if (!is_oscillator(prepared_.model)) return all;
+  const Identification found = identification_at(prepared_.model, belief);
+  all.push_back({"frequency", "Hz", found.found.frequency_hz(), found.frequency_deviation_hz});
+  all.push_back({"damping_ratio", "", found.found.damping_ratio(), found.damping_ratio_deviation});
+  return all;
+}
+
+std::string stream_header(const StreamedIdentification& stream) {
+  std::string header = "time_s";
+  for (const auto& one : stream.shown())
+    header += "," + column_key(one.name, one.unit) + "," + column_key(one.name + "_deviation", one.unit);
+  return header + ",mean_normalised_square,status\n";
 }
 
 std::string stream_row(double time, const StreamedIdentification& stream) {
-  const Identification found = stream.found();
   const double widen = stream.interval_factor();
   std::string row = csv_field(time);
-  for (const double number :
-       {found.found.stiffness, widen * found.stiffness_deviation, found.found.damping,
-        widen * found.damping_deviation, found.found.frequency_hz(), widen * found.frequency_deviation_hz,
-        found.found.damping_ratio(), widen * found.damping_ratio_deviation, stream.watch().mean_square()})
-    row += "," + csv_field(number);
-  return row + "," + word(stream.status()) + "\n";
+  for (const auto& one : stream.shown())
+    row += "," + csv_field(one.value) + "," + csv_field(widen * one.deviation);
+  return row + "," + csv_field(stream.watch().mean_square()) + "," + word(stream.status()) + "\n";
 }
 
 }  // namespace beamid::experiments

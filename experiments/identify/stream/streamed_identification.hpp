@@ -1,4 +1,4 @@
-// Stiffness and damping while the samples arrive.
+// Stiffness, damping and whatever else is asked about while the samples arrive.
 #pragma once
 
 #include <memory>
@@ -6,26 +6,23 @@
 #include <string>
 #include <vector>
 
-#include "experiments/identify/record_identification.hpp"
 #include "experiments/identify/stream/innovation_watch.hpp"
+#include "experiments/identify/stream/stream_start.hpp"
 #include "filters/running_filter.hpp"
 
 namespace beamid::experiments {
 
-/// K and C of a free oscillator from one sample after the other, one pass: the numbers of filter_record()
-/// with passes = 1 over the same samples, to the last digit, also where they come in several parts, as long
-/// as the innovations agree with the filter.
+/// The unknowns of any model from one sample of free motion after the other, one pass: the numbers of
+/// filter_record() with passes = 1 over the same samples, to the last digit, also where they come in several
+/// parts, as long as the innovations agree with the filter.
 ///
 /// Where they do not (InnovationWatch), outliers are left out, and the filter begins anew: its motion as
-/// unknown as at first, K and C as they were known some 50 outputs before, at a time when the innovations
-/// agreed; or, before there was such a time and where K and C of then do not fit for 2000 outputs, as
-/// uncertain as at first.
-///
-/// A stream knows neither its noise nor its amplitude beforehand. An earlier record of the same rig gives
-/// them, with the sampling interval: what prepare_identification() makes of it.
+/// unknown as at first, the unknowns as they were known some 50 outputs before, at a time when the
+/// innovations agreed; or, before there was such a time and where those of then do not fit for 2000 outputs,
+/// as uncertain as at first.
 class StreamedIdentification {
  public:
-  static constexpr Eigen::Index forget_after = 2000;  ///< outputs that K and C of before do not fit
+  static constexpr Eigen::Index forget_after = 2000;  ///< outputs that the unknowns of before do not fit
 
   /// What became of the last sample.
   enum class Status {
@@ -35,7 +32,7 @@ class StreamedIdentification {
     begun_anew  ///< the filter begins anew behind it
   };
 
-  /// @throws InputError, std::invalid_argument as prepare_identification(), and where a force was measured
+  /// @throws InputError, std::invalid_argument as stream_start()
   StreamedIdentification(const Experiment& experiment, const Record& earlier);
 
   /// Outputs of a sample (p).
@@ -50,9 +47,15 @@ class StreamedIdentification {
   /// A sentence for everything that happened since the last call.
   std::vector<std::string> news();
 
-  Identification found() const { return identification_at(prepared_.model, running_->belief()); }
-  /// Of the deviations in found(): noise near the mode (RecordIdentification::interval_factor), and
-  /// innovations that are larger than the noise says; at least 1.
+  /// A quantity that rows show.
+  struct Shown {
+    std::string name, unit;
+    double value = 0, deviation = 0;  ///< [unit]
+  };
+  /// The model's unknowns; of K and C of one degree of freedom also frequency and damping ratio.
+  std::vector<Shown> shown() const;
+  /// Of the deviations in shown(): noise near the mode of the earlier record, and innovations that are larger
+  /// than the noise says; at least 1.
   double interval_factor() const;
 
   /// @throws std::invalid_argument when the filter holds more than its belief
@@ -80,7 +83,7 @@ class StreamedIdentification {
   Known at_first() const;
 
   std::vector<std::string> names_;  // of the outputs
-  RecordIdentification prepared_;
+  StreamStart prepared_;
   Choice choice_;
   double interval_;  // [s]
   std::unique_ptr<filters::Filter> filter_;
@@ -96,7 +99,7 @@ class StreamedIdentification {
 
 /// "time_s,stiffness_n_per_m,...", and the estimates with their standard deviations after a sample, likewise;
 /// at the end the mean normalised innovation square and the status.
-std::string stream_header();
+std::string stream_header(const StreamedIdentification& stream);
 std::string stream_row(double time, const StreamedIdentification& stream);
 
 /// "settling", "settled", "left_out", "begun_anew"

@@ -65,7 +65,7 @@ Table parameter_table(const Comparison& comparison, const std::string& name) {
       .column({"deviation / bound", "bound_ratio", "{:.3f}"});
   for (const ComparedRun& run : comparison.runs)
     for (const ComparedParameter& p : run.parameters)
-      if (p.estimate.name == name && run.status == ComparedRun::Status::converged) {
+      if (p.estimate.name == name && run.has_estimate()) {
         std::vector<Cell> row{name_of(comparison, run), p.estimate.value, p.estimate.lower_95,
                               p.estimate.upper_95};
         if (truth) row.emplace_back(or_nan(p.error_percent()));
@@ -150,6 +150,10 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   results.heading(experiment.title.empty() ? "Reduced against continuum" : experiment.title);
   for (const std::string& warning : record.warnings) results.warning(warning);
   for (const std::string& warning : comparison.warnings) results.warning(warning);
+  const bool alone = comparison.runs.size() == 1;
+  for (const ComparedRun& run : comparison.runs)
+    for (const std::string& warning : run.warnings)
+      if (alone) results.warning(warning);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} pass{}.{}",
                   comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],

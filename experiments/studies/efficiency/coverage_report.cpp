@@ -8,11 +8,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<const char*, 2> names{"frequency", "damping ratio"}, keys{"frequency", "damping_ratio"};
+using Names = std::array<const char*, 2>;
+
+Names names_of(const CoverageSettings& settings) {
+  if (settings.model == CoverageModel::oscillator) return {"frequency", "damping ratio"};
+  return {"bending stiffness", "damping ratio"};
+}
+
+Names keys_of(const CoverageSettings& settings) {
+  if (settings.model == CoverageModel::oscillator) return {"frequency", "damping_ratio"};
+  return {"bending_stiffness", "damping_ratio"};
+}
 
 Json coverage_configuration(const CoverageSettings& settings) {
   Json json;
   for (const NoiseColour colour : settings.colours) json["noise"].push_back(to_string(colour));
+  json["model"] = to_string(settings.model);
   json["runs"] = settings.runs;
   json["damping_ratio"] = settings.damping_ratio;
   json["noise_over_amplitude"] = settings.noise;
@@ -21,7 +32,7 @@ Json coverage_configuration(const CoverageSettings& settings) {
   return json;
 }
 
-Json coverage_values_of(const CoverageCase& one) {
+Json coverage_values_of(const CoverageCase& one, const Names& keys) {
   Json json{{"noise", to_string(one.colour)}, {"runs", one.runs}, {"failed", one.failed}};
   for (std::size_t q = 0; q < keys.size(); ++q) {
     const filters::Proportion inside = filters::proportion(one.inside[q], one.runs);
@@ -45,6 +56,7 @@ Table table_of(const Coverage& coverage) {
       .column({"mean error / deviation", "mean_error_over_deviation", "{:+.3f}"})
       .column({"mean square", "mean_square_error_over_deviation", "{:.3f}"})
       .column({"failed", "failed_runs", "{:.0f}"});
+  const Names names = names_of(coverage.settings);
   for (const CoverageCase& one : coverage.cases)
     for (std::size_t q = 0; q < names.size(); ++q) {
       const filters::Proportion inside = filters::proportion(one.inside[q], one.runs);
@@ -57,6 +69,19 @@ Table table_of(const Coverage& coverage) {
   return table;
 }
 
+std::string asked_text(CoverageModel model) {
+  switch (model) {
+    case CoverageModel::one_mode:
+      return " with model beam on its first mode, from a bending stiffness 10 % off";
+    case CoverageModel::three_modes:
+      return " with model beam on its first three modes, from a bending stiffness 10 % off";
+    case CoverageModel::mesh:
+      return " with model beam on the whole mesh, from a bending stiffness 10 % off";
+    default:
+      return " without any option";
+  }
+}
+
 }  // namespace
 
 Results report(const Coverage& coverage) {
@@ -67,15 +92,15 @@ Results report(const Coverage& coverage) {
   results.configuration = coverage_configuration(settings);
   results.values["coverage"] = Json::array();
   for (const CoverageCase& one : coverage.cases)
-    results.values["coverage"].push_back(coverage_values_of(one));
+    results.values["coverage"].push_back(coverage_values_of(one, keys_of(settings)));
   results.heading("The intervals of `beamid identify`");
   results.paragraph(fmt::format(
       "{} simulated records of each kind of noise: acceleration at the tip of a cantilever over {:g} cycles, "
       "damping ratio {:g} %; second and third mode with {:g} and {:g} % of the first one's amplitude; noise "
       "of {:g} % of it: white, behind a low-pass with its corner at 1.5 times the first frequency, or half "
-      "white and half 1/f. Each identified as `beamid identify` does without being told anything.",
+      "white and half 1/f. Each identified as `beamid identify` does{}.",
       settings.runs, settings.cycles, 100 * settings.damping_ratio, 100 * settings.higher[0],
-      100 * settings.higher[1], 100 * settings.noise));
+      100 * settings.higher[1], 100 * settings.noise, asked_text(settings.model)));
   results.table(table_of(coverage));
   return results;
 }

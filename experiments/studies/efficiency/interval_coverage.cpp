@@ -16,19 +16,26 @@
 #include "experiments/text/countdown.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
+#include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr double coverage_samples_per_cycle = 60, corner = 1.5;
+constexpr double corner = 1.5;
+
+double samples_per_cycle(CoverageModel model) {
+  return model == CoverageModel::oscillator || model == CoverageModel::one_mode ? 60 : 120;
+}
+
+const double covered_stiffness = 210e9 * fem::rectangle_second_moment(0.03, 0.004);  // [N m2]
 
 /// A steel cantilever of 0.6 m, 30 mm x 4 mm, with 0.2 kg at its tip.
-Experiment covered_experiment() {
+Experiment covered_experiment(double bending_stiffness = covered_stiffness) {
   Experiment experiment;
   fem::Section section;
-  section.bending_stiffness = 210e9 * fem::rectangle_second_moment(0.03, 0.004);
+  section.bending_stiffness = bending_stiffness;
   section.mass_per_length = 7850 * 0.03 * 0.004;
   experiment.beam.segments = {{0.6, section}};
   experiment.beam.supports = {{0.0}};
@@ -37,13 +44,29 @@ Experiment covered_experiment() {
   return experiment;
 }
 
-/// Of its first mode [Hz].
-double covered_frequency() {
-  static const double frequency = [] {
+/// Frequencies of its first three modes [Hz].
+Eigen::Vector3d covered_frequencies() {
+  static const Eigen::Vector3d frequencies = [] {
     const Experiment experiment = covered_experiment();
-    return fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+    return Eigen::Vector3d(
+        fem::modes(fem::assemble(experiment.beam, experiment.elements), 3).frequency_hz().head<3>());
   }();
-  return frequency;
+  return frequencies;
+}
+
+/// What a user would ask: of the beam itself from a stiffness that is 10 % off.
+Experiment asked_experiment(CoverageModel model) {
+  if (model == CoverageModel::oscillator) return covered_experiment();
+  Experiment experiment = covered_experiment(1.1 * covered_stiffness);
+  experiment.model = {"beam", model_registry().completed("beam", {})};
+  const auto& reductions = reduction::reduction_registry();
+  if (model == CoverageModel::mesh)
+    experiment.reduction = {"none", reductions.completed("none", {})};
+  else
+    experiment.reduction = {
+        "modal_truncation",
+        reductions.completed("modal_truncation", {{"modes", model == CoverageModel::one_mode ? 1.0 : 3.0}})};
+  return experiment;
 }
 
 /// Gaussian noise (N) of deviation one. A density of 1/f from first-order low-passes two octaves apart.
@@ -76,6 +99,32 @@ std::optional<Errors> errors_of(const RecordIdentification& found, double freque
       (i.found.damping_ratio() - damping_ratio) / (found.damping_factor() * i.damping_ratio_deviation)};
 }
 
+std::optional<Errors> errors_of(const ComparedRun& run, double stiffness, double damping_ratio) {
+  if (!run.has_estimate()) return {};
+  Errors errors{};
+  for (const ComparedParameter& one : run.parameters) {
+    const bool damping = one.estimate.name == "damping_ratio";
+    errors[damping ? 1 : 0] =
+        (one.estimate.value - (damping ? damping_ratio : stiffness)) / one.estimate.deviation;
+  }
+  return errors;
+}
+
+/// `identify` as it is without options.
+std::optional<Errors> identified_errors(const CoverageSettings& settings, const Experiment& experiment,
+                                        Record record) {
+  const bool one = settings.model == CoverageModel::oscillator || settings.model == CoverageModel::one_mode;
+  Experiment oscillator = experiment;  // what is noise to one mode, whatever model asks
+  oscillator.model = Experiment{}.model;
+  oscillator.reduction = Experiment{}.reduction;
+  if (one)
+    if (const auto step = step_against_higher_modes(oscillator, record)) record = prepare(record, {*step});
+  if (settings.model == CoverageModel::oscillator)
+    return errors_of(identify_record(experiment, record), covered_frequencies()[0], settings.damping_ratio);
+  const Comparison found = identify_with_model(experiment, measured_record("", record), {}, unwatched);
+  return errors_of(found.runs.at(0), covered_stiffness, settings.damping_ratio);
+}
+
 CoverageCase summary(NoiseColour colour, const std::vector<std::optional<Errors>>& errors) {
   CoverageCase one{colour, static_cast<int>(errors.size()), 0, {}, {}, {}};
   for (const auto& error : errors) {
@@ -102,16 +151,41 @@ const char* to_string(NoiseColour colour) {
   }
 }
 
+const char* to_string(CoverageModel model) {
+  switch (model) {
+    case CoverageModel::one_mode:
+      return "one_mode";
+    case CoverageModel::three_modes:
+      return "three_modes";
+    case CoverageModel::mesh:
+      return "mesh";
+    default:
+      return "sdof";
+  }
+}
+
+CoverageModel coverage_model(const std::string& name) {
+  for (const CoverageModel model :
+       {CoverageModel::oscillator, CoverageModel::one_mode, CoverageModel::three_modes, CoverageModel::mesh})
+    if (name == to_string(model)) return model;
+  throw std::invalid_argument("unknown model '" + name + "'; expected sdof, one_mode, three_modes or mesh");
+}
+
 Record covered_record(const CoverageSettings& settings, NoiseColour colour, std::uint64_t seed) {
-  const double frequency = covered_frequency(), dt = 1 / (coverage_samples_per_cycle * frequency);
-  const auto count = static_cast<Index>(std::lround(settings.cycles * coverage_samples_per_cycle));
+  const bool oscillator = settings.model == CoverageModel::oscillator;
+  const Eigen::Vector3d own = covered_frequencies();
+  const double per_cycle = samples_per_cycle(settings.model), frequency = own[0],
+               dt = 1 / (per_cycle * frequency);
+  const auto count = static_cast<Index>(std::lround(settings.cycles * per_cycle));
   Record record;
   record.channels = {{Quantity::acceleration, "tip"}};
   record.time = VectorXd::LinSpaced(count, 0.0, dt * static_cast<double>(count - 1));
-  record.samples = settings.noise * noise_of(colour, count, 1 / coverage_samples_per_cycle, seed).transpose();
-  const std::array<double, 3> amplitudes{1, settings.higher[0], settings.higher[1]}, multiples{1, 8.3, 24.1};
+  record.samples = settings.noise * noise_of(colour, count, 1 / per_cycle, seed).transpose();
+  const std::array<double, 3> amplitudes{1, settings.higher[0], settings.higher[1]};
+  const std::array<double, 3> multiples{1, oscillator ? 8.3 : own[1] / own[0],
+                                        oscillator ? 24.1 : own[2] / own[0]};
   for (std::size_t m = 0; m < 3; ++m) {
-    const double ratio = m == 0 ? settings.damping_ratio : settings.damping_ratio / 2,
+    const double ratio = m == 0 || !oscillator ? settings.damping_ratio : settings.damping_ratio / 2,
                  w = 2 * std::numbers::pi * frequency * multiples[m];
     const std::complex<double> rate = w * std::complex<double>(-ratio, std::sqrt(1 - ratio * ratio)),
                                start = std::polar(amplitudes[m], 0.7 + static_cast<double>(m));
@@ -124,18 +198,16 @@ Record covered_record(const CoverageSettings& settings, NoiseColour colour, std:
 Coverage interval_coverage(const CoverageSettings& settings, const Progress& progress) {
   if (settings.runs < 2)
     throw std::invalid_argument("coverage: " + std::to_string(settings.runs) + " runs; expected at least 2");
-  const Experiment experiment = covered_experiment();
-  const double frequency = covered_frequency();
+  const Experiment experiment = asked_experiment(settings.model);
   Coverage result{settings, {}};
   Countdown countdown(progress, settings.colours.size() * static_cast<std::size_t>(settings.runs), "runs");
   for (const NoiseColour colour : settings.colours) {
     countdown.begin(std::string("intervals in noise that is ") + to_string(colour));
     std::vector<std::optional<Errors>> errors(static_cast<std::size_t>(settings.runs));
     tbb::parallel_for(0, settings.runs, [&](int run) {
-      Record record = covered_record(settings, colour, settings.seed + static_cast<std::uint64_t>(run));
-      if (const auto step = step_against_higher_modes(experiment, record)) record = prepare(record, {*step});
-      errors[static_cast<std::size_t>(run)] =
-          errors_of(identify_record(experiment, record), frequency, settings.damping_ratio);
+      errors[static_cast<std::size_t>(run)] = identified_errors(
+          settings, experiment,
+          covered_record(settings, colour, settings.seed + static_cast<std::uint64_t>(run)));
       countdown.count();
     });
     result.cases.push_back(summary(colour, errors));

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "experiments/record/record.hpp"
@@ -18,7 +19,20 @@ enum class NoiseColour {
 };
 const char* to_string(NoiseColour colour);
 
+/// What is asked of the records.
+enum class CoverageModel {
+  oscillator,   ///< K and C of one degree of freedom, as `identify` does by itself
+  one_mode,     ///< bending stiffness and damping ratio of the beam, reduced to its first mode
+  three_modes,  ///< reduced to three
+  mesh          ///< not reduced
+};
+/// "sdof", "one_mode", "three_modes", "mesh"
+const char* to_string(CoverageModel model);
+/// @throws std::invalid_argument on another name
+CoverageModel coverage_model(const std::string& name);
+
 struct CoverageSettings {
+  CoverageModel model = CoverageModel::oscillator;
   std::vector<NoiseColour> colours{NoiseColour::white, NoiseColour::low_passed, NoiseColour::flicker};
   int runs = 2000;
   std::uint64_t seed = 1;
@@ -28,7 +42,8 @@ struct CoverageSettings {
   std::array<double, 2> higher{0.3, 0.1};  ///< amplitudes of the second and third mode, of the first one's
 };
 
-/// Frequency and damping ratio (K and C stand in a fixed relation to them: the mass is known).
+/// Frequency, or bending stiffness, and damping ratio (K and C stand in a fixed relation to frequency and
+/// ratio: the mass is known).
 struct CoverageCase {
   NoiseColour colour = NoiseColour::white;
   int runs = 0, failed = 0;
@@ -41,7 +56,8 @@ struct Coverage {
   std::vector<CoverageCase> cases;
 };
 
-/// The record of one run: acceleration at the tip of a steel cantilever with a tip mass, 60 samples a cycle.
+/// The record of one run: acceleration at the tip of a steel cantilever with a tip mass, 60 samples a cycle;
+/// of the beam itself 120, which a mesh needs to follow its third mode, and all modes damped alike.
 Record covered_record(const CoverageSettings& settings, NoiseColour colour, std::uint64_t seed);
 
 /// `identify` as it is without options, its preparation against higher modes included, on every record. The

@@ -79,7 +79,7 @@ DecayOutcome identify_decay(const SeededDecay& decay) {
   DecayOutcome outcome;
   try {
     const RecordIdentification found = identify_record(decay.experiment, decay.record);
-    if (found.judgement.verdict != Verdict::converged) {
+    if (found.judgement.verdict != ComparedRun::Status::converged) {
       outcome.failure = found.judgement.messages.back();
       return outcome;
     }

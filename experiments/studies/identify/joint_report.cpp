@@ -119,7 +119,7 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
                                            : experiment.title);
   for (const IdentifiedRecord& one : joint.records) {
     for (const std::string& text : one.found.judgement.messages)
-      results.warning(one.name + ": " + text, one.found.judgement.verdict == Verdict::diverged);
+      results.warning(one.name + ": " + text, one.found.judgement.verdict == ComparedRun::Status::diverged);
   }
   results.paragraph(fmt::format(
       "{} records of one beam, each with its own start, noise and window; {} on {}, discretisation {}.",

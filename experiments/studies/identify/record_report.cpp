@@ -192,11 +192,11 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   results.values["channels"] = channel_values(placed);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
   for (const std::string& text : found.judgement.messages)
-    results.warning(text, found.judgement.verdict == Verdict::diverged);
+    results.warning(text, found.judgement.verdict == ComparedRun::Status::diverged);
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
-      experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes()));
+      experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes));
   if (record.channels.size() > 1 ||
       *placed.channels[0].position != fem::natural_point(experiment.beam).position)
     results.paragraph("Stiffness, damping and mass are those of the motion at the first channel of " +
@@ -221,8 +221,10 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   if (found.diagnostics)
     for (Figure& figure : figures(*found.diagnostics, titles)) results.figures.push_back(std::move(figure));
   if (!found.smoothed.empty()) {
-    results.figures.push_back(smoothed_figure(record, found));
-    results.attachments.push_back(smoothed_history(record, found));
+    const SmoothedRecord smoothed{record.time, found.model, found.identification.run.filtered,
+                                  found.smoothed};
+    results.figures.push_back(smoothed_figure(smoothed, found.identification.found.frequency_hz()));
+    results.attachments.push_back(smoothed_history(smoothed));
   }
   return results;
 }

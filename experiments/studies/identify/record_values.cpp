@@ -139,7 +139,7 @@ Json configuration(const Experiment& experiment, const Record& record, const Rec
   json["filter"]["discretisation"] = experiment.discretisation;
   json["filter"]["on_failure"] = to_string(experiment.on_failure);
   if (!experiment.smoother.empty()) json["filter"]["smoother"] = experiment.smoother;
-  json["passes"] = found.passes();
+  json["passes"] = found.passes;
   const auto labels = found.model.motion->state_labels();
   for (std::size_t i = 0; i < labels.size(); ++i)
     json["initial"][labels[i].name] = {

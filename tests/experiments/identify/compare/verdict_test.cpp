@@ -7,7 +7,6 @@
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/studies/compare/comparison_words.hpp"
 
 namespace beamid::experiments::verdict_test {
@@ -199,11 +198,7 @@ TEST(ModelBeam, IsWarnedWhereTheModalAnalysisSaysOtherwise) {
   Experiment e = cantilever("[simulation]\nduration_s = 4\nsampling_rate_hz = 400\nmodes = 4\n" + sensor +
                                 ask_stiffness + "[filter]\ndiscretisation = \"forward_euler\"\n",
                             {"modal_truncation"});
-  Comparison found = compared(e);
-  const double before = found.runs[0].parameters[1].estimate.deviation;
-  judge_runs(found);
-  EXPECT_THAT(found.warnings, Contains(HasSubstr("DISAGREE: ")));
-  EXPECT_GE(found.runs[0].parameters[1].estimate.deviation, before);
+  EXPECT_THAT(compared(e).runs[0].warnings, Contains(HasSubstr("DISAGREE: ")));
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+#include "experiments/identify/compare/run_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/signal/missing_samples.hpp"
+
+namespace beamid::experiments {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+namespace {
+
+constexpr double smallest_run_noise = 1e-6;  // a record without noise would make P0 / R overflow digits
+
+// Of the samples that were read (p).
+VectorXd root_mean_squares(const MatrixXd& samples) {
+  const auto read = samples.array().isFinite();
+  const VectorXd counts = read.cast<double>().rowwise().sum().matrix();
+  const MatrixXd finite = read.select(samples, 0.0);
+  return finite.rowwise().squaredNorm().cwiseQuotient(counts.cwiseMax(1.0)).cwiseSqrt();
+}
+
+}  // namespace
+
+KnownNoise known_noise(const Experiment& experiment, const RecordAnalysis& analysis,
+                       const ComparedRecord& compared) {
+  const std::vector<Index> channels = output_channels(analysis.record);
+  const MatrixXd outputs = analysis.record.samples(channels, Eigen::all);
+  KnownNoise known{VectorXd::Zero(outputs.rows()), smallest_run_noise * root_mean_squares(outputs), {}};
+  for (Index i = 0; i < outputs.rows(); ++i) {
+    const Channel& channel = analysis.record.channels[static_cast<std::size_t>(channels[i])];
+    const auto given = experiment.noise.find(channel.quantity);
+    known.is_stated.push_back(given != experiment.noise.end());
+    if (compared.quiet_noise.size() > 0)
+      known.configured[i] =
+          std::max(compared.quiet_noise[i], smallest_run_noise * largest_measured(outputs.row(i)));
+    if (known.is_stated.back()) known.configured[i] = given->second;
+    if (compared.sensor_noise.size() > 0)
+      known.least[i] = std::max(known.least[i], compared.sensor_noise[channels[i]]);
+  }
+  return known;
+}
+
+VectorXd assumed_noise(const KnownNoise& known, const VectorXd& left) {
+  return (known.configured.array() > 0.0).select(known.configured, left.cwiseMax(known.least));
+}
+
+VectorXd noise_of_bound(const ComparedRecord& compared, const KnownNoise& known, const VectorXd& left,
+                        const VectorXd& assumed) {
+  constexpr double surely = 3.0;  // standard deviations of a root mean square
+  if (compared.sensor_noise.size() == 0) return assumed;
+  const double scatter = 1.0 / std::sqrt(2.0 * static_cast<double>(compared.record.size()));
+  return (left.array() > (1.0 + surely * scatter) * known.least.array()).select(left, known.least);
+}
+
+MatrixXd unit_noise(const MatrixXd& outputs) {
+  return root_mean_squares(outputs).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
+}
+
+}  // namespace beamid::experiments

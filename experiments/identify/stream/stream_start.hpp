@@ -1,0 +1,21 @@
+// What a stream of samples takes from an earlier record of the same rig.
+#pragma once
+
+#include "experiments/config/experiment.hpp"
+#include "experiments/models/identification.hpp"
+
+namespace beamid::experiments {
+
+/// A stream knows neither its noise nor its amplitude beforehand.
+struct StreamStart {
+  JointModel model;                 ///< on the basis that the earlier record led to
+  IdentificationSettings settings;  ///< of one pass; the unknowns as uncertain as before any record
+  double interval_factor = 1;       ///< of deviations, for the noise near the mode; 1 at least
+};
+
+/// Identifies the earlier record with the experiment's model, reduction and filter (identify_with_model).
+/// @throws InputError, std::invalid_argument as that, and where a force was measured: its path from sample to
+/// sample is known when the next one has come, not before, if it is band-limited
+StreamStart stream_start(const Experiment& experiment, const Record& earlier);
+
+}  // namespace beamid::experiments
