@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/algorithms/extended_kalman.hpp"
 #include "filters/algorithms/oscillator.hpp"
 #include "filters/algorithms/square_root_kalman.hpp"
@@ -12,7 +13,6 @@
 #include "filters/batch.hpp"
 #include "filters/filter_run.hpp"
 #include "tests/bench/plain_ekf.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::bench {
 namespace {

@@ -2,7 +2,7 @@
 // equation, found outside this project).
 #pragma once
 
-#include "fem/cantilever.hpp"
+#include "beamid/testing/steel_beam.hpp"
 
 namespace beamid::test {
 
@@ -36,7 +36,5 @@ inline constexpr KnownBeam five_beams[] = {{0.0198575,
                                             4.371662,
                                             {11.9904, 0.00917, 0.000342, 0.000040, 0.000008},
                                             {1.417, 0.134, 0.050, 0.025, 0.015}}};
-
-fem::Cantilever steel_beam(double tip_mass);
 
 }  // namespace beamid::test

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "beamid/testing/known_oscillator.hpp"
+#include "beamid/testing/linear_model.hpp"
+#include "filters/filter_run.hpp"
 #include "filters/innovation_consistency.hpp"
-#include "tests/filters/conformance/every_filter.hpp"
-#include "tests/filters/linear_model.hpp"
 
 namespace beamid::test::adaptive_ekf_test {
 namespace {

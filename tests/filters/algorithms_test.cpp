@@ -3,12 +3,12 @@
 
 #include <random>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/algorithms/extended_kalman.hpp"
 #include "filters/algorithms/oscillator.hpp"
 #include "filters/algorithms/square_root_kalman.hpp"
 #include "filters/algorithms/unscented_kalman.hpp"
 #include "filters/filter_run.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::algorithms_test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cstdlib>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/filter.hpp"
-#include "tests/filters/oscillator.hpp"
 
 // Eigen's matrices take their memory from malloc, not from operator new, so malloc is what is counted: the
 // program's own replaces the C library's. A sanitizer has replaced it already.

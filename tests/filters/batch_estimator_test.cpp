@@ -8,9 +8,9 @@
 #include <limits>
 #include <random>
 
+#include "beamid/testing/linear_model.hpp"
+#include "beamid/testing/oscillator.hpp"
 #include "filters/fisher_information.hpp"
-#include "tests/filters/linear_model.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::batch_estimator_test {
 namespace {

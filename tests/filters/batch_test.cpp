@@ -10,9 +10,9 @@
 #include <limits>
 #include <random>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/algorithms/extended_kalman.hpp"
 #include "filters/algorithms/oscillator.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::batch_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/filters/oscillator.hpp"
+#include "beamid/testing/oscillator.hpp"
 
 namespace beamid::diagnostics_test {
 namespace {

@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "tests/filters/conformance/every_filter.hpp"
+#include "beamid/testing/known_oscillator.hpp"
+#include "filters/filter_run.hpp"
 
 namespace beamid::test::dual_ekf_test {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "beamid/testing/kalman_recursion.hpp"
+#include "beamid/testing/known_oscillator.hpp"
 #include "filters/filter_run.hpp"
-#include "tests/filters/conformance/every_filter.hpp"
-#include "tests/filters/conformance/kalman_recursion.hpp"
 
 namespace beamid::test::enkf_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/filters/oscillator.hpp"
+#include "beamid/testing/oscillator.hpp"
 
 namespace beamid::filter_run_test {
 namespace {

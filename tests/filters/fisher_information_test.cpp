@@ -5,8 +5,8 @@
 #include <cmath>
 #include <complex>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/filter_run.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::fisher_information_test {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/central_differences.hpp"
 #include "filters/input_path.hpp"
 #include "filters/scheme.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::forced_step_test {
 namespace {

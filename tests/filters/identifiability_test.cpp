@@ -8,8 +8,8 @@
 #include <complex>
 #include <limits>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/fisher_information.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::identifiability_test {
 namespace {

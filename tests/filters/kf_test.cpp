@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "beamid/testing/known_oscillator.hpp"
+#include "beamid/testing/linear_model.hpp"
 #include "filters/filter_run.hpp"
 #include "tests/filters/classic/function_model.hpp"
-#include "tests/filters/conformance/every_filter.hpp"
-#include "tests/filters/linear_model.hpp"
 
 namespace beamid::test::kf_test {
 namespace {

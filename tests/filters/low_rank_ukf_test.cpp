@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "beamid/testing/linear_model.hpp"
+#include "beamid/testing/oscillator.hpp"
 #include "filters/filter_run.hpp"
-#include "tests/filters/linear_model.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::low_rank_ukf_test {
 namespace {

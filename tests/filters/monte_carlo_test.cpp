@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/fisher_information.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::monte_carlo_test {
 namespace {

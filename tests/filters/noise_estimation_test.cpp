@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "tests/filters/linear_model.hpp"
-#include "tests/filters/oscillator.hpp"
+#include "beamid/testing/linear_model.hpp"
+#include "beamid/testing/oscillator.hpp"
 
 namespace beamid::noise_estimation_test {
 namespace {

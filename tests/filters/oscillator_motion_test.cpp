@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/algorithms/oscillator.hpp"
 #include "filters/central_differences.hpp"
 #include "filters/scheme.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::oscillator_motion_test {
 namespace {

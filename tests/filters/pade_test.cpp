@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "beamid/testing/oscillator.hpp"
 #include "filters/central_differences.hpp"
 #include "filters/scheme.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::pade_test {
 namespace {

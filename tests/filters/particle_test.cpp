@@ -3,8 +3,9 @@
 
 #include <cmath>
 
+#include "beamid/testing/known_oscillator.hpp"
+#include "filters/filter_run.hpp"
 #include "filters/particle_cloud.hpp"
-#include "tests/filters/conformance/every_filter.hpp"
 
 namespace beamid::test::particle_test {
 namespace {

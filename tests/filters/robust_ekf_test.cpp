@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "tests/filters/conformance/every_filter.hpp"
-#include "tests/filters/linear_model.hpp"
+#include "beamid/testing/known_oscillator.hpp"
+#include "beamid/testing/linear_model.hpp"
+#include "filters/filter_run.hpp"
 
 namespace beamid::test::robust_ekf_test {
 namespace {

@@ -9,9 +9,9 @@
 #include <limits>
 #include <random>
 
+#include "beamid/testing/linear_model.hpp"
+#include "beamid/testing/oscillator.hpp"
 #include "filters/filter_run.hpp"
-#include "tests/filters/linear_model.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::running_filter_test {
 namespace {

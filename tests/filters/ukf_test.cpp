@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "beamid/testing/linear_model.hpp"
 #include "filters/filter_run.hpp"
-#include "tests/filters/linear_model.hpp"
 
 namespace beamid::ukf_test {
 namespace {

@@ -12,6 +12,7 @@
 #include "experiments/studies/study.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
+#include "filters/smoother.hpp"
 #include "reduction/reduction.hpp"
 #include "tests/layers/source_files.hpp"
 
@@ -45,10 +46,10 @@ TEST_P(ExtensionFolder, HasOneRegistrationPerFileUnderTheNameOfTheFile) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Project, ExtensionFolder,
-                         testing::Values("filters/methods", "filters/schemes", "reduction/methods",
-                                         "experiments/modal/methods", "experiments/models",
-                                         "experiments/record/steps", "experiments/record/files",
-                                         "experiments/studies"),
+                         testing::Values("filters/methods", "filters/schemes", "filters/smoothers",
+                                         "reduction/methods", "experiments/modal/methods",
+                                         "experiments/models", "experiments/record/steps",
+                                         "experiments/record/files", "experiments/studies"),
                          [](const auto& tested) {
                            return std::regex_replace(std::string(tested.param), std::regex("/"), "_");
                          });
@@ -60,6 +61,9 @@ TEST(Registry, KnowsEveryFilterOfItsFolder) {
 }
 TEST(Registry, KnowsEveryDiscretisationOfItsFolder) {
   EXPECT_EQ(names_known_to(filters::scheme_registry()), extensions_in("filters/schemes"));
+}
+TEST(Registry, KnowsEverySmootherOfItsFolder) {
+  EXPECT_EQ(names_known_to(filters::smoother_registry()), extensions_in("filters/smoothers"));
 }
 TEST(Registry, KnowsEveryReductionOfItsFolder) {
   EXPECT_EQ(names_known_to(reduction::reduction_registry()), extensions_in("reduction/methods"));

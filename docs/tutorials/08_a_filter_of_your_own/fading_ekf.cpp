@@ -5,11 +5,11 @@
 // so that a reading counts e^(-s / T) of a new one after s seconds. What changes slowly is followed, and what
 // stays constant is known to no more than the last T seconds tell: of a constant read directly,
 // P+ tends to R (1 - e^(-dt / T)).
+#include <beamid/filters.hpp>
 #include <cmath>
+#include <memory>
+#include <stdexcept>
 #include <string>
-
-#include "filters/filter.hpp"
-#include "filters/linearised_step.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // The beamid command, and whatever else this program registers.
-#include "apps/command_line.hpp"
+#include <beamid/apps.hpp>
 
 int main(int count, char** words) {
   return beamid::apps::run_command_line(count, words);

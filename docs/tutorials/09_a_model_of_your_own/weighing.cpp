@@ -4,10 +4,12 @@
 //     x' = v,   v' = -(K x + C v) / M,   M' = C' = 0
 //
 // Observed: displacement x, velocity v or acceleration v', in any mix.
+#include <algorithm>
+#include <beamid/experiments.hpp>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
-
-#include "experiments/models/joint_model.hpp"
+#include <vector>
 
 namespace {
 
@@ -62,10 +64,16 @@ class Weighing final : public filters::LinearMotion {
 // again.
 std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Options& options) {
   const fem::StructuralSystem system = reduced(setting).system;
-  if (system.size() != 1 || !setting.forces.empty())
-    throw std::invalid_argument("model 'weighing' needs a free decay and a reduction to one coordinate");
+  if (system.size() != 1 || !setting.forces.empty() || !setting.parameters.empty())
+    throw std::invalid_argument(
+        "model 'weighing' needs a free decay, a reduction to one coordinate and no [[parameters]]");
   std::vector<Quantity> observed;
   for (const Observation& observation : setting.observations) observed.push_back(observation.quantity);
+  const auto motion = {Quantity::displacement, Quantity::velocity, Quantity::acceleration};
+  if (observed.empty() || !std::all_of(observed.begin(), observed.end(), [&](Quantity quantity) {
+        return std::find(motion.begin(), motion.end(), quantity) != motion.end();
+      }))
+    throw std::invalid_argument("model 'weighing' observes displacement, velocity or acceleration");
 
   const double reading = system.outputs.coeff(0, 0);  // output per unit of the coordinate
   const double mass = system.mass.coeff(0, 0) / (reading * reading);
@@ -78,6 +86,7 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
   model->unknowns = {{"mass", "kg", mass, 0.3 * mass}, {"damping", "N s/m", damping, damping}};
   for (Unknown& unknown : model->unknowns) unknown.quantity = unknown.name;
   model->unknown_places = {2, 3};
+  model->equivalent_mass = mass;
   model->mode_shapes = MatrixXd::Ones(1, 1);  // of the one coordinate: where its start is uncertain
   model->mode_frequencies = VectorXd::Constant(1, std::sqrt(stiffness / mass));
   return model;

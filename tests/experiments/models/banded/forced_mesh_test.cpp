@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "beamid/testing/oscillator.hpp"
 #include "experiments/models/banded/continuum_motion.hpp"
 #include "fem/cantilever.hpp"
 #include "filters/batch_estimator.hpp"
@@ -12,7 +13,6 @@
 #include "filters/input_path.hpp"
 #include "filters/scheme.hpp"
 #include "tests/experiments/models/banded/dense_continuum.hpp"
-#include "tests/filters/oscillator.hpp"
 
 namespace beamid::experiments::forced_mesh_test {
 namespace {

@@ -1,12 +1,14 @@
 // Stiffness and damping from a free decay: exact data, honest deviations, units, a start that is not right.
+#pragma once
+
 #include <Eigen/Dense>
 #include <cmath>
+#include <random>
 
+#include "beamid/testing/every_filter.hpp"
 #include "filters/innovation_consistency.hpp"
-#include "tests/filters/conformance/every_filter.hpp"
 
-namespace beamid::test::identification_test {
-namespace {
+namespace beamid::test::identification {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using filters::Gaussian;
@@ -90,5 +92,4 @@ TEST_P(EveryFilter, SurvivesAStartThatIsOneSampleLateOrSaysSo) {
   EXPECT_TRUE(found || reported) << "K " << result.last.mean[2] << ", C " << result.last.mean[3];
 }
 
-}  // namespace
-}  // namespace beamid::test::identification_test
+}  // namespace beamid::test::identification

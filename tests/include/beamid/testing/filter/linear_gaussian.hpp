@@ -1,9 +1,15 @@
 // On linear models with Gaussian noise there is one right answer.
-#include "tests/filters/conformance/every_filter.hpp"
-#include "tests/filters/conformance/kalman_recursion.hpp"
+#pragma once
 
-namespace beamid::test::linear_gaussian_test {
-namespace {
+#include <Eigen/Dense>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "beamid/testing/every_filter.hpp"
+#include "beamid/testing/kalman_recursion.hpp"
+
+namespace beamid::test::linear_gaussian {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using filters::Gaussian;
@@ -62,10 +68,11 @@ TEST_P(EveryFilter, ApproachesTheKalmanFilterAsItsSampleGrows) {
   // doubles that; a log-likelihood by as much per root of a reading. Four thousand samples, five standard
   // errors.
   if (!declares(filters::contract::sampled_on_linear_gaussian)) GTEST_SKIP() << "not promised";
-  const bool ensemble = GetParam() == "enkf";
   constexpr double count = 4000.0;
-  const filters::Options options =
-      ensemble ? filters::Options{{"members", count}} : filters::Options{{"particles", count}};
+  filters::Options options;
+  for (const auto& option : filters::filter_registry().find(GetParam()).options)
+    if (option.name == "members" || option.name == "particles") options.set(option.name, count);
+  ASSERT_FALSE(options.values().empty()) << "a sample grows by option 'members' or 'particles'";
   std::mt19937 random(17);
   for (int repeat = 0; repeat < 4; ++repeat) {
     const Index n = 1 + repeat % 2, p = 1, samples = 20;
@@ -117,5 +124,4 @@ TEST_P(EveryFilter, GoesOnFromItsBeliefAsIfNeverInterrupted) {
   EXPECT_LT((found.marginal(0, 3) - expected.marginal(0, 3)).norm(), 1e-12 * expected.marginal(0, 3).norm());
 }
 
-}  // namespace
-}  // namespace beamid::test::linear_gaussian_test
+}  // namespace beamid::test::linear_gaussian

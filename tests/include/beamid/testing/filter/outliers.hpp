@@ -1,14 +1,17 @@
 // Readings that are plainly wrong.
+#pragma once
+
+#include <Eigen/Core>
 #include <cmath>
+#include <random>
 
-#include "tests/filters/conformance/every_filter.hpp"
+#include "beamid/testing/every_filter.hpp"
 
-namespace beamid::test::outliers_test {
-namespace {
+namespace beamid::test::outliers {
 
 using Eigen::Index, Eigen::Vector4d;
 
-const Vector4d mean(0.012, 0.0, 500.0, 9.0), variance(1e-6, 1e-4, 4e2, 4.0);
+inline const Vector4d mean(0.012, 0.0, 500.0, 9.0), variance(1e-6, 1e-4, 4e2, 4.0);
 
 TEST_P(EveryFilter, IsNotMovedByOneOutlierIfItIsRobust) {
   // Oracle: the same record without the outlier, of a thousand deviations, early or late.
@@ -47,5 +50,4 @@ TEST_P(EveryFilter, FindsTheTruthAmongOutliersIfItIsRobust) {
   }
 }
 
-}  // namespace
-}  // namespace beamid::test::outliers_test
+}  // namespace beamid::test::outliers

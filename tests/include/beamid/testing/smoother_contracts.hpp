@@ -1,30 +1,35 @@
-// Smoothers. Oracles: batch least squares of the whole trajectory, the batch estimator, the smoothed
-// shortened record, the truth over seeded runs.
-#include "filters/smoother.hpp"
+// Conformance of smoothers. Oracles: batch least squares of the whole trajectory, the batch estimator, the
+// smoothed shortened record. To be included by one file of a test program, which says what it runs on, in
+// namespace beamid::test:
+//
+//     INSTANTIATE_TEST_SUITE_P(Mine, EverySmoother, testing::Values("my_smoother"), by_name);
+#pragma once
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "beamid/testing/linear_model.hpp"
+#include "beamid/testing/named.hpp"
+#include "beamid/testing/oscillator.hpp"
 #include "filters/batch_estimator.hpp"
-#include "tests/filters/linear_model.hpp"
-#include "tests/filters/oscillator.hpp"
+#include "filters/smoother.hpp"
 
-namespace beamid::smoother_test {
-namespace {
+namespace beamid::test {
 
-using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-using filters::Gaussian, filters::Keep;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-class Smoothing : public testing::TestWithParam<const char*> {
+/// The suite, on a registered name.
+class EverySmoother : public testing::TestWithParam<std::string> {
  protected:
-  MatrixXd gaussian(Index rows, Index columns) {
-    return MatrixXd::NullaryExpr(rows, columns, [&] { return normal_(random_); });
+  Eigen::MatrixXd gaussian(Eigen::Index rows, Eigen::Index columns) {
+    return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal_(random_); });
   }
   double normal() { return normal_(random_); }
 
@@ -34,17 +39,24 @@ class Smoothing : public testing::TestWithParam<const char*> {
   std::normal_distribution<double> normal_;
 };
 
-filters::FilterRun filtered(const test::LinearModel& model, const Gaussian& initial,
-                            const filters::Measurements& record) {
-  const auto filter = filters::filter_registry().make("ekf", {}, std::make_unique<test::LinearModel>(model));
+namespace smoother_contracts {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using filters::Gaussian, filters::Keep;
+
+inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+inline filters::FilterRun filtered(const LinearModel& model, const Gaussian& initial,
+                                   const filters::Measurements& record) {
+  const auto filter = filters::filter_registry().make("ekf", {}, std::make_unique<LinearModel>(model));
   return filters::run(*filter, initial, record, Keep::all_beliefs);
 }
 
-TEST_P(Smoothing, IsLeastSquaresOfTheWholeTrajectoryOnLinearModels) {
+TEST_P(EverySmoother, IsLeastSquaresOfTheWholeTrajectoryOnLinearModels) {
   // Oracle: all z_k at once from prior, motion and measurements, one dense least-squares problem.
   for (int repeat = 0; repeat < 10; ++repeat) {
     const Index n = 1 + repeat % 4, p = 1 + repeat % 2, samples = 15;
-    test::LinearModel model;
+    LinearModel model;
     model.a = 0.9 / std::sqrt(static_cast<double>(n)) * gaussian(n, n);
     model.c = gaussian(p, n);
     const MatrixXd q = gaussian(n, n) + 0.5 * MatrixXd::Identity(n, n), r = gaussian(p, p);
@@ -52,7 +64,7 @@ TEST_P(Smoothing, IsLeastSquaresOfTheWholeTrajectoryOnLinearModels) {
     model.r = r * r.transpose() + 0.1 * MatrixXd::Identity(p, p);
     filters::Measurements record{
         VectorXd::LinSpaced(samples, 0, static_cast<double>(samples - 1)), gaussian(p, samples), {}};
-    record.outputs.col(4).setConstant(nan);
+    record.outputs.col(4).setConstant(missing);
 
     MatrixXd rows = MatrixXd::Zero(n * samples + p * samples, n * samples);
     VectorXd right = VectorXd::Zero(rows.rows());
@@ -91,8 +103,8 @@ TEST_P(Smoothing, IsLeastSquaresOfTheWholeTrajectoryOnLinearModels) {
   }
 }
 
-TEST_P(Smoothing, OfAFixedLagIsThatOfTheShortenedRecord) {
-  test::LinearModel model;
+TEST_P(EverySmoother, OfAFixedLagIsThatOfTheShortenedRecord) {
+  LinearModel model;
   model.a = 0.5 * gaussian(3, 3);
   model.c = gaussian(1, 3);
   model.q = MatrixXd::Identity(3, 3);
@@ -113,9 +125,9 @@ TEST_P(Smoothing, OfAFixedLagIsThatOfTheShortenedRecord) {
   }
 }
 
-TEST_P(Smoothing, WorksWhereParametersAreKnownExactly) {
+TEST_P(EverySmoother, WorksWhereParametersAreKnownExactly) {
   // Oracle: the same without the parameter. No process noise, so every predicted covariance is singular.
-  test::LinearModel whole, part;
+  LinearModel whole, part;
   part.a = MatrixXd(2, 2), part.c = MatrixXd(1, 2), part.r = MatrixXd::Ones(1, 1);
   part.a << 1.0, 0.1, -0.2, 0.95;
   part.c << 1.0, 0.0;
@@ -138,11 +150,11 @@ TEST_P(Smoothing, WorksWhereParametersAreKnownExactly) {
   }
 }
 
-TEST_P(Smoothing, OfADeterministicMotionIsTheBatchEstimate) {
+TEST_P(EverySmoother, OfADeterministicMotionIsTheBatchEstimate) {
   // Oracle: maximum likelihood with the same prior, to the linearisation of the filter.
   const double dt = 4e-3, noise = 1e-4;
   const auto model = [&] {
-    return filters::discretise(std::make_shared<test::Oscillator>(3.0), dt, "exponential",
+    return filters::discretise(std::make_shared<Oscillator>(3.0), dt, "exponential",
                                {{}, MatrixXd::Constant(1, 1, noise * noise)});
   };
   const auto discrete = model();
@@ -170,9 +182,9 @@ TEST_P(Smoothing, OfADeterministicMotionIsTheBatchEstimate) {
   EXPECT_NEAR(first.mean[2] / run.last.mean[2], 1.0, 1e-10);  // constant: smoothed as at the end
 }
 
-TEST_P(Smoothing, KeepsFactorsForStatesThatAreCarriedByFactors) {
+TEST_P(EverySmoother, KeepsFactorsForStatesThatAreCarriedByFactors) {
   // Oracle: the same beliefs as matrices.
-  test::LinearModel model;
+  LinearModel model;
   model.a = 0.4 * gaussian(5, 5);
   model.c = gaussian(1, 5);
   model.q = MatrixXd::Zero(5, 5);
@@ -180,7 +192,7 @@ TEST_P(Smoothing, KeepsFactorsForStatesThatAreCarriedByFactors) {
   const MatrixXd factor = gaussian(5, 2);
   const filters::Measurements record{VectorXd::LinSpaced(8, 0, 7), gaussian(1, 8), {}};
   const auto filter =
-      filters::filter_registry().make("low_rank_ekf", {}, std::make_unique<test::LinearModel>(model));
+      filters::filter_registry().make("low_rank_ekf", {}, std::make_unique<LinearModel>(model));
   const auto low_rank = filters::run(*filter, {VectorXd::Zero(5), {}, factor}, record, Keep::all_beliefs);
   const auto smoothed = filters::smooth(low_rank, model, record, GetParam());
   const auto expected = filters::smooth(
@@ -194,8 +206,8 @@ TEST_P(Smoothing, KeepsFactorsForStatesThatAreCarriedByFactors) {
   }
 }
 
-TEST_P(Smoothing, RefusesRunsWithoutBeliefsAndOfOtherRecords) {
-  test::LinearModel model;
+TEST_P(EverySmoother, RefusesRunsWithoutBeliefsAndOfOtherRecords) {
+  LinearModel model;
   model.a = model.c = model.q = model.r = MatrixXd::Ones(1, 1);
   const filters::Measurements record{VectorXd::LinSpaced(8, 0, 7), gaussian(1, 8), {}};
   const Gaussian initial{VectorXd::Zero(1), MatrixXd::Ones(1, 1)};
@@ -207,7 +219,9 @@ TEST_P(Smoothing, RefusesRunsWithoutBeliefsAndOfOtherRecords) {
   EXPECT_THROW(filters::fixed_lag_smooth(run, model, record, -1, GetParam()), std::invalid_argument);
 }
 
-INSTANTIATE_TEST_SUITE_P(Registered, Smoothing, testing::Values("rts", "urts"));
+TEST_P(EverySmoother, DescribesItselfAndItsOptions) {
+  expect_described(filters::smoother_registry().find(GetParam()));
+}
 
-}  // namespace
-}  // namespace beamid::smoother_test
+}  // namespace smoother_contracts
+}  // namespace beamid::test

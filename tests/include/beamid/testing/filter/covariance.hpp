@@ -1,15 +1,19 @@
 // Covariances remain symmetric and positive, at every step.
+#pragma once
+
 #include <Eigen/Eigenvalues>
+#include <cmath>
+#include <memory>
+#include <random>
 
-#include "tests/filters/conformance/every_filter.hpp"
-#include "tests/filters/linear_model.hpp"
+#include "beamid/testing/every_filter.hpp"
+#include "beamid/testing/linear_model.hpp"
 
-namespace beamid::test::covariance_test {
-namespace {
+namespace beamid::test::covariance {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-void expect_symmetric_and_positive(const filters::Gaussian& belief) {
+inline void expect_symmetric_and_positive(const filters::Gaussian& belief) {
   const MatrixXd covariance = belief.marginal(0, belief.mean.size());
   ASSERT_EQ((covariance - covariance.transpose()).norm(), 0.0);
   const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
@@ -64,5 +68,4 @@ TEST_P(EveryFilter, FollowsAMotionUntilNothingIsLeftOfIt) {
   EXPECT_LT(result.last.deviations()[1], 1e-100);
 }
 
-}  // namespace
-}  // namespace beamid::test::covariance_test
+}  // namespace beamid::test::covariance

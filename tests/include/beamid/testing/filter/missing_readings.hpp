@@ -1,16 +1,19 @@
 // Readings that are missing, marked by NaN.
+#pragma once
+
 #include <limits>
+#include <memory>
+#include <random>
 
-#include "tests/filters/conformance/every_filter.hpp"
-#include "tests/filters/conformance/kalman_recursion.hpp"
+#include "beamid/testing/every_filter.hpp"
+#include "beamid/testing/kalman_recursion.hpp"
 
-namespace beamid::test::missing_readings_test {
-namespace {
+namespace beamid::test::missing_readings {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using filters::Gaussian;
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 TEST_P(EveryFilter, EqualsTheKalmanFilterOfWhatWasMeasured) {
   // Oracle: the information form with the missing rows removed. Single outputs and whole samples are missing.
@@ -95,5 +98,4 @@ TEST_P(EveryFilter, CarriesOnOverGaps) {
   EXPECT_NEAR(found.mean[3], damping, 5.0 * found.deviations()[3]);
 }
 
-}  // namespace
-}  // namespace beamid::test::missing_readings_test
+}  // namespace beamid::test::missing_readings

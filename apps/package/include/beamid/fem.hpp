@@ -1,0 +1,20 @@
+// The continuum: beams and frames, their equations, modes, responses and exact solutions. Component fem.
+#pragma once
+
+#include "fem/assembly.hpp"
+#include "fem/buckling.hpp"
+#include "fem/cantilever.hpp"
+#include "fem/complex_modes.hpp"
+#include "fem/damping.hpp"
+#include "fem/exact/exact_cantilever.hpp"
+#include "fem/exact/exact_modes.hpp"
+#include "fem/frame.hpp"
+#include "fem/free_decay.hpp"
+#include "fem/mode_curves.hpp"
+#include "fem/modes.hpp"
+#include "fem/parametric_system.hpp"
+#include "fem/refinement.hpp"
+#include "fem/response/frequency_response.hpp"
+#include "fem/response/method.hpp"
+#include "fem/response/response.hpp"
+#include "fem/stiffness_solver.hpp"
