@@ -7,6 +7,7 @@
 
 namespace beamid::fem {
 
+/// A stretch of the beam with one section.
 struct Segment {
   double length = 0.0;  ///< [m]
   Section section;

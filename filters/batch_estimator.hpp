@@ -10,6 +10,7 @@
 
 namespace beamid::filters {
 
+/// Limits of the iteration, and what is known beforehand.
 struct BatchSettings {
   int max_iterations = 50;  ///< passes through the record, for each of its lengths
   /// Converged when the next step is shorter than this many standard deviations of the estimate.
@@ -21,6 +22,7 @@ struct BatchSettings {
   Eigen::Index first_samples = 0;
 };
 
+/// How the iteration ended.
 enum class BatchStatus {
   converged,
   undetermined,          ///< converged, but the record does not determine every coefficient

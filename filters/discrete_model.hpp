@@ -48,6 +48,7 @@ class DiscreteModel {
                                Eigen::MatrixXd& jacobian);
 };
 
+/// Covariances of the white noise of a sampled model.
 struct Noise {
   Eigen::MatrixXd process;  ///< Q (n x n) per step; empty: none
   Eigen::MatrixXd output;   ///< R (p x p)

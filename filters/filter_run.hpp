@@ -37,6 +37,7 @@ struct Trace {
   std::vector<Eigen::Index> entries;
 };
 
+/// What a run keeps, where it starts and how it goes on after a failure.
 struct RunSettings {
   Keep keep = Keep::last_belief;
   Start start = Start::at_first_sample;

@@ -27,6 +27,7 @@ using Estimator = std::function<std::optional<Gaussian>(const Trial&)>;
 Estimator last_belief_of(std::function<std::unique_ptr<Filter>()> make_filter,
                          std::vector<Eigen::Index> entries);
 
+/// How many runs, and what their errors are compared with.
 struct MonteCarloSettings {
   int runs = 2000;
   std::uint64_t first_seed = 1;        ///< run i has the seed first_seed + i

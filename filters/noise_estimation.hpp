@@ -13,6 +13,7 @@ namespace beamid::filters {
 /// The filter that is to be used, on its model with this noise.
 using NoisyFilterFactory = std::function<std::unique_ptr<Filter>(const Noise&)>;
 
+/// By which method the levels are found.
 enum class NoiseMethod {
   maximum_likelihood,       ///< Newton's method on the filter's log-likelihood
   expectation_maximisation  ///< [shumway1982], by the smoother; for diagonal R and Q
@@ -34,6 +35,7 @@ struct NoiseSettings {
 
 enum class NoiseStatus { converged, iterations_exhausted, failed };
 
+/// Noise levels with their standard errors.
 struct NoiseEstimate {
   NoiseStatus status = NoiseStatus::failed;
   std::string reason;  ///< in words, unless converged

@@ -5,6 +5,7 @@
 
 namespace beamid::filters {
 
+/// How far a series is from white noise.
 struct Whiteness {
   Eigen::VectorXd autocorrelation;  ///< at lags 1 to L (L); 0 when white
   double p_value = 0.0;             ///< Ljung-Box test over these lags [ljung1978]; below 0.05: not white

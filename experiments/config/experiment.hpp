@@ -20,6 +20,7 @@
 
 namespace beamid::experiments {
 
+/// A beam, a test of it and what is done with the record: all that an experiment file may say, in SI units.
 struct Experiment {
   std::string title;
   fem::Beam beam;

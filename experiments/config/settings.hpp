@@ -44,6 +44,7 @@ struct Sensor {
   double distance = 0.0;                       ///< strain: of the surface from the axis, c of -c w'' [m]
 };
 
+/// How the test is simulated: [simulation].
 struct Simulation {
   double duration = 5.0;          ///< [s]
   double sampling_rate = 1000.0;  ///< [Hz]
@@ -58,6 +59,7 @@ struct PointPair {
   std::optional<double> input, output;  ///< [m]
 };
 
+/// Which frequency responses are computed, and where: [frequency_response].
 struct FrequencyResponseSettings {
   enum class Kind { receptance, mobility, accelerance };
   Kind kind = Kind::receptance;

@@ -31,6 +31,7 @@ struct SectionTrend {
   bool varies() const { return values.size() > 0; }
 };
 
+/// A decay in sections, and how frequency and damping change from one to the next.
 struct AmplitudeSections {
   std::vector<DecaySection> sections;  ///< three at least, or none: too short, or too much is missing
   double noise =

@@ -10,6 +10,7 @@ namespace beamid::experiments {
 
 struct RecordIdentification;
 
+/// The verdict on an identification, with its reasons.
 struct Judgement {
   ComparedRun::Status verdict = ComparedRun::Status::converged;
   std::vector<std::string> messages;  ///< for the first lines of a report, the worst first; empty: none

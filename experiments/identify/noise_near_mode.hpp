@@ -11,6 +11,7 @@ namespace beamid::experiments {
 /// a 95 % interval.
 double student_factor(double freedom);
 
+/// The noise of a signal around the frequency of a mode.
 struct NoiseNearMode {
   double deviation = 0;  ///< of white noise as dense as what is left at the mode [unit of the signal]
   double freedom = 0;    ///< degrees of freedom of its square

@@ -10,6 +10,7 @@
 
 namespace beamid::experiments {
 
+/// How the strongest mode of a record is looked for.
 struct ModalAnalysisSettings {
   std::optional<double> expected_frequency_hz;  ///< absent: the peak of the spectrum
   double frequency_tolerance = 0.25;            ///< how far the mode may lie from it, relative

@@ -7,6 +7,7 @@
 
 namespace beamid::experiments {
 
+/// Order and limits of the realisation.
 struct EigensystemSettings {
   int order = 0;           ///< poles; 0: singular values above noise_factor times their median, at most
   int largest_order = 20;  ///< this many
@@ -28,6 +29,7 @@ struct IdentifiedMode {
   double phase(Eigen::Index output = 0) const { return std::arg(shape[output]); }  ///< [rad]
 };
 
+/// The modes of a free decay, and what they leave of it.
 struct EigensystemRealisation {
   std::vector<IdentifiedMode> modes;  ///< by rising frequency
   int order = 0;

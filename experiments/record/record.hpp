@@ -18,6 +18,7 @@ enum class InputPath { band_limited, linear, held };
 const char* si_unit(Quantity quantity);
 const char* to_string(Quantity quantity);
 
+/// What one channel measures, and where.
 struct Channel {
   Quantity quantity = Quantity::acceleration;
   std::string name;

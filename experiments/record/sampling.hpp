@@ -24,6 +24,7 @@ class PrintedPrecision {
   int decimals_ = -400, digits_ = 1;
 };
 
+/// A time that does not fit a regularly sampled record.
 struct SamplingFault {
   std::size_t sample;   ///< whose time is at fault
   std::string message;  ///< what was found and what was expected

@@ -29,6 +29,7 @@ struct Curve {
   Colour colour = Colour::automatic;
 };
 
+/// One axis of a panel.
 struct Axis {
   std::string label;  ///< with its unit: "time [s]"
   bool logarithmic = false;
@@ -72,6 +73,7 @@ struct Panel {
   Panel& key(Legend place);               ///< where the legend stands
 };
 
+/// Panels side by side: one picture.
 struct Figure {
   std::string name;           ///< of its files, without ending: letters, digits, '_', '-', '.'
   std::vector<Panel> panels;  ///< row by row

@@ -38,6 +38,7 @@ struct Attachment {
   std::function<void(const std::filesystem::path&)> write;  ///< writes them into a folder
 };
 
+/// All that a command found, for the terminal, the page and the files.
 struct Results {
   std::string command;                ///< "paper", "identify"
   std::string command_line;           ///< what repeats it, "beamid identify ..."; empty: not known

@@ -11,6 +11,7 @@ namespace beamid::experiments {
 
 using Cell = std::variant<double, std::string>;
 
+/// One column of a table, for the terminal and for CSV.
 struct Column {
   std::string heading;        ///< on the terminal, short, unit in brackets: "f1 [Hz]"
   std::string key;            ///< in the CSV header, unit as suffix: "frequency_hz"

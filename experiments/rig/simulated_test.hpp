@@ -13,6 +13,7 @@
 
 namespace beamid::experiments {
 
+/// A simulated test: the motion of the beam and the record of it.
 struct SimulatedTest {
   fem::StructuralSystem system;
   fem::Response response;       ///< at every step; fields at the frames

@@ -8,6 +8,7 @@
 
 namespace beamid::fem {
 
+/// Undamped modes of the continuum.
 struct ExactModes {
   Eigen::VectorXd angular_frequency;  ///< omega (k) [rad/s], ascending, rigid-body modes first with exactly 0
   Eigen::MatrixXd deflection;         ///< w (positions x k), largest value of each mode 1

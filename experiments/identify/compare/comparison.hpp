@@ -97,6 +97,7 @@ struct ComparedRun {
   bool has_estimate() const { return status == Status::converged || status == Status::contradicted; }
 };
 
+/// One record in every way it was identified.
 struct Comparison {
   ComparedRecord compared;
   RecordAnalysis analysis;
