@@ -37,6 +37,9 @@ class Reduction {
   /// @param training what a method learns from, for those that do; the others do not look at it.
   /// @throws std::invalid_argument when the system cannot be reduced this way, or training is missing.
   virtual Bases bases(const fem::StructuralSystem& system, const Training& training = {}) const = 0;
+  /// Whether the r shapes span the r lowest modes of whatever system, and nothing else: a model may then let
+  /// them follow what is asked about the system.
+  virtual bool spans_lowest_modes() const { return false; }
 };
 
 /// A small system and the way back to the mesh.

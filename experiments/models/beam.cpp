@@ -6,7 +6,8 @@
 // sees of a reduced model are its modes at the guess, z, each scaled to 1 at the output where it is largest:
 // the same space, in coordinates in [m] that are independent at the guess. A mesh that nobody has reduced is
 // seen in its own coordinates, or, when it decays freely and its shapes depend on what is asked, in its
-// lowest modes as they follow the unknowns (following_motion.hpp).
+// lowest modes as they follow the unknowns (following_motion.hpp). So is a reduction to the lowest modes
+// whose shapes depend on what is asked.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -64,13 +65,25 @@ VectorXd elastic(const fem::Modes& modes) {
   return modes.angular_frequency.tail(modes.size() - modes.rigid);
 }
 
-// Whether the lowest modes of the mesh tell its motion: nothing couples them, and no moving base, whose force
-// depends on the masses asked about, drives them. A force moves those above, too: the mesh's own coordinates
-// know them, but not what happens to the start when shapes change.
+// Whether every mode moves by itself: nothing couples them, and no moving base, whose force depends on the
+// masses asked about, drives them.
 bool moves_in_modes(const fem::ParametricSystem& equations, const fem::Modes& modes,
                     const MotionDescription& description) {
-  return description.base < 0 && modes.rigid == 0 && equations.system.damping.nonZeros() == 0 &&
-         (description.forces.empty() || !keeps_mode_shapes(equations));
+  return description.base < 0 && modes.rigid == 0 && equations.system.damping.nonZeros() == 0;
+}
+
+// Whether the lowest modes of the mesh tell its motion. A force moves those above, too: the mesh's own
+// coordinates know them, but not what happens to the start when shapes change.
+bool lowest_tell_the_motion(const fem::ParametricSystem& equations, const MotionDescription& description) {
+  return description.forces.empty() || !keeps_mode_shapes(equations);
+}
+
+// Whether what is asked turns the shapes of a reduction to the lowest modes out of the space that they span
+// at the guess.
+bool leaves_its_modes(const reduction::Reduction* reduction, const fem::ParametricSystem& equations,
+                      const fem::Modes& modes) {
+  return reduction && reduction->spans_lowest_modes() && modes.size() < equations.system.size() &&
+         !keeps_mode_shapes(equations);
 }
 
 // Forces read as outputs, below those observed: phi^T E of a mode.
@@ -127,11 +140,26 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
   auto model = std::make_unique<JointModel>();
   model->unknowns = description.unknowns;
   model->mode_frequencies = modes.angular_frequency;
-  MatrixXd shapes = reduced.lift(modes.shape);
-  const VectorXd scale = scale_of_modes(equations.system, description.observations, shapes);
-  shapes *= scale.asDiagonal();
+  fem::Modes on_mesh = modes;
+  on_mesh.shape = reduced.lift(modes.shape);
+  const VectorXd scale = scale_of_modes(equations.system, description.observations, on_mesh.shape);
+  const MatrixXd shapes = on_mesh.shape * scale.asDiagonal();
+  const bool follows = moves_in_modes(equations, modes, description) &&
+                       (dense ? leaves_its_modes(setting.reduction.get(), equations, modes)
+                              : in_modes && lowest_tell_the_motion(equations, description));
   StateLayout places;
-  if (dense) {
+  if (follows) {
+    describe_damping(setting.damping, elastic(modes), damped_modes(equations, on_mesh), description);
+    const MatrixXd rows = equations.system.outputs * on_mesh.shape;
+    if (modes.size() == 1 && rows(0, 0) != 0.0) model->equivalent_mass = 1.0 / (rows(0, 0) * rows(0, 0));
+    model->mode_shapes.setIdentity(modes.size(), modes.size());
+    places = layout(description, modes.size());
+    const std::vector<Index> forces = description.forces;
+    const MatrixXd reading = with_forces_as_outputs(equations, forces).system.outputs * on_mesh.shape;
+    model->motion =
+        std::make_shared<FollowingMotion>(equations_at(setting, properties, forces), std::move(description),
+                                          modes.angular_frequency, reading, scale);
+  } else if (dense) {
     ReducedEquations small = on_shapes(equations, shapes, modes.angular_frequency, description.forces);
     describe_damping(setting.damping, elastic(modes), damped_modes(small), description);
     const MatrixXd rows = equations.system.outputs * shapes;
@@ -140,15 +168,6 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
     model->mode_shapes.setIdentity(modes.size(), modes.size());
     places = layout(description, modes.size());
     model->motion = std::make_shared<ReducedMotion>(std::move(small), std::move(description), rows, "mode");
-  } else if (in_modes && moves_in_modes(equations, modes, description)) {
-    describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
-    model->mode_shapes.setIdentity(modes.size(), modes.size());
-    places = layout(description, modes.size());
-    const std::vector<Index> forces = description.forces;
-    const MatrixXd reading = with_forces_as_outputs(equations, forces).system.outputs * modes.shape;
-    model->motion =
-        std::make_shared<FollowingMotion>(equations_at(setting, properties, forces), std::move(description),
-                                          modes.angular_frequency, reading, scale);
   } else {
     describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
     model->mode_shapes = shapes;

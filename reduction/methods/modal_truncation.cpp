@@ -38,6 +38,8 @@ class ModalTruncation final : public Reduction {
     return {shapes};
   }
 
+  bool spans_lowest_modes() const override { return !static_correction_; }
+
  private:
   Index modes_;
   bool static_correction_;

@@ -43,6 +43,8 @@ class Serep final : public Reduction {
     return {seen.transpose().colPivHouseholderQr().solve(shapes.transpose()).transpose()};
   }
 
+  bool spans_lowest_modes() const override { return true; }
+
  private:
   std::vector<double> masters_;
   Index modes_;

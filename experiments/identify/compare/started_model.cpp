@@ -5,6 +5,7 @@
 
 #include "experiments/identify/compare/nonlinear_guess.hpp"
 #include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/motion/following_motion.hpp"
 #include "experiments/models/motion/reduced_motion.hpp"
 #include "reduction/reduction.hpp"
 
@@ -55,8 +56,12 @@ StartedModel started_model(const Choice& model, const ModelSetting& setting,
     FirstGuess guess = nonlinear_guess(first, setting.observations, record, frequency_hz);
     return {std::move(first), std::move(guess)};
   }
-  if ((!mesh && first.motion_size() <= most_started_coordinates) || modes >= setting.system.size() ||
-      first.unknowns.front().quantity.empty()) {
+  // Few modes that follow can be brought to the frequency of one left out: all that the record may hold are
+  // fitted first.
+  const bool follows = setting.reduction && setting.reduction->spans_lowest_modes() &&
+                       dynamic_cast<const FollowingMotion*>(first.motion.get());
+  if ((!mesh && !follows && first.motion_size() <= most_started_coordinates) ||
+      modes >= setting.system.size() || first.unknowns.front().quantity.empty()) {
     FirstGuess guess = first_guess(first, setting.observations, record, frequency_hz);
     return {std::move(first), std::move(guess)};
   }

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cmath>
 #include <memory>
@@ -93,6 +94,17 @@ TEST_P(EveryReduction, TreatsAFreeStructureOrSaysWhyNot) {
   } catch (const std::invalid_argument& refusal) {
     EXPECT_NE(std::string(refusal.what()).find(GetParam()), std::string::npos) << refusal.what();
   }
+}
+
+TEST_P(EveryReduction, SpansTheLowestModesWhereItSaysSo) {
+  // Oracle: modes of the whole system, and what is left of them beside their M-projection on the shapes.
+  if (!method->spans_lowest_modes()) GTEST_SKIP();
+  const auto model = reduce(system, *method);
+  const MatrixXd shapes = model.dense_shapes(), modes = fem::modes(system, shapes.cols()).shape,
+                 mass = shapes.transpose() * (system.mass * shapes),
+                 left = modes - shapes * mass.ldlt().solve(shapes.transpose() * (system.mass * modes));
+  for (Index i = 0; i < left.cols(); ++i)
+    EXPECT_LT(std::sqrt(left.col(i).dot(system.mass * left.col(i))), 1e-9) << i;
 }
 
 TEST_P(EveryReduction, RejectsUnknownOptions) {
