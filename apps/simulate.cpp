@@ -2,7 +2,6 @@
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
 #include "apps/deliver.hpp"
-#include "experiments/config/read_acquisition.hpp"
 #include "experiments/studies/continuum/simulation_report.hpp"
 #include "fem/response/response.hpp"
 
@@ -20,14 +19,12 @@ std::vector<KeyOption> simulation_keys() {
 
 int run_simulate(const Values& values) {
   const BeamSource source = read_beam(values, simulation_keys());
-  experiments::Acquisition acquisition;
-  if (!source.config.empty())
-    acquisition = experiments::read_acquisition(experiments::TomlTable::read(source.config));
   const int frames = values.has("out") ? source.experiment.simulation.frames : 0;  // nobody would see them
   deliver(values, [&] {
     return blame_config(source, [&] {
-      const auto test = std::make_shared<const experiments::SimulatedTest>(experiments::simulate(
-          source.experiment, source.config.parent_path(), frames, show_progress(values), acquisition));
+      const auto test = std::make_shared<const experiments::SimulatedTest>(
+          experiments::simulate(source.experiment, source.config.parent_path(), frames, show_progress(values),
+                                source.experiment.acquisition));
       return experiments::report(source.experiment, test, values.has("surface"));
     });
   });

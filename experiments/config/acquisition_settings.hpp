@@ -19,6 +19,8 @@ struct SensorDefects {
   double rattle = 0.0;        ///< standard deviation of the noise of a loose contact, a share
   double rattle_above = 0.5;  ///< it rattles where the true reading is beyond +- this share
   bool dead = false;          ///< nothing but the offset, whatever moves
+
+  bool operator==(const SensorDefects&) const = default;
 };
 
 /// Of the logger that all channels share.
@@ -32,6 +34,16 @@ struct Acquisition {
   bool force = true;                         ///< the exciting force is measured, but for a release
   std::vector<SensorDefects> sensors = {};   ///< in the order of the sensors; missing ones have no defect
 
+  bool operator==(const Acquisition&) const = default;
+
+  /// Whether every reading is there, where and as the sensor gave it.
+  bool perfect() const {
+    Acquisition ideal;
+    ideal.gap = gap;
+    ideal.force = force;
+    ideal.sensors.resize(sensors.size());
+    return *this == ideal;
+  }
   bool even() const { return !(jitter > 0) && gaps == 0; }  ///< samples at equal intervals throughout
   SensorDefects of(std::size_t sensor) const {
     return sensor < sensors.size() ? sensors[sensor] : SensorDefects{};

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/config/acquisition_settings.hpp"
 #include "experiments/config/identifiability_settings.hpp"
 #include "experiments/config/settings.hpp"
 #include "experiments/config/sweep_plan.hpp"
@@ -28,6 +29,7 @@ struct Experiment {
   fem::DampingLaw damping;
   Excitation excitation;
   std::vector<Sensor> sensors;  ///< none: displacement and acceleration at the natural point
+  Acquisition acquisition;      ///< of a virtual test
   Simulation simulation;
   FrequencyResponseSettings frequency_response;
   std::optional<std::string> record_file;  ///< relative to the TOML file's folder

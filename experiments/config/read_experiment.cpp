@@ -96,7 +96,7 @@ void read_continuum(const TomlTable& root, Experiment& experiment) {
   if (const auto excitation = root.find_table("excitation"))
     experiment.excitation = read_excitation(*excitation, length);
   experiment.sensors = read_sensors(root, experiment.beam);
-  read_acquisition(root);  // checked with the rest; `simulate` alone has a use for it
+  experiment.acquisition = read_acquisition(root);
   experiment.parameters = read_parameters(root, length);
   if (const auto simulation = root.find_table("simulation"))
     experiment.simulation = read_simulation(*simulation);

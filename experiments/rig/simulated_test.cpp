@@ -222,6 +222,7 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   for (const std::string& remark : test.response.remarks) test.notes.push_back(remark);
 
   const SampleClock clock = clock_of(acquisition, settings, samples);
+  test.event = clock.event;
   test.record.time = clock.time;
   test.record.samples.resize(static_cast<Index>(test.sensors.size()), clock.time.size());
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
@@ -237,7 +238,7 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
     test.record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance});
   }
   if (history.base_acceleration.size() > 0)
-    test.record.warnings.push_back(
+    test.record.warnings.emplace_back(
         "The base moves, which the record does not hold: an identification takes this motion for a free "
         "decay.");
   else if (acquisition.force && test.excitation.kind != Excitation::Kind::release &&

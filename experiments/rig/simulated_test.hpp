@@ -23,6 +23,7 @@ struct SimulatedTest {
   Excitation excitation;        ///< position and deflection filled in
   fem::ResponseMethod method;   ///< its number of modes filled in
   double step = 0.0;            ///< of the integration [s]
+  double event = 0.0;           ///< when the excitation begins, on the record's clock [s]
   std::vector<std::string> notes;  ///< what a reader should know, a sentence each
 };
 

@@ -43,7 +43,7 @@ VectorXd assumed_noise(const Experiment& experiment, const Record& clean, Vector
   return noise;
 }
 
-void require_simple(const SweepSource& source, const Experiment& experiment) {
+void require_simple(const SweepSource& source, const Experiment& experiment, const Experiment& truth) {
   if (source.record)
     throw std::invalid_argument(fmt::format("identifying once takes records that are simulated; found '{}'",
                                             source.record->string()));
@@ -51,6 +51,10 @@ void require_simple(const SweepSource& source, const Experiment& experiment) {
     throw std::invalid_argument(
         fmt::format("identifying once takes model sdof and one reduction; found model {} and {} reductions",
                     experiment.model.name, experiment.reductions.size()));
+  if (!truth.acquisition.perfect())
+    throw std::invalid_argument(
+        "identifying once takes records of perfect instruments, to which noise is added; found an "
+        "[acquisition] or sensors that change the readings. identify = \"compare\" takes them");
 }
 
 std::optional<filters::Quantity> lane_quantity(Quantity quantity) {
@@ -182,20 +186,21 @@ std::vector<ComparedRun> Repeats::Common::identify(const Choice& filter, const s
 }
 
 void require_once(const SweepSource& source, const SweepPlan& plan) {
-  Experiment first;
+  Experiment first, truth;
   try {
     first = experiment_of(source, plan, 0);
+    truth = experiment_of(source, plan, 0, true);
   } catch (const InputError&) {  // the row of that case says so
     return;
   }
-  require_simple(source, first);
+  require_simple(source, first, truth);
 }
 
 std::shared_ptr<const Repeats::Common> Repeats::common_of(std::size_t number) const {
   auto common = std::make_shared<Common>();
   const Experiment& experiment = common->experiment = experiment_of(source_, plan_, number);
-  require_simple(source_, experiment);
   Experiment truth = experiment_of(source_, plan_, number, true);
+  require_simple(source_, experiment, truth);
   common->sensor_noise = VectorXd::Zero(static_cast<Index>(std::max<std::size_t>(2, truth.sensors.size())));
   for (std::size_t i = 0; i < truth.sensors.size(); ++i)
     common->sensor_noise[static_cast<Index>(i)] = std::exchange(truth.sensors[i].noise, 0.0);
@@ -262,7 +267,7 @@ std::shared_ptr<Repeats::Entry> Repeats::entry_of(std::size_t sample) {
   const std::lock_guard lock(mutex_);
   std::shared_ptr<Entry>& entry = kept_[sample];
   if (!entry) entry = std::make_shared<Entry>();
-  const std::shared_ptr<Entry> found = entry;
+  std::shared_ptr<Entry> found = entry;
   while (kept_.size() > most)
     kept_.erase(kept_.begin()->first == sample ? std::prev(kept_.end()) : kept_.begin());
   return found;

@@ -15,7 +15,7 @@
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "experiments/models/motion/following_motion.hpp"
-#include "experiments/rig/simulated_test.hpp"
+#include "experiments/rig/logged_test.hpp"
 #include "experiments/text/choice_text.hpp"
 #include "experiments/text/countdown.hpp"
 #include "filters/filter.hpp"
@@ -142,15 +142,16 @@ std::optional<double> ComparedParameter::bound_ratio() const {
 
 ComparedRecord simulated_record(const Experiment& truth, const std::filesystem::path& folder,
                                 const Progress& progress) {
-  const SimulatedTest test = simulate(truth, folder, 0, progress);
+  const SimulatedTest test = logged_test(truth, folder, "simulated", progress);
   ComparedRecord compared;
-  compared.name = "simulated";
   compared.record = test.record;
+  compared.name = "simulated";
   compared.sensor_noise = VectorXd::Zero(static_cast<Index>(test.record.channels.size()));
   for (std::size_t i = 0; i < test.sensors.size(); ++i)
     compared.sensor_noise[static_cast<Index>(i)] = test.sensors[i].noise;
   compared.truth = truth;
   compared.notes = test.notes;
+  for (const std::string& remark : compared.record.remarks) compared.notes.push_back(remark);
   return compared;
 }
 

@@ -403,6 +403,28 @@ TEST(Repeats, SayWhatTheyCannotTake) {
   EXPECT_THAT(rows[0].reason, HasSubstr("takes model sdof and one reduction; found model modal"));
 }
 
+TEST(Repeats, RefuseReadingsThatALoggerHasChanged) {
+  const std::string jittered = std::string(test::exact_rig) + "[acquisition]\njitter = 0.1\n";
+  const auto rows = Repeats({{"rig.toml", jittered}, {}, {}}, once(plan_with({}))).run({0});
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].status, "failed");
+  EXPECT_THAT(rows[0].reason, HasSubstr("takes records of perfect instruments"));
+}
+
+// Oracle: the beam simulated.
+TEST(Sweep, SimulatesWhatSensorsAndLoggerDo) {
+  const std::string coarse = std::string(test::exact_rig) + "[acquisition]\njitter = 0.2\nrepeated = 0.02\n";
+  const SweepPlan plan = plan_with({}, 1, 1);
+  const auto perfect = run_case({{"rig.toml", test::exact_rig}, {}, {}}, plan, 0),
+             logged = run_case({{"rig.toml", coarse}, {}, {}}, plan, 0);
+  ASSERT_EQ(logged.size(), perfect.size());
+  for (std::size_t i = 0; i < logged.size(); ++i) {
+    EXPECT_EQ(logged[i].status, "converged") << logged[i].reason;
+    EXPECT_NE(logged[i].estimate, perfect[i].estimate);
+    EXPECT_LT(std::abs(logged[i].error), 5.0 * logged[i].deviation) << logged[i].parameter;
+  }
+}
+
 TEST(Sweep, ReachesTablesWithinTablesAndTheTruthAlone) {
   const SweepPlan plan =
       plan_with({"sensors[1].noise_m=0.001,0.002", "truth.beam.tip_mass_kg=0.4", "beam.elements=12"});
