@@ -1,5 +1,8 @@
 #include "apps/beam_options.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "experiments/config/read_beam.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/plausibility.hpp"
@@ -94,8 +97,10 @@ void refuse_both(const Values& values, const std::string& one, const std::string
 }  // namespace
 
 OptionGroup key_options(const std::vector<KeyOption>& keys, std::vector<Option> more) {
-  for (auto key = keys.rbegin(); key != keys.rend(); ++key) more.insert(more.begin(), key->option);
-  return {"Options", std::move(more)};
+  std::vector<Option> options;
+  for (const KeyOption& key : keys) options.push_back(key.option);
+  std::move(more.begin(), more.end(), std::back_inserter(options));
+  return {"Options", std::move(options)};
 }
 
 Option surface_option() {

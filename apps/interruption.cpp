@@ -1,6 +1,6 @@
 #include "apps/interruption.hpp"
 
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): more of POSIX than <csignal> promises
 #include <unistd.h>
 
 #include <algorithm>

@@ -37,7 +37,7 @@ void add_item(std::ostream& page, const std::string& term, const std::string& te
 
 void add_option(std::ostream& page, const Option& option) {
   std::string term = option.letter ? std::string("\\fB\\-") + option.letter + "\\fR, " : "";
-  term += "\\fB\\-\\-" + troff(option.name) + "\\fR";
+  term += R"(\fB\-\-)" + troff(option.name) + "\\fR";
   if (!option.value.empty()) term += " \\fI" + troff(option.value) + "\\fR";
   add_item(page, term, described(option));
 }

@@ -29,7 +29,7 @@ std::string to_text(const filters::OptionValue& value) {
     return numbers->empty() ? "none" : text.str();
   }
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  const std::string& text = std::get<std::string>(value);
+  const auto& text = std::get<std::string>(value);
   return text.empty() ? "none" : text;
 }
 

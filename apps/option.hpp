@@ -33,15 +33,15 @@ struct Option {
   bool closed = false;                ///< no other value than these
 
   Option by_default(const std::string& word) const;
-  Option as(char letter) const;  ///< its short form
+  Option as(char short_form) const;  ///< its short form
   Option repeated() const;
   Option needed() const;
-  Option several() const;             ///< takes all words up to the next option
-  Option unrecorded() const;          ///< does not change what is found
-  Option from(double number) const;   ///< at least this
-  Option up_to(double number) const;  ///< at most this
-  Option greater_than(double number) const;
-  Option less_than(double number) const;
+  Option several() const;            ///< takes all words up to the next option
+  Option unrecorded() const;         ///< does not change what is found
+  Option from(double bound) const;   ///< at least this
+  Option up_to(double bound) const;  ///< at most this
+  Option greater_than(double bound) const;
+  Option less_than(double bound) const;
   Option one_of(const Words& names) const;   ///< and nothing else
   Option such_as(const Words& names) const;  ///< for completion; the command checks the value
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// Where the page is to be written: nothing must lie there yet.
 fs::path new_file(const Values& values, const char* option) {
-  const fs::path file = values.text(option);
+  fs::path file = values.text(option);
   if (fs::exists(file) && !values.has("force"))
     throw UsageError(file.string() + " exists; --force replaces it");
   return file;

@@ -7,7 +7,7 @@ namespace beamid::experiments {
 std::string known_names(const std::string& word, const std::vector<std::string>& known) {
   constexpr std::size_t few = 6;
   const auto meant = nearest(word, known);
-  const std::string all = "known: " + joined(known);
+  std::string all = "known: " + joined(known);
   if (!meant) return all;
   return "did you mean '" + *meant + "'?" + (known.size() <= few ? " " + all : "");
 }

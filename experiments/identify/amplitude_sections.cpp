@@ -194,7 +194,7 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
       measured < (1 - largest_share_missing) * static_cast<double>(signal.size()))
     return result;
   const double wanted = 1 / (interval * modal.frequency_hz * section_samples_per_cycle),
-               possible = static_cast<double>(signal.size() / kernel_and_more);
+               possible = static_cast<double>(signal.size()) / kernel_and_more;
   const DecimatedSignal coarse = decimate(bridged_straight(signal), interval,
                                           static_cast<int>(std::max(1.0, std::min(wanted, possible))));
   const double periods = coarse.interval * static_cast<double>(coarse.samples.size()) * modal.frequency_hz;
@@ -209,7 +209,7 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
       const double deviation = std::sqrt((squares + one.squares) / (freedom + one.freedom));
       if (one.section.amplitude < least_over_noise * deviation) break;
       squares += one.squares, freedom += one.freedom;
-      fitted.push_back(std::move(one));
+      fitted.push_back(one);
     } catch (const std::exception&) {
       break;
     }
@@ -234,7 +234,7 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
   }
   std::vector<VectorXd> shapes;
   for (const double power : law_powers)
-    shapes.push_back(log_amplitude.unaryExpr(
+    shapes.emplace_back(log_amplitude.unaryExpr(
         [shape = AmplitudeShape{power, log_amplitude.mean()}](double x) { return shape.at(x); }));
   const double end =
       sections == count ? interval * static_cast<double>(signal.size()) : result.sections.back().to;

@@ -2,7 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): more of POSIX than <csignal> promises
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

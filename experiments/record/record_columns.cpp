@@ -80,7 +80,7 @@ RecordColumns columns_of_header(RecordTable& table) {
 
 std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index) {
   if (table.time == index) return ColumnMeaning{std::nullopt, "", 1};
-  const auto meaning = parse_column_name(column_name_of(table, index));
+  auto meaning = parse_column_name(column_name_of(table, index));
   if (index >= table.units.size()) return meaning;
   const auto unit = stated_unit(table.units[index]);
   if (!unit) return meaning;

@@ -19,7 +19,7 @@ InputError number_fault(const TextField& found, std::size_t column) {
   const char* expected = parse_number(found.text).number ? "a finite number within double precision"
                          : found.text.find(',') != std::string::npos ? "a number with a decimal point"
                                                                      : "a number";
-  return InputError(found.place, fmt::format("column {} holds {}; expected {}", column + 1, shown, expected));
+  return {found.place, fmt::format("column {} holds {}; expected {}", column + 1, shown, expected)};
 }
 
 Place RecordTable::place(std::size_t row, std::size_t column) const {

@@ -55,7 +55,7 @@ struct RecordTable {
 };
 
 /// What is wrong with a field that is no finite number. @param column from 0.
-InputError number_fault(const TextField& cell, std::size_t column);
+InputError number_fault(const TextField& found, std::size_t column);
 
 /// "1 column", "4 columns", for messages.
 std::string count_of_columns(std::size_t count);

@@ -1,5 +1,7 @@
 #include "experiments/record/text_cells.hpp"
 
+#include <utility>
+
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
@@ -14,7 +16,7 @@ void TextCells::add(std::string_view line, std::size_t number) {
 
 std::function<TextField(std::size_t, std::size_t)> TextCells::cells(char separator,
                                                                     std::vector<std::size_t> columns) const {
-  return [rows = rows_, separator, columns](std::size_t row, std::size_t column) {
+  return [rows = rows_, separator, columns = std::move(columns)](std::size_t row, std::size_t column) {
     std::vector<std::string_view> fields;
     split_fields(rows->lines[row], separator, fields);
     const std::size_t at = columns.empty() ? column : columns[column];

@@ -10,7 +10,7 @@
 namespace beamid::experiments {
 
 std::string csv_field(std::string_view raw) {
-  const std::string text = clean_lines(raw);
+  std::string text = clean_lines(raw);
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);

@@ -8,7 +8,7 @@ namespace beamid::experiments {
 
 /// A text, cleaned (clean_text.hpp), as one CSV field [rfc4180]: quoted where it holds a comma, a quote or a
 /// line break.
-std::string csv_field(std::string_view text);
+std::string csv_field(std::string_view raw);
 
 /// The shortest decimal number that reads back as the same double; empty when it is NaN.
 std::string csv_field(double value);

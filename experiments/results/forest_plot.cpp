@@ -82,7 +82,7 @@ Panel forest_panel(const ForestPlot& plot) {
                high = extent.high + 0.06 * span;
   Panel panel{plot.title, {plot.axis, false, std::pair{low, high}}, {""}};
   panel.y_axis.names = plot.names;
-  const double rows = static_cast<double>(plot.names.size());
+  const auto rows = static_cast<double>(plot.names.size());
   if (plot.reference) {
     const Eigen::Vector2d ends(0.4, rows + 0.6);
     if (const auto& interval = plot.reference->interval) {

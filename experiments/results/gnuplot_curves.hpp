@@ -20,7 +20,7 @@ std::vector<std::vector<std::string>> colours_of(const Figure& figure);
 
 /// The plot command of a panel.
 /// @param column the first column of the panel's curves, from 1; moved on to the next panel's.
-/// @param colours of its curves, from colours_of()
-std::string plot_command(const Panel& panel, const std::vector<std::string>& colours, int& column);
+/// @param names of its curves' colours, from colours_of()
+std::string plot_command(const Panel& panel, const std::vector<std::string>& names, int& column);
 
 }  // namespace beamid::experiments

@@ -36,7 +36,8 @@ int legend_columns(const std::vector<std::string>& labels, double width) {
 
 double legend_height(const std::vector<std::string>& labels, int columns) {
   if (columns == 0) return 0;
-  return key_gap + key_row * static_cast<double>((static_cast<int>(labels.size()) + columns - 1) / columns);
+  const int rows = (static_cast<int>(labels.size()) + columns - 1) / columns;
+  return key_gap + key_row * rows;
 }
 
 /// The panel whose legend says all that the others' say: it is then said once, below the last row. -1: there

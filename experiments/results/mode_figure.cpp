@@ -160,7 +160,8 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
   const double size = extent.maxCoeff();
   std::pair<Axis, Axis> axes{{"x [m]", false, std::pair{places.row(0).minCoeff(), places.row(0).maxCoeff()}},
                              {"deflection (largest 1)", false, std::pair{-1.15, 1.15}}};
-  if (frame) axes = frame_axes(places, size, figure.width / figure.columns - 101.0, row_height - 98.0);
+  const int panel_width = figure.width / figure.columns;
+  if (frame) axes = frame_axes(places, size, panel_width - 101.0, row_height - 98.0);
   for (int mode = 0; mode < modes; ++mode) {
     const NodalMotion motion = scaled_mode(system, shapes.col(mode));
     Shape shape = shape_of(system.mesh, places, motion, frame ? size / 8 : 1.0);

@@ -9,9 +9,9 @@
 namespace beamid::experiments {
 
 /// Headings, paragraphs and tables in their order, at most as wide as the page.
-void print(std::ostream& stream, const Results& results, const Page& page);
+void print(std::ostream& terminal, const Results& results, const Page& page);
 
 /// A table as in table.hpp, on a page of any width.
-void print(std::ostream& stream, const Table& table, const Page& page);
+void print(std::ostream& stream, const Table& table, const Page& paper);
 
 }  // namespace beamid::experiments

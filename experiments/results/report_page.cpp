@@ -32,7 +32,7 @@ std::string description(const Figure& figure) {
 }
 
 std::string paragraph_html(const Paragraph& paragraph) {
-  const char* const box = paragraph.severity == Severity::failure   ? " class=\"failure\" role=\"alert\""
+  const char* const box = paragraph.severity == Severity::failure   ? R"( class="failure" role="alert")"
                           : paragraph.severity == Severity::warning ? " class=\"warning\""
                                                                     : "";
   return "<p" + std::string(box) + ">" + typeset_html(paragraph.text) + "</p>\n";

@@ -76,7 +76,7 @@ nlohmann::ordered_json to_json(const Results& results);
 void write(const Results& results, ResultDirectory& directory);
 
 /// Headings, paragraphs and tables in their order, at most page_width columns wide.
-void print(std::ostream& stream, const Results& results);
+void print(std::ostream& terminal, const Results& results);
 
 /// results.json as it would be written.
 void print_json(std::ostream& stream, const Results& results);

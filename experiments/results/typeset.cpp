@@ -1,5 +1,6 @@
 #include "experiments/results/typeset.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <utility>
@@ -35,11 +36,11 @@ bool unit_begins(std::string_view text, std::size_t at) {
   if (before == '(') return at + 2 < text.size() && text[at] == 'm' && text[at + 1] == '/';
   if (before != ' ' || at < 2) return false;
   if (digit(text[at - 2])) return true;
-  for (const std::string_view unit : {"N", "kg", "m", "s", "g"})
-    if (text.substr(0, at - 1).ends_with(unit) &&
-        (at - 1 == unit.size() || !letter_or_digit(text[at - 2 - unit.size()])))
-      return true;
-  return false;
+  constexpr std::array<std::string_view, 5> units{"N", "kg", "m", "s", "g"};
+  return std::any_of(units.begin(), units.end(), [&](std::string_view unit) {
+    return text.substr(0, at - 1).ends_with(unit) &&
+           (at - 1 == unit.size() || !letter_or_digit(text[at - 2 - unit.size()]));
+  });
 }
 
 /// "m2", "s2", "m4" of a unit at `at`: the length of its letters, 0 where there is none.

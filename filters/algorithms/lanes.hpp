@@ -15,6 +15,7 @@ struct Baseline {};
 /// A vector of the compiler's own; a type by itself because the attribute may only depend on it from outside.
 template <class Number, int W>
 struct VectorOf {
+  // NOLINTNEXTLINE(modernize-use-using): compilers take the attribute on a typedef only
   typedef Number Type __attribute__((vector_size(W * sizeof(Number))));
 };
 
@@ -108,8 +109,10 @@ struct Eigen::NumTraits<beamid::filters::algorithms::Lanes<W, Instructions>> : G
   using NonInteger = Real;
   using Nested = Real;
   using Literal = double;
+  // NOLINTBEGIN(readability-identifier-naming): the names are Eigen's
   enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0 };
   enum { ReadCost = 1, AddCost = 1, MulCost = 1 };
+  // NOLINTEND(readability-identifier-naming)
 };
 
 // A matrix of lanes times a number, either side.

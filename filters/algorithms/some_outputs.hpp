@@ -13,7 +13,7 @@ class SomeOutputs {
   /// Entries of y that are NaN were not measured; they are set to zero.
   SomeOutputs(Model& model, Vector<Scalar, P>& y) : model_(model), noise_(model.output_noise()) {
     for (int i = 0; i < P; ++i) {
-      const auto measured = y[i] == y[i];
+      const auto measured = y[i] == y[i];  // NOLINT(misc-redundant-expression): not so of a NaN
       measured_[i] = select(measured, Scalar(1.0), Scalar(0.0));
       y[i] = select(measured, y[i], Scalar(0.0));
       for (int j = 0; j < P; ++j) {

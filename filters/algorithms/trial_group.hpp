@@ -63,8 +63,10 @@ class TrialGroupRun {
       covariance_ = filter_.covariance;
       if (k > 0 || group_.predict_first) filter_.predict(model_);
       Vector<Scalar, P> y = gather<P, 1>([&](int lane) { return group_.lanes[lane].record + k * P; });
+      // NOLINTBEGIN(misc-redundant-expression): a NaN does not equal itself
       Mask complete = y[0] == y[0];
       for (int i = 1; i < P; ++i) complete = complete & (y[i] == y[i]);
+      // NOLINTEND(misc-redundant-expression)
       if (all(complete)) [[likely]] {
         correct(model_, y);
         measured_ += select(alive_, Scalar(P), Scalar(0.0));

@@ -31,7 +31,7 @@ Experiment completed(const Experiment& experiment, std::vector<std::string>& not
   }
   if (complete.sensors.empty()) {
     complete.sensors = {Sensor{}};
-    notes.push_back("No [[sensors]] are described: one accelerometer where the beam moves most easily.");
+    notes.emplace_back("No [[sensors]] are described: one accelerometer where the beam moves most easily.");
   }
   return complete;
 }
@@ -144,7 +144,7 @@ Identifiability find_identifiability(const Experiment& experiment, const std::fi
   sweep_in_time(test.motion, channels, result);
   progress("places of sensors");
   if (complete.model.name == "sdof")
-    result.notes.push_back("The model knows one point only: places of sensors make no difference to it.");
+    result.notes.emplace_back("The model knows one point only: places of sensors make no difference to it.");
   else
     sweep_in_place(complete, folder, channels, result, progress);
   return result;

@@ -40,7 +40,7 @@ FirstGuess nonlinear_guess(const JointModel& model, const std::vector<Observatio
       model, observations, start_scale(model, observations, heard.outputs, heard.time[samples - 1]));
   VectorXd state = start_belief(model, directions).mean;
   const MatrixXd unknowns = directions.unknowns(model.unknown_places, Eigen::all);
-  const FirstGuess believed{state, unknowns * unknowns.transpose()};
+  FirstGuess believed{state, unknowns * unknowns.transpose()};
   take_frequency(model, frequency_hz, state);
   const VectorXd size = heard.outputs.rowwise().norm() / std::sqrt(static_cast<double>(samples));
   const MatrixXd noise = (nonlinear_guess_noise * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();

@@ -53,11 +53,11 @@ struct ExpectedOscillator {
 ExpectedOscillator expected_oscillator(const std::string& model, const ModelSetting& setting);
 
 /// The joint model of a law; the mass is asked about too where a force was measured.
-/// @param terms parameters of the law, in its order
+/// @param law_terms parameters of the law, in its order
 /// @throws std::invalid_argument, or an InputError at a choice's place, when a choice is none of the terms or
 /// something cannot be observed.
-std::unique_ptr<JointModel> make_oscillator(const std::string& model, const ModelSetting& setting,
+std::unique_ptr<JointModel> make_oscillator(const std::string& name, const ModelSetting& setting,
                                             std::shared_ptr<const OscillatorLaw> law,
-                                            const std::vector<OscillatorTerm>& terms, bool sensor_bias);
+                                            const std::vector<OscillatorTerm>& law_terms, bool sensor_bias);
 
 }  // namespace beamid::experiments

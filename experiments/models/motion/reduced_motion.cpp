@@ -56,11 +56,9 @@ ReducedMotion::ReducedMotion(ReducedEquations equations, MotionDescription descr
   const VectorXd omega = frequencies();
   const VectorXd rate = equations_.mass.cwiseProduct(omega);
   decoupled_ = is_diagonal(equations_.damping, rate);
-  for (std::size_t j = 0; j < equations_.derivatives.size(); ++j) {
-    const ReducedEquations::Derivative& slope = equations_.derivatives[j];
+  for (const ReducedEquations::Derivative& slope : equations_.derivatives)
     decoupled_ = decoupled_ && is_diagonal(slope.mass, slope.mass.diagonal().cwiseAbs()) &&
                  is_diagonal(slope.stiffness, slope.stiffness.diagonal().cwiseAbs());
-  }
   if (!decoupled_) return;
   make_diagonal(equations_.damping);
   for (ReducedEquations::Derivative& slope : equations_.derivatives) {

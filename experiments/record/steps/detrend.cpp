@@ -33,7 +33,7 @@ class Detrend final : public ChannelStep {
   }
 
   std::string apply(Record& record) const override {
-    if (record.size() <= 2 * degree_)
+    if (record.size() <= Eigen::Index{2} * degree_)
       throw std::invalid_argument(
           fmt::format("{} samples; expected more than {} for a polynomial of order {}", record.size(),
                       2 * degree_, degree_));

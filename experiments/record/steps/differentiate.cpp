@@ -40,8 +40,8 @@ class Differentiate final : public ChannelStep {
   std::string apply(Record& record) const override {
     const double interval = even_interval(record);
     const std::vector<Eigen::Index> chosen = rows(record);
-    const std::string text = fmt::format("Differentiated in {}{}: {}.", in_frequency_ ? "frequency" : "time",
-                                         times_ == 2 ? ", twice" : "", words(record, chosen));
+    std::string text = fmt::format("Differentiated in {}{}: {}.", in_frequency_ ? "frequency" : "time",
+                                   times_ == 2 ? ", twice" : "", words(record, chosen));
     for (const Eigen::Index row : chosen) {
       Eigen::VectorXd signal = record.samples.row(row).transpose();
       if (in_frequency_) signal = differentiate_in_frequency(signal, interval, times_);

@@ -65,7 +65,7 @@ class Offset final : public ChannelStep {
     const Onsets found = find_onsets(record.samples.row(row).transpose(), even_interval(record));
     if (found.samples.empty())
       throw std::invalid_argument("no event in " + words(record, {row}) +
-                                  ", hence no quiet part before it; expected of = \"all\" or \"interval\"");
+                                  R"(, hence no quiet part before it; expected of = "all" or "interval")");
     return found.baseline;
   }
 

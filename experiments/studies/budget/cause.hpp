@@ -52,7 +52,7 @@ inline constexpr std::size_t index_of(Cause cause) {
   return static_cast<std::size_t>(cause);
 }
 inline Causes only(Cause cause) {
-  return Causes(1ULL << index_of(cause));
+  return {1ULL << index_of(cause)};
 }
 inline Causes all_causes() {
   return Causes().set();

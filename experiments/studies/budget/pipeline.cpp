@@ -52,7 +52,7 @@ VectorXd instants(const PipelineSettings& settings, bool stated_rate) {
 
 }  // namespace
 
-Pipeline::Pipeline(const PipelineSettings& settings) : settings_(settings) {
+Pipeline::Pipeline(PipelineSettings settings) : settings_(std::move(settings)) {
   if (settings_.damping_ratios.size() == 0)
     throw std::invalid_argument("damping_ratios: none; expected one per mode");
   require_positive(settings_.damping_ratios[0], "damping ratio of the first mode");

@@ -47,7 +47,7 @@ struct ParameterErrors {
 class Pipeline {
  public:
   /// @throws std::invalid_argument when the settings are impossible
-  explicit Pipeline(const PipelineSettings& settings);
+  explicit Pipeline(PipelineSettings settings);
 
   const PipelineSettings& settings() const { return settings_; }
   const Oscillator& truth() const { return truth_; }

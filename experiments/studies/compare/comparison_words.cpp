@@ -18,8 +18,8 @@ std::string parameter_text(const ComparedRun& run, const ComparedRun& reference,
   const double half = 100.0 * quantile_95 * e.deviation / std::abs(e.value);
   if (const auto error = p.error_percent())
     return fmt::format("{} {:+.3g} % (interval +-{:.2g} %)", e.name, *error, half);
-  const std::string text = fmt::format("{} {:.5g}{}{} (interval +-{:.2g} %)", e.name, e.value,
-                                       e.unit.empty() ? "" : " ", e.unit, half);
+  std::string text = fmt::format("{} {:.5g}{}{} (interval +-{:.2g} %)", e.name, e.value,
+                                 e.unit.empty() ? "" : " ", e.unit, half);
   if (&run == &reference) return text;
   const double other = reference.parameters[j].estimate.value;
   return text + fmt::format(", {:+.3g} % from the reference", 100.0 * (e.value / other - 1.0));
@@ -239,7 +239,7 @@ std::vector<std::string> words(const Comparison& comparison) {
   if (reference)
     paragraphs.push_back(run_text(comparison, *reference, *reference));
   else
-    paragraphs.push_back("No run converged.");
+    paragraphs.emplace_back("No run converged.");
   for (const ComparedRun& run : comparison.runs) {
     if (&run == reference) continue;
     if (run.status != ComparedRun::Status::converged)

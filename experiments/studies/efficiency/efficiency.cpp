@@ -19,7 +19,7 @@ using Eigen::Index;
 const std::vector<Index> constants{2, 3};  // K and C in [x, v, K, C]
 
 bool has(const Choice& filter, const char* contract) {
-  return filters::filter_registry().find(filter.name).contracts.count(contract) > 0;
+  return filters::filter_registry().find(filter.name).contracts.contains(contract);
 }
 
 int runs_with(const EfficiencySettings& settings, const Choice& filter) {
@@ -92,7 +92,7 @@ const char* to_string(Passes passes) {
 std::vector<Choice> applicable_filters() {
   std::vector<Choice> choices;
   for (const auto& [name, entry] : filters::filter_registry().entries())
-    if (entry.contracts.count(filters::contract::linear_models_only) == 0)
+    if (!entry.contracts.contains(filters::contract::linear_models_only))
       choices.push_back({name, filters::filter_registry().completed(name, {}), {}});
   return choices;
 }

@@ -85,7 +85,7 @@ VectorXd noise_of(NoiseColour colour, Index count, double cycles_per_sample, std
   constexpr int octave_pairs = 5;
   VectorXd flicker = VectorXd::Zero(count);
   for (int i = 0; i < octave_pairs; ++i)
-    flicker += low_passed(std::pow(4.0, i - 2), static_cast<std::uint64_t>(i + 1));
+    flicker += low_passed(std::pow(4.0, i - 2), static_cast<std::uint64_t>(i) + 1);
   return std::sqrt(0.5) * (noise + flicker / std::sqrt(static_cast<double>(octave_pairs)));
 }
 

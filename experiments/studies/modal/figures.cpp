@@ -106,7 +106,7 @@ Figure reproduction(const RecordModes& found, const std::string& suffix) {
 
 Figure singular_values(const RecordModes& found, const std::string& suffix) {
   const Index count =
-      std::min<Index>(found.search.singular_values.size(), 2 * found.search.orders.back().order);
+      std::min<Index>(found.search.singular_values.size(), Index{2} * found.search.orders.back().order);
   const VectorXd relative = found.search.singular_values.head(count) / found.search.singular_values[0];
   Figure figure{"singular_values" + suffix,
                 {Panel{found.name, {"order"}, {"singular value of the Hankel matrix, relative", true}}

@@ -31,7 +31,7 @@ Json significance_of(const ComparedReduction& one) {
 Json reduction_of(const ReductionComparison& all, const ComparedReduction& one) {
   Json json{{"name", one.label}, {"method", one.choice.name}, {"options", Json::object()}};
   for (const auto& [name, value] : one.choice.options.values())
-    std::visit([&json, &name](const auto& held) { json["options"][name] = held; }, value);
+    std::visit([&json, &name = name](const auto& held) { json["options"][name] = held; }, value);
   if (!one.choice.shape_file.empty()) json["shape_file"] = one.choice.shape_file;
   json["size"] = one.size;
   json["basis_numbers"] = one.identity ? Json(nullptr) : Json(one.size * all.system.size());

@@ -18,7 +18,7 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 constexpr std::size_t longest_cell = 60;  // characters of a cell
 
 std::string cell_text_of(const Json& json) {
-  const std::string text = json.is_string() ? json.get<std::string>() : json.dump();
+  std::string text = json.is_string() ? json.get<std::string>() : json.dump();
   if (text.size() <= longest_cell) return text;
   std::size_t end = longest_cell;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // whole letters of UTF-8

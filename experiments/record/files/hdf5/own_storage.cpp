@@ -48,15 +48,15 @@ void require_own_storage(hid_t dataset, const std::string& path, const std::stri
     refuse_storage(file, path);
 }
 
-void require_own_storage(const std::string& name) {
+void require_own_storage(const std::string& file) {
   const Quiet quiet;
-  const Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  StorageWalk walk{name, std::nullopt};
-  const bool walked =
-      file.open() && H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, visit_link, &walk) >= 0 &&
-      (walk.failure || H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit_object, &walk, H5O_INFO_BASIC) >= 0);
-  if (walk.failure) throw *walk.failure;
-  if (!walked) throw InputError({name}, "cannot be walked through by HDF5; expected an undamaged file");
+  const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  StorageWalk walk{file, std::nullopt};
+  const bool walked = opened.open() && H5Lvisit(opened, H5_INDEX_NAME, H5_ITER_INC, visit_link, &walk) >= 0 &&
+                      (walk.failure || H5Ovisit2(opened, H5_INDEX_NAME, H5_ITER_INC, visit_object, &walk,
+                                                 H5O_INFO_BASIC) >= 0);
+  if (walk.failure) throw InputError(*walk.failure);
+  if (!walked) throw InputError({file}, "cannot be walked through by HDF5; expected an undamaged file");
 }
 
 }  // namespace beamid::experiments
