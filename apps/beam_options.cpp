@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_beam.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/plausibility.hpp"
@@ -23,27 +24,14 @@ density_kg_per_m3 = 7714.646464646465
 )toml";
 
 const std::vector<KeyOption>& beam_keys() {
-  const Words round{"diameter_m", "end_diameter_m"};
   static const std::vector<KeyOption> keys{
       {number("length", "M", "length of the beam [m]"), "beam", "length_m"},
-      {number("width", "M", "section across the direction of bending [m]"), "beam", "width_m", round},
-      {number("height", "M", "section along the direction of bending [m]"), "beam", "height_m", round},
-      {number("diameter", "M", "of a round section, instead of width and height [m]"),
-       "beam",
-       "diameter_m",
-       {"width_m", "height_m", "end_width_m", "end_height_m"}},
-      {number("youngs-modulus", "PA", "Young's modulus [Pa]"),
-       "beam",
-       "youngs_modulus_pa",
-       {"bending_stiffness_n_m2"}},
-      {number("density", "KG/M3", "density [kg/m3]"),
-       "beam",
-       "density_kg_per_m3",
-       {"mass_kg", "mass_per_length_kg_per_m"}},
-      {number("beam-mass", "KG", "mass of the beam alone, instead of its density [kg]"),
-       "beam",
-       "mass_kg",
-       {"density_kg_per_m3", "mass_per_length_kg_per_m"}},
+      {number("width", "M", "section across the direction of bending [m]"), "beam", "width_m"},
+      {number("height", "M", "section along the direction of bending [m]"), "beam", "height_m"},
+      {number("diameter", "M", "of a round section, instead of width and height [m]"), "beam", "diameter_m"},
+      {number("youngs-modulus", "PA", "Young's modulus [Pa]"), "beam", "youngs_modulus_pa"},
+      {number("density", "KG/M3", "density [kg/m3]"), "beam", "density_kg_per_m3"},
+      {number("beam-mass", "KG", "mass of the beam alone, instead of its density [kg]"), "beam", "mass_kg"},
       {number("tip-mass", "KG", "rigid mass at the tip [kg]"), "beam", "tip_mass_kg"},
       {number("tip-inertia", "KG_M2", "of the tip mass about its own centre [kg m2]"), "beam",
        "tip_rotary_inertia_kg_m2"},
@@ -60,23 +48,20 @@ const std::vector<KeyOption>& beam_keys() {
             "clamped, pinned, guided, free")
            .such_as(end_supports()),
        "beam", "support"},
-      {number("damping-ratio", "XI", "damping ratio of every mode"),
-       "damping",
-       "ratio",
-       {"law", "ratios", "anchors", "loss_factor"}}};
+      {number("damping-ratio", "XI", "damping ratio of every mode"), "damping", "ratio"}};
   return keys;
 }
 
 void add_overrides(const std::vector<KeyOption>& keys, const Values& values,
                    std::vector<Override>& overrides) {
-  for (const auto& [option, table, key, instead_of] : keys) {
+  for (const auto& [option, table, key] : keys) {
     if (!values.has(option.name)) continue;
     filters::OptionValue value;
     if (option.type == Option::Type::text)
       value = values.text(option.name);
     else
       value = values.number(option.name);
-    overrides.push_back({table, key, value, "--" + option.name, instead_of});
+    overrides.push_back({table, key, value, "--" + option.name, find_key_table(table)->rivals(key)});
   }
 }
 

@@ -16,12 +16,11 @@ namespace beamid::apps {
 /// gives it; the rest of the file stays. Without a file they change the study's steel beam.
 OptionGroup beam_options();
 
-/// An option that sets one key of the experiment file.
+/// An option that sets one key of the experiment file, in the place of those that give the same quantity.
 struct KeyOption {
   Option option;
   const char* table;
   const char* key;
-  std::vector<std::string> instead_of = {};  ///< keys of the same quantity
 };
 
 /// Those options alone, with `more`.

@@ -1,7 +1,9 @@
 // beamid list: what can be chosen by name.
+#include <algorithm>
 #include <iostream>
 
 #include "apps/command.hpp"
+#include "apps/key_list.hpp"
 #include "apps/method_list.hpp"
 #include "apps/terminal.hpp"
 #include "experiments/modal/modal_method.hpp"
@@ -62,6 +64,7 @@ const std::vector<Kind>& kinds() {
 Words kind_names() {
   Words names;
   for (const Kind& kind : kinds()) names.push_back(kind.name);
+  names.insert(std::lower_bound(names.begin(), names.end(), "keys"), "keys");
   return names;
 }
 
@@ -78,6 +81,13 @@ int run_list(const Values& values) {
     return 0;
   }
   const std::string asked = values.texts("kind")[0];
+  if (asked == "keys") {
+    if (values.has("name"))
+      print_keys(std::cout, values.texts("name")[0], terminal_page());
+    else
+      print_tables(std::cout, terminal_page());
+    return 0;
+  }
   for (const Kind& kind : kinds()) {
     if (kind.name != asked) continue;
     if (values.has("name"))
@@ -92,14 +102,15 @@ int run_list(const Values& values) {
 }  // namespace
 
 Command list_command() {
-  return {"list",
-          "[KIND [NAME]]",
-          "what can be chosen by name, and the options of each",
-          {{.name = "kind", .choices = kind_names()}, {.name = "name"}},
-          {},
-          "  beamid list\n  beamid list filters\n  beamid list filters ukf\n",
-          run_list,
-          "KIND is one of " + experiments::joined(kind_names()) + "."};
+  return {
+      "list",
+      "[KIND [NAME]]",
+      "what can be chosen by name, and the options of each; the keys of an experiment file",
+      {{.name = "kind", .choices = kind_names()}, {.name = "name"}},
+      {},
+      "  beamid list\n  beamid list filters\n  beamid list filters ukf\n  beamid list keys beam.springs\n",
+      run_list,
+      "KIND is one of " + experiments::joined(kind_names()) + "."};
 }
 
 }  // namespace beamid::apps

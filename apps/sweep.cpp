@@ -8,11 +8,11 @@
 #include "apps/deliver.hpp"
 #include "apps/interruption.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_sweep.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/sweep/perform.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/journal.hpp"
+#include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/repeats.hpp"
 #include "experiments/text/method_choice.hpp"
 
@@ -51,13 +51,18 @@ OptionGroup sweep_options() {
        text("merge", "DIR...", "join the results of all shards; with --out only").several()}};
 }
 
+SweepPlan plan_in(const ExperimentText& text) {
+  const auto table = TomlTable::parse(text.text, text.file.string()).find_table("sweep");
+  return table ? read_sweep(*table) : SweepPlan();
+}
+
 /// That of the file, and what the command line adds to it or puts in its place.
 SweepPlan plan_of(const Values& values, SweepPlan plan) {
   std::vector<VariedKey> given;
   for (const std::string& text : values.texts("vary")) {
     const VariedKey varied = at_place(Place{"--vary"}, [&] {
       VariedKey read = parse_varied(text);
-      refuse_unknown(read);
+      check_key(read);
       return read;
     });
     std::erase_if(plan.varied, [&](const VariedKey& one) { return one.key == varied.key; });
@@ -140,7 +145,7 @@ int run_sweep(const Values& given) {
     source.record = values.texts("record")[0];
   else if (!source.truth && experiment.record_file)
     source.record = source.config.file.parent_path() / *experiment.record_file;
-  const SweepPlan plan = plan_of(values, experiment.sweep);
+  const SweepPlan plan = plan_of(values, plan_in(source.config));
   if (plan.once) at_place(Place{"sweep"}, [&] { require_once(source, plan); });
   SweepSettings settings{shard_of(values), 1, {}, {}, values.has("resume"), all_processes};
   if (all_processes->count() > 1 && values.has("threads"))

@@ -10,7 +10,6 @@
 #include "experiments/config/acquisition_settings.hpp"
 #include "experiments/config/identifiability_settings.hpp"
 #include "experiments/config/settings.hpp"
-#include "experiments/config/sweep_plan.hpp"
 #include "experiments/models/parameter_choice.hpp"
 #include "experiments/models/prior.hpp"
 #include "experiments/record/record_format.hpp"
@@ -51,7 +50,6 @@ struct Experiment {
   std::map<Quantity, double> noise;     ///< standard deviation per quantity [SI]; absent: from the record
   Choice noise_method{"residual", {}};  ///< how absent ones are found: residual, likelihood, before_event
   std::string estimator = "filter";     ///< of an identification: filter, batch or both
-  SweepPlan sweep;
 };
 
 }  // namespace beamid::experiments

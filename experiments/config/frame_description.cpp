@@ -5,17 +5,12 @@
 #include <algorithm>
 
 #include "experiments/config/beam_description.hpp"
+#include "experiments/config/read_frame.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string kind_of(const fem::Frame::Support& support) {
-  for (const auto& [name, kind] : frame_support_kinds())
-    if (kind.x == support.x && kind.y == support.y && kind.rotation == support.rotation) return name;
-  return "free";
-}
 
 Json describe_member(const fem::Frame& frame, std::size_t i) {
   const fem::Frame::Member& member = frame.members[i];
@@ -41,6 +36,12 @@ const std::vector<std::pair<std::string, fem::Frame::Support>>& frame_support_ki
   return kinds;
 }
 
+std::string frame_support_kind(const fem::Frame::Support& support) {
+  for (const auto& [name, kind] : frame_support_kinds())
+    if (kind.x == support.x && kind.y == support.y && kind.rotation == support.rotation) return name;
+  return "free";
+}
+
 Json describe(const FrameExperiment& experiment) {
   const fem::Frame& frame = experiment.frame;
   Json json{{"elements_per_member", experiment.elements_per_member},
@@ -49,16 +50,7 @@ Json describe(const FrameExperiment& experiment) {
     json["joints"].push_back(
         {{"name", experiment.joint_names[i]}, {"x_m", frame.joints[i].x}, {"y_m", frame.joints[i].y}});
   for (std::size_t i = 0; i < frame.members.size(); ++i) json["members"].push_back(describe_member(frame, i));
-  for (const auto& support : frame.supports)
-    json["supports"].push_back({{"joint", support.joint + 1}, {"kind", kind_of(support)}});
-  for (const auto& body : frame.bodies)
-    json["bodies"].push_back(
-        {{"joint", body.joint + 1}, {"mass_kg", body.mass}, {"rotary_inertia_kg_m2", body.rotary_inertia}});
-  for (const auto& spring : frame.springs)
-    json["springs"].push_back({{"joint", spring.joint + 1},
-                               {"translational_x_n_per_m", spring.x},
-                               {"translational_y_n_per_m", spring.y},
-                               {"rotational_n_m_per_rad", spring.rotational}});
+  describe_frame_attachments(frame, json);
   return {{"title", experiment.title}, {"frame", json}};
 }
 
@@ -71,7 +63,7 @@ std::string frame_text(const FrameExperiment& experiment, Eigen::Index coordinat
   for (const auto& [name, kind] : frame_support_kinds()) {
     std::string joints;
     for (const fem::Frame::Support& support : frame.supports)
-      if (kind_of(support) == name)
+      if (frame_support_kind(support) == name)
         joints += (joints.empty() ? "" : ", ") + experiment.joint_names[support.joint];
     if (!joints.empty()) held += fmt::format("; {} at {}", name, joints);
   }

@@ -21,6 +21,9 @@ struct FrameExperiment {
 /// rolling with and sliding without a rotation; a guide holds the rotation alone.
 const std::vector<std::pair<std::string, fem::Frame::Support>>& frame_support_kinds();
 
+/// The kind of a support; "free" where it is none of them.
+std::string frame_support_kind(const fem::Frame::Support& support);
+
 /// Every quantity of the frame, worked out, as describe(beam) does it (beam_description.hpp); joints by their
 /// number, from 1. What the frame does not have is left out.
 nlohmann::ordered_json describe(const FrameExperiment& experiment);

@@ -2,48 +2,57 @@
 
 #include <fmt/format.h>
 
+#include "experiments/config/key_tables.hpp"
+#include "experiments/config/read_simulation.hpp"
+
 namespace beamid::experiments {
 namespace {
 
-/// A number from 0 to `most`, or 0 without the key.
-double share(const TomlTable& table, const std::string& key, double most) {
-  const double value = table.find_number(key, Sign::not_negative).value_or(0.0);
-  if (value > most) table.refuse(key, fmt::format("a number from 0 to {:g}", most));
-  return value;
+const Schema<Acquisition>& acquisition_keys() {
+  using A = Acquisition;
+  constexpr double most_jitter = 0.5, most_repeated = 0.9;
+  constexpr int most_gaps = 1000;
+  static const Schema<A> keys =
+      Schema<A>("acquisition")
+          .key("pretrigger_s", &A::pretrigger, not_negative,
+               "recorded before the excitation begins, in whole samples; the beam is held where it starts",
+               "0.5")
+          .key("jitter", &A::jitter, {0.0, most_jitter},
+               "standard deviation of the intervals between stamps, a share of their mean", "0.3")
+          .key("median_shortfall", &A::median_shortfall, {0.0, most_jitter * largest_shortfall},
+               "share of the mean interval by which the median one is shorter: a loop that is held up now "
+               "and then",
+               "0.08")
+          .values("number, 0 to 0.41 of `jitter`")
+          .key("gaps", &A::gaps, {0, most_gaps},
+               "how often samples are missing: once, anywhere, in each of as many equal parts of the record",
+               "3")
+          .key("gap_s", &A::gap, "shortest and longest gap; drawn evenly on a logarithmic scale",
+               "[0.02, 0.2]")
+          .values("two numbers > 0")
+          .key("repeated", &A::repeated, {0.0, most_repeated},
+               "share of samples that show the reading before once more, under a stamp of their own", "0.04")
+          .key("force", &A::force,
+               "whether the record holds the exciting force as a channel; that of a release never is one",
+               "false");
+  return keys;
 }
 
-SensorDefects read_defects(const TomlTable& table) {
-  SensorDefects sensor;
-  sensor.clipping = table.find_number("clipping", Sign::positive).value_or(0.0);
-  sensor.resolution = share(table, "resolution", 1.0);
-  sensor.offset = table.find_number("offset").value_or(0.0);
-  sensor.drift = table.find_number("drift").value_or(0.0);
-  sensor.startup = table.find_number("startup").value_or(0.0);
-  sensor.startup_time = table.find_number("startup_s", Sign::positive).value_or(sensor.startup_time);
-  sensor.rattle = table.find_number("rattle", Sign::not_negative).value_or(0.0);
-  if (table.contains("rattle_above")) sensor.rattle_above = share(table, "rattle_above", 1.0);
-  sensor.dead = table.find_truth("dead").value_or(false);
-  return sensor;
-}
+const bool acquisition_keys_registered =
+    register_keys([]() -> const KeyTable& { return acquisition_keys(); });
 
 }  // namespace
 
 Acquisition read_acquisition(const TomlTable& root) {
-  constexpr double most_jitter = 0.5, most_repeated = 0.9;
-  constexpr int most_gaps = 1000;
   Acquisition acquisition;
-  for (const TomlTable& sensor : root.find_tables("sensors"))
-    acquisition.sensors.push_back(read_defects(sensor));
-  const auto table = root.find_table("acquisition");
-  if (!table) return acquisition;
-  acquisition.pretrigger = table->find_number("pretrigger_s", Sign::not_negative).value_or(0.0);
-  acquisition.jitter = share(*table, "jitter", most_jitter);
-  acquisition.median_shortfall = share(*table, "median_shortfall", largest_shortfall * acquisition.jitter);
-  acquisition.gaps = table->find_whole_number("gaps", 0, most_gaps).value_or(0);
-  acquisition.gap = table->find_interval("gap_s").value_or(acquisition.gap);
-  if (!(acquisition.gap.first > 0)) table->refuse("gap_s", "a shortest gap above 0");
-  acquisition.repeated = share(*table, "repeated", most_repeated);
-  acquisition.force = table->find_truth("force").value_or(true);
+  if (const auto table = root.find_table("acquisition")) {
+    acquisition = acquisition_keys().read(*table);
+    const double most = largest_shortfall * acquisition.jitter;
+    if (acquisition.median_shortfall > most)
+      table->refuse("median_shortfall", fmt::format("a number from 0 to {:g}", most));
+    if (!(acquisition.gap.first > 0)) table->refuse("gap_s", "a shortest gap above 0");
+  }
+  acquisition.sensors = read_defects(root);
   return acquisition;
 }
 

@@ -1,95 +1,160 @@
 #include "experiments/config/read_attachments.hpp"
 
-#include <fmt/format.h>
-
-#include "experiments/config/useless_keys.hpp"
-#include "experiments/text/spelling.hpp"
+#include "experiments/config/key_json.hpp"
+#include "experiments/config/key_tables.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-double value(const TomlTable& table, const std::string& key, Sign sign = Sign::not_negative) {
-  return table.find_number(key, sign).value_or(0.0);
+const Schema<fem::Body>& body_keys() {
+  static const Schema<fem::Body> keys =
+      Schema<fem::Body>("beam.bodies")
+          .key("position_m", &fem::Body::position, on_beam, "where it is fixed", "0.55")
+          .required()
+          .key("mass_kg", &fem::Body::mass, not_negative, "its mass", "0.2")
+          .key("rotary_inertia_kg_m2", &fem::Body::rotary_inertia, not_negative, "about its own centre",
+               "1e-4")
+          .key("eccentricity_m", &fem::Body::eccentricity,
+               "of its centre, along the axis, positive towards the tip", "0.01")
+          .at_least_one({"mass_kg", "rotary_inertia_kg_m2"});
+  return keys;
 }
 
-void require_one(const TomlTable& table, const std::vector<std::string>& keys) {
-  if (given_keys(table, keys).empty())
-    throw InputError(table.place(), fmt::format("{} has no effect; expected at least one of {}", table.name(),
-                                                joined(keys)));
-}
-
-struct LoadedStretch {
-  double from, to;
+/// A support by the name of its kind.
+struct NamedSupport {
+  double position = 0.0;
+  std::string kind;
 };
 
-LoadedStretch stretch(const TomlTable& table, double length) {
-  const LoadedStretch read{position_on_beam(table, "from_m", length),
-                           position_on_beam(table, "to_m", length)};
-  if (read.from >= read.to) table.refuse("to_m", fmt::format("a number above from_m, {}", read.from));
-  return read;
+const Schema<NamedSupport>& support_keys() {
+  static const Schema<NamedSupport> keys =
+      Schema<NamedSupport>("beam.supports")
+          .key("position_m", &NamedSupport::position, on_beam, "where", "0.6")
+          .required()
+          .key("kind", &NamedSupport::kind, "holds deflection and rotation, deflection, or rotation",
+               "\"pinned\"")
+          .one_of({"clamped", "pinned", "guided"})
+          .required();
+  return keys;
 }
 
-fem::Support support(const TomlTable& table, double length) {
-  const std::vector<std::string> kinds{"clamped", "pinned", "guided"};
-  const auto kind = table.find_text("kind", kinds);
-  const double position = position_on_beam(table, "position_m", length);
-  if (!kind) table.miss("kind", "one of " + joined(kinds));
-  return {position, *kind != "guided", *kind != "pinned"};
+const Schema<fem::Spring>& spring_keys() {
+  static const Schema<fem::Spring> keys =
+      Schema<fem::Spring>("beam.springs")
+          .key("position_m", &fem::Spring::position, on_beam, "where", "1.1")
+          .required()
+          .key("translational_n_per_m", &fem::Spring::translational, not_negative, "k of a force k w", "500")
+          .key("rotational_n_m_per_rad", &fem::Spring::rotational, not_negative, "k of a moment k theta",
+               "20")
+          .key("cubic_n_per_m3", &fem::Spring::cubic,
+               "k3 of a force k3 w^3; simulate only, and not by the modal method", "1e6")
+          .at_least_one({"translational_n_per_m", "rotational_n_m_per_rad", "cubic_n_per_m3"});
+  return keys;
+}
+
+const Schema<fem::Dashpot>& dashpot_keys() {
+  static const Schema<fem::Dashpot> keys =
+      Schema<fem::Dashpot>("beam.dashpots")
+          .key("position_m", &fem::Dashpot::position, on_beam, "where", "1.1")
+          .required()
+          .key("translational_n_s_per_m", &fem::Dashpot::translational, not_negative, "c of a force c w'",
+               "0.5")
+          .key("rotational_n_m_s_per_rad", &fem::Dashpot::rotational, not_negative, "c of a moment c theta'",
+               "0.01")
+          .key("quadratic_n_s2_per_m2", &fem::Dashpot::quadratic, not_negative,
+               "c2 of a force c2 w' abs(w'); simulate only, and not by the modal method", "0.1")
+          .at_least_one({"translational_n_s_per_m", "rotational_n_m_s_per_rad", "quadratic_n_s2_per_m2"});
+  return keys;
+}
+
+const Schema<fem::Absorber>& absorber_keys() {
+  static const Schema<fem::Absorber> keys =
+      Schema<fem::Absorber>("beam.absorbers")
+          .key("position_m", &fem::Absorber::position, on_beam, "where it hangs", "1.1")
+          .required()
+          .key("mass_kg", &fem::Absorber::mass, positive, "its mass", "0.05")
+          .required()
+          .key("stiffness_n_per_m", &fem::Absorber::stiffness, positive, "of its spring", "20")
+          .required()
+          .key("damping_n_s_per_m", &fem::Absorber::damping, not_negative, "of its dashpot", "0.1");
+  return keys;
+}
+
+constexpr Range behind_from{.least = 0.0, .on_beam = true, .greater_than = "from_m"};
+
+const Schema<fem::Damage>& damage_keys() {
+  static const Schema<fem::Damage> keys =
+      Schema<fem::Damage>("beam.damages")
+          .key("from_m", &fem::Damage::from, on_beam, "where it begins", "0.1")
+          .required()
+          .key("to_m", &fem::Damage::to, behind_from, "where it ends", "0.15")
+          .required()
+          .key("loss", &fem::Damage::loss, {.least = 0.0, .most = 1.0, .below = true},
+               "E I becomes (1 - loss) E I", "0.2")
+          .required();
+  return keys;
+}
+
+const Schema<fem::AddedMass>& added_mass_keys() {
+  static const Schema<fem::AddedMass> keys =
+      Schema<fem::AddedMass>("beam.added_masses")
+          .key("from_m", &fem::AddedMass::from, on_beam, "where it begins", "0.2")
+          .required()
+          .key("to_m", &fem::AddedMass::to, behind_from, "where it ends", "0.5")
+          .required()
+          .key("mass_per_length_kg_per_m", &fem::AddedMass::mass_per_length, not_negative, "how much", "0.3")
+          .required();
+  return keys;
+}
+
+const bool attachment_keys_registered[] = {
+    register_keys([]() -> const KeyTable& { return body_keys(); }),
+    register_keys([]() -> const KeyTable& { return support_keys(); }),
+    register_keys([]() -> const KeyTable& { return spring_keys(); }),
+    register_keys([]() -> const KeyTable& { return dashpot_keys(); }),
+    register_keys([]() -> const KeyTable& { return absorber_keys(); }),
+    register_keys([]() -> const KeyTable& { return damage_keys(); }),
+    register_keys([]() -> const KeyTable& { return added_mass_keys(); })};
+
+template <class Item>
+void read_all(const TomlTable& beam, const char* name, const Schema<Item>& keys, double length,
+              std::vector<Item>& items) {
+  for (const TomlTable& table : beam.find_tables(name)) items.push_back(keys.read(table, length));
+}
+
+template <class Item>
+void write_all(const char* name, const Schema<Item>& keys, const std::vector<Item>& items,
+               nlohmann::ordered_json& json) {
+  for (const Item& item : items) json[name].push_back(to_json(keys.values_of(item)));
 }
 
 }  // namespace
 
-double position_on_beam(const TomlTable& table, const std::string& key, double length) {
-  const std::string expected = fmt::format("a number from 0 to the beam's length, {}", length);
-  const auto position = table.find_number(key);
-  if (!position) table.miss(key, expected);
-  if (*position < 0.0 || *position > length) table.refuse(key, expected);
-  return *position;
-}
-
 void read_attachments(const TomlTable& table, fem::Beam& beam) {
   const double length = beam.length();
-  for (const TomlTable& body : table.find_tables("bodies")) {
-    const double mass = value(body, "mass_kg"), inertia = value(body, "rotary_inertia_kg_m2");
-    const double eccentricity = value(body, "eccentricity_m", Sign::any);
-    beam.bodies.push_back({position_on_beam(body, "position_m", length), mass, inertia, eccentricity});
-    require_one(body, {"mass_kg", "rotary_inertia_kg_m2"});
-  }
-  for (const TomlTable& one : table.find_tables("supports")) beam.supports.push_back(support(one, length));
-  for (const TomlTable& spring : table.find_tables("springs")) {
-    const double translational = value(spring, "translational_n_per_m");
-    const double rotational = value(spring, "rotational_n_m_per_rad");
-    const double cubic = value(spring, "cubic_n_per_m3", Sign::any);
-    beam.springs.push_back(
-        {position_on_beam(spring, "position_m", length), translational, rotational, cubic});
-    require_one(spring, {"translational_n_per_m", "rotational_n_m_per_rad", "cubic_n_per_m3"});
-  }
-  for (const TomlTable& dashpot : table.find_tables("dashpots")) {
-    const double translational = value(dashpot, "translational_n_s_per_m");
-    const double rotational = value(dashpot, "rotational_n_m_s_per_rad");
-    const double quadratic = value(dashpot, "quadratic_n_s2_per_m2");
-    beam.dashpots.push_back(
-        {position_on_beam(dashpot, "position_m", length), translational, rotational, quadratic});
-    require_one(dashpot, {"translational_n_s_per_m", "rotational_n_m_s_per_rad", "quadratic_n_s2_per_m2"});
-  }
-  for (const TomlTable& absorber : table.find_tables("absorbers")) {
-    const double damping = value(absorber, "damping_n_s_per_m");
-    const double mass = absorber.number("mass_kg", Sign::positive);
-    const double stiffness = absorber.number("stiffness_n_per_m", Sign::positive);
-    beam.absorbers.push_back({position_on_beam(absorber, "position_m", length), mass, stiffness, damping});
-  }
-  for (const TomlTable& damage : table.find_tables("damages")) {
-    const LoadedStretch where = stretch(damage, length);
-    const auto loss = damage.find_number("loss", Sign::not_negative);
-    if (!loss) damage.miss("loss", "a number from 0 to below 1");
-    if (*loss >= 1.0) damage.refuse("loss", "a number from 0 to below 1");
-    beam.damages.push_back({where.from, where.to, *loss});
-  }
-  for (const TomlTable& added : table.find_tables("added_masses")) {
-    const LoadedStretch where = stretch(added, length);
-    beam.added_masses.push_back(
-        {where.from, where.to, added.number("mass_per_length_kg_per_m", Sign::not_negative)});
-  }
+  read_all(table, "bodies", body_keys(), length, beam.bodies);
+  std::vector<NamedSupport> supports;
+  read_all(table, "supports", support_keys(), length, supports);
+  for (const auto& [position, kind] : supports)
+    beam.supports.push_back({position, kind != "guided", kind != "pinned"});
+  read_all(table, "springs", spring_keys(), length, beam.springs);
+  read_all(table, "dashpots", dashpot_keys(), length, beam.dashpots);
+  read_all(table, "absorbers", absorber_keys(), length, beam.absorbers);
+  read_all(table, "damages", damage_keys(), length, beam.damages);
+  read_all(table, "added_masses", added_mass_keys(), length, beam.added_masses);
+}
+
+void describe_attachments(const fem::Beam& beam, nlohmann::ordered_json& json) {
+  std::vector<NamedSupport> supports;
+  for (const fem::Support& one : beam.supports)
+    supports.push_back({one.position, !one.rotation ? "pinned" : one.deflection ? "clamped" : "guided"});
+  write_all("supports", support_keys(), supports, json);
+  write_all("bodies", body_keys(), beam.bodies, json);
+  write_all("springs", spring_keys(), beam.springs, json);
+  write_all("dashpots", dashpot_keys(), beam.dashpots, json);
+  write_all("absorbers", absorber_keys(), beam.absorbers, json);
+  write_all("damages", damage_keys(), beam.damages, json);
+  write_all("added_masses", added_mass_keys(), beam.added_masses, json);
 }
 
 }  // namespace beamid::experiments

@@ -2,6 +2,8 @@
 // [[beam.absorbers]], [[beam.damages]] and [[beam.added_masses]].
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "experiments/text/toml_table.hpp"
 #include "fem/beam.hpp"
 
@@ -11,7 +13,7 @@ namespace beamid::experiments {
 /// @throws InputError for a place off the beam, a missing or a bad value, and one that has no effect.
 void read_attachments(const TomlTable& table, fem::Beam& beam);
 
-/// A number from 0 to `length`. @throws InputError at the value, or where it is missing.
-double position_on_beam(const TomlTable& table, const std::string& key, double length);
+/// The same back, in the keys of a file; what the beam does not have is left out.
+void describe_attachments(const fem::Beam& beam, nlohmann::ordered_json& json);
 
 }  // namespace beamid::experiments

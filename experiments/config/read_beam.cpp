@@ -4,11 +4,12 @@
 
 #include <algorithm>
 
+#include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_attachments.hpp"
+#include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_segment.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/text/method_choice.hpp"
-#include "experiments/text/spelling.hpp"
 #include "fem/buckling.hpp"
 
 namespace beamid::experiments {
@@ -16,39 +17,77 @@ namespace {
 
 const std::vector<std::string> end_kinds{"clamped", "pinned", "guided", "free"};
 
+/// What belongs to the whole beam, however many segments it has.
+struct WholeBeam {
+  std::string support = "clamped-free";
+  std::optional<double> root_rotational, root_translational;
+  double tip_mass = 0.0, tip_inertia = 0.0, tip_eccentricity = 0.0, sensor_mass = 0.0, axial_load = 0.0;
+  fem::MassModel mass_model = fem::MassModel::consistent;
+  int elements = 40;
+};
+
+const Schema<WholeBeam>& beam_keys() {
+  using B = WholeBeam;
+  static const Schema<B> keys =
+      Schema<B>("beam")
+          .like(segment_keys())
+          .key("support", &B::support,
+               "how the ends are held: a pair of `clamped`, `pinned`, `guided`, `free`", "\"clamped-pinned\"")
+          .one_of(end_supports())
+          .values("text, ROOT-TIP")
+          .key("root_rotational_stiffness_n_m_per_rad", &B::root_rotational, not_negative,
+               "elastic root: a spring in place of the held rotation", "2e4")
+          .key("root_translational_stiffness_n_per_m", &B::root_translational, not_negative,
+               "elastic root: a spring in place of the held deflection", "1e7")
+          .key("tip_mass_kg", &B::tip_mass, not_negative, "rigid mass at the tip", "0.3605")
+          .key("tip_rotary_inertia_kg_m2", &B::tip_inertia, not_negative,
+               "of the tip mass about its own centre", "1e-4")
+          .key("tip_eccentricity_m", &B::tip_eccentricity, "of that centre beyond the tip, along the axis",
+               "0.02")
+          .key("sensor_mass_kg", &B::sensor_mass, not_negative,
+               "accelerometer riding on the tip, beside the tip mass", "0.054")
+          .key("axial_load_n", &B::axial_load,
+               "dead load, the same all along, positive in compression; below the load that buckles the beam",
+               "100")
+          .choice("mass_model", &B::mass_model,
+                  {std::pair{"consistent", fem::MassModel::consistent}, {"lumped", fem::MassModel::lumped}},
+                  "of the elements; frequencies err by h^4 or by h^2", "\"lumped\"")
+          .key("elements", &B::elements, {1, most_elements}, "finite elements along the beam", "80")
+          .tables({"segments", "bodies", "supports", "springs", "dashpots", "absorbers", "damages",
+                   "added_masses"});
+  return keys;
+}
+
+const bool beam_keys_registered = register_keys([]() -> const KeyTable& { return beam_keys(); });
+
 void read_segments(const TomlTable& table, fem::Beam& beam) {
   const std::vector<TomlTable> segments = table.find_tables("segments");
   if (segments.empty()) {
     beam.segments = {read_segment(table)};
     return;
   }
-  refuse_useless(table, segment_keys(), "beside beam.segments", "it in each of beam.segments");
+  refuse_useless(table, segment_keys().names(), "beside beam.segments", "it in each of beam.segments");
   for (const TomlTable& segment : segments) beam.segments.push_back(read_segment(segment));
 }
 
 // An elastic root: a spring where the support would hold.
-void read_root(const TomlTable& table, fem::Beam& beam) {
-  const auto rotational = table.find_number("root_rotational_stiffness_n_m_per_rad", Sign::not_negative);
-  const auto translational = table.find_number("root_translational_stiffness_n_per_m", Sign::not_negative);
+void add_root(const WholeBeam& given, fem::Beam& beam) {
   for (fem::Support& support : beam.supports) {
     if (support.position != 0.0) continue;
-    support.rotation &= !rotational;
-    support.deflection &= !translational;
+    support.rotation &= !given.root_rotational;
+    support.deflection &= !given.root_translational;
   }
   std::erase_if(beam.supports, [](const fem::Support& one) { return !one.deflection && !one.rotation; });
-  if (rotational || translational)
-    beam.springs.push_back({0.0, translational.value_or(0.0), rotational.value_or(0.0), 0.0});
+  if (given.root_rotational || given.root_translational)
+    beam.springs.push_back(
+        {0.0, given.root_translational.value_or(0.0), given.root_rotational.value_or(0.0), 0.0});
 }
 
-void read_tip(const TomlTable& table, fem::Beam& beam) {
-  const double mass = table.find_number("tip_mass_kg", Sign::not_negative).value_or(0);
-  const double sensor = table.find_number("sensor_mass_kg", Sign::not_negative).value_or(0);
-  const double inertia = table.find_number("tip_rotary_inertia_kg_m2", Sign::not_negative).value_or(0);
-  const double eccentricity = table.find_number("tip_eccentricity_m").value_or(0);
+void add_tip(const WholeBeam& given, fem::Beam& beam) {
   // The tip's body comes first, also without mass, so that the sensor is not taken for it.
-  if (mass > 0.0 || inertia > 0.0 || sensor > 0.0)
-    beam.bodies.push_back({beam.length(), mass, inertia, eccentricity});
-  if (sensor > 0.0) beam.bodies.push_back({beam.length(), sensor, 0.0, 0.0});
+  if (given.tip_mass > 0.0 || given.tip_inertia > 0.0 || given.sensor_mass > 0.0)
+    beam.bodies.push_back({beam.length(), given.tip_mass, given.tip_inertia, given.tip_eccentricity});
+  if (given.sensor_mass > 0.0) beam.bodies.push_back({beam.length(), given.sensor_mass, 0.0, 0.0});
 }
 
 // Closer to the buckling load than this, relative, a frequency has no digits.
@@ -93,20 +132,20 @@ std::vector<fem::Support> supports_of(const std::string& name, double length) {
 fem::Beam read_beam(const TomlTable& table) {
   fem::Beam beam;
   read_segments(table, beam);
-  const std::string support = table.find_text("support").value_or("clamped-free");
-  if (std::find(end_supports().begin(), end_supports().end(), support) == end_supports().end())
-    throw InputError(table.value_place("support"),
-                     "unknown '" + support + "'; known: " + joined(end_supports()));
-  beam.supports = supports_of(support, beam.length());
-  read_root(table, beam);
-  read_tip(table, beam);
-  beam.axial_load = table.find_number("axial_load_n").value_or(0.0);
-  const auto mass_model = table.find_text("mass_model", {"consistent", "lumped"});
-  beam.mass_model = mass_model == "lumped" ? fem::MassModel::lumped : fem::MassModel::consistent;
+  const WholeBeam given = beam_keys().read(table);
+  beam.supports = supports_of(given.support, beam.length());
+  add_root(given, beam);
+  add_tip(given, beam);
+  beam.axial_load = given.axial_load;
+  beam.mass_model = given.mass_model;
   read_attachments(table, beam);
   at_place(table.place(), [&] { fem::validate(beam); });
   refuse_buckled(table, beam);
   return beam;
+}
+
+int read_elements(const TomlTable& table) {
+  return beam_keys().read(table).elements;
 }
 
 }  // namespace beamid::experiments

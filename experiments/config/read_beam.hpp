@@ -15,6 +15,9 @@ namespace beamid::experiments {
 /// bad value at its own.
 fem::Beam read_beam(const TomlTable& table);
 
+/// Finite elements along the beam.
+int read_elements(const TomlTable& table);
+
 /// "clamped-free" and every other pair of clamped, pinned, guided, free: root first, then tip.
 const std::vector<std::string>& end_supports();
 

@@ -1,66 +1,82 @@
 #include "experiments/config/read_damping.hpp"
 
-#include <fmt/format.h>
-
-#include "experiments/config/useless_keys.hpp"
+#include "experiments/config/key_tables.hpp"
 #include "experiments/text/method_choice.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-constexpr const char* anchors_expected = "an array of tables { frequency_hz, ratio }";
+struct DampingValues {
+  std::optional<std::string> law;
+  std::optional<double> ratio, loss_factor;
+  std::optional<std::vector<double>> ratios;
+};
 
-std::vector<fem::DampingAnchor> read_anchors(const TomlTable& table) {
-  std::vector<fem::DampingAnchor> anchors;
-  for (const TomlTable& anchor : table.find_tables("anchors")) {
-    const auto frequency = anchor.find_number("frequency_hz", Sign::positive);
-    anchors.push_back({frequency.value_or(0.0), anchor.number("ratio", Sign::not_negative)});
-    if (!frequency) anchor.miss("frequency_hz", "a positive number");
-  }
-  return anchors;
+const Schema<DampingValues>& damping_keys() {
+  using D = DampingValues;
+  static const Schema<D> keys =
+      Schema<D>("damping")
+          .selected_by("law")
+          .key("law", &D::law,
+               "ratios as such; through two anchors; through any number of them; hysteretic: eta in `frf`, "
+               "eta/2 of viscous damping per mode in `simulate`",
+               "\"rayleigh\"")
+          .one_of({"none", "modal", "rayleigh", "caughey", "structural"})
+          .fallback("`\"none\"`; `\"modal\"` where ratios are given")
+          .key("ratio", &D::ratio, not_negative, "modal: of every mode", "0.002")
+          .with({"modal"})
+          .replaces({"law", "ratios", "anchors", "loss_factor"})
+          .key("ratios", &D::ratios, not_negative, "modal: of mode 1, 2, ...; the last one of all above",
+               "[0.002, 0.005]")
+          .with({"modal"})
+          .excludes({"ratio"})
+          .replaces({"law", "anchors", "loss_factor"})
+          .key("loss_factor", &D::loss_factor, not_negative, "structural: eta of K (1 + i eta)", "0.01")
+          .needed_with({"structural"})
+          .replaces({"ratio", "ratios", "anchors"})
+          .other("anchors", Key::Type::tables)
+          .required("an array of tables { frequency_hz, ratio }")
+          .needed_with({"rayleigh", "caughey"});
+  return keys;
 }
 
-fem::DampingLaw modal(const TomlTable& table, const std::optional<double>& ratio,
-                      const std::optional<std::vector<double>>& ratios) {
-  refuse_all_but(table, {"law", "ratio", "ratios"}, "with law = \"modal\"");
-  if (ratio && ratios) refuse_useless(table, {"ratio"}, "beside ratios", "one or the other");
-  if (!ratio && !ratios)
-    table.miss("ratio", "the damping ratio of every mode, or ratios = [first, second, ...]");
-  return fem::ModalDamping{ratios ? *ratios : std::vector{*ratio}};
+const Schema<fem::DampingAnchor>& anchor_keys() {
+  static const Schema<fem::DampingAnchor> keys =
+      Schema<fem::DampingAnchor>("damping.anchors")
+          .key("frequency_hz", &fem::DampingAnchor::frequency_hz, positive, "frequency", "3.5")
+          .required()
+          .key("ratio", &fem::DampingAnchor::ratio, not_negative, "damping ratio there", "0.002")
+          .required();
+  return keys;
+}
+
+const bool damping_keys_registered[] = {register_keys([]() -> const KeyTable& { return damping_keys(); }),
+                                        register_keys([]() -> const KeyTable& { return anchor_keys(); })};
+
+fem::DampingLaw law_of(const TomlTable& table, const DampingValues& given, const std::string& law) {
+  if (law == "none") return {};
+  if (law == "structural") return fem::StructuralDamping{*given.loss_factor};
+  if (law == "modal") {
+    if (!given.ratio && !given.ratios)
+      table.miss("ratio", "the damping ratio of every mode, or ratios = [first, second, ...]");
+    return fem::ModalDamping{given.ratios ? *given.ratios : std::vector{*given.ratio}};
+  }
+  std::vector<fem::DampingAnchor> anchors;
+  for (const TomlTable& anchor : table.find_tables("anchors")) anchors.push_back(anchor_keys().read(anchor));
+  if (law == "caughey") return fem::CaugheyDamping{anchors};
+  if (anchors.size() != 2)
+    table.refuse("anchors", "two of them, { frequency_hz, ratio }; more are for law = \"caughey\"");
+  return fem::RayleighDamping{anchors[0], anchors[1]};
 }
 
 }  // namespace
 
 fem::DampingLaw read_damping(const TomlTable& table) {
-  const std::vector<std::string> laws{"none", "modal", "rayleigh", "caughey", "structural"};
-  const auto given = table.find_text("law", laws);
-  const auto ratio = table.find_number("ratio", Sign::not_negative);
-  const auto ratios = table.find_numbers("ratios", Sign::not_negative);
-  const auto loss_factor = table.find_number("loss_factor", Sign::not_negative);
-  const std::vector<fem::DampingAnchor> anchors = read_anchors(table);
-  const std::string law = given.value_or(ratio || ratios ? "modal" : "none");
-
-  fem::DampingLaw damping;
-  if (law == "none") {
-    refuse_all_but(table, {"law"}, "with law = \"none\"");
-  } else if (law == "modal") {
-    damping = modal(table, ratio, ratios);
-  } else if (law == "structural") {
-    refuse_all_but(table, {"law", "loss_factor"}, "with law = \"structural\"");
-    if (!loss_factor) table.miss("loss_factor", "zero or a positive number");
-    damping = fem::StructuralDamping{*loss_factor};
-  } else {
-    refuse_all_but(table, {"law", "anchors"}, "with law = \"" + law + "\"");
-    if (anchors.empty()) table.miss("anchors", anchors_expected);
-    if (law == "rayleigh" && anchors.size() != 2)
-      table.refuse("anchors", "two of them, { frequency_hz, ratio }; more are for law = \"caughey\"");
-    if (law == "rayleigh")
-      damping = fem::RayleighDamping{anchors[0], anchors[1]};
-    else
-      damping = fem::CaugheyDamping{anchors};
-  }
-  const std::string place = table.contains("anchors") ? "anchors" : "law";
-  at_place(table.value_place(place),
+  const DampingValues given = damping_keys().read(table);
+  const std::string law = given.law.value_or(given.ratio || given.ratios ? "modal" : "none");
+  damping_keys().check_use(table, law);
+  const fem::DampingLaw damping = law_of(table, given, law);
+  at_place(table.value_place(table.contains("anchors") ? "anchors" : "law"),
            [&] { fem::damping_ratios(damping, {}); });  // what is impossible whatever the modes
   return damping;
 }

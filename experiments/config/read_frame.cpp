@@ -5,21 +5,132 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/config/key_json.hpp"
+#include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_segment.hpp"
+#include "experiments/config/section_keys.hpp"
 #include "experiments/config/useless_keys.hpp"
-#include "experiments/config/vocabulary.hpp"
 #include "experiments/text/method_choice.hpp"
-#include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using fem::Frame;
+using Type = Key::Type;
 
-double frame_value(const TomlTable& table, const std::string& key) {
-  return table.find_number(key, Sign::not_negative).value_or(0.0);
+constexpr const char* joint_values = "whole number, 1 to the number of joints";
+
+const Schema<FrameExperiment>& frame_keys() {
+  using F = FrameExperiment;
+  static const Schema<F> keys =
+      Schema<F>("frame")
+          .key("elements_per_member", &F::elements_per_member, {1, most_elements},
+               "finite elements of each member, 1000000 in all at most", "40")
+          .choice(
+              "mass_model", [](F& f) -> fem::MassModel& { return f.frame.mass_model; },
+              {std::pair{"consistent", fem::MassModel::consistent}, {"lumped", fem::MassModel::lumped}},
+              "of the elements; frequencies of bending err by h^4 or by h^2, of stretching by h^2",
+              "\"lumped\"")
+          .tables({"joints", "members", "supports", "bodies", "springs"});
+  return keys;
 }
+
+struct NamedJoint : Frame::Joint {
+  std::string name;
+};
+
+const Schema<NamedJoint>& joint_keys() {
+  using J = NamedJoint;
+  static const Schema<J> keys = Schema<J>("frame.joints")
+                                    .key("name", &J::name, "for the report", "\"ridge\"")
+                                    .fallback("its number")
+                                    .key("x_m", &J::x, "where it is", "3.0")
+                                    .required()
+                                    .key("y_m", &J::y, "where it is", "4.5")
+                                    .required();
+  return keys;
+}
+
+struct MemberValues {
+  std::optional<double> axial_stiffness;
+  bool hinged_at_first = false, hinged_at_second = false;
+};
+
+const Schema<MemberValues>& member_keys() {
+  using M = MemberValues;
+  static const Schema<M> keys =
+      Schema<M>("frame.members")
+          .other("first", Type::whole, "the joint where it begins", "1", {1, most_elements})
+          .values(joint_values)
+          .required()
+          .other("second", Type::whole, "the joint where it ends", "2", {1, most_elements})
+          .values(joint_values)
+          .required()
+          .key("hinged_at_first", &M::hinged_at_first, "no moment passes there", "true")
+          .key("hinged_at_second", &M::hinged_at_second, "no moment passes there", "true")
+          .key("axial_stiffness_n", &M::axial_stiffness, positive,
+               "E A itself; must be given beside `bending_stiffness_n_m2`", "1.2e8")
+          .fallback("E A, from Young's modulus and the section")
+          .like(section_keys());
+  return keys;
+}
+
+std::vector<std::string> support_names() {
+  std::vector<std::string> names;
+  for (const auto& kind : frame_support_kinds()) names.push_back(kind.first);
+  return names;
+}
+
+struct NamedFrameSupport {
+  std::string kind;
+};
+
+const Schema<NamedFrameSupport>& frame_support_keys() {
+  static const Schema<NamedFrameSupport> keys =
+      Schema<NamedFrameSupport>("frame.supports")
+          .other("joint", Type::whole, "which joint is held", "1", {1, most_elements})
+          .values(joint_values)
+          .required()
+          .key("kind", &NamedFrameSupport::kind, "how: see below", "\"pinned\"")
+          .one_of(support_names())
+          .required();
+  return keys;
+}
+
+const Schema<Frame::Body>& frame_body_keys() {
+  using B = Frame::Body;
+  static const Schema<B> keys =
+      Schema<B>("frame.bodies")
+          .other("joint", Type::whole, "where", "2", {1, most_elements})
+          .values(joint_values)
+          .required()
+          .key("mass_kg", &B::mass, not_negative, "its mass", "120")
+          .key("rotary_inertia_kg_m2", &B::rotary_inertia, not_negative, "about its own centre", "3.5")
+          .at_least_one({"mass_kg", "rotary_inertia_kg_m2"});
+  return keys;
+}
+
+const Schema<Frame::Spring>& frame_spring_keys() {
+  using S = Frame::Spring;
+  static const Schema<S> keys =
+      Schema<S>("frame.springs")
+          .other("joint", Type::whole, "where", "3", {1, most_elements})
+          .values(joint_values)
+          .required()
+          .key("translational_x_n_per_m", &S::x, not_negative, "k of a force along x", "2e5")
+          .key("translational_y_n_per_m", &S::y, not_negative, "k of a force along y", "2e5")
+          .key("rotational_n_m_per_rad", &S::rotational, not_negative, "k of a moment", "1e4")
+          .at_least_one({"translational_x_n_per_m", "translational_y_n_per_m", "rotational_n_m_per_rad"});
+  return keys;
+}
+
+const bool frame_keys_registered[] = {register_keys([]() -> const KeyTable& { return frame_keys(); }),
+                                      register_keys([]() -> const KeyTable& { return joint_keys(); }),
+                                      register_keys([]() -> const KeyTable& { return member_keys(); }),
+                                      register_keys([]() -> const KeyTable& { return frame_support_keys(); }),
+                                      register_keys([]() -> const KeyTable& { return frame_body_keys(); }),
+                                      register_keys([]() -> const KeyTable& { return frame_spring_keys(); })};
 
 /// A joint by its number from 1, as its number from 0.
 int joint(const TomlTable& table, const std::string& key, const Frame& frame) {
@@ -27,12 +138,6 @@ int joint(const TomlTable& table, const std::string& key, const Frame& frame) {
   const auto number = table.find_whole_number(key, 1, count);
   if (!number) table.miss(key, fmt::format("the number of a joint, from 1 to {}", count));
   return *number - 1;
-}
-
-void require_one_of(const TomlTable& table, const std::vector<std::string>& keys) {
-  if (given_keys(table, keys).empty())
-    throw InputError(table.place(), fmt::format("{} has no effect; expected at least one of {}", table.name(),
-                                                joined(keys)));
 }
 
 std::vector<TomlTable> some(const TomlTable& table, const std::string& key) {
@@ -43,10 +148,10 @@ std::vector<TomlTable> some(const TomlTable& table, const std::string& key) {
 
 void read_joints(const TomlTable& table, FrameExperiment& experiment) {
   for (const TomlTable& one : some(table, "joints")) {
-    const double x = one.number("x_m"), y = one.number("y_m");
-    experiment.frame.joints.push_back({x, y});
+    const NamedJoint joint = joint_keys().read(one);
+    experiment.frame.joints.push_back(joint);
     experiment.joint_names.push_back(
-        one.find_text("name").value_or(fmt::format("{}", experiment.frame.joints.size())));
+        one.contains("name") ? joint.name : fmt::format("{}", experiment.frame.joints.size()));
   }
 }
 
@@ -61,13 +166,13 @@ Frame::Member read_member(const TomlTable& table, Frame& frame) {
                      fmt::format("{} goes from joint {} to joint {} and has no length; expected joints at "
                                  "different places",
                                  table.name(), member.first + 1, member.second + 1));
-  const auto axial = table.find_number("axial_stiffness_n", Sign::positive);
+  const MemberValues given = member_keys().read(table);
   member.section = read_section(table, length);
-  if (axial) member.section.axial_stiffness = *axial;
+  if (given.axial_stiffness) member.section.axial_stiffness = *given.axial_stiffness;
   if (!member.section.axial_stiffness)
     table.miss("axial_stiffness_n", "a positive number beside bending_stiffness_n_m2");
-  member.hinged_at_first = table.find_truth("hinged_at_first").value_or(false);
-  member.hinged_at_second = table.find_truth("hinged_at_second").value_or(false);
+  member.hinged_at_first = given.hinged_at_first;
+  member.hinged_at_second = given.hinged_at_second;
   fem::Beam alone;
   alone.segments = {{length, member.section}};
   at_place(table.place(), [&] { fem::validate(alone); });
@@ -88,41 +193,36 @@ void read_members(const TomlTable& table, Frame& frame) {
 }
 
 void read_frame_attachments(const TomlTable& table, Frame& frame) {
-  std::vector<std::string> kinds;
-  for (const auto& kind : frame_support_kinds()) kinds.push_back(kind.first);
   for (const TomlTable& one : table.find_tables("supports")) {
-    const int where = joint(one, "joint", frame);
-    const auto kind = one.find_text("kind", kinds);
-    if (!kind) one.miss("kind", "one of " + joined(kinds));
-    const auto found = std::find(kinds.begin(), kinds.end(), *kind) - kinds.begin();
-    frame.supports.push_back(frame_support_kinds()[static_cast<std::size_t>(found)].second);
-    frame.supports.back().joint = where;
+    const std::string name = frame_support_keys().read(one).kind;
+    for (const auto& [kind, support] : frame_support_kinds())
+      if (kind == name) frame.supports.push_back(support);
+    frame.supports.back().joint = joint(one, "joint", frame);
   }
   for (const TomlTable& one : table.find_tables("bodies")) {
-    const int where = joint(one, "joint", frame);
-    frame.bodies.push_back({where, frame_value(one, "mass_kg"), frame_value(one, "rotary_inertia_kg_m2")});
-    require_one_of(one, {"mass_kg", "rotary_inertia_kg_m2"});
+    frame.bodies.push_back(frame_body_keys().read(one));
+    frame.bodies.back().joint = joint(one, "joint", frame);
   }
   for (const TomlTable& one : table.find_tables("springs")) {
-    const int where = joint(one, "joint", frame);
-    frame.springs.push_back({where, frame_value(one, "translational_x_n_per_m"),
-                             frame_value(one, "translational_y_n_per_m"),
-                             frame_value(one, "rotational_n_m_per_rad")});
-    require_one_of(one, {"translational_x_n_per_m", "translational_y_n_per_m", "rotational_n_m_per_rad"});
+    frame.springs.push_back(frame_spring_keys().read(one));
+    frame.springs.back().joint = joint(one, "joint", frame);
   }
 }
 
 }  // namespace
 
-const std::vector<std::string>& member_keys() {
-  static const std::vector<std::string> keys = [] {
-    std::vector<std::string> all{"first", "second", "hinged_at_first", "hinged_at_second",
-                                 "axial_stiffness_n"};
-    for (const std::string& key : segment_keys())
-      if (key != "length_m") all.push_back(key);
-    return all;
-  }();
-  return keys;
+void describe_frame_attachments(const Frame& frame, nlohmann::ordered_json& json) {
+  const auto add = [&](const char* name, int joint,
+                       const std::vector<std::pair<std::string, KeyValue>>& values) {
+    nlohmann::ordered_json one{{"joint", joint + 1}};
+    one.update(to_json(values));
+    json[name].push_back(std::move(one));
+  };
+  for (const auto& support : frame.supports)
+    add("supports", support.joint, frame_support_keys().values_of({frame_support_kind(support)}));
+  for (const auto& body : frame.bodies) add("bodies", body.joint, frame_body_keys().values_of(body));
+  for (const auto& spring : frame.springs)
+    add("springs", spring.joint, frame_spring_keys().values_of(spring));
 }
 
 FrameExperiment read_frame(const std::filesystem::path& file) {
@@ -131,18 +231,16 @@ FrameExperiment read_frame(const std::filesystem::path& file) {
 
 FrameExperiment read_frame(const TomlTable& root) {
   refuse_unknown_keys(root);
-  FrameExperiment experiment;
-  experiment.title = root.find_text("title").value_or("");
   const TomlTable table = root.table("frame");
   refuse_all_but(root, {"title", "frame"}, "beside [frame]");
+  check_values(root);
+  FrameExperiment experiment = frame_keys().read(table);
+  experiment.title = root.find_text("title").value_or("");
   Frame& frame = experiment.frame;
-  const auto mass_model = table.find_text("mass_model", {"consistent", "lumped"});
-  frame.mass_model = mass_model == "lumped" ? fem::MassModel::lumped : fem::MassModel::consistent;
   read_joints(table, experiment);
   read_members(table, frame);
   const int most = std::max(1, most_elements / static_cast<int>(frame.members.size()));
-  experiment.elements_per_member =
-      table.find_whole_number("elements_per_member", 1, most).value_or(experiment.elements_per_member);
+  table.find_whole_number("elements_per_member", 1, most);
   read_frame_attachments(table, frame);
   at_place(table.place(), [&] { fem::validate(frame); });
   return experiment;

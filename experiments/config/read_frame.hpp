@@ -2,16 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
+#include <nlohmann/json_fwd.hpp>
 
 #include "experiments/config/frame_description.hpp"
 #include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
-
-/// Keys that describe a member: its ends, and those of a segment but its length (read_segment.hpp).
-const std::vector<std::string>& member_keys();
 
 /// Reads and checks a file that describes a plane frame; docs/configuration.md lists the keys. Joints are
 /// numbered from 1 in the order of the file. A member's axial stiffness is given, or E A where Young's
@@ -22,5 +18,8 @@ FrameExperiment read_frame(const std::filesystem::path& file);
 
 /// The same of a file already parsed. @param root its root table.
 FrameExperiment read_frame(const TomlTable& root);
+
+/// What holds a frame and sits on it, in the keys of a file; joints by their number, from 1.
+void describe_frame_attachments(const fem::Frame& frame, nlohmann::ordered_json& json);
 
 }  // namespace beamid::experiments

@@ -2,27 +2,26 @@
 
 #include <algorithm>
 
-#include "experiments/config/read_attachments.hpp"
+#include "experiments/config/schema.hpp"
 #include "experiments/config/useless_keys.hpp"
 
 namespace beamid::experiments {
 
-std::optional<double> read_position(const TomlTable& table, const fem::Beam& beam, Quantity quantity) {
-  if (!table.contains("position_m") && quantity != Quantity::strain) return std::nullopt;
-  return position_on_beam(table, "position_m", beam.length());
+void check_gauge_position(const TomlTable& table, const fem::Beam& beam, Quantity quantity) {
+  if (quantity == Quantity::strain && !table.contains("position_m"))
+    table.miss("position_m", Key{.name = "position_m", .range = on_beam}.expected(beam.length()));
 }
 
-double read_distance(const TomlTable& table, const fem::Beam& beam, Quantity quantity,
-                     const std::optional<double>& position) {
-  const auto distance = table.find_number("distance_m");
+double gauge_distance(const TomlTable& table, const fem::Beam& beam, Quantity quantity,
+                      const std::optional<double>& position, const std::optional<double>& given) {
   if (quantity != Quantity::strain) {
     refuse_useless(table, {"distance_m"}, std::string("for the quantity ") + to_string(quantity),
                    "quantity = \"strain\", or no distance_m");
     return 0.0;
   }
-  if (distance && *distance != 0.0) return *distance;
+  if (given && *given != 0.0) return *given;
   const std::string expected = "a number of metres that is not zero: how far the gauge is from the axis";
-  if (distance) table.refuse("distance_m", expected);
+  if (given) table.refuse("distance_m", expected);
   double start = 0.0;
   const double x = position.value_or(0.0);
   for (const fem::Segment& segment : beam.segments) {

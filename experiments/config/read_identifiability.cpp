@@ -1,15 +1,29 @@
 #include "experiments/config/read_identifiability.hpp"
 
+#include "experiments/config/key_tables.hpp"
+
 namespace beamid::experiments {
 
-IdentifiabilitySettings read_identifiability(const TomlTable& table) {
+const Schema<IdentifiabilitySettings>& identifiability_keys() {
+  using I = IdentifiabilitySettings;
   constexpr int most_places = 400, most_sensors = 20;
-  IdentifiabilitySettings settings;
-  settings.force_measured = table.find_truth("force_measured").value_or(settings.force_measured);
-  settings.places = table.find_whole_number("places", 1, most_places).value_or(settings.places);
-  settings.more_sensors =
-      table.find_whole_number("more_sensors", 0, most_sensors).value_or(settings.more_sensors);
-  return settings;
+  static const Schema<I> keys =
+      Schema<I>("identifiability")
+          .key("force_measured", &I::force_measured,
+               "whether the record holds the exciting force; without it the record begins when the force has "
+               "ended",
+               "false")
+          .key("places", &I::places, {1, most_places},
+               "parts of the beam between the places to which a sensor is moved, nodes of the mesh at most",
+               "20")
+          .key("more_sensors", &I::more_sensors, {0, most_sensors},
+               "further sensors, added one by one where they tell most", "2");
+  return keys;
+}
+
+namespace {
+const bool identifiability_keys_registered =
+    register_keys([]() -> const KeyTable& { return identifiability_keys(); });
 }
 
 }  // namespace beamid::experiments

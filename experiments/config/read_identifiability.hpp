@@ -2,11 +2,10 @@
 #pragma once
 
 #include "experiments/config/identifiability_settings.hpp"
-#include "experiments/text/toml_table.hpp"
+#include "experiments/config/schema.hpp"
 
 namespace beamid::experiments {
 
-/// @throws InputError at a value of the wrong type or out of range.
-IdentifiabilitySettings read_identifiability(const TomlTable& table);
+const Schema<IdentifiabilitySettings>& identifiability_keys();
 
 }  // namespace beamid::experiments

@@ -3,70 +3,157 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
-#include "experiments/config/read_attachments.hpp"
+#include "experiments/config/key_tables.hpp"
 #include "experiments/config/useless_keys.hpp"
-#include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 constexpr int most_parameter_modes = 1000;
-const std::vector<std::string> number_keys{"guess", "deviation", "lower", "upper"};
+
+/// A parameter as a file describes it.
+struct DescribedParameter : ParameterChoice {
+  std::optional<double> from, to;
+};
 
 std::string with_suffix(const std::string& number, const std::string& suffix) {
   return suffix.empty() ? number : number + "_" + suffix;
 }
 
-std::optional<double> read_number(const TomlTable& table, const std::string& number,
-                                  const ParameterQuantity& quantity) {
-  std::vector<std::string> others;
-  for (const ParameterQuantity& other : parameter_quantities())
-    if (other.suffix != quantity.suffix) others.push_back(with_suffix(number, other.suffix));
-  const std::string key = with_suffix(number, quantity.suffix);
-  refuse_useless(table, others, "for the quantity " + quantity.name, key);
-  return table.find_number(key, number == "deviation" ? Sign::positive : Sign::any);
+std::vector<std::string> quantity_names() {
+  std::vector<std::string> names;
+  for (const ParameterQuantity& quantity : parameter_quantities()) names.push_back(quantity.name);
+  return names;
 }
 
-Form read_form(const TomlTable& table, const std::string& name) {
-  for (const Form form : {Form::linear, Form::logarithmic, Form::bounded})
-    if (name == to_string(form)) return form;
-  table.refuse("form", "linear, logarithmic or bounded");
+/// A number of the parameter in each unit: `guess` is guess_n_m2, guess_kg, ...
+struct ParameterNumber {
+  const char* name;
+  std::optional<double> ParameterChoice::*member;
+  Range range;
+  const char *before, *after;  ///< of the quantities that have this unit, in the key's meaning
+  const char* fallback;
+  double share;  ///< of the example's guess
+};
+
+constexpr ParameterNumber parameter_numbers[] = {
+    {"guess", &ParameterChoice::guess, any_number, "initial estimate of ", "",
+     "as described, or as the model says", 1.0},
+    {"deviation", &ParameterChoice::deviation, positive, "standard deviation of ",
+     " before the record is seen", "`relative_deviation` of the guess", 0.3},
+    {"lower", &ParameterChoice::lower, any_number, "`form = \"bounded\"`: ", " is above it", "none", 0.1},
+    {"upper", &ParameterChoice::upper, any_number, "`form = \"bounded\"`: ", " is below it", "none", 10.0}};
+
+/// A guess that a file might hold, for the examples.
+double example_guess(const std::string& suffix) {
+  static const std::map<std::string, double> guesses{
+      {"n_m2", 228.96},     {"kg", 1.437}, {"kg_m2", 0.001},   {"n_m_per_rad", 4000},
+      {"n_per_m", 300000},  {"n", 10},     {"", 0.004},        {"per_s", 0.05},
+      {"s", 1e-5},          {"hz", 4.1},   {"n_s_per_m", 0.4}, {"n_per_m3", 20000},
+      {"n_s2_per_m2", 0.6}, {"per_m", 4}};
+  const auto known = guesses.find(suffix);
+  return known == guesses.end() ? 1.0 : known->second;
+}
+
+void add_number_keys(Schema<DescribedParameter>& keys, const ParameterNumber& number) {
+  for (const ParameterQuantity& quantity : parameter_quantities()) {
+    const std::string key = with_suffix(number.name, quantity.suffix);
+    if (keys.find(key) != nullptr) continue;
+    std::string quantities;
+    for (const ParameterQuantity& other : parameter_quantities())
+      if (other.suffix == quantity.suffix)
+        quantities += (quantities.empty() ? "`" : ", `") + other.name + "`";
+    keys.key(key.c_str(), number.member, number.range, (number.before + quantities + number.after).c_str(),
+             fmt::format("{:g}", number.share * example_guess(quantity.suffix)).c_str())
+        .fallback(number.fallback);
+    if (number.member == &ParameterChoice::deviation) keys.excludes({"relative_deviation"}, "one of them");
+  }
+}
+
+Schema<DescribedParameter> make_parameter_keys() {
+  using P = DescribedParameter;
+  Schema<P> keys("parameters");
+  keys.key(
+          "quantity", &P::quantity,
+          "model `beam`: `\"bending_stiffness\"`, `\"tip_mass\"` (of `tip_mass_kg`, or of the first body at "
+          "the tip: a sensor beside it keeps its own), `\"body_mass\"` (of the bodies between `from_m` and "
+          "`to_m`, all of them without), `\"tip_rotary_inertia\"`, `\"root_rotational_stiffness\"`, "
+          "`\"root_translational_stiffness\"`, `\"axial_load\"`, `\"damping_ratio\"`, `\"mass_damping\"` and "
+          "`\"stiffness_damping\"` (alpha and beta of C = alpha M + beta K); `modal`: `\"frequency\"`, "
+          "`\"damping_ratio\"`; `sdof`: `\"stiffness\"`, `\"damping\"`, and `\"mass\"` where a force was "
+          "measured; the same and, only where named here or nothing is, `duffing`: `\"cubic_stiffness\"`; "
+          "`damped`: `\"coulomb_friction\"`, `\"quadratic_damping\"` (and `\"cubic_stiffness\"`, only where "
+          "named); `bouc_wen`: `\"post_yield_ratio\"` (alpha), `\"hysteresis_beta\"`, `\"hysteresis_gamma\"`",
+          "\"bending_stiffness\"")
+      .one_of(quantity_names())
+      .values("text")
+      .required()
+      .key("name", &P::name, "what results call it", "\"crack\"")
+      .values("at most 100 small letters, digits, `_`")
+      .fallback("the quantity, with its mode or number")
+      .key("from_m", &P::from, on_beam,
+           "`bending_stiffness`: begin of the region whose mean it is; `body_mass`: of the region whose "
+           "bodies are meant; with `to_m`",
+           "0.3")
+      .fallback("`0`")
+      .key("to_m", &P::to, {.least = 0.0, .on_beam = true, .greater_than = "from_m"}, "end of the region",
+           "0.5")
+      .fallback("length")
+      .key("mode", &P::mode, {1, most_parameter_modes},
+           "`damping_ratio`, `frequency`: the mode it belongs to", "1")
+      .fallback("all modes together")
+      .choice(
+          "form", &P::form,
+          {std::pair{to_string(Form::linear), Form::linear},
+           {to_string(Form::logarithmic), Form::logarithmic},
+           {to_string(Form::bounded), Form::bounded}},
+          "how the filter's state holds it: itself, its logarithm (positive always), or between its bounds",
+          "\"logarithmic\"")
+      .fallback("`\"linear\"`; `\"bounded\"` with bounds")
+      .key("known", &P::known,
+           "not asked about but not known exactly either: its deviation is carried along into the others' "
+           "intervals",
+           "true")
+      .key("relative_deviation", &P::relative_deviation, positive,
+           "standard deviation beforehand, as a part of the guess", "0.02")
+      .fallback("stiffnesses, axial load `0.3`, frequencies `0.15`, masses `0.1`, damping `1`");
+  for (const ParameterNumber& number : parameter_numbers) add_number_keys(keys, number);
+  return keys;
+}
+
+const Schema<DescribedParameter>& parameter_schema() {
+  static const Schema<DescribedParameter> keys = make_parameter_keys();
+  return keys;
+}
+
+const bool parameter_keys_registered = register_keys([]() -> const KeyTable& { return parameter_schema(); });
+
+/// A number in the unit of another quantity.
+void refuse_other_units(const TomlTable& table, const ParameterQuantity& quantity) {
+  for (const ParameterNumber& number : parameter_numbers) {
+    std::vector<std::string> others;
+    for (const ParameterQuantity& other : parameter_quantities())
+      if (other.suffix != quantity.suffix) others.push_back(with_suffix(number.name, other.suffix));
+    refuse_useless(table, others, "for the quantity " + quantity.name,
+                   with_suffix(number.name, quantity.suffix));
+  }
 }
 
 ParameterChoice read_parameter(const TomlTable& table, double length) {
-  std::vector<std::string> names;
-  for (const ParameterQuantity& quantity : parameter_quantities()) names.push_back(quantity.name);
-  const auto name = table.find_text("quantity", names);
-  if (!name) table.miss("quantity", "one of " + joined(names));
-  const ParameterQuantity& quantity = parameter_quantity(*name);
-
-  ParameterChoice choice;
-  choice.place = table.place();
-  choice.quantity = *name;
-  choice.name = table.find_text("name").value_or("");
+  DescribedParameter choice = parameter_schema().read(table, length);
+  refuse_other_units(table, parameter_quantity(choice.quantity));
   const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   if (table.contains("name") &&
       (choice.name.empty() || choice.name.size() > 100 ||  // which files are named after
        !std::all_of(choice.name.begin(), choice.name.end(), plain)))
     table.refuse("name", "at most 100 small letters, digits and underscores, as in a key");
-  if (table.contains("from_m") || table.contains("to_m")) {
-    const double from = position_on_beam(table, "from_m", length);
-    const double to = position_on_beam(table, "to_m", length);
-    if (from >= to) table.refuse("to_m", fmt::format("a number above from_m, {}", from));
-    choice.region = std::pair{from, to};
-  }
-  choice.mode = table.find_whole_number("mode", 1, most_parameter_modes);
-  choice.guess = read_number(table, "guess", quantity);
-  choice.deviation = read_number(table, "deviation", quantity);
-  choice.lower = read_number(table, "lower", quantity);
-  choice.upper = read_number(table, "upper", quantity);
-  choice.relative_deviation = table.find_number("relative_deviation", Sign::positive);
-  if (choice.deviation)
-    refuse_useless(table, {"relative_deviation"}, "beside " + with_suffix("deviation", quantity.suffix),
-                   "one of them");
-  if (const auto form = table.find_text("form")) choice.form = read_form(table, *form);
-  choice.known = table.find_truth("known").value_or(false);
+  for (const char* const key : {"from_m", "to_m"})
+    if (!table.contains(key) && (choice.from || choice.to))
+      table.miss(key, parameter_schema().find(key)->expected(length));
+  if (choice.from) choice.region = std::pair{*choice.from, *choice.to};
+  choice.place = table.place();
   return choice;
 }
 
@@ -77,17 +164,6 @@ std::vector<ParameterChoice> read_parameters(const TomlTable& root, double lengt
   for (const TomlTable& table : root.find_tables("parameters"))
     choices.push_back(read_parameter(table, length));
   return choices;
-}
-
-std::vector<std::string> parameter_keys() {
-  std::vector<std::string> keys{"quantity", "name", "from_m", "to_m",
-                                "mode",     "form", "known",  "relative_deviation"};
-  for (const std::string& number : number_keys)
-    for (const ParameterQuantity& quantity : parameter_quantities())
-      if (const std::string key = with_suffix(number, quantity.suffix);
-          std::find(keys.begin(), keys.end(), key) == keys.end())
-        keys.push_back(key);
-  return keys;
 }
 
 }  // namespace beamid::experiments

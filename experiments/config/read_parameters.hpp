@@ -1,7 +1,6 @@
 // The tables [[parameters]] of an experiment file.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "experiments/models/parameter_choice.hpp"
@@ -13,8 +12,5 @@ namespace beamid::experiments {
 /// @param root the file's root table; @param length of the beam, to which regions must belong [m]
 /// @throws InputError for a missing, a useless or a bad value.
 std::vector<ParameterChoice> read_parameters(const TomlTable& root, double length);
-
-/// All keys of such a table: guess_n_m2, guess_kg, ... deviation_n_m2, ...
-std::vector<std::string> parameter_keys();
 
 }  // namespace beamid::experiments

@@ -1,12 +1,12 @@
 #include "experiments/config/read_record_format.hpp"
 
 #include <algorithm>
-#include <map>
+#include <optional>
 
+#include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_beam.hpp"
 #include "experiments/config/read_gauge.hpp"
 #include "experiments/config/read_preparation.hpp"
-#include "experiments/config/vocabulary.hpp"
 #include "experiments/record/record_reader.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/text/method_choice.hpp"
@@ -17,8 +17,129 @@ namespace {
 
 constexpr int most_columns = 100000, most_header_lines = 1000000;
 
+/// [record] as a file has it: its stamps are taken as they are unless it says otherwise.
+struct DescribedRecord : RecordFormat {
+  std::optional<std::string> file;
+  DescribedRecord() { irregular = true; }
+};
+
+const Schema<DescribedRecord>& record_keys() {
+  using R = DescribedRecord;
+  static const Schema<R> keys =
+      Schema<R>("record")
+          .key("file", &R::file, "the record, relative to this file; a command may name another",
+               "\"massa1_test1-1.txt\"")
+          .key("reader", &R::reader, "a name from `beamid list readers`", "\"lvm\"")
+          .fallback("what the file shows to be")
+          .choice(
+              "separator", &R::separator,
+              {std::pair{"auto", '\0'}, {"tab", '\t'}, {"comma", ','}, {"semicolon", ';'}, {"space", ' '}},
+              "between columns; auto takes the first of tab, semicolon, comma that the first row of numbers "
+              "shows, else blanks",
+              "\"semicolon\"")
+          .choice("decimal", &R::decimal, {std::pair{"auto", '\0'}, {"point", '.'}, {"comma", ','}},
+                  "between whole and fraction; auto takes the comma where the first fifty rows show commas "
+                  "inside fields and no point",
+                  "\"comma\"")
+          .key("header_lines", &R::header_lines, {0, most_header_lines},
+               "lines before the first row of numbers, the last non-blank of which names the columns; with 0 "
+               "one line of names is found by itself",
+               "23")
+          .choice("malformed", &R::skip_malformed, {std::pair{"refuse", false}, {"skip", true}},
+                  "rows with text among the numbers or of another length: refused at their place, or left "
+                  "out, counted and located",
+                  "\"skip\"")
+          .choice("stamps", &R::irregular, {std::pair{"even", false}, {"as_they_are", true}},
+                  "whether the times must have equal intervals or may only increase. Filters take unequal "
+                  "ones as they are, what needs even samples resamples the record and says so "
+                  "([Preparation](theory/preparation.md))",
+                  "\"even\"")
+          .choice("input", &R::input,
+                  {std::pair{"band_limited", InputPath::band_limited},
+                   {"linear", InputPath::linear},
+                   {"held", InputPath::held}},
+                  "how measured forces run between their samples: as an anti-aliased converter has recorded "
+                  "them, straight, or constant until the next one, which makes them late by half an interval "
+                  "([theory](theory/discretisation_bias.md#the-bias-of-a-measured-force))",
+                  "\"linear\"")
+          .fallback("`\"band_limited\"` where at least half of the stamps are even, else `\"linear\"`")
+          .key("sampling_rate_hz", &R::sampling_rate, positive,
+               "exact rate; times are then start + k / rate. Refused where a printed time is half an "
+               "interval, its rounding set aside, from there",
+               "1651.612903")
+          .fallback("from the printed times")
+          .key("window_s", &R::window, "part of the record to use, [from, to]", "[0.808, 1.608]")
+          .fallback("whole record; `identify`: the decay behind the last event")
+          .tables({"time"}, Key::Type::table)
+          .tables({"channels", "prepare"});
+  return keys;
+}
+
+/// One column: its number or name, and its unit.
+struct DescribedColumn {
+  std::string quantity, unit;
+  std::optional<double> position, distance;
+};
+
+std::string quoted_symbols(const std::vector<Unit>& known, const char* separator) {
+  std::string text;
+  for (const std::string& symbol : symbols(known))
+    text += (text.empty() ? "" : separator) + ("`\"" + symbol + "\"`");
+  return text;
+}
+
+Schema<DescribedColumn> make_time_keys() {
+  const std::string all = quoted_symbols(time_units(), ", ");
+  return Schema<DescribedColumn>("record.time")
+      .other("column", Key::Type::column, "the column's number, or its name in the header", "1",
+             {1, most_columns})
+      .required()
+      .key("unit", &DescribedColumn::unit, "unit of time", "\"s\"")
+      .fallback("-")
+      .values(all.c_str());
+}
+
+Schema<DescribedColumn> make_channel_keys() {
+  using C = DescribedColumn;
+  std::vector<std::string> quantities;
+  std::string all;
+  for (const Quantity quantity : all_quantities) {
+    quantities.emplace_back(to_string(quantity));
+    all += (all.empty() ? "" : "; ") + quantities.back() + " " + quoted_symbols(units(quantity), " ");
+  }
+  return Schema<C>("record.channels")
+      .key("quantity", &C::quantity, "what the channel measures", "\"acceleration\"")
+      .one_of(quantities)
+      .required()
+      .other("column", Key::Type::column, "the column's number, or its name in the header", "3",
+             {1, most_columns})
+      .required()
+      .key("unit", &C::unit, "unit of its numbers", "\"g\"")
+      .fallback("-")
+      .values(all.c_str())
+      .key("position_m", &C::position, on_beam, "where its sensor sits, or where the force acts", "0.35")
+      .fallback("the tip, or midspan where the tip is held; none for strain")
+      .key("distance_m", &C::distance, "strain: of the gauge from the axis, c of -c w''", "0.003")
+      .values("number, not 0")
+      .fallback("half the section's height");
+}
+
+const Schema<DescribedColumn>& time_keys() {
+  static const Schema<DescribedColumn> keys = make_time_keys();
+  return keys;
+}
+
+const Schema<DescribedColumn>& channel_keys() {
+  static const Schema<DescribedColumn> keys = make_channel_keys();
+  return keys;
+}
+
+const bool record_keys_registered[] = {register_keys([]() -> const KeyTable& { return record_keys(); }),
+                                       register_keys([]() -> const KeyTable& { return time_keys(); }),
+                                       register_keys([]() -> const KeyTable& { return channel_keys(); })};
+
 /// @param what measured: "acceleration", for messages.
-double read_factor(const TomlTable& table, const std::string& what, const std::vector<Unit>& known) {
+double factor_of(const TomlTable& table, const std::string& what, const std::vector<Unit>& known) {
   const std::string expected = "a unit of " + what + ": " + joined(symbols(known));
   if (!table.contains("unit")) table.miss("unit", expected);
   const std::optional<std::string> symbol = table.find_text("unit");
@@ -29,89 +150,63 @@ double read_factor(const TomlTable& table, const std::string& what, const std::v
 }
 
 ColumnDescription read_column(const TomlTable& table) {
-  constexpr const char* expected = "a column's number, from 1, or its name in the header";
   ColumnDescription column;
   const auto value = table.find_value("column");
-  if (!value) table.miss("column", expected);
+  if (!value) table.miss("column", time_keys().find("column")->expected());
   if (std::holds_alternative<double>(*value))
-    column.number = *table.find_whole_number("column", 1, most_columns);
-  else if (std::holds_alternative<std::string>(*value))
+    column.number = static_cast<int>(std::get<double>(*value));
+  else
     column.name = std::get<std::string>(*value);
-  if (column.number == 0 && column.name.empty()) table.refuse("column", expected);
   return column;
 }
 
 /// @param beam that the sensors sit on; null where none is described: positions are then taken as they are.
 ColumnDescription read_channel(const TomlTable& table, const fem::Beam* beam) {
-  std::vector<std::string> names;
-  for (const Quantity quantity : all_quantities) names.emplace_back(to_string(quantity));
-  const std::optional<std::string> name = table.find_text("quantity", names);
-  if (!name) table.miss("quantity", "one of " + joined(names));
+  const DescribedColumn given =
+      beam ? channel_keys().read(table, beam->length()) : channel_keys().read(table);
   ColumnDescription channel = read_column(table);
-  channel.quantity = *find_quantity(*name);
-  channel.factor = read_factor(table, *name, units(channel.quantity));
+  channel.quantity = *find_quantity(given.quantity);
+  channel.factor = factor_of(table, given.quantity, units(channel.quantity));
+  channel.position = given.position;
+  channel.distance = given.distance.value_or(0.0);
   if (beam != nullptr) {
-    channel.position = read_position(table, *beam, channel.quantity);
-    channel.distance = read_distance(table, *beam, channel.quantity, channel.position);
-  } else {
-    channel.position = table.find_number("position_m", Sign::not_negative);
-    channel.distance = table.find_number("distance_m").value_or(0.0);
+    check_gauge_position(table, *beam, channel.quantity);
+    channel.distance = gauge_distance(table, *beam, channel.quantity, channel.position, given.distance);
   }
   return channel;
 }
 
-RecordFormat read_format(const TomlTable& table, const fem::Beam* beam) {
-  static const std::map<std::string, char> separators{
-      {"auto", '\0'}, {"tab", '\t'}, {"comma", ','}, {"semicolon", ';'}, {"space", ' '}};
-  RecordFormat format;
-  const std::vector<std::string> names{"auto", "tab", "comma", "semicolon", "space"};
-  format.reader = table.find_text("reader").value_or("");
-  if (!format.reader.empty())
-    at_place(table.value_place("reader"), [&] { record_reader_registry().find(format.reader); });
-  format.separator = separators.at(table.find_text("separator", names).value_or("auto"));
-  format.header_lines = table.find_whole_number("header_lines", 0, most_header_lines).value_or(0);
-  const std::string decimal = table.find_text("decimal", {"auto", "point", "comma"}).value_or("auto");
-  format.decimal = decimal == "auto" ? '\0' : decimal == "comma" ? ',' : '.';
-  format.skip_malformed = table.find_text("malformed", {"refuse", "skip"}).value_or("refuse") == "skip";
-  format.irregular =
-      table.find_text("stamps", {"even", "as_they_are"}).value_or("as_they_are") == "as_they_are";
-  if (const auto input = table.find_text("input", {"band_limited", "linear", "held"}))
-    format.input = *input == "held"     ? InputPath::held
-                   : *input == "linear" ? InputPath::linear
-                                        : InputPath::band_limited;
-  format.sampling_rate = table.find_number("sampling_rate_hz", Sign::positive);
-  format.window = table.find_interval("window_s");
-  if (format.window) format.window_place = table.value_place("window_s");
+DescribedRecord read_described(const TomlTable& table, const fem::Beam* beam) {
+  check_values(table, "record");
+  DescribedRecord record = record_keys().read(table);
+  if (record.file && record.file->empty()) table.refuse("file", "the name of a file");
+  if (!record.reader.empty())
+    at_place(table.value_place("reader"), [&] { record_reader_registry().find(record.reader); });
+  if (record.window) record.window_place = table.value_place("window_s");
   if (const auto time = table.find_table("time")) {
-    format.time = read_column(*time);
-    format.time->factor = read_factor(*time, "time", time_units());
+    record.time = read_column(*time);
+    record.time->factor = factor_of(*time, "time", time_units());
   }
   for (const TomlTable& channel : table.find_tables("channels"))
-    format.channels.push_back(read_channel(channel, beam));
-  format.preparation = read_preparation(table);
-  return format;
+    record.channels.push_back(read_channel(channel, beam));
+  record.preparation = read_preparation(table);
+  return record;
 }
 
 }  // namespace
 
-RecordFormat read_record_format(const TomlTable& table, const fem::Beam& beam) {
-  return read_format(table, &beam);
+RecordSection read_record_section(const TomlTable& table, const fem::Beam* beam) {
+  const DescribedRecord record = read_described(table, beam);
+  return {record.file, record};
 }
 
 RecordSection read_record_section(const std::filesystem::path& file) {
   const TomlTable root = TomlTable::read(file);
   refuse_unknown_keys(root);
   const TomlTable record = root.table("record");
-  RecordSection section;
-  if (root.contains("beam")) {
-    const fem::Beam beam = read_beam(root.table("beam"));
-    section.format = read_format(record, &beam);
-  } else {
-    section.format = read_format(record, nullptr);
-  }
-  section.file = record.find_text("file");
-  if (section.file && section.file->empty()) record.refuse("file", "the name of a file");
-  return section;
+  if (!root.contains("beam")) return read_record_section(record, nullptr);
+  const fem::Beam beam = read_beam(root.table("beam"));
+  return read_record_section(record, &beam);
 }
 
 }  // namespace beamid::experiments

@@ -10,18 +10,18 @@
 
 namespace beamid::experiments {
 
-/// How the record's file is to be read; its name is another key. Units are stated, never guessed.
-/// @throws InputError at the key, for missing ones at the table.
-RecordFormat read_record_format(const TomlTable& table, const fem::Beam& beam);
-
 struct RecordSection {
   std::optional<std::string> file;  ///< relative to the TOML file's folder
   RecordFormat format;
 };
 
-/// The table [record] of a file that need not describe anything else. Without a [beam] positions are not
-/// checked against its length, and a strain gauge's distance from the axis has no default.
-/// @throws InputError as above.
+/// Units are stated, never guessed.
+/// @param beam on which the sensors sit; null where none is described: positions are then not checked against
+/// its length, and a strain gauge's distance from the axis has no default.
+/// @throws InputError at the key, for missing ones at the table.
+RecordSection read_record_section(const TomlTable& record, const fem::Beam* beam);
+
+/// The same of a file that need not describe anything else. @throws InputError as above.
 RecordSection read_record_section(const std::filesystem::path& file);
 
 }  // namespace beamid::experiments

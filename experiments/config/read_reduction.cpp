@@ -2,11 +2,43 @@
 
 #include <algorithm>
 
+#include "experiments/config/key_tables.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/text/choice_text.hpp"
 
 namespace beamid::experiments {
 using filters::OptionValue;
+
+namespace {
+
+Schema<Choice> make_reduction_keys(const char* table, const char* fallback) {
+  Schema<Choice> keys(table);
+  return keys.with_options()
+      .other("method", Key::Type::text, "a name from `beamid list reductions`", "\"modal_truncation\"")
+      .fallback(fallback)
+      .key("shape_file", &Choice::shape_file,
+           "with `shape = \"given\"`: a text file of two columns, `position_m` and `deflection`, positions "
+           "increasing; relative to this file's folder",
+           "\"shape.csv\"")
+      .fallback("none");
+}
+
+const KeyTable& reduction_keys() {
+  static const Schema<Choice> keys = make_reduction_keys(
+      "reduction",
+      "`\"rayleigh\"`; for the models `beam` and `modal` `\"modal_truncation\"`, one exact mode");
+  return keys;
+}
+
+const KeyTable& compared_reduction_keys() {
+  static const Schema<Choice> keys = make_reduction_keys("reductions", "`\"rayleigh\"`");
+  return keys;
+}
+
+const bool reduction_keys_registered[] = {register_keys(reduction_keys),
+                                          register_keys(compared_reduction_keys)};
+
+}  // namespace
 
 bool takes_shape(const Choice& choice) {
   return std::any_of(choice.options.values().begin(), choice.options.values().end(),
@@ -22,7 +54,8 @@ void read_shape_file(const TomlTable& table, Choice& choice) {
 }
 
 Choice read_reduction(const TomlTable& table) {
-  Choice choice = read_choice(table, "method", "rayleigh", reduction::reduction_registry(), {"shape_file"});
+  Choice choice =
+      read_choice(table, "method", "rayleigh", reduction::reduction_registry(), reduction_keys().names());
   if (choice.place.line == 0) choice.place = table.place();
   read_shape_file(table, choice);
   return choice;

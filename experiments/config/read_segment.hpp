@@ -1,16 +1,14 @@
 // One segment of a beam, as [beam] or [[beam.segments]] describes it.
 #pragma once
 
-#include <string>
-#include <vector>
-
+#include "experiments/config/schema.hpp"
 #include "experiments/text/toml_table.hpp"
 #include "fem/beam.hpp"
 
 namespace beamid::experiments {
 
-/// Keys that describe a segment, its length among them.
-const std::vector<std::string>& segment_keys();
+/// The keys of a segment: its length and those of its section.
+const KeyTable& segment_keys();
 
 /// Stiffness: E I as such, or E with the dimensions of a rectangle, E I = E width height^3 / 12, or of a
 /// circle, E pi diameter^4 / 64. Mass: in total, per length, or as a density with the dimensions. Dimensions

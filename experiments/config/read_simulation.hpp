@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "experiments/config/acquisition_settings.hpp"
 #include "experiments/config/settings.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -12,8 +13,11 @@ namespace beamid::experiments {
 /// @throws InputError for a missing, a useless or a bad value.
 Excitation read_excitation(const TomlTable& table, double length);
 
-/// @param table the file's root.
-std::vector<Sensor> read_sensors(const TomlTable& table, const fem::Beam& beam);
+/// @param root of the file.
+std::vector<Sensor> read_sensors(const TomlTable& root, const fem::Beam& beam);
+
+/// What each of the sensors does wrong. @param root of the file.
+std::vector<SensorDefects> read_defects(const TomlTable& root);
 
 /// Keys that are none of its own are options of the method. @throws InputError as above, and for unknown
 /// options.

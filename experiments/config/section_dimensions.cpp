@@ -1,31 +1,26 @@
 #include "experiments/config/section_dimensions.hpp"
 
-#include <fmt/format.h>
-
 #include <numbers>
-
-#include "experiments/config/useless_keys.hpp"
 
 namespace beamid::experiments {
 
 using fem::Variation;
 using std::numbers::pi;
 
-SectionDimensions::SectionDimensions(const TomlTable& table) : table_(table) {
-  const auto dimension = [&](const std::string& name) -> std::optional<Variation> {
-    const auto start = table.find_number(name + "_m", Sign::positive);
-    const auto end = table.find_number("end_" + name + "_m", Sign::not_negative);
+SectionDimensions::SectionDimensions(const TomlTable& table, const GivenSection& given) : table_(table) {
+  const auto dimension = [&](const std::string& name, const std::optional<double>& start,
+                             const std::optional<double>& end) -> std::optional<Variation> {
     if (end && !start) table.miss(name + "_m", "a positive number beside end_" + name + "_m");
     if (!start) return std::nullopt;
     return end ? Variation::linear(*start, *end) : Variation(*start);
   };
-  const auto width = dimension("width"), height = dimension("height"), diameter = dimension("diameter");
-  if (diameter) {
-    refuse_useless(table, {"width_m", "height_m"}, "beside diameter_m", "a rectangle or a circle");
+  const auto width = dimension("width", given.width, given.end_width),
+             height = dimension("height", given.height, given.end_height),
+             diameter = dimension("diameter", given.diameter, given.end_diameter);
+  if (diameter)
     outline_ = {fem::Outline::Shape::ellipse, *diameter, *diameter};
-  } else if (width && height) {
+  else if (width && height)
     outline_ = {fem::Outline::Shape::rectangle, *width, *height};
-  }
 }
 
 void SectionDimensions::require(const std::string& owner) const {

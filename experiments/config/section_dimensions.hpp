@@ -1,6 +1,7 @@
 // The dimensions of a rectangular or circular section, and what follows from them.
 #pragma once
 
+#include "experiments/config/section_keys.hpp"
 #include "experiments/text/toml_table.hpp"
 #include "fem/section.hpp"
 
@@ -9,8 +10,8 @@ namespace beamid::experiments {
 /// width_m and height_m, or diameter_m, and where they go linearly by the segment's end, end_width_m, ...
 class SectionDimensions {
  public:
-  /// @throws InputError when both shapes are given, or an end without its beginning.
-  explicit SectionDimensions(const TomlTable& table);
+  /// @throws InputError at an end without its beginning.
+  SectionDimensions(const TomlTable& table, const GivenSection& given);
 
   bool known() const { return outline_.shape != fem::Outline::Shape::none; }
   bool tapered() const { return !outline_.width.is_constant() || !outline_.height.is_constant(); }

@@ -6,25 +6,12 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
+#include "experiments/sweep/read_sweep.hpp"
 #include "experiments/text/text_file.hpp"
 #include "experiments/text/words.hpp"
 
 namespace beamid::experiments {
 namespace {
-
-/// Keys of the same quantity, of which a file has one: one that is varied takes the others' place.
-std::vector<std::string> instead_of(const std::string& key) {
-  static const std::vector<std::vector<std::string>> families{
-      {"damping.ratio", "damping.ratios", "damping.anchors", "damping.loss_factor", "damping.law"},
-      {"beam.youngs_modulus_pa", "beam.bending_stiffness_n_m2"},
-      {"beam.mass_kg", "beam.density_kg_per_m3", "beam.mass_per_length_kg_per_m"}};
-  std::vector<std::string> others;
-  for (const auto& family : families)
-    if (std::find(family.begin(), family.end(), key) != family.end() && key != "damping.law")
-      for (const std::string& other : family)
-        if (other != key) others.push_back(other.substr(other.rfind('.') + 1));
-  return others;
-}
 
 std::vector<Override> overrides_of(const SweepPlan& plan, std::size_t number, bool of_truth) {
   const std::string mark = "truth.";
@@ -35,7 +22,7 @@ std::vector<Override> overrides_of(const SweepPlan& plan, std::size_t number, bo
     if (key.starts_with(mark) && !of_truth) continue;
     if (key.starts_with(mark)) key.erase(0, mark.size());
     const std::size_t dot = key.rfind('.');
-    overrides.push_back({key.substr(0, dot), key.substr(dot + 1), values[j], "the sweep", instead_of(key)});
+    overrides.push_back({key.substr(0, dot), key.substr(dot + 1), values[j], "the sweep", keys_instead(key)});
   }
   if (of_truth)
     overrides.push_back({"simulation", "seed", static_cast<double>(plan.seed_of(number)), "sweep.seed"});

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/config/sweep_plan.hpp"
+#include "experiments/sweep/sweep_plan.hpp"
 
 namespace beamid::experiments {
 

@@ -3,10 +3,13 @@
 
 #include <sstream>
 
+#include "experiments/config/key_tables.hpp"
 #include "tests/apps/run_command.hpp"
 
 namespace beamid::apps::experiment_files_test {
 namespace {
+
+constexpr const char* key_letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
 
 using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty, testing::StartsWith;
 
@@ -148,6 +151,32 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
   EXPECT_EQ(found, 24);
+}
+
+// Oracle: the rows that the reader has. A line behind # is a key, too.
+TEST(New, WritesKeysThatExistWithValuesThatTheyMayHave) {
+  using namespace experiments;
+  const KeyTable* table = find_key_table("");
+  int checked = 0;
+  std::istringstream lines(Workplace().run("new -").out);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t first = line.find_first_not_of("# ");
+    if (first == std::string::npos) continue;
+    const std::string text = line.substr(first), name = text.substr(0, text.find_first_not_of(key_letters));
+    if (text[0] == '[') {
+      table = find_key_table(text.substr(1, text.find(']') - 1));
+      ASSERT_NE(table, nullptr) << line;
+    } else if (text.substr(name.size()).starts_with(" = ")) {
+      const Key* const key = table->find(name);
+      ASSERT_NE(key, nullptr) << table->name() << ": " << line;
+      if (!key->is_table()) {
+        EXPECT_NO_THROW(table->check(TomlTable::parse("[table]\n" + text + "\n", "starter").table("table")))
+            << line;
+      }
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 30);
 }
 
 }  // namespace

@@ -139,11 +139,26 @@ TEST(List, WithoutAKindShowsEveryEntryWithItsOptions) {
     EXPECT_THAT(outcome.out, HasSubstr(part));
 }
 
+// Oracle: docs/configuration.md.
+TEST(List, OfKeysShowsTheTablesOfAnExperimentFileAndTheKeysOfOne) {
+  const Outcome tables = Workplace().run("list keys");
+  EXPECT_EQ(tables.code, 0);
+  for (const char* part : {"[beam]", "[[beam.springs]]", "[sweep]", "tip_mass_kg", "options of the method"})
+    EXPECT_THAT(tables.out, HasSubstr(part));
+  const Outcome springs = Workplace().run("list keys beam.springs");
+  EXPECT_EQ(springs.code, 0);
+  for (const char* part :
+       {"[[beam.springs]]", "translational_n_per_m", "number >= 0", "N/m", "k of a force k w"})
+    EXPECT_THAT(springs.out, HasSubstr(part));
+  EXPECT_EQ(Workplace().run("list keys beam.sprigs").first_error_line(),
+            "beamid: unknown table 'beam.sprigs' of an experiment file; did you mean 'beam.springs'?");
+}
+
 TEST(List, RefusesUnknownKindsAndNames) {
-  EXPECT_EQ(
-      Workplace().run("list quaternions").first_error_line(),
-      "beamid: list: unknown kind 'quaternions'; known: discretisations, filters, modal_methods, models, "
-      "readers, reductions, responses, smoothers, steps, studies");
+  EXPECT_EQ(Workplace().run("list quaternions").first_error_line(),
+            "beamid: list: unknown kind 'quaternions'; known: discretisations, filters, keys, modal_methods, "
+            "models, "
+            "readers, reductions, responses, smoothers, steps, studies");
   EXPECT_EQ(Workplace().run("list filters quaternion").first_error_line(),
             "beamid: unknown filter 'quaternion'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, iekf, kf, "
             "low_rank_ekf, "

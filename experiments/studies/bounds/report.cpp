@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
+#include "experiments/config/key_json.hpp"
+#include "experiments/config/read_identifiability.hpp"
 #include "experiments/results/file.hpp"
 #include "fem/assembly.hpp"
 
@@ -66,9 +68,8 @@ Results report(const Experiment& experiment, const Identifiability& found) {
   results.command = "identifiability";
   results.configuration = describe(experiment);
   results.configuration["excitation"] = to_string(experiment.excitation.kind);
-  results.configuration["identifiability"] = {{"force_measured", experiment.identifiability.force_measured},
-                                              {"places", experiment.identifiability.places},
-                                              {"more_sensors", experiment.identifiability.more_sensors}};
+  results.configuration["identifiability"] =
+      to_json(identifiability_keys().values_of(experiment.identifiability));
   results.values = values(found);
 
   results.heading(experiment.title.empty() ? "What can be known" : experiment.title);

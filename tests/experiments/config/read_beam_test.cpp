@@ -186,7 +186,8 @@ TEST(ReadBeam, RefusesWhatMakesNoSense) {
       {"mass_kg = 1\nend_diameter_m = 0.1\n",
        "bad.toml:1:1: beam.diameter_m is missing; expected a positive number beside end_diameter_m"},
       {"mass_kg = 1\nsupport = \"clamped\"\n",
-       "bad.toml:7:11: unknown 'clamped'; known: clamped-clamped, clamped-pinned, clamped-guided, "
+       "bad.toml:7:11: beam.support is the text \"clamped\"; expected one of clamped-clamped, "
+       "clamped-pinned, clamped-guided, "
        "clamped-free, pinned-clamped, pinned-pinned, pinned-guided, pinned-free, guided-clamped, "
        "guided-pinned, guided-guided, guided-free, free-clamped, free-pinned, free-guided, free-free"},
       {"mass_kg = 1\nshear_factor = 0.8\n",

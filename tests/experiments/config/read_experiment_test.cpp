@@ -219,7 +219,9 @@ TEST(ReadExperiment, RefusesImpossibleBeams) {
        {BEAM "elements = 4.5\n",
         "bad.toml:5:12: beam.elements is 4.5; expected a whole number from 1 to 1000000"},
        {"[beam]\nlength_m = 1\nyoungs_modulus_pa = 1e300\nwidth_m = 1e300\nheight_m = 1\nmass_kg = 1\n",
-        "bad.toml:4:11: beam.width_m is 1e+300; expected a positive number of a size from 1e-100 to 1e+30"},
+        "bad.toml:3:21: beam.youngs_modulus_pa is 1e+300; expected a positive number of a size from 1e-100 "
+        "to "
+        "1e+30"},
        {"[beam]\nlength_m = 1e-101\n",
         "bad.toml:2:12: beam.length_m is 1e-101; expected a positive number of a size from 1e-100 to "
         "1e+30"}});

@@ -79,7 +79,8 @@ TEST(ReadParameters, RefusesWhatMakesNoSense) {
   EXPECT_THAT(refusal(begin + "to_m = 1.2\nfrom_m = 0\n"), HasSubstr("beam's length, 1.1"));
   EXPECT_THAT(refusal(begin + "deviation_n_m2 = 0\n"), HasSubstr("a positive number"));
   EXPECT_THAT(refusal(begin + "deviation_n_m2 = 1\nrelative_deviation = 0.1\n"), HasSubstr("one of them"));
-  EXPECT_THAT(refusal(begin + "form = \"cubic\"\n"), HasSubstr("linear, logarithmic or bounded"));
+  EXPECT_THAT(refusal(begin + "form = \"cubic\"\n"),
+              HasSubstr("expected one of linear, logarithmic, bounded"));
   EXPECT_THAT(refusal(begin + "name = \"My EI\"\n"), HasSubstr("small letters"));
   EXPECT_THAT(refusal(begin + "known = 1\n"), HasSubstr("true or false"));
   EXPECT_THAT(refusal(begin + "mode = 0\n"), HasSubstr("whole number from 1"));

@@ -6,12 +6,12 @@
 #include <fstream>
 #include <numeric>
 
-#include "experiments/config/read_sweep.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/studies/sweep/perform.hpp"
 #include "experiments/sweep/hdf5_table.hpp"
 #include "experiments/sweep/journal.hpp"
 #include "experiments/sweep/manifest.hpp"
+#include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/repeats.hpp"
 #include "experiments/sweep/statistics.hpp"
 #include "experiments/sweep/sweep.hpp"
@@ -64,8 +64,23 @@ TEST(VariedKey, RefusesWhatIsNoneOfThem) {
   refuses("damping.ratio=1:2:three", "expected a number in the place of 'three'");
   refuses("damping.ratio=uniform:2:1", "expected FROM below TO");
   refuses("damping.ratio=0.1,,0.2", "expected a value between commas");
-  EXPECT_THAT([] { refuse_unknown(parse_varied("beam.lenght_m=1,2")); },
+  EXPECT_THAT([] { check_key(parse_varied("beam.lenght_m=1,2")); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("did you mean 'length_m'?")));
+  const auto refuses_key = [](const char* text, const char* message) {
+    EXPECT_THAT([&] { check_key(parse_varied(text)); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr(message)))
+        << text;
+  };
+  refuses_key("beam.tip_mass_kg=-1,2", "sets beam.tip_mass_kg to -1; expected zero or a positive number");
+  refuses_key("beam.elements=10,20.5",
+              "sets beam.elements to 20.5; expected a whole number from 1 to 1000000");
+  refuses_key("beam.mass_kg=light", "sets beam.mass_kg to light; expected a positive number");
+  refuses_key("beam.theory=shear", "expected one of euler_bernoulli, timoshenko");
+  refuses_key("filter.method=uniform:1:2", "draws numbers; expected a text in quotes between commas");
+  refuses_key("record.window_s=1,2", "holds more than one value; expected a key of one");
+  refuses_key("beam.springs=1", "holds more than one value");
+  refuses_key("frame.bodies[1].mass_kg=1,2", "is in no table of an experiment file");
+  refuses_key("sensors[1.noise_m=1", "has a bracket that is not closed");
   EXPECT_THAT(
       [] {
         plan_with({"beam.length_m=1,2", "beam.length_m=3"});

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_sweep.hpp"
 #include "experiments/studies/sweep/perform.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/manifest.hpp"
+#include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/statistics.hpp"
 #include "experiments/sweep/sweep.hpp"
 #include "fem/assembly.hpp"

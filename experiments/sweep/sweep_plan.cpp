@@ -1,4 +1,4 @@
-#include "experiments/config/sweep_plan.hpp"
+#include "experiments/sweep/sweep_plan.hpp"
 
 #include <fmt/format.h>
 
