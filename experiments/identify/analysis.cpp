@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -10,6 +11,7 @@
 #include "experiments/identify/mode_residual.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/recorded_frequency.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "experiments/record/column_name.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -33,7 +34,7 @@ std::string to_csv(const Record& record, int digits) {
   if (!record.samples.allFinite() || !record.time.allFinite())
     throw std::invalid_argument("a record with NaN or infinity; expected finite numbers");
   std::string text;
-  for (const std::string& name : column_names(record)) text += (text.empty() ? "" : ",") + name;
+  for (const std::string& name : column_names(record)) text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
   for (Eigen::Index instant = 0; instant < record.size(); ++instant) {
     append(text, record.time[instant], digits);

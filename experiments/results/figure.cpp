@@ -6,13 +6,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/results/csv.hpp"
 #include "experiments/results/envelope.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/results/gnuplot.hpp"
 #include "experiments/results/process.hpp"
 #include "experiments/results/vtk/drawing.hpp"
 #include "experiments/text/clean_text.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {

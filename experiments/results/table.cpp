@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "experiments/results/csv.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 

@@ -3,34 +3,13 @@
 #include <algorithm>
 #include <charconv>
 
-#include "experiments/results/csv.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-/// Nothing where a quote is not closed.
-std::optional<std::vector<std::string>> fields_of(std::string_view line) {
-  std::vector<std::string> fields{""};
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
-      fields.back() += '"';
-      ++i;
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  if (quoted) return {};
-  return fields;
-}
-
 template <class Number>
-bool read(const std::string& field, Number& number) {
+bool read(std::string_view field, Number& number) {
   const char* const end = field.data() + field.size();
   const auto [rest, error] = std::from_chars(field.data(), end, number);
   return error == std::errc() && rest == end;
@@ -82,17 +61,21 @@ std::string to_line(const SweepRow& row) {
 }
 
 std::optional<SweepRow> from_line(std::string_view line, std::size_t values) {
-  const auto fields = fields_of(line);
+  std::vector<std::string_view> fields;
+  split_fields(line, ',', fields, true);
   constexpr std::size_t counts = 4;
   const std::size_t texts = text_columns().size(), numbers = number_columns().size();
-  if (!fields || fields->size() != counts + values + texts + numbers) return {};
+  const bool torn = std::any_of(fields.begin(), fields.end(), [](std::string_view field) {
+    return field.starts_with('"') && (field.size() < 2 || !field.ends_with('"'));
+  });
+  if (torn || fields.size() != counts + values + texts + numbers) return {};
   SweepRow row;
-  if (!read((*fields)[0], row.number) || !read((*fields)[1], row.row) || !read((*fields)[2], row.rows) ||
-      !read((*fields)[3], row.seed))
+  if (!read(fields[0], row.number) || !read(fields[1], row.row) || !read(fields[2], row.rows) ||
+      !read(fields[3], row.seed))
     return {};
-  auto field = fields->begin() + counts;
-  for (std::size_t j = 0; j < values; ++j) row.values.push_back(*field++);
-  for (const auto& [name, member] : text_columns()) row.*member = *field++;
+  auto field = fields.begin() + counts;
+  for (std::size_t j = 0; j < values; ++j) row.values.push_back(field_text(*field++));
+  for (const auto& [name, member] : text_columns()) row.*member = field_text(*field++);
   for (const auto& [name, member] : number_columns()) {
     if (!field->empty() && !read(*field, row.*member)) return {};
     ++field;

@@ -1,13 +1,34 @@
 #include "experiments/text/fields.hpp"
 
+#include <fmt/format.h>
+#include <cctype>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+
+#include "experiments/text/clean_text.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 constexpr std::string_view blanks = " \t\v\f";
+
+/// Of a field in quotes at the beginning of `rest`: how long it is with them; 0: it is none.
+std::size_t quoted_length(std::string_view rest, char separator) {
+  if (!rest.starts_with('"')) return 0;
+  for (std::size_t end = 1; (end = rest.find('"', end)) != std::string_view::npos;) {
+    if (++end < rest.size() && rest[end] == '"') {
+      ++end;
+      continue;
+    }
+    const std::size_t next = separator == ' ' ? end : rest.find_first_not_of(blanks, end);
+    const bool last = next >= rest.size();
+    return last || (separator == ' ' ? blanks.find(rest[next]) != blanks.npos : rest[next] == separator) ? end
+                                                                                                         : 0;
+  }
+  return 0;
+}
 
 }  // namespace
 
@@ -17,10 +38,16 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
-std::string_view unquoted(std::string_view text) {
-  const bool quoted =
-      text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.front() == text.back();
-  return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
+std::string field_text(std::string_view field) {
+  if (field.size() < 2 || field.front() != '"' || field.back() != '"') return std::string(field);
+  std::string inner(field.substr(1, field.size() - 2));
+  for (std::size_t at = 0; (at = inner.find("\"\"", at)) != std::string::npos; ++at) inner.erase(at, 1);
+  return inner;
+}
+
+std::string unquoted(std::string_view field) {
+  const bool single = field.size() >= 2 && field.front() == '\'' && field.back() == '\'';
+  return std::string(trimmed(single ? std::string(field.substr(1, field.size() - 2)) : field_text(field)));
 }
 
 char separator_of(std::string_view line) {
@@ -29,17 +56,38 @@ char separator_of(std::string_view line) {
   return ' ';
 }
 
-void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
+                  bool empty_ends) {
   fields.clear();
   const bool blank = separator == ' ';
   if (blank) line = trimmed(line);
   for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t first = std::min(line.find_first_not_of(' ', begin), line.size()),
+                      quoted = quoted_length(line.substr(first), separator),
+                      from = quoted > 0 ? first + quoted : begin;
     const std::size_t end =
-        std::min(blank ? line.find_first_of(blanks, begin) : line.find(separator, begin), line.size());
-    fields.push_back(trimmed(line.substr(begin, end - begin)));
+        std::min(blank ? line.find_first_of(blanks, from) : line.find(separator, from), line.size());
+    std::string_view field = trimmed(line.substr(begin, end - begin));
+    if (const auto inner = field.substr(quoted > 0, field.size() - 2);
+        quoted > 0 && inner.find('"') == inner.npos)
+      field = inner;
+    fields.push_back(field);
     begin = blank ? std::min(line.find_first_not_of(blanks, end), line.size() + 1) : end + 1;
   }
-  while (!fields.empty() && fields.back().empty()) fields.pop_back();
+  while (!empty_ends && !fields.empty() && fields.back().empty()) fields.pop_back();
+}
+
+std::string csv_field(std::string_view raw) {
+  const std::string text = clean_lines(raw);
+  const bool plain = text.find_first_of(",\"\n") == std::string::npos && trimmed(text).size() == text.size();
+  if (plain) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + '"';
+}
+
+std::string csv_field(double value) {
+  return std::isnan(value) ? std::string() : fmt::format("{}", value);
 }
 
 ParsedNumber parse_number(std::string_view field) {
@@ -70,6 +118,18 @@ bool all_numbers(const std::vector<std::string_view>& fields, char decimal) {
   return !fields.empty() && std::all_of(fields.begin(), fields.end(), [&](std::string_view field) {
     return parse_number(field, decimal).number;
   });
+}
+
+std::string column_key(const std::string& name, const std::string& unit) {
+  std::string key = name;
+  if (!unit.empty()) key += "_";
+  for (const char letter : unit) {
+    if (letter == '/')
+      key += "_per_";
+    else
+      key += letter == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  return key;
 }
 
 }  // namespace beamid::experiments

@@ -1,6 +1,7 @@
-// The fields of one line of delimited text.
+// The fields of one line of delimited text, read and written: RFC 4180's quotes [rfc4180], any separator.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -9,15 +10,32 @@ namespace beamid::experiments {
 /// Without blanks and tabs around it.
 std::string_view trimmed(std::string_view text);
 
-/// Without one pair of quotes around it.
-std::string_view unquoted(std::string_view text);
+/// The text of a field that split_fields() found: of one in quotes, what is between them, with doubled ones
+/// as one.
+std::string field_text(std::string_view field);
+
+/// The same, or without one pair of single quotes around it.
+std::string unquoted(std::string_view field);
 
 /// The first of tab, semicolon, comma that occurs, else ' ' for blanks.
 char separator_of(std::string_view line);
 
-/// The trimmed fields of a line, views into it; separators at its end add none. ' ' stands for any run of
-/// blanks and tabs.
-void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
+/// The trimmed fields of a line, views into it. ' ' stands for any run of blanks and tabs. A separator
+/// between quotes is none: such a field comes without them, or, where quotes are doubled in it, with them,
+/// for field_text(). A quote that is not closed before the next separator or the end is text like any other.
+/// @param empty_ends whether empty fields at the end of the line count
+void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
+                  bool empty_ends = false);
+
+/// A text, cleaned (clean_text.hpp), as a field that split_fields() and field_text() give back: quoted where
+/// it holds a comma, a quote or a line break, or begins or ends with a blank.
+std::string csv_field(std::string_view text);
+
+/// The shortest decimal number that reads back as the same double; empty when it is NaN.
+std::string csv_field(double value);
+
+/// Name of a column: "stiffness" in "N/m" is "stiffness_n_per_m", of no unit "stiffness".
+std::string column_key(const std::string& name, const std::string& unit);
 
 struct ParsedNumber {
   double value = 0;

@@ -8,7 +8,7 @@
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/results/csv.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/method_choice.hpp"
 
 namespace beamid::experiments {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "experiments/models/estimates.hpp"
-#include "experiments/results/csv.hpp"
 #include "experiments/results/file.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {

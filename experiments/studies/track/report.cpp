@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "experiments/models/estimates.hpp"
-#include "experiments/results/csv.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/studies/track/figure.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "experiments/results/print.hpp"
 #include "experiments/results/text.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments::table_test {
 namespace {
@@ -137,6 +138,22 @@ TEST(Csv, QuotesFieldsThatHoldCommasQuotesOrLineBreaks) {
   Table table{"csv", ""};
   table.column({"a", "plain"}).column({"b", "with,comma"}).row({"say \"so\"", "two\nlines"}).row({"x", 1.5});
   EXPECT_EQ(to_csv(table), "plain,\"with,comma\"\n\"say \"\"so\"\"\",\"two\nlines\"\nx,1.5\n");
+}
+
+// The reader of records and journals against the writer of tables. Oracle: [rfc4180], sections 2.5 to 2.7.
+TEST(Csv, FieldsReadBackAsTheyWereWritten) {
+  const std::vector<std::string> texts{"plain", "with,comma", "say \"so\", please", " blanks ",
+                                       "",      "\"\"",       "'single'",           "5\" pipe"};
+  std::string line;
+  for (const std::string& text : texts) line += (line.empty() ? "" : ",") + csv_field(text);
+  std::vector<std::string_view> fields;
+  split_fields(line, ',', fields);
+  ASSERT_EQ(fields.size(), texts.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) EXPECT_EQ(field_text(fields[i]), texts[i]);
+  split_fields("1, \"2;5\" ,\"open,3,,", ',', fields, true);
+  EXPECT_EQ(fields, (std::vector<std::string_view>{"1", "2;5", "\"open", "3", "", ""}));
+  split_fields("\"time s\"  \"a, g\"", ' ', fields);
+  EXPECT_EQ(fields, (std::vector<std::string_view>{"time s", "a, g"}));
 }
 
 // Oracle: strtod gives back the same double; NaN is an empty field.
