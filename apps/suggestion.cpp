@@ -19,10 +19,20 @@ std::vector<std::string> listed(const std::string& text) {
   return names;
 }
 
+// is the text "clamped-fre"; expected one of clamped-free, ...
+std::string suggested_text(const std::string& line) {
+  const std::string is = "is the text \"", list = "\"; expected one of ";
+  const std::size_t from = line.find(is), to = line.find(list, from);
+  if (from == std::string::npos || to == std::string::npos) return line;
+  const std::size_t word = from + is.size();
+  const std::string hint = suggestion(line.substr(word, to - word), listed(line.substr(to + list.size())));
+  return hint.empty() ? line : line.substr(0, to + 1) + hint;
+}
+
 std::string suggested(const std::string& line) {
   constexpr const char* before = "'; known: ";
   const std::size_t unknown = line.rfind("unknown "), at = line.find(before, unknown);
-  if (unknown == std::string::npos || at == std::string::npos) return line;
+  if (unknown == std::string::npos || at == std::string::npos) return suggested_text(line);
   const std::size_t quote = line.find('\'', unknown);
   if (quote >= at) return line;
   const std::vector<std::string> known = listed(line.substr(at + std::char_traits<char>::length(before)));

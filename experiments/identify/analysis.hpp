@@ -14,6 +14,7 @@
 
 namespace beamid::experiments {
 
+/// Beside the record itself: its even form, its mode, the noise at it.
 struct RecordAnalysis {
   Record record;          ///< every channel knows its place; stamps as they are, NaN where nothing was read
   AnalysableRecord even;  ///< what a spectrum or a low-pass takes: even stamps, short gaps filled

@@ -170,6 +170,8 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
   comparison.compared.record = analysis.record;
   comparison.compared.notes.insert(comparison.compared.notes.end(), analysis.notes.begin(),
                                    analysis.notes.end());
+  if (comparison.compared.truth && !analysis.even.remark.empty())
+    comparison.compared.notes.push_back("For the modal analysis and first estimates: " + analysis.even.remark);
   comparison.warnings = analysis.warnings;
   const RunContext context{experiment, comparison.compared, analysis};
   Countdown countdown(

@@ -9,6 +9,7 @@
 
 namespace beamid::experiments {
 
+/// A record at even stamps, without gaps, and what was done for that.
 struct AnalysableRecord {
   Record record;
   std::string remark = {};  ///< what was done, a sentence or more; empty: nothing
