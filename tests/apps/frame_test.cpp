@@ -120,8 +120,7 @@ TEST(Frame, RefusesWhatMakesNoSense) {
       {"frame no.toml", "no.toml: no such file; expected a TOML file"},
       {"frame frame.toml --modes 0", "beamid: frame: --modes is 0; expected a whole number from 1 to 1000"},
       {"frame frame.toml",
-       "frame.toml:14:8: frame.supports[1].kind is the text \"pined\"; expected one of clamped, pinned, "
-       "rolling_x, rolling_y, sliding_x, sliding_y, guided"},
+       "frame.toml:14:8: frame.supports[1].kind is the text \"pined\"; did you mean 'pinned'?"},
       {"frame beam.toml", "beam.toml: frame is missing; expected a table"}};
   for (const auto& [words, message] : cases) {
     const Outcome outcome = place.run(words);
