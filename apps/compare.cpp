@@ -80,9 +80,9 @@ int run_compare(const Values& values) {
           keep_out_higher_modes(request);
         }
         source.experiment.format = request.experiment.format;
-        prepared = request.prepared;
+        prepared = request.as_analysed();
         decisions = request.decisions();
-        compared = measured_record(file[0].filename().string(), prepared.record);
+        compared = measured_record(file[0].filename().string(), request.prepared.record);
       } else if (values.has("truth")) {
         const fs::path truth = values.text("truth");
         compared = simulated_record(read_experiment(truth), truth.parent_path(), progress);

@@ -12,7 +12,6 @@
 #include "experiments/identify/noise_source.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/identify/record_identification.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/studies/damping/compared_laws.hpp"
 #include "experiments/studies/identify/identification_report.hpp"
 #include "experiments/studies/identify/joint_comparison_report.hpp"
@@ -47,15 +46,6 @@ const RecordIdentification& oscillator_in(const Comparison& found) {
   return *found.runs.at(0).oscillator;
 }
 
-/// With what the modal analysis beside the filter needed of the record: the filter takes it as it is.
-PreparedRecord told_of(const IdentifyRequest& one) {
-  PreparedRecord prepared = one.prepared;
-  if (const std::string remark = analysable(prepared.record).remark; !remark.empty()) {
-    prepared.record.remarks.push_back("For the modal analysis and first estimates: " + remark);
-  }
-  return prepared;
-}
-
 Results identify_one(const IdentifyRequest& one, const std::string& law, const fs::path& folder,
                      const Progress& progress) {
   const Experiment& experiment = one.experiment;
@@ -70,7 +60,7 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
                                        : identification_report(experiment, found);
   }
   for (const std::string& text : one.decisions()) results.paragraph(text);
-  tell_preparation(results, told_of(one), experiment.format);
+  tell_preparation(results, one.as_analysed(), experiment.format);
   return results;
 }
 
@@ -135,7 +125,7 @@ Results identify_together(const std::vector<IdentifyRequest>& requests, const st
     for (const std::string& text : one.decisions())
       results.paragraph(one.file.filename().string() + ": " + text);
   for (const IdentifyRequest& one : requests)
-    tell_cost(results, one.file.filename().string(), told_of(one), one.experiment.format);
+    tell_cost(results, one.file.filename().string(), one.as_analysed(), one.experiment.format);
   return results;
 }
 

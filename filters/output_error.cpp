@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "filters/interval_kept.hpp"
-#include "filters/sample_clock.hpp"
+#include "filters/sample_walk.hpp"
 
 namespace beamid::filters {
 
@@ -47,22 +46,11 @@ OutputErrorPass OutputError::pass(const VectorXd& coefficients, Index samples) {
   result.information = InformationFactor(r + 1);
   result.residuals.setConstant(measurements_.outputs.rows(), samples,
                                std::numeric_limits<double>::quiet_NaN());
-  const IntervalKept kept(model_);
-  SampleClock clock(model_.interval(), measurements_.time_resolution);
-  VectorXd at = state(coefficients), next;
   MatrixXd moved = directions_;
   try {
-    for (Index k = 0; k < samples; ++k) {
-      if (k == 0) {
-        clock.start(measurements_.time[0]);
-      } else {
-        model_.set_interval(clock.advance(measurements_.time[k]));
-        model_.move(at, input_, next, moved);
-        at.swap(next);
-      }
-      if (measurements_.inputs.size() > 0) input_ = measurements_.inputs.col(k);
-      take_in(k, at, moved, result);
-    }
+    walk_samples(
+        model_, measurements_, samples, state(coefficients), moved,
+        [&](Index k, const VectorXd& at, const VectorXd& input) { take_in(k, at, input, moved, result); });
   } catch (const std::runtime_error& trouble) {  // a motion that leaves the numbers, or cannot take the step
     result.reason = trouble.what();
     return result;
@@ -78,15 +66,15 @@ OutputErrorPass OutputError::pass(const VectorXd& coefficients, Index samples) {
   return result;
 }
 
-void OutputError::take_in(Index sample, const VectorXd& state, const MatrixXd& moved,
+void OutputError::take_in(Index sample, const VectorXd& state, const VectorXd& input, const MatrixXd& moved,
                           OutputErrorPass& result) {
   measured_.clear();
   for (Index i = 0; i < measurements_.outputs.rows(); ++i)
     if (!std::isnan(measurements_.outputs(i, sample))) measured_.push_back(i);
   if (measured_.empty()) return;
   factorise_noise(sample);
-  model_.output(state, input_, output_);
-  model_.output_jacobian(state, input_, sensor_);
+  model_.output(state, input, output_);
+  model_.output_jacobian(state, input, sensor_);
   const auto count = static_cast<Index>(measured_.size()), r = moved.cols();
   const VectorXd y = measurements_.outputs(measured_, sample), residual = y - output_(measured_);
   rows_.resize(count, r + 1);

@@ -37,8 +37,8 @@ class OutputError {
   OutputErrorPass pass(const Eigen::VectorXd& coefficients, Eigen::Index samples);
 
  private:
-  void take_in(Eigen::Index sample, const Eigen::VectorXd& state, const Eigen::MatrixXd& moved,
-               OutputErrorPass& result);
+  void take_in(Eigen::Index sample, const Eigen::VectorXd& state, const Eigen::VectorXd& input,
+               const Eigen::MatrixXd& moved, OutputErrorPass& result);
   void factorise_noise(Eigen::Index sample);
 
   DiscreteModel& model_;
@@ -47,7 +47,7 @@ class OutputError {
   const Measurements& measurements_;
   const Eigen::MatrixXd& prior_;
   std::vector<Eigen::Index> measured_, factorised_;  // outputs, of this sample and of noise_
-  Eigen::VectorXd input_, output_;
+  Eigen::VectorXd output_;
   Eigen::MatrixXd sensor_, rows_;
   Eigen::LLT<Eigen::MatrixXd> noise_;
 };

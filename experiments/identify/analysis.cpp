@@ -22,10 +22,6 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Smallest noise taken from a record, relative to its largest reading. One simulated without noise would else
-// make P0 and R differ by more digits than double precision has.
-constexpr double smallest_record_noise = 1e-6;
-
 void refuse_dead_channels(const Record& record) {
   for (const Index i : output_channels(record)) {
     const Channel& channel = record.channels[static_cast<std::size_t>(i)];
@@ -48,20 +44,23 @@ double beam_frequency_hz(const Experiment& experiment) {
 }
 
 void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
-  const AnalysableRecord even = on_even_stamps(found.record);
+  const Record& stamped = found.evenly_stamped();
   ModalAnalysisSettings settings;
   settings.expected_frequency_hz = found.expected_hz;
   try {
-    found.modal = dominant_mode(even.record.samples.row(output_channels(found.record)[0]).transpose(),
-                                even.record.interval(), settings);
+    found.modal = dominant_mode(stamped.samples.row(output_channels(stamped)[0]).transpose(),
+                                stamped.interval(), settings);
     found.mode = FoundMode{found.modal->frequency_hz, found.modal->damping_ratio};
     found.mode_noise = found.residual_noise(*found.modal);
     found.near_mode = found.noise_at(*found.modal);
+    if (asks_free_oscillator(experiment, found.record))
+      found.sections = amplitude_sections(stamped.samples.row(output_channels(stamped)[0]).transpose(),
+                                          stamped.interval(), *found.modal);
   } catch (const std::invalid_argument& error) {
     found.modal_refusal = fmt::format(
         "modal analysis: {} (looked for near {:.6g} Hz of {})", error.what(), found.expected_hz,
         experiment.prior.stiffness ? "prior.stiffness_n_per_m"
-                                   : "the beam as described; prior.stiffness_n_per_m tells better");
+                                   : "the beam as described; prior.stiffness_n_per_m says it better");
   } catch (const std::runtime_error& error) {
     found.modal_failure = error.what();
   }
@@ -112,29 +111,30 @@ bool RecordAnalysis::forced() const {
   return !force_channels(record).empty();
 }
 
+const Record& RecordAnalysis::evenly_stamped() const {
+  return evenly_sampled(record) ? record : even.record;
+}
+
+bool asks_free_oscillator(const Experiment& experiment, const Record& record) {
+  return experiment.model.name == "sdof" && experiment.parameters.empty() && force_channels(record).empty();
+}
+
 VectorXd RecordAnalysis::residual_noise(const ModalEstimate& of) const {
   const std::vector<Index> outputs = output_channels(record);
   const MatrixXd samples = record.samples(outputs, Eigen::all);
   VectorXd noise = mode_residual(samples, record.time, of.rate()).standard_deviation;
   for (Index i = 0; i < noise.size(); ++i)
-    noise[i] = std::max(noise[i], smallest_record_noise * largest_measured(samples.row(i)));
+    noise[i] = std::max(noise[i], smallest_relative_noise * largest_measured(samples.row(i)));
   return noise;
 }
 
 NoiseNearMode RecordAnalysis::noise_at(const ModalEstimate& of) const {
-  const AnalysableRecord stamped = on_even_stamps(record);
-  NoiseNearMode near = noise_near_mode(stamped.record.samples.row(output_channels(record)[0]).transpose(),
-                                       stamped.record.interval(), of);
+  const Record& stamped = evenly_stamped();
+  NoiseNearMode near =
+      noise_near_mode(stamped.samples.row(output_channels(record)[0]).transpose(), stamped.interval(), of);
   // What is filled in has no noise of its own, and an even grid may be denser than the readings.
-  near.deviation /= std::sqrt(stamped.share * stamped.density);
+  if (&stamped != &record) near.deviation /= std::sqrt(even.share * even.density);
   return near;
-}
-
-AmplitudeSections RecordAnalysis::sections() const {
-  if (!modal) return {};
-  const Record stamped = on_even_stamps(record).record;
-  return amplitude_sections(stamped.samples.row(output_channels(record)[0]).transpose(), stamped.interval(),
-                            *modal);
 }
 
 RecordAnalysis analyse(const Experiment& experiment, const Record& record) {

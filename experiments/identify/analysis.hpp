@@ -14,6 +14,10 @@
 
 namespace beamid::experiments {
 
+/// Smallest noise taken from a record, relative to its size. One simulated without noise would else make P0
+/// and R differ by more digits than double precision has.
+inline constexpr double smallest_relative_noise = 1e-6;
+
 /// Beside the record itself: its even form, its mode, the noise at it.
 struct RecordAnalysis {
   Record record;          ///< every channel knows its place; stamps as they are, NaN where nothing was read
@@ -27,14 +31,16 @@ struct RecordAnalysis {
   Eigen::VectorXd mode_noise;              ///< residual_noise() of `modal`; empty without one (p)
   std::optional<NoiseNearMode> near_mode;  ///< noise_at() `modal`
   std::optional<FoundMode> mode;           ///< what models are checked against; a force may drive it
+  AmplitudeSections sections;              ///< of the first output, where asks_free_oscillator() and `modal`
   std::vector<std::string> notes, warnings;
 
   bool forced() const;  ///< whether a force was measured
+  /// The record itself where its stamps are even, missing samples and all; else `even`.
+  const Record& evenly_stamped() const;
   /// Standard deviation of what the mode leaves of every output (p), at least 1e-6 of the largest reading.
   Eigen::VectorXd residual_noise(const ModalEstimate& mode) const;
   /// Of the first output, of one reading.
   NoiseNearMode noise_at(const ModalEstimate& mode) const;
-  AmplitudeSections sections() const;  ///< of the first output; none without a modal analysis
 };
 
 /// Places of the channels, even stamps, the mode near the one that the beam as described leads to expect, or
@@ -44,6 +50,9 @@ struct RecordAnalysis {
 /// measured forces, or the beam's, takes its place.
 /// @throws std::invalid_argument without a channel of motion, with a dead one or one at an unknown place
 RecordAnalysis analyse(const Experiment& experiment, const Record& record);
+
+/// Whether K and C of a free decay are asked, which have a verdict and a report of their own.
+bool asks_free_oscillator(const Experiment& experiment, const Record& record);
 
 /// Of the mode that is looked for [Hz], as it is and not as the sampling rate shows it.
 double described_frequency_hz(const Experiment& experiment, const Record& record);

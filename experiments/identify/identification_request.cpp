@@ -2,15 +2,23 @@
 
 #include <algorithm>
 
+#include "experiments/identify/analysis.hpp"
 #include "experiments/identify/decay_window.hpp"
 #include "experiments/identify/higher_modes.hpp"
 #include "experiments/identify/model_setting.hpp"
+#include "experiments/record/prepare/analysable_record.hpp"
 
 namespace beamid::experiments {
 
 bool IdentificationRequest::is_free_oscillator() const {
-  return experiment.model.name == "sdof" && experiment.parameters.empty() &&
-         force_channels(prepared.record).empty();
+  return asks_free_oscillator(experiment, prepared.record);
+}
+
+PreparedRecord IdentificationRequest::as_analysed() const {
+  PreparedRecord result = prepared;
+  if (const std::string remark = analysable(prepared.record).remark; !remark.empty())
+    result.record.remarks.push_back("For the modal analysis and first estimates: " + remark);
+  return result;
 }
 
 std::vector<std::string> IdentificationRequest::decisions() const {

@@ -22,6 +22,8 @@ struct IdentificationRequest {
   std::vector<std::string> decisions() const;
   /// K and C of a free decay have a report of their own.
   bool is_free_oscillator() const;
+  /// With what the modal analysis needed of the record among its remarks: a filter takes it as it is.
+  PreparedRecord as_analysed() const;
 };
 
 /// Cuts a free decay out of a record that the experiment does not cut, and in which no force was measured.

@@ -68,7 +68,7 @@ JointEstimate joint_estimate(const std::vector<RecordBelief>& records) {
     weighted += information.back() * record.unknowns.mean;
     if (record.start.size() > 0) weighted += weight * nuisance * (record.unknowns.mean - record.start);
   }
-  // scaled by what is believed beforehand, units do not matter
+  // scaled by what is known beforehand, units do not matter
   const VectorXd scale = records[0].prior.diagonal().cwiseSqrt();
   const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * (sum + nuisance) * scale.asDiagonal());
   if (factor.info() != Eigen::Success)

@@ -16,7 +16,7 @@ RecordBelief belief_of(const RecordIdentification& found) {
                       found.settings.initial.marginal(first, joint_unknowns)};
   // R counts, unless the record shows more noise at the mode
   if (found.interval_factor == 1.0) return belief;
-  belief.noise_ratio = found.interval_factor / found.near_mode.student();
+  belief.noise_ratio = found.noise_ratio();
   belief.noise_freedom = found.near_mode.freedom;
   return belief;
 }

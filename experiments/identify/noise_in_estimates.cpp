@@ -6,8 +6,7 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "filters/interval_kept.hpp"
-#include "filters/sample_clock.hpp"
+#include "filters/sample_walk.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -23,22 +22,12 @@ MatrixXd sensitivities(filters::DiscreteModel& model, const VectorXd& state, con
   const Index samples = record.time.size(), p = record.outputs.rows();
   const VectorXd deviation = model.output_noise().diagonal().cwiseSqrt();
   MatrixXd rows = MatrixXd::Zero(p * samples, directions.cols()), moved = directions, sensor;
-  VectorXd x = state, next, input;
-  const filters::IntervalKept kept(model);
-  filters::SampleClock clock(model.interval(), record.time_resolution);
-  clock.start(record.time[0]);
-  for (Index k = 0; k < samples; ++k) {
-    if (k > 0) {
-      model.set_interval(clock.advance(record.time[k]));
-      model.move(x, input, next, moved);
-      x.swap(next);
-    }
-    if (record.inputs.size() > 0) input = record.inputs.col(k);
+  filters::walk_samples(model, record, samples, state, moved, [&](Index k, const auto& x, const auto& input) {
     model.output_jacobian(x, input, sensor);
     const MatrixXd read = sensor * moved;
     for (Index i = 0; i < p; ++i)
       if (std::isfinite(record.outputs(i, k))) rows.row(i * samples + k) = read.row(i) / deviation[i];
-  }
+  });
   return rows;
 }
 
@@ -118,21 +107,21 @@ std::vector<NoiseInEstimate> noise_in_estimates(filters::DiscreteModel& model, c
     const VectorXd weights = upper.transpose().triangularView<Eigen::Lower>().solve(unit);
     // Row c of R^-1 Q^T is (Q R^-T e_c)^T.
     const VectorXd influence = basis * weights;
-    double heard = 0.0, all = 0.0, spread = 0.0;
+    double passed = 0.0, all = 0.0, spread = 0.0;
     for (Index i = 0; i < p; ++i) {
       const VectorXd share = power(influence.segment(i * samples, samples));
       const NoiseDensity& noise = density[static_cast<std::size_t>(i)];
       for (Index k = 0; k < share.size(); ++k) {
-        heard += share[k] * noise.density[k];
+        passed += share[k] * noise.density[k];
         all += share[k];
         spread += share[k] * noise.density[k] / std::max(noise.weight[k], 1.0);
       }
     }
-    if (!(all > 0.0) || !(heard > 0.0)) continue;
+    if (!(all > 0.0) || !(passed > 0.0)) continue;
     NoiseInEstimate& one = result[static_cast<std::size_t>(places[c] - starts)];
-    one.ratio = std::sqrt(heard / all);
+    one.ratio = std::sqrt(passed / all);
     // Lines within a band share their noise: var(G) = G^2 / weight, all of it common to one mode.
-    one.freedom = std::max(1.0, 2.0 * heard / spread);
+    one.freedom = std::max(1.0, 2.0 * passed / spread);
   }
   return result;
 }

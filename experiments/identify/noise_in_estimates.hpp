@@ -23,9 +23,10 @@ struct NoiseInEstimate {
 ///
 ///     var_j / var_j(white) = sum_ik |g_ji(f_k)|^2 G_i(f_k) / sum_ik |g_ji(f_k)|^2 r_i
 ///
-/// so that what counts is the density where the unknown is heard: at the modes, each by its share. G is what
-/// the motion leaves of the record, its periodogram averaged over lines from f / 1.6 to 1.6 f, over the share
-/// of each line that the fit does not take, 1 - sum_c |Q_ic(f_k)|^2, Q an orthonormal basis of R^-1/2 S.
+/// so that what counts is the density where the unknown is determined: at the modes, each by its share. G is
+/// what the motion leaves of the record, its periodogram averaged over lines from f / 1.6 to 1.6 f, over the
+/// share of each line that the fit does not take, 1 - sum_c |Q_ic(f_k)|^2, Q an orthonormal basis of R^-1/2
+/// S.
 ///
 /// The cost is that of a pass with all directions and of their Fourier transforms.
 /// @param left readings less motion (p x N); NaN where nothing was read counts as no noise

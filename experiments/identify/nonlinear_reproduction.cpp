@@ -7,9 +7,8 @@
 #include <stdexcept>
 
 #include "filters/batch_estimator.hpp"
-#include "filters/interval_kept.hpp"
 #include "filters/output_error.hpp"
-#include "filters/sample_clock.hpp"
+#include "filters/sample_walk.hpp"
 
 namespace beamid::experiments {
 
@@ -65,20 +64,13 @@ Reproduction reproduce_nonlinear(const JointModel& model, filters::DiscreteModel
   Reproduction result;
   result.initial_state = found.state;
   result.outputs.resize(record.outputs.rows(), samples);
-  VectorXd x = found.state, next, output, input;
-  const filters::IntervalKept kept(discrete);
-  filters::SampleClock clock(discrete.interval(), record.time_resolution);
-  clock.start(record.time[0]);
-  for (Index k = 0; k < samples; ++k) {
-    if (k > 0) {
-      discrete.set_interval(clock.advance(record.time[k]));
-      discrete.transition(x, input, next);
-      x.swap(next);
-    }
-    if (record.inputs.size() > 0) input = record.inputs.col(k);
-    discrete.output(x, input, output);
-    result.outputs.col(k) = output;
-  }
+  VectorXd output;
+  MatrixXd none;
+  filters::walk_samples(discrete, record, samples, found.state, none,
+                        [&](Index k, const VectorXd& x, const VectorXd& input) {
+                          discrete.output(x, input, output);
+                          result.outputs.col(k) = output;
+                        });
   take_misfit(record, result);
   return result;
 }

@@ -67,7 +67,7 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
     if (result.diagnostics) result.consistency = result.diagnostics->consistency;
     result.smoothed = run.smoothed;
     if (std::abs(result.identification.found.damping_ratio()) < 1.0) result.reproduced = run.reproduced;
-    result.sections = analysis.sections();
+    result.sections = analysis.sections;
   }
   result.judgement = judge(experiment, analysis.record, result);
   return result;
@@ -94,6 +94,10 @@ double RecordIdentification::frequency_factor() const {
 double RecordIdentification::damping_factor() const {
   return factor_of(*this, sections.damping, identification.found.damping_ratio(),
                    identification.damping_ratio_deviation);
+}
+
+double RecordIdentification::noise_ratio() const {
+  return interval_factor > 1.0 ? interval_factor / near_mode.student() : 1.0;
 }
 
 double RecordIdentification::response_error_percent(const Record& record) const {

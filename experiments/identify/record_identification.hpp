@@ -41,6 +41,8 @@ struct RecordIdentification {
   /// values of 95 % of the decay, constant or not as the record has it (section_half_width); 1 at least.
   double frequency_factor() const;
   double damping_factor() const;
+  /// Deviation of the noise at the mode over that assumed; 1 where R counts.
+  double noise_ratio() const;
   /// 100 ||y - reproduced|| / ||y|| over the samples that were measured; NaN where nothing was reproduced.
   double response_error_percent(const Record& record) const;
 };

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/signal/missing_samples.hpp"
 #include "filters/information_factor.hpp"
-#include "filters/interval_kept.hpp"
-#include "filters/sample_clock.hpp"
+#include "filters/sample_walk.hpp"
 
 namespace beamid::experiments {
 
@@ -29,12 +29,9 @@ VectorXd solution(const filters::InformationFactor& equations) {
 }  // namespace
 
 void take_misfit(const filters::Measurements& record, Reproduction& motion) {
-  const auto read = record.outputs.array().isFinite();
-  const MatrixXd left = read.select(record.outputs - motion.outputs, 0.0),
-                 finite = read.select(record.outputs, 0.0);
-  const VectorXd counts = read.cast<double>().rowwise().sum().matrix();
-  motion.residual_deviation = left.rowwise().squaredNorm().cwiseQuotient(counts.cwiseMax(1.0)).cwiseSqrt();
-  const VectorXd share = left.rowwise().norm().cwiseQuotient(finite.rowwise().norm().cwiseMax(1e-300));
+  motion.residual_deviation = root_mean_squares(record.outputs - motion.outputs);
+  const VectorXd share =
+      motion.residual_deviation.cwiseQuotient(root_mean_squares(record.outputs).cwiseMax(1e-300));
   motion.response_error_percent = 100.0 * share.norm() / std::sqrt(static_cast<double>(share.size()));
 }
 
@@ -48,33 +45,25 @@ Reproduction reproduce(filters::DiscreteModel& model, const VectorXd& state,
     if (directions.unknowns.row(i).isZero(0.0)) start[i] = 0.0;
 
   MatrixXd read(p * samples, k), sensor, moved = directions.motion;
-  MatrixXd forced(p, samples);
-  VectorXd x = start, next, output(p), input;
+  MatrixXd forced(p, samples), rows(p, k + 1);
+  VectorXd output(p);
   filters::InformationFactor equations(k + 1);
-  MatrixXd rows(p, k + 1);
-  const filters::IntervalKept kept(model);
-  filters::SampleClock clock(model.interval(), record.time_resolution);
-  clock.start(record.time[0]);
-  for (Index step = 0; step < samples; ++step) {
-    if (step > 0) {
-      model.set_interval(clock.advance(record.time[step]));
-      model.move(x, input, next, moved);
-      x.swap(next);
-    }
-    if (record.inputs.size() > 0) input = record.inputs.col(step);
-    model.output(x, input, output);
-    model.output_jacobian(x, input, sensor);
-    forced.col(step) = output;
-    read.middleRows(step * p, p).noalias() = sensor * moved;
-    if (!read.middleRows(step * p, p).allFinite() || !output.allFinite())
-      throw std::runtime_error("the reproduced motion grows beyond all bounds at " +
-                               std::to_string(record.time[step]) + " s");
-    rows << read.middleRows(step * p, p), record.outputs.col(step) - output;
-    for (Index i = 0; i < p; ++i)
-      if (std::isnan(record.outputs(i, step))) rows.row(i).setZero();  // channels' noises are independent
-    noise.matrixL().solveInPlace(rows);
-    equations.add(rows);
-  }
+  filters::walk_samples(model, record, samples, start, moved,
+                        [&](Index step, const auto& x, const auto& input) {
+                          model.output(x, input, output);
+                          model.output_jacobian(x, input, sensor);
+                          forced.col(step) = output;
+                          read.middleRows(step * p, p).noalias() = sensor * moved;
+                          if (!read.middleRows(step * p, p).allFinite() || !output.allFinite())
+                            throw std::runtime_error("the reproduced motion grows beyond all bounds at " +
+                                                     std::to_string(record.time[step]) + " s");
+                          rows << read.middleRows(step * p, p), record.outputs.col(step) - output;
+                          for (Index i = 0; i < p; ++i)
+                            if (std::isnan(record.outputs(i, step)))
+                              rows.row(i).setZero();  // channels' noises are independent
+                          noise.matrixL().solveInPlace(rows);
+                          equations.add(rows);
+                        });
   const VectorXd found = solution(equations);
 
   Reproduction result;

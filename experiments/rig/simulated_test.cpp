@@ -71,8 +71,8 @@ Audible audible_modes(const fem::StructuralSystem& system, double limit_hz) {
   }
 }
 
-/// The modal method gets as many modes as the record can show, unless told; with the others a note says what
-/// is heard.
+/// The modal method gets as many modes as the record can show, unless the file says how many; a note says
+/// what the others show.
 fem::ResponseMethod completed(const Simulation& settings, SimulatedTest& test) {
   fem::ResponseMethod method = settings.method;
   const double limit = 0.5 * settings.sampling_rate;

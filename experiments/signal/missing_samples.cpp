@@ -100,6 +100,13 @@ double largest_measured(const Eigen::MatrixXd& samples) {
   return samples.array().isFinite().select(samples.array().abs(), 0.0).maxCoeff();
 }
 
+VectorXd root_mean_squares(const MatrixXd& samples) {
+  const auto read = samples.array().isFinite();
+  const VectorXd counts = read.cast<double>().rowwise().sum().matrix();
+  const MatrixXd finite = read.select(samples, 0.0);
+  return finite.rowwise().squaredNorm().cwiseQuotient(counts.cwiseMax(1.0)).cwiseSqrt();
+}
+
 VectorXd filled(const VectorXd& signal, double period) {
   constexpr std::size_t most_lines = 4;
   constexpr double above_median = 6;

@@ -17,6 +17,9 @@ Eigen::VectorXd bridged_straight(const Eigen::VectorXd& signal);
 /// Largest magnitude of the samples that are finite; 0 where none is.
 double largest_measured(const Eigen::MatrixXd& samples);
 
+/// Root mean square of every row's samples that are finite (p); 0 where none is.
+Eigen::VectorXd root_mean_squares(const Eigen::MatrixXd& samples);
+
 /// A signal (N) of a few lines, the strongest of `period` samples, whose missing samples are filled in:
 /// around each, over four periods of the strongest line, least squares of the finite samples give
 ///

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "experiments/config/read_reduction.hpp"
+#include "experiments/identify/analysis.hpp"
 #include "experiments/identify/compare/first_guess.hpp"
 #include "experiments/identify/compare/true_value.hpp"
 #include "experiments/identify/model_setting.hpp"
@@ -26,13 +27,11 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double smallest_repeat_noise = 1e-6;  // of a channel's root mean square, as in a comparison
-
 // Of the sensors, never less than what keeps P0 / R within the digits of a number.
 VectorXd simulated_noise(const Record& clean, const VectorXd& sensor_noise) {
   const VectorXd size =
       (clean.samples.rowwise().squaredNorm() / static_cast<double>(clean.size())).cwiseSqrt();
-  return sensor_noise.head(size.size()).cwiseMax(smallest_repeat_noise * size);
+  return sensor_noise.head(size.size()).cwiseMax(smallest_relative_noise * size);
 }
 
 VectorXd assumed_noise(const Experiment& experiment, const Record& clean, VectorXd noise) {

@@ -89,13 +89,13 @@ void describe_test(const Experiment& complete, const DescribedMotion& test, Inde
     throw InputError(complete.excitation.place,
                      "the force acts until the record ends; a record without it has nothing to show");
   result.duration = static_cast<double>(left - 1) / rate;
-  const auto heard = std::count_if(result.frequencies_hz.begin(), result.frequencies_hz.end(),
+  const auto shown = std::count_if(result.frequencies_hz.begin(), result.frequencies_hz.end(),
                                    [&](double frequency) { return frequency < 0.5 * rate; });
-  if (heard < static_cast<std::ptrdiff_t>(result.frequencies_hz.size()))
+  if (shown < static_cast<std::ptrdiff_t>(result.frequencies_hz.size()))
     result.notes.push_back(fmt::format(
         "Only {} of {} modes lie below {:g} Hz, half the sampling rate; the record shows the others at other "
         "frequencies.",
-        heard, result.frequencies_hz.size(), 0.5 * rate));
+        shown, result.frequencies_hz.size(), 0.5 * rate));
 }
 
 }  // namespace

@@ -73,11 +73,11 @@ VectorXd model_start(const ObservedMotion& motion, Experiment experiment, const 
   const MatrixXd outputs = record.samples.middleCols(begin, samples);
   const auto discrete = filters::discretise(motion.model.motion, motion.interval, motion.discretisation,
                                             {{}, weights(sensors, outputs)});
-  const filters::Measurements heard{record.time.segment(begin, samples), outputs, {}};
+  const filters::Measurements part{record.time.segment(begin, samples), outputs, {}};
   VectorXd state =
       (is_nonlinear(motion.model)
-           ? reproduce_nonlinear(motion.model, *discrete, motion.initial_state, motion.directions, heard)
-           : reproduce(*discrete, motion.initial_state, motion.directions, heard))
+           ? reproduce_nonlinear(motion.model, *discrete, motion.initial_state, motion.directions, part)
+           : reproduce(*discrete, motion.initial_state, motion.directions, part))
           .initial_state;
   for (const JointModel::Offset& offset : motion.model.offsets) state[offset.place] = 0.0;
   return state;

@@ -1,4 +1,4 @@
-// What some of a record's channels would have told.
+// What some of a record's channels would have shown.
 #pragma once
 
 #include "experiments/identify/compare/comparison.hpp"

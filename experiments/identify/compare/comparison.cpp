@@ -55,22 +55,21 @@ ComparedRun refused(const std::string& reason, const Place& place) {
 /// One reduction, its model made once for all filters.
 struct ReducedBeam {
   std::optional<ModelSetting> setting;
-  std::optional<StartedModel> started;
-  double mass = 0.0;    ///< of one degree of freedom of the beam simulated [kg]
-  std::string refusal;  ///< why there is none
+  std::optional<JointModel> model;
+  std::optional<StartedModel> started;  ///< once a filter begins without the modal analysis
+  double mass = 0.0;                    ///< of one degree of freedom of the beam simulated [kg]
+  std::string refusal;                  ///< why there is none
 };
 
 ReducedBeam reduced_beam(const RunContext& context, const Choice& reduction,
                          const std::filesystem::path& folder) {
   ReducedBeam made;
-  const RecordAnalysis& analysis = context.analysis;
   try {
-    made.setting = model_setting(context.experiment, analysis.record, reduction, folder);
-    made.started = started_model(
-        context.experiment.model, *made.setting, measurements(analysis.even.record),
-        analysis.mode && !analysis.aliased ? analysis.mode->frequency_hz : analysis.beam_frequency_hz);
-    if (const auto& truth = context.compared.truth; truth && made.started->model.equivalent_mass > 0.0)
-      made.mass = true_mass(*truth, analysis.record, reduction, folder);
+    made.setting = model_setting(context.experiment, context.analysis.record, reduction, folder);
+    const Choice& model = context.experiment.model;
+    made.model = std::move(*model_registry().make(model.name, model.options, *made.setting));
+    if (const auto& truth = context.compared.truth; truth && made.model->equivalent_mass > 0.0)
+      made.mass = true_mass(*truth, context.analysis.record, reduction, folder);
   } catch (const std::invalid_argument& error) {
     made.refusal = error.what();
   }
@@ -96,22 +95,40 @@ bool noise_is_stated_well(const RunContext& context) {
   return assumed_noise(known, analysis.mode_noise)[0] > absurd * analysis.near_mode->deviation;
 }
 
+const StartedModel& start_from_record(const RunContext& context, ReducedBeam& made) {
+  const RecordAnalysis& analysis = context.analysis;
+  if (!made.started)
+    made.started = started_model(
+        *made.model, context.experiment.model, *made.setting, measurements(analysis.even.record),
+        analysis.mode && !analysis.aliased ? analysis.mode->frequency_hz : analysis.beam_frequency_hz);
+  return *made.started;
+}
+
 // A filter of one mode starts from the modal analysis, unless this has separated two: the filter would follow
 // the beat, and starts there only where it is lost otherwise.
-ComparedRun run_from_best_start(const RunContext& context, const ReducedBeam& made,
-                                const RunSettings& settings) {
+ComparedRun run_from_best_start(const RunContext& context, ReducedBeam& made, const RunSettings& settings) {
   const RecordAnalysis& analysis = context.analysis;
   std::optional<StartedModel> from_mode;
   if (analysis.modal && !analysis.aliased && context.experiment.parameters.empty() &&
       noise_is_stated_well(context))
-    from_mode = started_from_mode(made.started->model, context.experiment.prior, *analysis.modal,
+    from_mode = started_from_mode(*made.model, context.experiment.prior, *analysis.modal,
                                   settings.discretisation, analysis.record.interval());
   if (from_mode && analysis.modal->companions.empty())
     return run_once(context, *made.setting, *from_mode, settings);
-  ComparedRun run = run_once(context, *made.setting, *made.started, settings);
+  ComparedRun run = run_once(context, *made.setting, start_from_record(context, made), settings);
   if (from_mode && run.status == ComparedRun::Status::diverged)
     run = run_once(context, *made.setting, *from_mode, settings);
   return run;
+}
+
+ComparedRun identified_or_refused(const RunContext& context, ReducedBeam& made, const RunSettings& settings) {
+  const Place& place = context.experiment.model.place;
+  if (!made.refusal.empty()) return refused(made.refusal, place);
+  try {
+    return run_from_best_start(context, made, settings);
+  } catch (const std::invalid_argument& error) {  // no start can be had of the record
+    return refused(error.what(), place);
+  }
 }
 
 }  // namespace
@@ -171,7 +188,8 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
   comparison.compared.notes.insert(comparison.compared.notes.end(), analysis.notes.begin(),
                                    analysis.notes.end());
   if (comparison.compared.truth && !analysis.even.remark.empty())
-    comparison.compared.notes.push_back("For the modal analysis and first estimates: " + analysis.even.remark);
+    comparison.compared.notes.push_back("For the modal analysis and first estimates: " +
+                                        analysis.even.remark);
   comparison.warnings = analysis.warnings;
   const RunContext context{experiment, comparison.compared, analysis};
   Countdown countdown(
@@ -179,15 +197,14 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
       "runs");
   for (const Choice& reduction : experiment.reductions) {
     countdown.begin(to_text(reduction));
-    const ReducedBeam made = reduced_beam(context, reduction, folder);
+    ReducedBeam made = reduced_beam(context, reduction, folder);
     for (const Choice& filter : experiment.filters)
       for (const std::string& discretisation : experiment.discretisations) {
         RunSettings settings{filter, discretisation, experiment.passes, made.mass, keep};
-        if (made.started) fit_to_model(made.started->model, settings);
+        if (made.refusal.empty()) fit_to_model(*made.model, settings);
         countdown.begin(
             fmt::format("{}, {}, {}", to_text(reduction), settings.filter.name, settings.discretisation));
-        ComparedRun run = made.started ? run_from_best_start(context, made, settings)
-                                       : refused(made.refusal, experiment.model.place);
+        ComparedRun run = identified_or_refused(context, made, settings);
         countdown.count();
         run.reduction = to_text(reduction);
         run.filter =

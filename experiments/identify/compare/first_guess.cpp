@@ -69,9 +69,9 @@ std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double i
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
                        const filters::Measurements& record, double frequency_hz) {
   const double dt = record.interval();
-  const filters::Gaussian believed = start_belief(
+  const filters::Gaussian known = start_belief(
       model, start_directions(model, observations, start_scale(model, observations, record.outputs, 1.0)));
-  FirstGuess guess{believed.mean, covariance_of_unknowns(model, believed)};
+  FirstGuess guess{known.mean, covariance_of_unknowns(model, known)};
   for (double factor = 1.0 / (guess_samples_per_period * frequency_hz * dt); factor >= 2.0;
        factor /= level_ratio) {
     const int whole = static_cast<int>(factor);

@@ -12,7 +12,7 @@
 
 namespace beamid::experiments {
 
-/// The constants of the state (unknowns, offsets) after the record has been heard through a low-pass, then
+/// The constants of the state (unknowns, offsets) after the record has passed a low-pass, then
 /// through wider and wider ones.
 ///
 /// A parameter 10 % off turns the phase of a mode by whole cycles within a few of them, of a mode at 500 Hz
@@ -22,8 +22,8 @@ namespace beamid::experiments {
 /// fitted to it (low_mode_fit.hpp); then again at three times that rate, and so on, and at last to the
 /// beginning of the record itself.
 ///
-/// What a level finds, with deviations 30 times as large, bounds what the next believes: near enough for its
-/// linearisation, while the record is counted twice in a thousandth of the information only.
+/// What a level finds, with deviations 30 times as large, bounds what the next starts from: near enough for
+/// its linearisation, while the record is counted twice in a thousandth of the information only.
 ///
 /// @param frequency_hz of the first mode, as the record shows it
 /// @returns the guesses and their own deviations where the record is too short for it, or no motion of the

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr Index fewest_fit_samples = 64;  // samples that are worth a fit
-constexpr double first_periods = 3.0;     // of the fastest mode heard, that are taken up first
+constexpr double first_periods = 3.0;     // of the fastest mode fitted, that are taken up first
 constexpr int iterations = 12;
 constexpr double close_enough = 0.02;  // length of the next step, in deviations of what is sought
 constexpr double largest_damping = 1e6;
@@ -57,21 +57,22 @@ class LowModeFit {
     return model;
   }
 
-  LowModeLinearisation at(const VectorXd& c, const filters::Measurements& heard) const {
+  LowModeLinearisation at(const VectorXd& c, const filters::Measurements& decimated) const {
     LowModeLinearisation result;
-    const Index samples = heard.size(), q = unknowns();
+    const Index samples = decimated.size(), q = unknowns();
     VectorXd state = guess_.mean;
     state(model_.unknown_places) += unknowns_ * c;
     try {
       const JointModel low = low_modes(state);
-      const StartDirections start = start_directions(
-          low, observations_, start_scale(low, observations_, heard.outputs, heard.time[samples - 1]));
-      const VectorXd size = heard.outputs.rowwise().norm() / std::sqrt(static_cast<double>(samples));
+      const StartDirections start =
+          start_directions(low, observations_,
+                           start_scale(low, observations_, decimated.outputs, decimated.time[samples - 1]));
+      const VectorXd size = decimated.outputs.rowwise().norm() / std::sqrt(static_cast<double>(samples));
       const MatrixXd noise = (noise_ * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
-      const double interval = heard.time[samples - 1] / static_cast<double>(samples - 1);
+      const double interval = decimated.time[samples - 1] / static_cast<double>(samples - 1);
       const auto discrete =
           filters::discretise(low.motion, interval, finest_discretisation(low), {{}, noise});
-      const VectorXd best = reproduce(*discrete, state, start, heard).initial_state;
+      const VectorXd best = reproduce(*discrete, state, start, decimated).initial_state;
 
       MatrixXd directions(best.size(), start.motion.cols() + q);
       directions.leftCols(start.motion.cols()) = start.motion;
@@ -79,8 +80,9 @@ class LowModeFit {
       for (Index j = 0; j < q; ++j) follow(model_.unknown_places[static_cast<std::size_t>(j)], j) = 1.0;
       directions.rightCols(q) = follow * unknowns_;
       const MatrixXd no_prior;
-      const filters::OutputErrorPass pass = filters::OutputError(*discrete, best, directions, heard, no_prior)
-                                                .pass(VectorXd::Zero(directions.cols()), samples);
+      const filters::OutputErrorPass pass =
+          filters::OutputError(*discrete, best, directions, decimated, no_prior)
+              .pass(VectorXd::Zero(directions.cols()), samples);
       if (!pass.finite) return result;
       std::vector<Index> projected(static_cast<std::size_t>(start.motion.cols()));
       for (std::size_t i = 0; i < projected.size(); ++i) projected[i] = static_cast<Index>(i);
@@ -103,7 +105,7 @@ class LowModeFit {
   MatrixXd unknowns_;  // U (q x q)
 };
 
-// Rows of the least squares problem in d: the record, what is believed, and the damping.
+// Rows of the least squares problem in d: the record, what is known before, and the damping.
 VectorXd step(const LowModeLinearisation& now, const VectorXd& c, double damping) {
   const Index q = c.size();
   MatrixXd rows(3 * q, q);
@@ -114,12 +116,12 @@ VectorXd step(const LowModeLinearisation& now, const VectorXd& c, double damping
 }
 
 // Levenberg-Marquardt from c, which it moves; what holds there.
-LowModeLinearisation descend(const LowModeFit& fit, const filters::Measurements& heard, VectorXd& c) {
-  LowModeLinearisation now = fit.at(c, heard);
+LowModeLinearisation descend(const LowModeFit& fit, const filters::Measurements& decimated, VectorXd& c) {
+  LowModeLinearisation now = fit.at(c, decimated);
   double damping = 0.0;
   for (int i = 0; i < iterations && std::isfinite(now.cost); ++i) {
     const VectorXd d = step(now, c, damping);
-    LowModeLinearisation next = fit.at(c + d, heard);
+    LowModeLinearisation next = fit.at(c + d, decimated);
     if (next.cost < now.cost) {
       const double length = std::hypot((now.root * d).norm(), d.norm());
       c += d;

@@ -34,32 +34,32 @@ void take_frequency(const JointModel& model, double frequency_hz, VectorXd& stat
 
 FirstGuess nonlinear_guess(const JointModel& model, const std::vector<Observation>& observations,
                            const filters::Measurements& record, double frequency_hz) {
-  const filters::Measurements heard = beginning(record, std::min(longest_nonlinear_guess, record.size()));
-  const Index samples = heard.size();
+  const filters::Measurements part = beginning(record, std::min(longest_nonlinear_guess, record.size()));
+  const Index samples = part.size();
   const StartDirections directions = start_directions(
-      model, observations, start_scale(model, observations, heard.outputs, heard.time[samples - 1]));
+      model, observations, start_scale(model, observations, part.outputs, part.time[samples - 1]));
   VectorXd state = start_belief(model, directions).mean;
   const MatrixXd unknowns = directions.unknowns(model.unknown_places, Eigen::all);
-  FirstGuess believed{state, unknowns * unknowns.transpose()};
+  FirstGuess known{state, unknowns * unknowns.transpose()};
   take_frequency(model, frequency_hz, state);
-  const VectorXd size = heard.outputs.rowwise().norm() / std::sqrt(static_cast<double>(samples));
+  const VectorXd size = part.outputs.rowwise().norm() / std::sqrt(static_cast<double>(samples));
   const MatrixXd noise = (nonlinear_guess_noise * size).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
-  const auto discrete = finest(model, heard.time[samples - 1] / static_cast<double>(samples - 1), noise);
+  const auto discrete = finest(model, part.time[samples - 1] / static_cast<double>(samples - 1), noise);
 
   filters::BatchSettings settings;
-  settings.first_samples = samples_in(model, heard, periods);
+  settings.first_samples = samples_in(model, part, periods);
   settings.tolerance = 1e-3;
   const MatrixXd all = directions.all();
   settings.prior_factor = MatrixXd::Zero(all.cols(), all.cols());
   settings.prior_factor.diagonal().tail(directions.unknowns.cols()).setOnes();
-  state = nearest_phase(*discrete, state, directions, heard, settings.first_samples);
-  const filters::BatchEstimate found = filters::estimate_batch(*discrete, state, all, heard, settings);
-  if (found.status == filters::BatchStatus::failed || found.covariance.size() == 0) return believed;
+  state = nearest_phase(*discrete, state, directions, part, settings.first_samples);
+  const filters::BatchEstimate found = filters::estimate_batch(*discrete, state, all, part, settings);
+  if (found.status == filters::BatchStatus::failed || found.covariance.size() == 0) return known;
   const MatrixXd wide = nonlinear_guess_widening * nonlinear_guess_widening * unknowns *
                         found.covariance.bottomRightCorner(unknowns.cols(), unknowns.cols()) *
                         unknowns.transpose();
   // The product of both densities, P (P + F)^-1 F.
-  const MatrixXd& p = believed.unknowns;
+  const MatrixXd& p = known.unknowns;
   return {found.state, p * (p + wide).ldlt().solve(wide)};
 }
 

@@ -11,32 +11,18 @@ namespace beamid::experiments {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-namespace {
-
-constexpr double smallest_run_noise = 1e-6;  // a record without noise would make P0 / R overflow digits
-
-// Of the samples that were read (p).
-VectorXd root_mean_squares(const MatrixXd& samples) {
-  const auto read = samples.array().isFinite();
-  const VectorXd counts = read.cast<double>().rowwise().sum().matrix();
-  const MatrixXd finite = read.select(samples, 0.0);
-  return finite.rowwise().squaredNorm().cwiseQuotient(counts.cwiseMax(1.0)).cwiseSqrt();
-}
-
-}  // namespace
-
 KnownNoise known_noise(const Experiment& experiment, const RecordAnalysis& analysis,
                        const ComparedRecord& compared) {
   const std::vector<Index> channels = output_channels(analysis.record);
   const MatrixXd outputs = analysis.record.samples(channels, Eigen::all);
-  KnownNoise known{VectorXd::Zero(outputs.rows()), smallest_run_noise * root_mean_squares(outputs), {}};
+  KnownNoise known{VectorXd::Zero(outputs.rows()), smallest_relative_noise * root_mean_squares(outputs), {}};
   for (Index i = 0; i < outputs.rows(); ++i) {
     const Channel& channel = analysis.record.channels[static_cast<std::size_t>(channels[i])];
     const auto given = experiment.noise.find(channel.quantity);
     known.is_stated.push_back(given != experiment.noise.end());
     if (compared.quiet_noise.size() > 0)
       known.configured[i] =
-          std::max(compared.quiet_noise[i], smallest_run_noise * largest_measured(outputs.row(i)));
+          std::max(compared.quiet_noise[i], smallest_relative_noise * largest_measured(outputs.row(i)));
     if (known.is_stated.back()) known.configured[i] = given->second;
     if (compared.sensor_noise.size() > 0)
       known.least[i] = std::max(known.least[i], compared.sensor_noise[channels[i]]);

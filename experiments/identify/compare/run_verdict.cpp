@@ -127,7 +127,7 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
   run.near_mode = found->near_mode;
   run.interval_factor = found->interval_factor;
   if (found->interval_factor > 1.0) {
-    run.noise_ratio = found->interval_factor / found->near_mode.student();
+    run.noise_ratio = found->noise_ratio();
     run.noise_freedom = found->near_mode.freedom;
   }
   if (run.has_estimate()) run.status = found->judgement.verdict;
@@ -144,8 +144,7 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
 
 void judge_run(const RunContext& context, ComparedRun& run) {
   if (run.status == ComparedRun::Status::refused) return;
-  const Experiment& experiment = context.experiment;
-  if (experiment.model.name == "sdof" && experiment.parameters.empty() && !context.analysis.forced())
+  if (asks_free_oscillator(context.experiment, context.analysis.record))
     judge_oscillator(context, run);
   else if (run.status == ComparedRun::Status::converged)
     judge_model(context, run);

@@ -44,12 +44,11 @@ Eigen::VectorXd carried_over(const JointModel& from, const Eigen::VectorXd& stat
 
 }  // namespace
 
-StartedModel started_model(const Choice& model, const ModelSetting& setting,
+StartedModel started_model(JointModel first, const Choice& model, const ModelSetting& setting,
                            const filters::Measurements& record, double frequency_hz) {
   const auto made = [&](const ModelSetting& of) {
     return std::move(*model_registry().make(model.name, model.options, of));
   };
-  JointModel first = made(setting);
   const Index modes = std::max(most_started_coordinates, first.mode_shapes.cols() + 4);
   const bool mesh = is_whole_mesh(first);
   if (is_nonlinear(first)) {
@@ -69,14 +68,14 @@ StartedModel started_model(const Choice& model, const ModelSetting& setting,
   truncated.reduction = reduction::reduction_registry().make(
       "modal_truncation", {{"modes", static_cast<double>(mesh ? modes : most_started_coordinates)}});
   const JointModel small = made(truncated);
-  const FirstGuess heard = first_guess(small, setting.observations, record, frequency_hz);
+  const FirstGuess found = first_guess(small, setting.observations, record, frequency_hz);
   if (mesh) {
     ModelSetting nearer = setting;
-    nearer.parameters = choices_at(small, heard.mean);
+    nearer.parameters = choices_at(small, found.mean);
     first = made(nearer);
   }
-  const Eigen::VectorXd mean = carried_over(small, heard.mean, first);
-  return {std::move(first), {mean, heard.unknowns}};
+  const Eigen::VectorXd mean = carried_over(small, found.mean, first);
+  return {std::move(first), {mean, found.unknowns}};
 }
 
 JointModel on_basis_at(const Choice& model, const ModelSetting& setting, const JointModel& from,

@@ -29,15 +29,16 @@ std::optional<StartedModel> started_from_mode(const JointModel& model, const Pri
                                               const ModalEstimate& modal, const std::string& scheme,
                                               double interval);
 
-/// The model of a setting, and what a first hearing of the record makes of its unknowns (first_guess.hpp).
+/// A model, and what a first fit to the record makes of its unknowns (first_guess.hpp).
 ///
-/// More than 12 coordinates do not help a hearing that takes the low modes only, and cost it much: the
-/// truncation to 12 modes of the beam as believed hears in place of such a model. The start of a mesh that
-/// nobody has reduced lies in a few modes of the beam, and their damping is theirs: it is made with the modes
-/// of what was found, while what is believed of the unknowns stays.
+/// More than 12 coordinates do not help a fit that takes the low modes only, and cost it much: the truncation
+/// to 12 modes of the beam as described takes the place of such a model. The start of a mesh that nobody has
+/// reduced lies in a few modes of the beam, and their damping is theirs: it is made with the modes of what
+/// was found, while what is known of the unknowns stays.
+/// @param made of `model` for `setting`
 /// @param frequency_hz of the first mode, as the record shows it
 /// @throws as the model's registry
-StartedModel started_model(const Choice& model, const ModelSetting& setting,
+StartedModel started_model(JointModel made, const Choice& model, const ModelSetting& setting,
                            const filters::Measurements& record, double frequency_hz);
 
 /// The model with its basis where a state's unknowns are, what is known beforehand as it was; the model

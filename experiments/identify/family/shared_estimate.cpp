@@ -13,7 +13,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double weak_prior = 1e-4;      // of its information
 constexpr double disagree_below = 0.05;  // probability
-constexpr double told = 1.0;             // an eigenvalue of P0^1/2 I_r P0^1/2 above this is a thing told
+constexpr double determined = 1.0;       // by the record: an eigenvalue of P0^1/2 I_r P0^1/2 above this
 
 struct EstimatePart {
   std::vector<Index> places;  // in the union
@@ -28,7 +28,7 @@ MatrixXd information_of(const RecordBelief& belief, Index& rank) {
                  before = inverse.asDiagonal() * belief.prior * inverse.asDiagonal();
   const MatrixXd raw = after.inverse() - before.inverse(), scaled = 0.5 * (raw + raw.transpose());
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
-  rank = (solver.eigenvalues().array() > told).count();
+  rank = (solver.eigenvalues().array() > determined).count();
   const MatrixXd positive = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
                             solver.eigenvectors().transpose();
   return inverse.asDiagonal() * positive * inverse.asDiagonal();

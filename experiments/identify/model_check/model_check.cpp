@@ -66,11 +66,11 @@ void match(const CheckedStructure& structure, std::size_t number, ModelCheck& ch
     }
   std::sort(couples.begin(), couples.end(),
             [](const Couple& a, const Couple& b) { return a.apart < b.apart; });
-  std::vector<bool> told(predicted.size(), false), taken(structure.modes.size(), false);
+  std::vector<bool> matched(predicted.size(), false), taken(structure.modes.size(), false);
   std::vector<CheckedMode> found;
   for (const Couple& couple : couples) {
-    if (told[couple.predicted] || taken[couple.identified]) continue;
-    told[couple.predicted] = taken[couple.identified] = true;
+    if (matched[couple.predicted] || taken[couple.identified]) continue;
+    matched[couple.predicted] = taken[couple.identified] = true;
     found.push_back({number, static_cast<int>(couple.predicted) + 1, predicted[couple.predicted],
                      damping[couple.predicted], structure.modes[couple.identified], couple.assurance,
                      couple.apart >= most_apart});

@@ -45,7 +45,7 @@ MatrixXd matrix(const nlohmann::json& saved, const char* key, Index rows, Index 
   return result;
 }
 
-// Of a state that some record has told something about: nothing is known for certain, and nothing not at all.
+// Of a state that some record has shown something of: nothing is known for certain, and nothing not at all.
 void check_deviations(const char* of, const VectorXd& deviations) {
   if (!(deviations.array() > 0.0).all())
     throw std::invalid_argument(

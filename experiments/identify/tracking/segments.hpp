@@ -32,7 +32,7 @@ std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const fi
 /// [1/sqrt(s)]: a relative pole that wanders as far in any direction
 filters::Noise ringing_noise(const Ringing& ringing, double noise, double force, double walk);
 
-/// What is believed of a span before it is seen: the frequency of the strongest oscillation in its first six
+/// What is assumed of a span before it is seen: the frequency of the strongest oscillation in its first six
 /// cycles with a deviation of 7 %, at rest give or take what the signal does there.
 filters::Gaussian fresh_belief(const Ringing& ringing, Eigen::Index first);
 

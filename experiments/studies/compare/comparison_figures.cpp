@@ -9,6 +9,7 @@
 #include "experiments/record/axis_label.hpp"
 #include "experiments/results/forest_plot.hpp"
 #include "experiments/results/signal_panels.hpp"
+#include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -59,12 +60,6 @@ Figure parameter_figure(const Comparison& comparison, const Runs& runs) {
   return figure;
 }
 
-double residual_rms(const VectorXd& residual) {
-  const auto measured = residual.array().isFinite();
-  return std::sqrt(measured.select(residual.array().square(), 0.0).sum() /
-                   std::max<double>(1.0, static_cast<double>(measured.count())));
-}
-
 // Record with the runs nearest to it and farthest from it, then what each run leaves, on one scale.
 Figure motion_figure(const Comparison& comparison, const Runs& runs, Index channel) {
   const Record& record = comparison.compared.record;
@@ -96,7 +91,7 @@ Figure motion_figure(const Comparison& comparison, const Runs& runs, Index chann
       if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
     figure.panels.push_back(
         residual_panel(fmt::format("{} leaves {:.3g} {} (rms)", name_of(comparison, *runs[i]),
-                                   residual_rms(residual), si_unit(shown.quantity)),
+                                   root_mean_squares(residual.transpose())[0], si_unit(shown.quantity)),
                        record.time, residual, label)
             .across(begin, last));
     figure.panels.back().y_axis.label = std::string("[") + si_unit(shown.quantity) + "]";

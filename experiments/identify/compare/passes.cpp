@@ -1,0 +1,213 @@
+#include "experiments/identify/compare/passes.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "experiments/identify/compare/known_prior.hpp"
+#include "experiments/identify/compare/run_bound.hpp"
+#include "experiments/identify/compare/run_mode.hpp"
+#include "experiments/identify/compare/true_value.hpp"
+#include "experiments/identify/noise_source.hpp"
+#include "experiments/identify/nonlinear_reproduction.hpp"
+#include "experiments/identify/recorded_frequency.hpp"
+#include "experiments/identify/run_diagnostics.hpp"
+#include "experiments/models/finest_discretisation.hpp"
+#include "filters/smoother.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr double settled_move = 1.0;  // of a last pass, in standard deviations
+
+double seconds_since(SteadyClock::time_point start) {
+  return std::chrono::duration<double>(SteadyClock::now() - start).count();
+}
+
+std::string unsettled_text(double moved) {
+  return fmt::format(
+      "Not settled: its last pass moved an unknown by {:.2g} standard deviations. More passes ([compare] "
+      "passes) or nearer initial estimates are needed.",
+      moved);
+}
+
+}  // namespace
+
+Passes::Passes(const RunContext& context, const ModelSetting& setting, const StartedModel& started,
+               const RunSettings& settings)
+    : context_(context),
+      setting_(setting),
+      started_(started),
+      settings_(settings),
+      record_(measurements(context.analysis.record)),
+      dt_(context.analysis.record.interval()),
+      known_(known_noise(context.experiment, context.analysis, context.compared)) {
+  run_.model = std::make_shared<JointModel>(started.model);
+  run_.coordinates = started.model.motion_size();
+  run_.observed_per_freedom =
+      static_cast<double>(record_.outputs.rows()) / static_cast<double>(run_.coordinates);
+  run_.noise_is_stated = known_.is_stated;
+  run_.settings.filter = settings.filter.name;
+  run_.settings.filter_options = settings.filter.options;
+  run_.settings.discretisation = settings.discretisation;
+  run_.settings.on_failure = context.experiment.on_failure;
+}
+
+bool Passes::filter() {
+  for (int pass = 1; pass <= settings_.passes; ++pass)
+    if (!filter_once()) return false;
+  return true;
+}
+
+bool Passes::filter_with_likeliest_noise() {
+  const LikeliestNoise found = likeliest_noise(context_.experiment, context_.analysis.record, *run_.model,
+                                               run_.settings, run_.run.last);
+  known_.configured = found.deviation;
+  run_.noise_relative_deviation = found.relative_deviation;
+  return filter();
+}
+
+void Passes::begin() {
+  const SteadyClock::time_point start = SteadyClock::now();
+  const bool at_guess = started_.linearised_at.size() == 0;
+  begin_at(at_guess ? started_.guess.mean : started_.linearised_at);
+  run_.response_seconds += seconds_since(start);
+  if (context_.experiment.estimator != "filter" && settings_.keep == filters::Keep::all_beliefs)
+    first_start_ = motion_.initial_state;
+}
+
+void Passes::finish() {
+  const SteadyClock::time_point start = SteadyClock::now();
+  run_.unknowns = run_.model->unknowns;
+  if (last_move_ > settled_move) run_.remarks.push_back(unsettled_text(last_move_));
+  const MatrixXd noise =
+      noise_of_bound(context_.compared, known_, run_.noise_left, run_.noise).cwiseAbs2().asDiagonal();
+  const auto discrete = finest(*run_.model, dt_, noise);
+  if (nearest_with_own_scheme()) motion_ = reproduce(*discrete, motion_.initial_state, directions_, record_);
+  score(run_bounds(*discrete, *run_.model, motion_.initial_state, directions_, record_));
+  if (!nearest_with_own_scheme() || !context_.analysis.modal) weigh_noise();
+  run_.response_seconds += seconds_since(start);
+  if (settings_.keep == filters::Keep::last_belief) return;
+  if (first_start_.size() > 0)
+    run_.batch = identify_batch(*run_.model, run_.settings, first_start_, directions_.all(), record_);
+  if (!context_.experiment.smoother.empty()) {
+    const auto filtered = filters::discretise(run_.model->motion, dt_, run_.settings.discretisation,
+                                              {{}, run_.settings.output_noise});
+    run_.smoothed = filters::smooth(run_.run, *filtered, record_, context_.experiment.smoother).beliefs;
+  }
+}
+
+void Passes::judge_motion() {
+  const auto& shown = context_.analysis.mode;
+  const VectorXd& state = run_.run.last.mean;
+  run_.mode = lowest_mode(*run_.model, state, run_.unknown_state);
+  FoundMode found = run_.mode.value_or(FoundMode{});
+  if (!dynamic_cast<const filters::LinearMotion*>(run_.model->motion.get())) {
+    if (!shown) return;
+    const auto of_motion =
+        recorded_frequency(run_.reproduced.row(0), record_.inputs, dt_, shown->frequency_hz);
+    if (!of_motion.value_hz) return;
+    found.frequency_hz = *of_motion.value_hz;
+  }
+  if (found.frequency_hz > 0.0) run_.frequency_hz = found.frequency_hz;
+  found.frequency_hz = shown_at(found.frequency_hz, 1.0 / dt_);
+  run_.reason = divergence(found, shown ? std::optional(shown->frequency_hz) : std::nullopt);
+  if (!run_.reason.empty()) run_.status = ComparedRun::Status::diverged;
+}
+
+// One linear mode: a scheme sees K and C of its own in a record, with which the exact motion misses it.
+bool Passes::nearest_with_own_scheme() const {
+  return run_.coordinates == 1 && !is_nonlinear(*run_.model);
+}
+
+// What one mode leaves of the record, of a model that has no more: known without a discretisation.
+const VectorXd& Passes::noise_shown() const {
+  const VectorXd& of_mode = context_.analysis.mode_noise;
+  return nearest_with_own_scheme() && of_mode.size() > 0 ? of_mode : run_.noise_left;
+}
+
+// What a pass begins with of the unknowns: as uncertain of what the one before found as to weigh nothing,
+// 1 / 30^2, but no more: with the first guess's deviations a filter is linearised anew wherever the noise
+// of the first samples takes K and C, and ends up to a deviation from the maximum of the likelihood.
+FirstGuess Passes::working_guess() const {
+  constexpr double weighs_nothing = 30.0;
+  FirstGuess guess = started_.guess;
+  if (run_.unknown_state.covariance.size() == 0 || run_.run.last.covariance.size() == 0) return guess;
+  const VectorXd found = run_.unknown_state.covariance.diagonal().cwiseSqrt(),
+                 known = guess.unknowns.diagonal().cwiseSqrt();
+  const VectorXd share = (weighs_nothing * found.array() / known.array().max(1e-300)).min(1.0);
+  if (!share.allFinite()) return guess;
+  guess.unknowns = share.asDiagonal() * guess.unknowns * share.asDiagonal();
+  return guess;
+}
+
+// The model on the basis of a state, what is known of its start, and the motion from there that is nearest
+// to the record, about which to linearise.
+void Passes::begin_at(const VectorXd& state) {
+  *run_.model = on_basis_at(context_.experiment.model, setting_, started_.model, state);
+  const JointModel& model = *run_.model;
+  const StartScale scale = start_scale(model, setting_.observations, record_.outputs,
+                                       dt_ * static_cast<double>(record_.time.size()));
+  directions_ = start_directions(model, setting_.observations, scale);
+  next_ = start_belief(model, with_guess(directions_, model, working_guess()));
+  const MatrixXd unit = unit_noise(record_.outputs);
+  const auto discrete = nearest_with_own_scheme()
+                            ? filters::discretise(model.motion, dt_, settings_.discretisation, {{}, unit})
+                            : finest(model, dt_, unit);
+  motion_ = is_nonlinear(model) ? reproduce_nonlinear(model, *discrete, state, directions_, record_)
+                                : reproduce(*discrete, state, directions_, record_);
+  next_.mean = motion_.initial_state;
+  run_.noise_left = motion_.residual_deviation;
+}
+
+// Where no one mode says what of the noise counts.
+void Passes::weigh_noise() {
+  constexpr Index most_numbers = 20'000'000;
+  const Index columns = directions_.motion.cols() + directions_.unknowns.cols();
+  if (record_.outputs.size() * columns > most_numbers) return;
+  const auto discrete = finest(*run_.model, dt_, run_.settings.output_noise);
+  run_.noise_in = noise_in_estimates(*discrete, motion_.initial_state, directions_, record_,
+                                     record_.outputs - motion_.outputs);
+}
+
+bool Passes::filter_once() {
+  const JointModel& model = *run_.model;
+  run_.settings.initial = next_;
+  run_.noise = assumed_noise(known_, noise_shown());
+  run_.settings.output_noise = run_.noise.cwiseAbs2().asDiagonal();
+  SteadyClock::time_point start = SteadyClock::now();
+  run_.run = filter_record(model, record_, run_.settings, settings_.keep);
+  run_.seconds += seconds_since(start);
+  run_.remarks = run_.run.remarks;
+  filters::Gaussian& initial = run_.settings.initial;
+  run_.diagnostics = diagnostics_of(run_.run, initial, model.unknown_places);
+  if (run_.run.failure) return false;
+  const VectorXd known_mean = started_.guess.mean(started_.model.unknown_places);
+  take_known_prior(model, initial, started_.guess, known_mean, run_.run.last);
+  last_move_ = move_of(model, initial.mean, run_.run.last);
+  run_.unknown_state = of_unknowns(model, run_.run.last);
+  run_.unknown_start = {known_mean, started_.guess.unknowns};
+  start = SteadyClock::now();
+  begin_at(next_start(model, initial, run_.run.last).mean);
+  run_.response_seconds += seconds_since(start);
+  return true;
+}
+
+void Passes::score(const VectorXd& bound) {
+  const std::vector<Estimate> found = estimates(*run_.model, run_.run.last);
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    ComparedParameter parameter{found[j], {}, {}};
+    if (context_.compared.truth)
+      parameter.truth = true_value(*context_.compared.truth, settings_.true_mass, run_.model->unknowns[j]);
+    if (const double least = bound[static_cast<Index>(j)]; std::isfinite(least)) parameter.bound = least;
+    run_.parameters.push_back(parameter);
+  }
+  run_.reproduced = motion_.outputs;
+  run_.response_error_percent = motion_.response_error_percent;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,56 @@
+// The passes of one run over the record.
+#pragma once
+
+#include "experiments/identify/compare/compared_run.hpp"
+#include "experiments/identify/compare/run_noise.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/reproduction.hpp"
+#include "experiments/models/start_belief.hpp"
+
+namespace beamid::experiments {
+
+/// One run in the making; run_once() says in what order.
+class Passes {
+ public:
+  /// What it is given outlives it.
+  Passes(const RunContext& context, const ModelSetting& setting, const StartedModel& started,
+         const RunSettings& settings);
+
+  ComparedRun& run() { return run_; }
+
+  /// The motion nearest to the record at the first guess. @throws as reproduce()
+  void begin();
+  /// All passes. @returns whether the filter took in the whole record.
+  bool filter();
+  /// Noise levels by the filter's likelihood, and all passes again with them.
+  bool filter_with_likeliest_noise();
+  /// Estimates, the motion that they make of the record, their bounds; what else was asked for.
+  void finish();
+  /// Whether that motion is the record's: else the run diverged.
+  void judge_motion();
+
+ private:
+  bool nearest_with_own_scheme() const;
+  const Eigen::VectorXd& noise_shown() const;
+  FirstGuess working_guess() const;
+  void begin_at(const Eigen::VectorXd& state);
+  void weigh_noise();
+  bool filter_once();
+  void score(const Eigen::VectorXd& bound);
+
+  const RunContext& context_;
+  const ModelSetting& setting_;
+  const StartedModel& started_;
+  const RunSettings& settings_;
+  const filters::Measurements record_;
+  const double dt_;
+  KnownNoise known_;
+  ComparedRun run_;
+  StartDirections directions_;
+  Reproduction motion_;
+  filters::Gaussian next_;       // initial estimate of the pass to come
+  Eigen::VectorXd first_start_;  // of the first pass, where a batch estimate is asked for
+  double last_move_ = 0.0;
+};
+
+}  // namespace beamid::experiments
