@@ -159,7 +159,7 @@ Command validate_command() {
   return {
       "validate",
       "FILE [--record RECORD]",
-      "is an experiment file, and its record, right? what was understood",
+      "check an experiment file and its record, and show what was understood",
       {{.name = "file", .required = true}},
       {{"Options", {text("record", "RECORD", "read this record too, instead of the one the file names")}}},
       "  beamid validate cantilever.toml\n"

@@ -35,7 +35,7 @@ const Schema<NoiseValues>& noise_keys() {
           .key(
               "method", &N::method,
               "where the absent ones come from: what the modal analysis, or the nearest motion of the model, "
-              "leaves of the record; the level that makes the filter's innovations likeliest, told "
+              "leaves of the record; the level that makes the filter's innovations likeliest, given "
               "with its standard error; the quiet part of the file before the first hit, refused where "
               "there is "
               "none of 32 samples",

@@ -19,7 +19,7 @@ namespace beamid::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int schema_version = 1;
+constexpr int schema_version = 2;
 
 // Replaces what is not finite by null and says where.
 void make_finite(Json& json, const std::string& place, Json& warnings) {
@@ -33,6 +33,37 @@ void make_finite(Json& json, const std::string& place, Json& warnings) {
     for (std::size_t i = 0; i < json.size(); ++i)
       make_finite(json[i], fmt::format("{}[{}]", place, i), warnings);
   }
+}
+
+// What a reader must heed, as the page and the terminal show it.
+Json messages_of(const Results& results) {
+  Json messages = Json::array();
+  for (const auto& part : results.report)
+    if (const auto* said = std::get_if<Paragraph>(&part); said && said->severity != Severity::none)
+      messages.push_back(
+          {{"severity", said->severity == Severity::failure ? "failure" : "warning"}, {"text", said->text}});
+  return messages;
+}
+
+// Every table as its CSV has it: a row an object of the same keys, null where there is no number.
+Json tables_of(const Results& results) {
+  Json tables = Json::object();
+  for (const auto& part : results.report) {
+    const auto* table = std::get_if<Table>(&part);
+    if (!table) continue;
+    Json& rows = tables[table->name] = Json::array();
+    for (std::size_t i = 0; i < table->rows(); ++i) {
+      Json& row = rows.emplace_back(Json::object());
+      for (const Column& column : table->columns) {
+        const double* number = std::get_if<double>(&column.cells[i]);
+        if (!number)
+          row[column.key] = std::get<std::string>(column.cells[i]);
+        else
+          row[column.key] = std::isfinite(*number) ? Json(*number) : Json(nullptr);
+      }
+    }
+  }
+  return tables;
 }
 
 std::string text_of(const Json& json) {
@@ -92,7 +123,7 @@ Json to_json(const Results& results) {
   json["seed"] = results.seed ? Json(*results.seed) : Json(nullptr);
   json["configuration"] = results.configuration;
   for (const auto& [key, value] : results.values.items()) {
-    if (json.contains(key) || key == "warnings" || key == "files")
+    if (json.contains(key) || key == "warnings" || key == "messages" || key == "tables" || key == "files")
       throw std::invalid_argument("result '" + key +
                                   "': every results.json has a key of this name; expected another");
     json[key] = value;
@@ -100,6 +131,8 @@ Json to_json(const Results& results) {
   Json warnings = Json::array();
   make_finite(json, "", warnings);
   if (!warnings.empty()) json["warnings"] = warnings;
+  json["messages"] = messages_of(results);
+  json["tables"] = tables_of(results);
   json["files"] = result_files_of(results);
   return json;
 }

@@ -62,7 +62,8 @@ struct Results {
 };
 
 /// The contents of results.json: schema_version, program, version, command, seed, configuration, then the
-/// values' keys, then "files", the names of all files that write() makes.
+/// values' keys, then "messages", the warnings and failures of the report in its order, "tables", every table
+/// as rows with the keys of its CSV header, and "files", the names of all files that write() makes.
 ///
 /// JSON knows no number that is not finite: one becomes null, and "warnings" then names its place and what it
 /// was, "beams[0].frequency_hz is nan".

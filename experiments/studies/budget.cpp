@@ -100,7 +100,7 @@ const bool budget_registered = study_registry().add(
      "what each cause, from the beam to the filter, contributes to the errors of K and C",
      "[inverse2009], [shapley1953]",
      {{"seed", 2009.0, "", "seed of the sensor noise; the same seed gives the same bytes"},
-      {"orders", 2.0, "", "in which causes are switched on, averaged over; even"},
+      {"orders", 2.0, "", "number of orders of the causes to average over; even"},
       {"noise", 0.05, "m/s2", "standard deviation of the accelerometer's white noise"},
       {"bias", 0.02, "m/s2", "its constant offset (assumed)"},
       {"sensor_mass", 0.002, "kg", "of sensor and cable that the model does not count (assumed)"},

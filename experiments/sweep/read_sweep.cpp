@@ -43,7 +43,7 @@ const Schema<DescribedSweep>& sweep_keys() {
                "1")
           .key("identify", &S::identify,
                "`compare`: as `beamid compare` identifies a record. `once`: one pass of the filter from what "
-               "is believed (`[[parameters]]`, else the beam as described), model `sdof`, one reduction, "
+               "is assumed (`[[parameters]]`, else the beam as described), model `sdof`, one reduction, "
                "simulated records only; ten thousand records of 25,000 samples in some ten seconds",
                "\"once\"")
           .one_of({"compare", "once"});

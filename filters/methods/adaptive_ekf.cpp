@@ -142,7 +142,7 @@ const bool adaptive_ekf_registered = filter_registry().add(
      "[mehra1970], [mohamed1999]",
      {{"window", 100.0, "", "readings over which the noise is averaged, exponentially"},
       {"adapt", std::string("output"), "",
-       "output: R; process: Q, which lets constants drift; both: not told apart by short records"}},
+       "output: R; process: Q, which lets constants drift; both: not separable in short records"}},
      {contract::identifies},
      [](std::unique_ptr<DiscreteModel> model, const Options& options) {
        return std::make_unique<AdaptiveExtendedKalmanFilter>(std::move(model), options.number("window"),

@@ -108,7 +108,7 @@ class ParticleFilter final : public Filter {
                        ": without process noise nothing but the kernel makes them differ");
     if (starved_ > 0)
       result.push_back("after " + std::to_string(starved_) +
-                       " corrections fewer than 10 particles counted: deviations told there are too small");
+                       " corrections fewer than 10 particles counted: the deviations there are too small");
     if (powers_ > 0)
       result.push_back("readings sharper than the cloud of particles were worked in by powers of their " +
                        ("likelihood, " + std::to_string(powers_)) + " more than there are readings");

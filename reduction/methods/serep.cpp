@@ -52,7 +52,7 @@ class Serep final : public Reduction {
 
 const bool serep_registered = reduction_registry().add(
     {"serep",
-     "the lowest modes, told by the deflections of master points",
+     "the lowest modes, by the deflections of master points",
      "[ocallahan1989b]",
      {{"masters_m", std::vector<double>{}, "m", "positions of the masters; none: where the outputs are"},
       {"modes", 0.0, "", "number of modes kept, at most one per master; 0: one per master"}},

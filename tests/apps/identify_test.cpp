@@ -245,10 +245,11 @@ TEST_F(Tutorial, HasAnExitCodeForADivergedFilterAndForAContradictedOne) {
                 contradicted = place_.run("identify --config euler.toml --json");
   EXPECT_EQ(diverged.code, 3) << diverged.err;
   EXPECT_EQ(json::parse(diverged.out).at("status"), "diverged");
-  EXPECT_THAT(json::parse(diverged.out).at("messages")[0].get<std::string>(), HasSubstr("DIVERGED: sample "));
+  EXPECT_THAT(json::parse(diverged.out).at("messages")[0].at("text").get<std::string>(),
+              HasSubstr("DIVERGED: sample "));
   EXPECT_EQ(contradicted.code, 3) << contradicted.err;
   EXPECT_EQ(json::parse(contradicted.out).at("status"), "contradicted");
-  EXPECT_THAT(json::parse(contradicted.out).at("messages")[0].get<std::string>(),
+  EXPECT_THAT(json::parse(contradicted.out).at("messages")[0].at("text").get<std::string>(),
               HasSubstr("forward_euler at 4 ms makes C 965 % too large and K 0.102 % too small"));
   EXPECT_EQ(place_.run("identify --config cantilever.toml --json").code, 0);
   EXPECT_THAT(place_.run("identify --help").out, HasSubstr("\n  3    no estimate to rely on"));

@@ -136,7 +136,7 @@ const char* to_string(ExplanationVerdict verdict) {
     case ExplanationVerdict::implausible:
       return "explains, but implausible";
     case ExplanationVerdict::undetermined:
-      return "cannot be told";
+      return "undetermined";
     default:
       return "does not explain";
   }

@@ -30,7 +30,7 @@ bool reject_twin(const std::vector<Pole>& poles, RecordModes& found) {
       };
       const std::size_t kept = weight(a) < weight(b) ? b : a, lost = kept == a ? b : a;
       reject(lost,
-             fmt::format("one mode with {:.4g} Hz: they cannot be told apart in this record",
+             fmt::format("one mode with {:.4g} Hz: they cannot be separated in this record",
                          poles[kept].frequency_hz()),
              found);
       return true;

@@ -23,8 +23,8 @@ class Decimate final : public PreparationStep {
     const double rate = 1 / (factor_ * interval);
     record = std::move(fewer);
     return fmt::format(
-        "Decimated by {} to {:.6g} Hz: nothing changes up to {:.4g} Hz, what lies above {:.4g} Hz is gone, "
-        "and {:.3g} s at each end.",
+        "Decimated by {} to {:.6g} Hz: flat to {:.4g} Hz, stopped above {:.4g} Hz; {:.3g} s removed at each "
+        "end.",
         factor_, rate, 0.3 * rate, 0.7 * rate, 5 * factor_ * interval);
   }
 

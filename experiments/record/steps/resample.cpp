@@ -178,7 +178,7 @@ class Resample final : public PreparationStep {
 
 const bool resample_registered = step_registry().add(
     {"resample",
-     "unequal intervals brought to an even grid, band-limited or by a cubic spline, its error told",
+     "unequal intervals brought to an even grid, band-limited or by a cubic spline, with its error",
      "[oppenheim2010], [bjorck1996], [deboor2001]",
      Resample::options(),
      {},

@@ -106,9 +106,9 @@ Figure figure_of(const Atlas& atlas, const char* name, bool of_damping) {
 
 std::string times(double percent) {
   const double factor = 1.0 + percent / 100.0;
-  if (std::abs(percent) < 1.0) return fmt::format("{:+.2g} % off", percent);
-  if (factor <= 0.0) return fmt::format("negative, {:.3g} times the true one", factor);
-  return factor > 1.5 ? fmt::format("{:.3g} times too large", factor) : fmt::format("{:+.3g} % off", percent);
+  if (factor <= 0.0) return fmt::format("a negative damping ratio, {:.3g} times the true one", factor);
+  if (factor > 1.5) return fmt::format("{:.3g} times the true damping ratio", factor);
+  return fmt::format("a damping ratio {:.3g} % too {}", std::abs(percent), percent > 0 ? "high" : "low");
 }
 
 std::string atlas_words(const Atlas& atlas) {
@@ -120,8 +120,7 @@ std::string atlas_words(const Atlas& atlas) {
       1.0 / (beam.frequency_hz() * atlas.settings.interval));
   for (const AtlasPoint& p : atlas.own) {
     if (p.scheme == "exponential") continue;
-    text += p.predicted ? fmt::format("\nWith {} its damping would come out {}.", p.scheme,
-                                      times(p.predicted->damping_percent))
+    text += p.predicted ? fmt::format("\n{} would give {}.", p.scheme, times(p.predicted->damping_percent))
                         : fmt::format("\n{} cannot follow it at this step.", p.scheme);
   }
   return text + "\nThe exact discretisation (exponential) has no such error at any step.";

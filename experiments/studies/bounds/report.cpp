@@ -89,7 +89,7 @@ Results report(const Experiment& experiment, const Identifiability& found) {
   if (!found.places.empty()) {
     results.table(place_table(found));
     results.table(sweep_table(found, found.numbers, "sensor_numbers",
-                              "Bounds with further sensors like the first, each where it tells most",
+                              "Bounds with further sensors like the first, each where it helps most",
                               {"sensors", "sensors", "{:.0f}"}, {"the last at [m]", "added_at_m", "{:.4g}"}));
     results.attachments.push_back(place_file(found));
   }

@@ -25,7 +25,7 @@ Eigen::VectorXd weights(const filters::InformationReport& report, Index k) {
 }  // namespace
 
 Table bound_table(const Identifiability& found) {
-  Table table{"parameters", "What the record tells of each parameter at best"};
+  Table table{"parameters", "The least deviation with which each parameter can be known"};
   table.column({"parameter", "parameter"})
       .column({"unit", "unit"})
       .column({"value", "value", "{:.5g}"})
@@ -103,7 +103,7 @@ Table sweep_table(const Identifiability& found, const BoundSweep& sweep, const s
 }
 
 Table place_table(const Identifiability& found) {
-  Table table{"best_places", "Where one sensor like the first, alone, tells most"};
+  Table table{"best_places", "Where one sensor like the first, alone, is best placed"};
   table.column({"parameter", "parameter"})
       .column({"best at [m]", "position_m", "{:.4g}"})
       .column({"bound there [%]", "bound_percent", "{:.3g}"})

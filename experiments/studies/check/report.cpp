@@ -70,7 +70,7 @@ Table effect_table(const ModelCheck& check) {
     for (Index i = 0; i < shown; ++i) row.emplace_back(100 * check.effect(i, static_cast<Index>(c)));
     table.row(std::move(row));
   }
-  table.note = "To first order, each for the largest change that careful work may get wrong.";
+  table.note = "First-order change for the largest plausible error of each quantity.";
   return table;
 }
 
@@ -111,8 +111,9 @@ Table single_table(const ModelCheck& check) {
     if (!check.right) row.insert(row.end(), {left_percent(e), e.chi_square, verdict_text(e)});
     table.row(std::move(row));
   }
-  table.note = check.right ? "limit: would go on, were it possible."
-                           : "left: root mean square of what remains; limit: would go on, were it possible.";
+  table.note = check.right ? "limit: the best fit lies at the edge of the allowed range."
+                           : "left: root mean square of what remains; limit: the best fit lies at the edge "
+                             "of the allowed range.";
   return table;
 }
 

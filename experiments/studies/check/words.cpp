@@ -159,7 +159,7 @@ std::vector<std::string> conclusions(const ModelCheck& check) {
   const auto count = static_cast<Eigen::Index>(check.modes.size());
   std::vector<std::string> sentences;
   const std::string size =
-      fmt::format("chi^2 {:.3g} of {} {}, at most {:.3g} in 95 of 100 cases", check.chi_square, count,
+      fmt::format("chi^2 = {:.3g} for {} {}; the 95 % limit is {:.3g}", check.chi_square, count,
                   count == 1 ? "frequency" : "frequencies", chi_square_limit(static_cast<double>(count)));
   if (check.right) {
     sentences.push_back(

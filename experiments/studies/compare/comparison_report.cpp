@@ -55,7 +55,7 @@ Table parameter_table(const Comparison& comparison, const std::string& name) {
         truth = p.truth;
       }
   table.title = fmt::format("{}{}{}", name, unit.empty() ? "" : " [" + unit + "]",
-                            truth && std::isfinite(*truth) ? fmt::format(", truly {:.6g}", *truth) : "");
+                            truth && std::isfinite(*truth) ? fmt::format(", true value {:.6g}", *truth) : "");
   table.column({"run", "run"})
       .column({"estimate", "estimate", "{:.6g}"})
       .column({"95 % from", "lower_95", "{:.6g}"})

@@ -48,9 +48,10 @@ Table mode_table(const FrameModes& found) {
                100.0 * y / found.total_mass});
   }
   table.note = fmt::format(
-      "mesh error: relative, estimated from half the elements as that of stretching; of a mode that only "
-      "bends a fifth of it. digits: on which solver and Rayleigh quotient agree. effect. mass: moved by a "
-      "motion of all supports and springs along x or y, {:.1f} and {:.1f} % of {:.6g} kg in these modes.",
+      "mesh error: relative, estimated from half the elements assuming convergence with h^2; for modes of "
+      "pure bending a fifth of it. digits: significant digits on which solver and Rayleigh quotient agree. "
+      "effect. mass: participating when all supports and springs move along x or y, {:.1f} and {:.1f} % of "
+      "{:.6g} kg in these modes.",
       100.0 * found.effective_mass_x.sum() / found.total_mass,
       100.0 * found.effective_mass_y.sum() / found.total_mass, found.total_mass);
   return table;

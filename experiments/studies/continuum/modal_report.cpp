@@ -53,8 +53,9 @@ Table mode_table(const ModalSummary& s) {
   }
   table.note = fmt::format(
       "mesh error: relative, estimated from finer meshes; exact: against the continuum, where its "
-      "solution is known. digits: on which solver and Rayleigh quotient agree. eff. mass: moved by a motion "
-      "of the base, {:.1f} % of {:.6g} kg in these modes. release: share of each mode in displacement and "
+      "solution is known. digits: significant digits on which solver and Rayleigh quotient agree. "
+      "eff. mass: participating when the base moves, {:.1f} % of {:.6g} kg in these modes. release: share of "
+      "each mode in displacement and "
       "acceleration of the {} after a static deflection there.",
       100.0 * s.effective_mass.sum() / s.total_mass, s.total_mass, s.observed.name);
   return table;

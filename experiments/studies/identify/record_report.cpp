@@ -132,8 +132,8 @@ std::string noise_source(const RecordIdentification& found, Eigen::Index i) {
                ? fmt::format("the likeliest, known to {:.2g} %", 100 * found.noise_relative_deviation[i])
                : "the likeliest";
   }
-  return found.modal_failure.empty() ? "all that the modal analysis leaves of the record"
-                                     : "all that the filter's own motion leaves of the record";
+  return found.modal_failure.empty() ? "the residual of the modal analysis"
+                                     : "the residual of the filter's own motion";
 }
 
 std::string batch_text(const RecordIdentification& found) {
@@ -156,17 +156,24 @@ std::string noise_text(const Record& record, const RecordIdentification& found) 
   const NoiseNearMode& near = found.near_mode;
   const double density = near.deviation / found.noise_deviation[0];
   text += fmt::format(
-      " At the mode it is as dense as white noise of {:.2f} times that, by {} lines of the spectrum: "
-      "intervals are the filter's{}.",
-      density, near.lines,
-      found.interval_factor > 1.0 ? fmt::format(" times {:.2f}", found.interval_factor) : "");
+      " Near the mode the noise density, from {} spectral lines, is {:.2f} times that of white noise of this "
+      "level: intervals are {}.",
+      near.lines, density,
+      found.interval_factor > 1.0 ? fmt::format("widened by {:.2f}", found.interval_factor) : "the filter's");
   constexpr double few = 10;
   if (near.freedom < few)
     text += fmt::format(
-        " That is few: the density is known to {:.0f} % only, and longer records would have shorter and "
-        "surer intervals.",
+        " That is few: the density is known to {:.0f} % only, and a longer record would have shorter "
+        "intervals, better known.",
         100.0 * std::sqrt(2.0 / near.freedom));
   return text;
+}
+
+// "is 1.3 % higher"
+std::string difference_words(double percent_off) {
+  constexpr double printed = 0.05;
+  if (std::abs(percent_off) < printed) return "agrees within 0.05 %";
+  return fmt::format("is {:.1f} % {}", std::abs(percent_off), percent_off > 0 ? "higher" : "lower");
 }
 
 std::string companion_text(const RecordIdentification& found) {
@@ -211,9 +218,9 @@ Results report(const Experiment& experiment, const Record& record, const std::st
     results.paragraph("The filter had trouble (--on-failure says what it then does). " + text);
   results.paragraph(noise_text(record, found));
   results.paragraph(fmt::format(
-      "The finite-element beam as described has its first mode at {:.3f} Hz; the record's is {:+.1f} % "
-      "from it.",
-      found.beam_frequency_hz, percent(found.identification.found.frequency_hz(), found.beam_frequency_hz)));
+      "The finite-element beam as described has its first mode at {:.3f} Hz; the measured frequency {}.",
+      found.beam_frequency_hz,
+      difference_words(percent(found.identification.found.frequency_hz(), found.beam_frequency_hz))));
   if (const std::string text = companion_text(found); !text.empty()) results.paragraph(text);
   results.figures = figures(record, found);
   std::vector<std::string> titles;

@@ -81,7 +81,6 @@ Json section_values(const RecordIdentification& found) {
 
 Json values(const RecordIdentification& found, const Record& record) {
   Json json{{"status", to_string(found.judgement.verdict)}};
-  json["messages"] = found.judgement.messages;
   for (const Parameter& p : parameters(found))
     json[p.key] = {{"estimate", p.estimate},
                    {"standard_deviation", p.deviation},

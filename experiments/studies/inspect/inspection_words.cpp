@@ -149,7 +149,7 @@ std::vector<std::string> doubts_of(const Inspection& found) {
   const SamplingCheck& s = found.sampling;
   if (!found.skipped_lines.empty())
     all.push_back(skipped_text(found.skipped_lines, "is not a row of numbers like the others") +
-                  " Other commands refuse such lines unless told --skip-malformed.");
+                  " Other commands refuse such lines without --skip-malformed.");
   if (!s.gaps.empty())
     all.push_back(fmt::format("{} gap{}, up to {:.4g} s long, before {}.", s.gaps.size(),
                               s.gaps.size() == 1 ? "" : "s", s.longest_gap, located(found, s.gaps)));

@@ -76,14 +76,14 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
   }
   table.note =
       found.free_decay
-          ? "Amplitudes are those at the beginning. Standard deviations know the noise near each mode, "
-            "but no damping that depends on amplitude."
+          ? "Amplitudes are those at the beginning. Standard deviations include the noise near each mode, "
+            "not damping that depends on amplitude."
           : "Standard deviations from the scatter of the correlations between parts of the record.";
   return table;
 }
 
 Table rejected_table(const RecordModes& found, const std::string& suffix) {
-  Table table{"rejected" + suffix, "Not taken for modes"};
+  Table table{"rejected" + suffix, "Rejected poles"};
   constexpr std::size_t telling = 2;  // stable orders; clusters with fewer are noise at first sight
   std::size_t noise = 0;
   table.column({"f [Hz]", "frequency_hz", "{:.4g}"})

@@ -214,7 +214,7 @@ Results report(const PreparedRecord& prepared, const RecordFormat& format, const
   if (found.cost)
     results.table(cost_table(*found.cost));
   else
-    results.paragraph("No cost is told, as there is no mode to tell it of: " + found.reason + ".");
+    results.paragraph("No cost is given, as there is no mode to give it for: " + found.reason + ".");
   results.figures.push_back(preparation_figure(prepared));
   results.attachments.push_back(
       {{"prepared.csv"}, [record = written(prepared.record)](const std::filesystem::path& folder) {

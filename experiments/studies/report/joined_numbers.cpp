@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view left_out[] = {
     "schema_version",  "configuration", "seed",          "diagnostics",  "files",
     "sections",        "rejected",      "stabilisation", "preparations", "channels",
-    "singular_values", "innovations",   "noise_at_mode"};
+    "singular_values", "innovations",   "noise_at_mode", "tables",       "messages"};
 // What names an entry of a list.
 constexpr std::string_view naming[] = {
     "name",   "record",         "structure", "beam",      "channel", "output", "law",   "reduction",

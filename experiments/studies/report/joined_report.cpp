@@ -134,7 +134,7 @@ Table parameters_side_by_side(const std::vector<NamedResults>& results) {
     table.note =
         "Combined standard deviation: the root of the sum of both variances, as of independent records; on "
         "the same "
-        "record it is too large. Beyond 2 the two differ by more than chance explains in 95 of 100 cases.";
+        "record it is too large. Beyond 2 the two differ significantly (95 %).";
   return table;
 }
 

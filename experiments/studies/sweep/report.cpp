@@ -48,7 +48,7 @@ bool is_drawn(const VariedKey& key) {
 }
 
 Table table_of(const SweepPlan& plan, const std::vector<PointStatistics>& all, const std::string& parameter) {
-  Table table{"summary", "What no run has found"};
+  Table table{"summary", "Runs without an estimate"};
   if (!parameter.empty()) table = {"summary_" + parameter, parameter};
   for (const VariedKey& key : plan.varied)
     if (!is_drawn(key)) table.column({key.key.substr(key.key.rfind('.') + 1), key.key, "{:.6g}"});
@@ -70,7 +70,7 @@ Table table_of(const SweepPlan& plan, const std::vector<PointStatistics>& all, c
   table.column({"diverged [%]", "divergence_percent", "{:.1f}"})
       .column({"from", "divergence_lower_95_percent", "{:.1f}"})
       .column({"to", "divergence_upper_95_percent", "{:.1f}"})
-      .column({"no run", "refused_or_failed", "{:g}"});
+      .column({"not run", "refused_or_failed", "{:g}"});
   for (const PointStatistics& one : all) {
     if (one.parameter != parameter) continue;
     std::vector<Cell> row;

@@ -46,11 +46,11 @@ Table plateau_table(const Tracking& found) {
                100 * p.modal_damping_ratio, p.walk});
   }
   table.note =
-      "Frequency and damping ratio are means over the plateau; intervals know the wandering within it and, "
-      "beyond "
-      "three deviations, the distance from the modal analysis, which takes the plateau for a free decay. A "
-      "damping "
-      "ratio below zero: the motion grew. K1 is the stiffness on the first plateau, the mass being the same.";
+      "Frequency and damping ratio are means over the plateau; intervals include the drift within it "
+      "and, where it exceeds three standard deviations, the difference from the modal analysis, which takes "
+      "the "
+      "plateau for a free decay. A damping ratio below zero: the motion grew. K1 is the stiffness on the "
+      "first plateau, the mass being the same.";
   return table;
 }
 
@@ -182,8 +182,8 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
                   "{:.1f} Hz; its stiffness and damping wander {}.",
                   record_name, record.size(), record.time[0], record.time[record.size() - 1],
                   1.0 / record.interval(), found.band_hz.first, found.band_hz.second,
-                  settings.band_hz ? "as told" : "from the record", 1.0 / found.interval,
-                  settings.walk ? fmt::format("by {:g} per square root of a second, as told", *settings.walk)
+                  settings.band_hz ? "as given" : "from the record", 1.0 / found.interval,
+                  settings.walk ? fmt::format("by {:g} per square root of a second, as given", *settings.walk)
                                 : std::string("as much as is likeliest on each plateau")));
   results.table(plateau_table(found));
   if (const std::string text = companions(found); !text.empty()) results.paragraph(text);

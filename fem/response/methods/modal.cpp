@@ -36,10 +36,10 @@ std::string remark(const ResponseProblem& problem, const ModalBasis& basis, cons
   const VectorXd seen = system.outputs * problem.displacement;
   for (Index output = 0; output < system.outputs.rows(); ++output) {
     if (seen[output] != 0.0)
-      text << "; left out of the initial " << system.output_names[output] << ": "
+      text << "; modal truncation error of the initial " << system.output_names[output] << ": "
            << seen[output] - basis.observed.row(output).dot(z) << " m";
     for (const Index input : active)
-      text << "; left out of the static " << system.output_names[output] << " per unit of "
+      text << "; modal truncation error of the static " << system.output_names[output] << " per unit of "
            << system.input_names[input] << ": " << deflection(output, input);
   }
   return text.str();

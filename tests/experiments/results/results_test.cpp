@@ -1,5 +1,6 @@
 #include "experiments/results/results.hpp"
 
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -39,15 +40,33 @@ TEST(Results, JsonHasTheSchemasKeysInOrder) {
   std::vector<std::string> keys;
   const auto json = to_json(results());
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_EQ(keys, (std::vector<std::string>{"schema_version", "program", "version", "command", "seed",
-                                            "configuration", "status", "beams", "files"}));
-  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(keys,
+            (std::vector<std::string>{"schema_version", "program", "version", "command", "seed",
+                                      "configuration", "status", "beams", "messages", "tables", "files"}));
+  EXPECT_EQ(json["schema_version"], 2);
   EXPECT_EQ(json["program"], "beamid");
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["beams"][0]["frequency_hz"], 4.145510989755);
   Results without_seed = results();
   without_seed.seed.reset();
   EXPECT_TRUE(to_json(without_seed)["seed"].is_null());
+}
+
+// Oracle: the table's own CSV.
+TEST(Results, JsonHasEveryTableUnderTheKeysOfItsCsv) {
+  Results results = results_test::results();
+  results.table(Table{"gaps", "", {{"a", "a_m", "{}", {1.5, std::nan("")}}, {"b", "b", "{}", {"x", "y"}}}});
+  const auto json = to_json(results);
+  EXPECT_EQ(json["tables"]["gaps"].dump(), R"([{"a_m":1.5,"b":"x"},{"a_m":null,"b":"y"}])");
+  EXPECT_EQ(to_csv(std::get<Table>(results.report.back())), "a_m,b\n1.5,x\n,y\n");
+}
+
+TEST(Results, JsonListsWhatMustBeHeeded) {
+  Results results = results_test::results();
+  results.warning("Clipped.");
+  results.warning("Diverged.", true);
+  EXPECT_EQ(to_json(results)["messages"].dump(),
+            R"([{"severity":"warning","text":"Clipped."},{"severity":"failure","text":"Diverged."}])");
 }
 
 TEST(Results, NumbersThatAreNotFiniteBecomeNullWithAWarning) {
