@@ -4,7 +4,8 @@
 //     correct   S = H P H^T + R,        G = P H^T S^-1                     H = dh/dz at the predicted mean
 //               m += G (y - h(m)),      P = (I - G H) P (I - G H)^T + G R G^T
 //
-// The last line is Joseph's form [bucy1968]: symmetric and positive for any gain, rounding included.
+// The last line is Joseph's form [bucy1968]: positive for any gain, so that the gain's rounding costs its
+// square.
 #pragma once
 
 #include "filters/algorithms/products.hpp"

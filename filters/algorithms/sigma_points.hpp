@@ -8,7 +8,7 @@
 //
 //     mean f_0 + s,    covariance o o^T + e e^T + gamma s s^T,    cov(z, f) = L o^T
 //
-// c = alpha^2 (n + kappa), gamma = beta - alpha^2: the scaled unscented transform [julier2004], [wan2000].
+// c = alpha^2 (n + kappa), gamma = beta - alpha^2: the scaled unscented transform [julier2002], [wan2000].
 // The centre's weight 1 - n/c is never formed, so that the weights sum to one exactly for any alpha, and
 // gamma >= 0 makes the covariance a sum of squares. The cubature rule [arasaratnam2009] has c = n and no
 // point at the mean: the middle of the first pair takes the place of f_0, and e_i - s / sqrt c that of e_i,

@@ -1,5 +1,5 @@
 // Unscented Kalman filter on a factor of the covariance, P = L L^T with L (n x r): sigma points in the
-// factor's space [julier2004], scaled [wan2000], in difference form as in ukf.cpp.
+// factor's space [julier2004], scaled [julier2002], in difference form as in ukf.cpp.
 //
 // Points z_0 = m and m +- sqrt(c) L_i, i = 1..r, c = alpha^2 (r + kappa), each of weight W = 1/(2c); the
 // centre's weight is never formed. From the pairs of differences d_i+- = f(z_i+-) - f(z_0) come an odd and an
@@ -170,7 +170,7 @@ class LowRankUnscentedKalmanFilter final : public Filter {
 const bool low_rank_ukf_registered = filter_registry().add(
     {"low_rank_ukf",
      "unscented Kalman filter with sigma points along a factor of the covariance: 2r + 1 motions a step",
-     "[julier2004], [wan2000]",
+     "[julier2004], [julier2002], [wan2000]",
      {{"alpha", 1.0, "", "spread of the sigma points"},
       {"beta", 2.0, "", "weight of the second-order mean shift in the covariance; 2 suits a Gaussian"},
       {"kappa", 0.0, "", "secondary spread; 1 + kappa must be positive"},

@@ -10,7 +10,7 @@ namespace {
 const bool ukf_registered = filter_registry().add(
     {"ukf",
      "unscented Kalman filter, weights exact by construction, Joseph-like update",
-     "[julier2004], [wan2000]",
+     "[julier2004], [julier2002], [wan2000]",
      algorithms::scaled_spread_options(),
      {contract::exact_on_linear_gaussian, contract::consistent, contract::identifies},
      [](std::unique_ptr<DiscreteModel> model, const Options& options) {

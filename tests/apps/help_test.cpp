@@ -109,7 +109,7 @@ TEST(ListOfOneFilter, ShowsItsOptionsWithDefaults) {
 // Oracle: filters/methods/ukf.cpp and docs/references.md.
 TEST(ListOfOneFilter, TellsSourcesInFullWordsAndPromises) {
   const Outcome outcome = Workplace().run("list filters ukf");
-  EXPECT_THAT(outcome.out, HasSubstr("\nsource: [julier2004], [wan2000]\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("\nsource: [julier2004], [julier2002], [wan2000]\n"));
   EXPECT_THAT(outcome.out, HasSubstr("\n- S. J. Julier, J. K. Uhlmann: Unscented filtering and nonlinear"));
   EXPECT_THAT(outcome.out, HasSubstr("doi:10.1109/JPROC.2003.823141"));
   EXPECT_THAT(outcome.out, HasSubstr("\n- its covariance is that of its errors\n"));

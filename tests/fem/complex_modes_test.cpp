@@ -23,16 +23,16 @@ fem::Beam beam_with_tip_dashpot(double tip_mass, double dashpot) {
   return beam;
 }
 
-// EI W'''' + m lambda^2 W = 0, W(0) = W'(0) = W''(L) = 0, EI W'''(L) = (M lambda^2 + c lambda) W(L). With
-// lambda = i b^2 w0, w0 = sqrt(EI / (m L^4)), and the shape cosh - cos - sigma (sinh - sin) the last
-// condition becomes
+// EI W'''' + (m / L) lambda^2 W = 0, m the beam's mass, W(0) = W'(0) = W''(L) = 0, EI W'''(L) = (M lambda^2 +
+// c lambda) W(L). With lambda = i b^2 w0, w0 = sqrt(EI / (m L^3)) (docs/theory/response.md), and the shape
+// cosh - cos - sigma (sinh - sin) the last condition becomes
 //
 //     1 + cos b cosh b - Z (cos b sinh b - sin b cosh b) = 0,     Z = (M lambda^2 + c lambda) L^3 / (EI b^3).
 //
 // Solved by Newton's method for complex b with a central difference, from `lambda` on.
 Complex exact_eigenvalue(const fem::Cantilever& beam, double dashpot, Complex lambda) {
   const double l3 = std::pow(beam.length, 3), ei = beam.bending_stiffness;
-  const double w0 = std::sqrt(ei / (beam.mass_per_length * l3 * beam.length));
+  const double w0 = std::sqrt(ei / (beam.mass() * l3));
   const Complex i(0.0, 1.0);
   const auto residual = [&](Complex b) {
     const Complex rate = i * b * b * w0,

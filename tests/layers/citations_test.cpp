@@ -1,8 +1,11 @@
-// Every source cited in the code can be looked up in docs/references.md.
+// Every source cited in the code and in the pages can be looked up in docs/references.md, which lists it once
+// and in its place.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <regex>
+#include <sstream>
 
 #include "tests/layers/source_files.hpp"
 
@@ -42,6 +45,37 @@ TEST_P(Folder, CitesOnlySourcesThatAreListed) {
 INSTANTIATE_TEST_SUITE_P(Project, Folder,
                          testing::Values("fem", "filters", "reduction", "experiments", "apps"),
                          [](const auto& tested) { return std::string(tested.param); });
+
+// Oracle: the same, for the pages themselves.
+TEST(Pages, CiteOnlySourcesThatAreListed) {
+  const std::set<std::string> listed = listed_keys(text_of("docs/references.md"));
+  std::size_t cited = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(BEAMID_SOURCE_DIR "/docs")) {
+    if (entry.path().extension() != ".md") continue;
+    const std::string page = std::filesystem::relative(entry.path(), BEAMID_SOURCE_DIR).string();
+    for (const std::string& key : cited_keys(text_of(page))) {
+      EXPECT_TRUE(listed.contains(key)) << page << " cites [" << key << "]";
+      ++cited;
+    }
+  }
+  EXPECT_GT(cited, 100u);
+}
+
+TEST(References, AreListedOnceAndInOrderUnderTheirHeading) {
+  static const std::regex row(R"re(\| `([a-z0-9]+)` \| .+ \|)re");
+  std::istringstream page(text_of("docs/references.md"));
+  std::set<std::string> seen;
+  std::string before;
+  for (std::string line; std::getline(page, line);) {
+    std::smatch match;
+    if (line.starts_with("## ")) before.clear();
+    if (!std::regex_match(line, match, row)) continue;
+    EXPECT_LT(before, match[1].str());
+    EXPECT_TRUE(seen.insert(match[1]).second) << match[1] << " is listed twice";
+    before = match[1];
+  }
+  EXPECT_GT(seen.size(), 100u);
+}
 
 TEST(CitedKeys, AreFoundWithAndWithoutAPlace) {
   EXPECT_THAT(cited_keys("[hairer1996, ch. IV.3] and [bucy1968], not K[2009] or [1 2]"),
