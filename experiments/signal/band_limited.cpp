@@ -182,7 +182,7 @@ double BandLimited::kernel_error(double frequency) {
 }
 
 double linear_interpolation_error(double frequency) {
-  return 1 - sinc(frequency) * sinc(frequency);
+  return 1 - std::cos(pi * frequency);
 }
 
 }  // namespace beamid::experiments

@@ -39,8 +39,8 @@ class BandLimited {
   double misfit_ = 0;
 };
 
-/// The error of a straight line between even samples of a sine, mean over all points between them:
-/// 1 - sinc(f)^2 of the amplitude.
+/// The largest error of a straight line between even samples of a sine relative to its amplitude, half an
+/// interval from both: 1 - cos(pi f). @param frequency f times the interval, from 0 to 0.5
 double linear_interpolation_error(double frequency);
 
 }  // namespace beamid::experiments

@@ -137,12 +137,13 @@ class Resample final : public PreparationStep {
     return how +
            fmt::format(
                "at the strongest frequency, {:.4g} Hz, the kernel errs by {:.1g} of the amplitude (straight "
-               "lines by {:.2g}), and by less than 1e-4 up to {:.4g} Hz; what lies higher is not kept. {} "
+               "lines by up to {:.2g}), and by less than 1e-4 up to {:.4g} Hz; what lies higher is not kept. "
+               "{} "
                "samples at either end rest on a linear prediction. It misses the samples themselves by "
                "{:.1g} % of the signal.",
                frequency, BandLimited::kernel_error(std::min(relative, 0.5)),
-               linear_interpolation_error(frequency * mean), 0.4 * quality.rate, BandLimited::end_nodes,
-               100 * quality.error);
+               linear_interpolation_error(std::min(relative, 0.5)), 0.4 * quality.rate,
+               BandLimited::end_nodes, 100 * quality.error);
   }
 
   void follow(std::vector<FollowedChannel>&, std::complex<double>, double) const override {}

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "experiments/signal/random.hpp"
@@ -65,17 +67,21 @@ TEST(BandLimited, TellsItsKernelsError) {
   EXPECT_GT(BandLimited::kernel_error(0.47), 0.1);
 }
 
-// Oracle: the projection of a piecewise linear interpolant on the sine it goes through, by quadrature.
-TEST(LinearInterpolation, LosesAsMuchAsSincSquared) {
-  const double frequency = 0.3;
-  double sum = 0;
-  for (int k = 0; k < 1000; ++k)
-    for (int part = 0; part < 50; ++part) {
-      const double u = (part + 0.5) / 50, turn = 2 * std::numbers::pi * frequency;
-      sum += 2 * ((1 - u) * std::sin(turn * k) + u * std::sin(turn * (k + 1))) * std::sin(turn * (k + u)) /
-             50000;
+// Oracle: e^(i turn u) against the line between its values at u = 0 and 1, over all u: a sine of any phase is
+// a part of it.
+TEST(LinearInterpolation, ErrsMostHalfwayBetweenSamples) {
+  for (const double frequency : {0.05, 0.16, 0.31, 0.39, 0.47}) {
+    const double turn = 2 * std::numbers::pi * frequency;
+    double largest = 0;
+    for (int part = 0; part <= 1000; ++part) {
+      const double u = part / 1000.0;
+      largest = std::max(largest, std::abs(1 - u + u * std::polar(1.0, turn) - std::polar(1.0, turn * u)));
     }
-  EXPECT_NEAR(linear_interpolation_error(frequency), 1 - sum, 1e-3);
+    EXPECT_NEAR(linear_interpolation_error(frequency), largest, 1e-12) << frequency;
+  }
+  EXPECT_NEAR(linear_interpolation_error(0.16), 0.12, 0.005);  // docs/theory/preparation.md
+  EXPECT_NEAR(linear_interpolation_error(0.31), 0.44, 0.005);
+  EXPECT_NEAR(linear_interpolation_error(0.39), 0.66, 0.005);
 }
 
 }  // namespace
