@@ -56,6 +56,24 @@ TEST(Enkf, SaysWhereItsMembersAreTooFew) {
   }
 }
 
+TEST(Enkf, OfTooFewMembersDrawsDeviationsWithinOneOverTheRootOfTwiceTheirNumber) {
+  // Oracle: a sample variance of N normal draws scatters by sqrt(2 / N) of itself, its root by half of that.
+  // 60 states, 25 seeds: the scatter itself is known to 1.8 %, hence the bands of 4 of its deviations.
+  constexpr double members = 50.0;
+  std::mt19937 random(3);
+  const LinearModel model = random_model(60, 1, random);
+  double of_variance = 0.0, of_deviation = 0.0;
+  for (int seed = 1; seed <= 25; ++seed) {
+    const auto filter = enkf("transform", members, model, seed);
+    filter->reset({VectorXd::Zero(60), MatrixXd::Identity(60, 60)});
+    const Eigen::ArrayXd variance = filter->belief().covariance.diagonal().array();
+    of_variance += (variance - 1.0).square().mean() / 25.0;
+    of_deviation += (variance.sqrt() - 1.0).square().mean() / 25.0;
+  }
+  EXPECT_NEAR(std::sqrt(of_variance) / std::sqrt(2.0 / members), 1.0, 0.07);
+  EXPECT_NEAR(std::sqrt(of_deviation) / std::sqrt(0.5 / members), 1.0, 0.07);
+}
+
 TEST(Enkf, ErrsAsMuchAsItSaysOnTheOscillator) {
   // Oracle: NEES of K and C over 40 runs is chi-square of 80 degrees / 40: 99.9 % within 1.1 and 3.2.
   for (const std::string& update : variants) {

@@ -19,7 +19,7 @@ std::unique_ptr<filters::Filter> kf(std::unique_ptr<filters::DiscreteModel> mode
 }
 
 TEST(Kf, KeepsItsDigitsUnderAnInfinitelyWidePrior) {
-  // Oracle: a prior of variance 1e24 adds nothing to a reading of variance 0.04. Joseph's form leaves 0.
+  // Oracle: a prior of variance 1e24 adds nothing to a reading of variance 0.04.
   LinearModel model;
   model.a = model.c = MatrixXd::Identity(2, 2);
   model.r = 0.04 * MatrixXd::Identity(2, 2);
@@ -30,6 +30,27 @@ TEST(Kf, KeepsItsDigitsUnderAnInfinitelyWidePrior) {
   EXPECT_NEAR(filter->belief().covariance(1, 1), 0.04, 1e-15);
   EXPECT_NEAR(filter->belief().covariance(0, 1), 0.0, 1e-15);
   EXPECT_NEAR(filter->belief().mean[0], 1.0, 1e-15);
+}
+
+TEST(Kf, KeepsDigitsThatJosephsFormRoundsAndTheShortFormLoses) {
+  // Oracle: P0 R / (P0 + R), which is R to 18 digits and more. docs/theory/filters.md: Joseph's form
+  // (1 - G)^2 P0 + G^2 R errs by the square of the gain's rounding, 1e-32 P0; P0 - G S G^T is a difference of
+  // two numbers of the size of P0.
+  LinearModel model;
+  model.a = model.c = MatrixXd::Identity(2, 2);
+  model.r = 0.04 * MatrixXd::Identity(2, 2);
+  const auto left = [&](const char* name, double wide) {
+    const auto filter = filter_registry().make(name, {}, std::make_unique<LinearModel>(model));
+    filter->reset({VectorXd::Zero(2), wide * MatrixXd::Identity(2, 2)});
+    filter->correct(Eigen::Vector2d(1.0, 2.0), {});
+    return filter->belief().covariance(0, 0);
+  };
+  for (const double wide : {1e20, 1e24, 3.7e24}) {
+    EXPECT_NEAR(left("kf", wide), 0.04, 1e-15) << wide;
+    EXPECT_NEAR(left("ekf", wide), 0.04, 1.3e-32 * wide + 1e-15) << wide;
+    const double gain = wide / (wide + 0.04), short_form = wide - gain * (wide + 0.04) * gain;
+    EXPECT_GT(std::abs(short_form - 0.04), 0.039) << wide;
+  }
 }
 
 TEST(Kf, FollowsAModelThroughChangesOfItsIntervalAndOutputs) {

@@ -286,6 +286,27 @@ TEST(DivergenceAlarm, IsRaisedOnceAndAgainAfterSettling) {
   EXPECT_TRUE(alarm.raised_by(1e6, 1));
 }
 
+TEST(DivergenceAlarm, HasTheLimitOfChiSquareOfFiftyDegrees) {
+  // Oracle: of an even number of degrees 2 m the probability is e^(-x/2) sum_{j < m} (x/2)^j / j!, which
+  // falls through 1e-15 at a mean of 3.494 (docs/theory/missing_samples.md).
+  const auto probability = [](double mean) {
+    double term = std::exp(-25.0 * mean), sum = 0.0;
+    for (int j = 0; j < 25; term *= 25.0 * mean / ++j) sum += term;
+    return sum;
+  };
+  EXPECT_GT(probability(3.4935), 1e-15);
+  EXPECT_LT(probability(3.4945), 1e-15);
+  const auto raised_at = [](double mean) {
+    filters::DivergenceAlarm alarm;
+    bool raised = false;
+    for (int k = 0; k < 300; ++k) raised = raised || alarm.raised_by(1.0, 1);
+    for (int k = 0; k < 60; ++k) raised = raised || alarm.raised_by(mean, 1);
+    return raised;
+  };
+  EXPECT_FALSE(raised_at(3.4935));
+  EXPECT_TRUE(raised_at(3.4945));
+}
+
 TEST(DivergenceAlarm, IsSilentWhileAPoorGuessSettlesButNotForEver) {
   filters::DivergenceAlarm alarm;
   for (int k = 0; k < 2000; ++k) ASSERT_FALSE(alarm.raised_by(1e3, 1)) << k;
