@@ -77,6 +77,18 @@ TEST(References, AreListedOnceAndInOrderUnderTheirHeading) {
   EXPECT_GT(seen.size(), 100u);
 }
 
+// Oracle: paper.bib gives every key that paper.md cites as [@key], and no other.
+TEST(Paper, CitesWhatItsBibliographyLists) {
+  static const std::regex citation("@([a-z]+[0-9]*[a-z]*)"), entry(R"re(@[a-z]+\{([a-z0-9]+),)re");
+  const auto keys = [](const std::string& text, const std::regex& pattern) {
+    std::set<std::string> found;
+    for (std::sregex_iterator one(text.begin(), text.end(), pattern), end; one != end; ++one)
+      found.insert((*one)[1]);
+    return found;
+  };
+  EXPECT_EQ(keys(text_of("paper.md"), citation), keys(text_of("paper.bib"), entry));
+}
+
 TEST(CitedKeys, AreFoundWithAndWithoutAPlace) {
   EXPECT_THAT(cited_keys("[hairer1996, ch. IV.3] and [bucy1968], not K[2009] or [1 2]"),
               testing::ElementsAre("bucy1968", "hairer1996"));
