@@ -69,6 +69,7 @@ Command prepare_command();
 Command reduce_command();
 Command report_command();
 Command simulate_command();
+Command steps_command();
 Command stream_command();
 Command sweep_command();
 Command track_command();

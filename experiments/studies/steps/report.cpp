@@ -1,0 +1,189 @@
+#include "experiments/studies/steps/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/models/discretisation_bias.hpp"
+#include "experiments/models/estimates.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double half_interval(const FoundMode& mode) {
+  return quantile_95 * mode.damping_ratio_deviation;
+}
+
+// "2.65 times too large"
+std::string damping_error_text(double found, double exact) {
+  const double times = found / exact;
+  if (times > 1.5) return fmt::format("{:.3g} times too large", times);
+  if (times < 0.0) return "negative";
+  return fmt::format("{:.2g} % too {}", std::abs(100.0 * (times - 1.0)), times > 1.0 ? "large" : "small");
+}
+
+// How wrong a filter of one discretisation is on this record, at the record's own step and the longest.
+std::string scheme_text(const StepsStudy& study, std::size_t d) {
+  const RecordAtStep& own = study.steps.front();
+  const SchemeAtStep& one = own.found[d];
+  const FoundMode& exact = study.reference();
+  if (!one.is_valid())
+    return fmt::format(
+        "On {} a {} filter at steps of {:.4g} ms finds nothing valid: {}. The exact "
+        "discretisation finds a damping ratio of {:.4g} +- {:.2g} % at {:.6g} Hz.",
+        study.record, one.discretisation, 1e3 * own.interval, one.reason, 100.0 * exact.damping_ratio,
+        100.0 * half_interval(exact), exact.frequency_hz);
+  std::string text = fmt::format(
+      "On {} a {} filter at steps of {:.4g} ms finds a damping ratio of {:.5g} % where the exact "
+      "discretisation finds {:.4g} +- {:.2g} %: ",
+      study.record, one.discretisation, 1e3 * own.interval, 100.0 * one.found->damping_ratio,
+      100.0 * exact.damping_ratio, 100.0 * half_interval(exact));
+  if (one.verdict == SchemeAtStep::Verdict::harmless)
+    text += fmt::format("{:+.2g} % off, within that interval.",
+                        percent(one.found->damping_ratio, exact.damping_ratio));
+  else
+    text += fmt::format("{}. Its frequency is {:+.3g} % off.",
+                        damping_error_text(one.found->damping_ratio, exact.damping_ratio),
+                        percent(one.found->frequency_hz, exact.frequency_hz));
+  if (one.predicted)
+    text += fmt::format(" The closed form predicts {:.5g} %.", 100.0 * one.predicted->damping_ratio);
+  return text;
+}
+
+Table steps_table(const StepsStudy& study) {
+  const double none = std::nan("");
+  Table table{"steps", "The same record at longer and longer steps"};
+  table.column({"discretisation", "discretisation"})
+      .column({"step [ms]", "step_ms", "{:.4g}"})
+      .column({"samples per period", "samples_per_period", "{:.3g}"})
+      .column({"f [Hz]", "frequency_hz", "{:.4f}"})
+      .column({"f predicted [Hz]", "predicted_frequency_hz", "{:.4f}"})
+      .column({"xi [%]", "damping_ratio_percent", "{:.4f}"})
+      .column({"xi predicted [%]", "predicted_damping_ratio_percent", "{:.4f}"})
+      .column({"95 % +- [%]", "damping_ratio_half_interval_percent", "{:.2g}"})
+      .column({"mean NIS", "mean_nis", "{:.3f}"})
+      .column({"verdict", "verdict"});
+  for (std::size_t d = 0; d < study.discretisations.size(); ++d)
+    for (const RecordAtStep& step : study.steps) {
+      const SchemeAtStep& one = step.found[d];
+      const bool predicted = one.predicted.has_value(), valid = one.is_valid();
+      table.row({one.discretisation, 1e3 * step.interval,
+                 study.has_reference() ? 1.0 / (study.reference().frequency_hz * step.interval) : none,
+                 valid ? one.found->frequency_hz : none, predicted ? one.predicted->frequency_hz : none,
+                 valid ? 100.0 * one.found->damping_ratio : none,
+                 predicted ? 100.0 * one.predicted->damping_ratio : none,
+                 valid ? 100.0 * half_interval(*one.found) : none, one.mean_nis.value_or(none),
+                 to_string(one.verdict)});
+    }
+  table.note =
+      "Predicted: the closed form, from what the exact discretisation finds at the same step. Intervals and "
+      "innovations (mean NIS, 1 of a consistent filter) are a filter's own and do not show the bias: a "
+      "biased value is no estimate of the structure's damping, however narrow its interval.";
+  return table;
+}
+
+Table extrapolation_table(const StepsStudy& study) {
+  Table table{"extrapolation", "Carried on to a step of zero, without the closed form"};
+  table.column({"discretisation", "discretisation"})
+      .column({"order", "order", "{:.0f}"})
+      .column({"steps used", "steps_used", "{:.0f}"})
+      .column({"f at dt = 0 [Hz]", "frequency_hz", "{:.4f}"})
+      .column({"xi at dt = 0 [%]", "damping_ratio_percent", "{:.4f}"})
+      .column({"+- [%]", "uncertainty_percent", "{:.2g}"})
+      .column({"exact at the record's step [%]", "exact_damping_ratio_percent", "{:.4f}"})
+      .column({"95 % +- [%]", "exact_half_interval_percent", "{:.2g}"});
+  for (std::size_t d = 1; d < study.discretisations.size(); ++d)
+    if (const auto limit = study.extrapolated(d))
+      table.row({study.discretisations[d], static_cast<double>(limit->order),
+                 static_cast<double>(limit->steps), limit->frequency_hz, 100.0 * limit->damping_ratio,
+                 100.0 * limit->uncertainty, 100.0 * study.reference().damping_ratio,
+                 100.0 * half_interval(study.reference())});
+  table.note = "A check and no estimate of its own; +-: what the longest step changes.";
+  return table;
+}
+
+Json mode_values(const FoundMode& mode) {
+  Json json{{"frequency_hz", mode.frequency_hz}, {"damping_ratio", mode.damping_ratio}};
+  if (mode.damping_ratio_deviation > 0.0)
+    json["damping_ratio_standard_deviation"] = mode.damping_ratio_deviation;
+  if (mode.frequency_deviation_hz > 0.0)
+    json["frequency_standard_deviation_hz"] = mode.frequency_deviation_hz;
+  return json;
+}
+
+Json step_values(const RecordAtStep& step, std::size_t d) {
+  const SchemeAtStep& one = step.found[d];
+  Json json{{"factor", step.factor},
+            {"step_s", step.interval},
+            {"samples", step.samples},
+            {"window_s", {step.from, step.to}},
+            {"verdict", to_string(one.verdict)}};
+  if (!one.reason.empty()) json["reason"] = one.reason;
+  json["found"] = one.is_valid() ? mode_values(*one.found) : Json();
+  json["predicted"] = one.predicted ? mode_values(*one.predicted) : Json();
+  json["mean_nis"] = one.mean_nis ? Json(*one.mean_nis) : Json();
+  return json;
+}
+
+Json study_values(const StepsStudy& study) {
+  Json json{{"status", to_string(study.status)}, {"warnings_of_study", study.warnings}};
+  json["schemes"] = Json::array();
+  for (std::size_t d = 0; d < study.discretisations.size(); ++d) {
+    Json scheme{{"discretisation", study.discretisations[d]}};
+    scheme["steps"] = Json::array();
+    for (const RecordAtStep& step : study.steps) scheme["steps"].push_back(step_values(step, d));
+    scheme["extrapolated"] = Json();
+    if (const auto limit = study.extrapolated(d); limit && d > 0)
+      scheme["extrapolated"] = {{"order", limit->order},
+                                {"steps", limit->steps},
+                                {"frequency_hz", limit->frequency_hz},
+                                {"damping_ratio", limit->damping_ratio},
+                                {"damping_ratio_uncertainty", limit->uncertainty}};
+    json["schemes"].push_back(std::move(scheme));
+  }
+  return json;
+}
+
+}  // namespace
+
+Results report(const Experiment& experiment, const StepsStudy& study) {
+  Results results;
+  results.command = "steps";
+  results.configuration = {{"title", experiment.title},
+                           {"record", study.record},
+                           {"filter", experiment.filter.name},
+                           {"discretisations", study.discretisations},
+                           {"passes", experiment.passes}};
+  results.values = study_values(study);
+  results.heading(experiment.title.empty() ? study.record : experiment.title);
+  if (!study.has_reference()) {
+    results.warning(
+        fmt::format("NO REFERENCE: the exact discretisation has no estimate to compare with on {} ({}).",
+                    study.record, study.steps[0].found[0].reason),
+        true);
+    for (const std::string& text : study.warnings) results.warning(text);
+    results.table(steps_table(study));
+    return results;
+  }
+  for (std::size_t d = 1; d < study.discretisations.size(); ++d) {
+    const auto verdict = study.steps[0].found[d].verdict;
+    if (verdict == SchemeAtStep::Verdict::harmless)
+      results.paragraph(scheme_text(study, d));
+    else
+      results.warning(scheme_text(study, d), verdict == SchemeAtStep::Verdict::invalid);
+  }
+  for (const std::string& text : study.warnings) results.warning(text);
+  results.table(steps_table(study));
+  if (Table limits = extrapolation_table(study); limits.rows() > 0) results.table(std::move(limits));
+  for (const std::string& text : study.notes) results.paragraph(text);
+  const RecordAtStep& own = study.steps.front();
+  results.paragraph(fmt::format("{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on sdof, {} passes.",
+                                study.record, own.samples, own.from, own.to, 1.0 / own.interval,
+                                experiment.filter.name, experiment.passes));
+  results.figures.push_back(steps_figure(study));
+  return results;
+}
+
+}  // namespace beamid::experiments

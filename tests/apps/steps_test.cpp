@@ -1,0 +1,80 @@
+// beamid steps, end to end, on the tutorials' simulated record.
+#include <gmock/gmock.h>
+
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps::steps_test {
+namespace {
+
+using nlohmann::json, testing::HasSubstr, testing::StartsWith;
+
+class Steps : public testing::Test {
+ protected:
+  Steps() {
+    const fs::path tutorial = source("docs/tutorials/02_identify_a_record");
+    for (const char* file : {"cantilever.toml", "tip_acceleration.csv"})
+      fs::copy(tutorial / file, place_.folder() / file);
+  }
+  Workplace place_;
+};
+
+// Oracle: the record was simulated with 0.45 %; xi_f - xi = w dt / 2 = 4.34 percentage points at 4 ms.
+TEST_F(Steps, SayFirstHowWrongTheSchemeIsOnThisRecord) {
+  const Outcome outcome = place_.run("steps tip_acceleration.csv --config cantilever.toml --out found");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string first = outcome.out.substr(outcome.out.find("\n\n") + 2);
+  EXPECT_THAT(first,
+              StartsWith("On tip_acceleration.csv a forward_euler filter at steps of 4 ms finds a damping"));
+  for (const char* file : {"results.json", "report.html", "steps.csv", "extrapolation.csv", "step_size.svg"})
+    EXPECT_TRUE(fs::exists(place_.folder() / "found" / file)) << file;
+  const json found = json::parse(contents(place_.folder() / "found" / "results.json"));
+  const json& euler = found.at("schemes")[1];
+  EXPECT_EQ(euler.at("discretisation"), "forward_euler");
+  EXPECT_NEAR(euler.at("steps")[0].at("found").at("damping_ratio").get<double>(), 0.0045 + 0.0434, 1e-4);
+  EXPECT_NEAR(euler.at("extrapolated").at("damping_ratio").get<double>(), 0.0045, 1e-4);
+}
+
+// Oracle: what identify finds with the scheme, and the truth.
+TEST_F(Steps, FindWhatLayBehindAPublishedValue) {
+  const json found = json_of(
+      place_.run("steps --believed-xi 0.047900 --scheme forward_euler --config cantilever.toml --json"));
+  EXPECT_NEAR(found.at("damping_ratio").at("behind_it").get<double>(), 0.0045, 1e-5);
+  EXPECT_NEAR(found.at("record").at("damping_ratio").get<double>(), 0.0045, 2e-5);
+  const json stated = json_of(place_.run(
+      "steps --believed-xi 0.0479 --scheme forward_euler --interval 0.004 --frequency 3.453758 --json"));
+  EXPECT_NEAR(stated.at("damping_ratio").at("behind_it").get<double>(), 0.0045, 1e-5);
+  EXPECT_NEAR(stated.at("damping_ratio").at("upper").get<double>(), 0.0045 + 5e-5, 1e-5);
+}
+
+TEST_F(Steps, SayThatNoStructureGivesTheValue) {
+  const Outcome outcome =
+      place_.run("steps --believed-xi 0.02 --scheme forward_euler --interval 0.004 --frequency 3.4555");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("NOT POSSIBLE"));
+}
+
+TEST_F(Steps, RefuseWhatMakesNoSense) {
+  for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
+           {"steps", "beamid: steps: --config FILE is missing"},
+           {"steps --config cantilever.toml --discretisation euler", "unknown discretisation 'euler'"},
+           {"steps --config cantilever.toml --scheme forward_euler", "--scheme goes with --believed-xi"},
+           {"steps --config cantilever.toml --steps 9", "--steps is 9; expected a whole number from 1 to 8"},
+           {"steps --believed-xi 0.05", "--believed-xi of which filter? Add --scheme NAME"},
+           {"steps --believed-xi 1.5 --scheme forward_euler", "--believed-xi is 1.5"},
+           {"steps --believed-xi 0.05 --scheme forward_euler --interval 0.01",
+            "--believed-xi needs the filter's steps and frequency"},
+           {"steps --believed-xi 0.05 --scheme forward_euler --interval 0.2 --frequency 4",
+            "expected above 0 and less than half of one"},
+           {"steps --believed-xi 0.05 --scheme euler --interval 0.01 --frequency 4",
+            "unknown discretisation 'euler'"},
+           {"steps --believed-xi 0.05 --scheme forward_euler --steps 2",
+            "--steps does not go with --believed-xi"},
+       }) {
+    const Outcome outcome = place_.run(words);
+    EXPECT_EQ(outcome.code, 2) << words;
+    EXPECT_THAT(outcome.first_error_line(), HasSubstr(message)) << words;
+  }
+}
+
+}  // namespace
+}  // namespace beamid::apps::steps_test
