@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "experiments/models/discretisation_bias.hpp"
+#include "experiments/results/print.hpp"
 #include "experiments/studies/steps/published.hpp"
 #include "experiments/studies/steps/report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
@@ -73,6 +75,20 @@ TEST(Steps, KeepTheInnovationsAsTheyAre) {
     EXPECT_NEAR(*step.found[1].mean_nis, *step.found[0].mean_nis, 0.01);
     EXPECT_EQ(step.found[1].verdict, Verdict::biased);
   }
+}
+
+TEST(Steps, ShowTheBiasInTheInnovationsOfTwoChannels) {
+  // Oracle: forward Euler's velocity over displacement is w dt / 2 = 5 % off, noise 0.1 %: the innovations of
+  // the velocity are as large as that to begin with.
+  const StepsStudy study =
+      studied(simulated.record({Quantity::displacement, Quantity::velocity}, 1e-3, 4), {"forward_euler"});
+  ASSERT_TRUE(study.steps[0].found[1].mean_nis);
+  EXPECT_GT(*study.steps[0].found[1].mean_nis, 5.0 * *study.steps[0].found[0].mean_nis);
+  EXPECT_THAT(study.notes, Contains(HasSubstr("Several channels are observed")));
+  std::ostringstream text;
+  print(text, report(simulated.experiment(), study));
+  EXPECT_THAT(text.str(), HasSubstr("innovations show the bias: their mean"));
+  EXPECT_THAT(text.str(), testing::Not(HasSubstr("do not show a")));
 }
 
 TEST(Steps, BeginWithTheFirstSampleOfTheWindow) {
