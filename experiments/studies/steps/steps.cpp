@@ -133,7 +133,7 @@ StepsStudy study_steps(const StepsSettings& settings, const IdentificationReques
     return study;
   }
   if (own.analysis.record.channels.size() > 1)
-    study.notes.push_back(
+    study.notes.emplace_back(
         "Several channels are observed: the closed form is that of one. No motion of another scheme than the "
         "exact one has all of their histories at once, and what a filter settles on depends on their noise.");
 
@@ -164,7 +164,7 @@ StepsStudy study_steps(const StepsSettings& settings, const IdentificationReques
     }
   }
   if (study.steps.size() < 2)
-    study.notes.push_back(
+    study.notes.emplace_back(
         "The record is too short, or sampled too seldom, for a longer step: nothing is "
         "extrapolated.");
   judge_steps(study);
