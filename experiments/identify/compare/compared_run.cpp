@@ -6,6 +6,7 @@
 
 #include "experiments/identify/compare/passes.hpp"
 #include "experiments/identify/record_inputs.hpp"
+#include "experiments/models/finest_discretisation.hpp"
 
 namespace beamid::experiments {
 namespace {
