@@ -38,6 +38,10 @@ std::vector<Request> requests_of(const Values& values) {
   std::vector<Request> requests;
   for (std::size_t k = 0; k < configs.size(); ++k) {
     Request request{configs[k], read_experiment(configs[k]), {}};
+    if (request.experiment.beam.shear_building)
+      throw InputError({configs[k]},
+                       "check takes a beam; expected [beam] in place of [chain]. identify asks about the "
+                       "storeys of a chain");
     request.records = require_record_files(values, request.config, request.experiment.record_file);
     if (configs.size() > 1 && !records.empty()) request.records = {request.records[k]};
     requests.push_back(std::move(request));

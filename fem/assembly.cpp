@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "fem/elements/element.hpp"
 #include "fem/refinement.hpp"
@@ -192,6 +193,7 @@ class Assembly {
                                inner ? matrices_.interior->flexibility(i, j) : matrices_.flexibility(i, j));
       }
     strains_ += strains;
+    add_storey_dashpot(beam_.segments[element.segment].dashpot, at[0], at[2]);
     if (beam_.axial_load != 0.0) {  // the chord, w_2 - w_1
       add_strain(strains_, at[0], -1.0);
       add_strain(strains_, at[2], 1.0);
@@ -199,6 +201,13 @@ class Assembly {
       flexible_.emplace_back(strains_, strains_, -h / beam_.axial_load);
       ++strains_;
     }
+  }
+
+  void add_storey_dashpot(double c, int below, int above) {
+    if (c == 0.0) return;
+    for (const auto& [row, column, value] :
+         {std::tuple{below, below, c}, {above, above, c}, {below, above, -c}, {above, below, -c}})
+      if (row >= 0 && column >= 0) damping_.emplace_back(row, column, value);
   }
 
   // M (w + e theta)^2 + J theta^2
@@ -285,7 +294,7 @@ StructuralSystem assemble_refined(const Beam& beam, int elements, int parts,
   std::vector<double> places;
   for (const Point& point : points) places.push_back(point.position);
   const Mesh coarse = cut(beam, elements, places);
-  const Mesh mesh = parts == 1 ? coarse : refined(coarse, parts);
+  const Mesh mesh = parts == 1 || beam.shear_building ? coarse : refined(coarse, parts);
   return Assembly(beam, mesh).finish(points);
 }
 

@@ -11,6 +11,7 @@ namespace beamid::fem {
 struct Segment {
   double length = 0.0;  ///< [m]
   Section section;
+  double dashpot = 0.0;  ///< of a storey, between its two floors [N s/m]
 };
 
 /// A rigid body fixed to the beam. Its own centre of mass lies `eccentricity` beyond its position along the
@@ -82,6 +83,7 @@ struct Beam {
   std::vector<Damage> damages;
   double axial_load = 0.0;  ///< P [N], all along, positive in compression, dead: it keeps its direction
   MassModel mass_model = MassModel::consistent;
+  bool shear_building = false;  ///< segments are storeys, without nodes inside (shear_building.hpp)
 
   double length() const;  ///< L [m]
   double mass() const;    ///< of the segments and of what rides on them, bodies excluded [kg]

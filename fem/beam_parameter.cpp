@@ -12,19 +12,23 @@ namespace {
 using Quantity = BeamParameter::Quantity;
 using Region = std::pair<double, double>;
 
+bool is_of_storeys(const BeamParameter& parameter) {
+  return parameter.quantity == Quantity::storey_stiffness || parameter.quantity == Quantity::storey_damping;
+}
+
 Region region_of(const Beam& beam, const BeamParameter& parameter) {
   const double length = beam.length();
   if (!parameter.region) return {0.0, length};
   const auto [from, to] = *parameter.region;
-  const bool has_regions =
-      parameter.quantity == Quantity::bending_stiffness || parameter.quantity == Quantity::body_mass;
+  const bool has_regions = parameter.quantity == Quantity::bending_stiffness ||
+                           parameter.quantity == Quantity::body_mass || is_of_storeys(parameter);
   if (has_regions && from >= 0.0 && from < to && to <= length) return *parameter.region;
   std::ostringstream message;
   message << "region is " << from << " to " << to << " m; expected ";
   if (has_regions)
     message << "a begin before its end, both between 0 and the beam's length, " << length << " m";
   else
-    message << "none: only the bending stiffness and bodies have regions";
+    message << "none: only the bending stiffness, storeys and bodies have regions";
   throw std::invalid_argument(message.str());
 }
 
@@ -46,6 +50,36 @@ void for_each_part(const Beam& beam, const Region& region, const Function& f) {
     if (begin < end) f(segment, start, begin, end);
     start += segment.length;
   }
+}
+
+// Calls f(storey) for those of the region.
+template <class AnyBeam, class Function>
+void for_each_storey(AnyBeam& beam, const Region& region, const Function& f) {
+  if (!beam.shear_building)
+    throw std::invalid_argument("the structure has no storeys; expected a shear building");
+  double start = 0.0;
+  for (auto& storey : beam.segments) {
+    const double begin = share_of(storey, start, region.first), end = share_of(storey, start, region.second);
+    start += storey.length;
+    if (begin >= end) continue;
+    if (begin != 0.0 || end != 1.0) {
+      std::ostringstream message;
+      message << "region is " << region.first << " to " << region.second
+              << " m; expected ends at the heights of floors";
+      throw std::invalid_argument(message.str());
+    }
+    f(storey);
+  }
+}
+
+double storey_stiffness(const Segment& storey) {
+  return 12.0 * storey.section.bending_stiffness.mean() / std::pow(storey.length, 3);
+}
+
+double mean_of_storeys(const Beam& beam, const Region& region, double (*value)(const Segment&)) {
+  double sum = 0.0, count = 0.0;
+  for_each_storey(beam, region, [&](const Segment& storey) { sum += value(storey), count += 1.0; });
+  return sum / count;
 }
 
 // Integral of E I, damage included, over the region [N m3].
@@ -90,13 +124,14 @@ void scale_bending(Beam& beam, const Region& region, double factor) {
     const double begin = share_of(segment, start, region.first),
                  end = share_of(segment, start, region.second);
     if (begin == 0.0 && end == 1.0) {
-      segments.push_back({segment.length, stretched(segment.section, 0.0, 1.0, factor)});
+      segments.push_back({segment.length, stretched(segment.section, 0.0, 1.0, factor), segment.dashpot});
     } else if (begin >= end) {
       segments.push_back(segment);
     } else {
       const auto piece = [&](double from, double to, double scale) {
         if (from < to)
-          segments.push_back({(to - from) * segment.length, stretched(segment.section, from, to, scale)});
+          segments.push_back(
+              {(to - from) * segment.length, stretched(segment.section, from, to, scale), segment.dashpot});
       };
       piece(0.0, begin, 1.0);
       piece(begin, end, factor);
@@ -181,6 +216,10 @@ double value_of(const Beam& beam, const BeamParameter& parameter) {
     case Quantity::root_rotational_stiffness:
     case Quantity::root_translational_stiffness:
       return elastic_root(beam, parameter);
+    case Quantity::storey_stiffness:
+      return mean_of_storeys(beam, region, storey_stiffness);
+    case Quantity::storey_damping:
+      return mean_of_storeys(beam, region, [](const Segment& storey) { return storey.dashpot; });
     case Quantity::axial_load:
       break;
   }
@@ -224,6 +263,14 @@ Beam with_value(const Beam& beam, const BeamParameter& parameter, double value) 
       break;
     case Quantity::axial_load:
       changed.axial_load = value;
+      break;
+    case Quantity::storey_stiffness:
+      scale_bending(changed, region_of(beam, parameter), value / found);
+      break;
+    case Quantity::storey_damping:
+      for_each_storey(changed, region_of(beam, parameter), [&](Segment& storey) {
+        storey.dashpot = found > 0.0 ? storey.dashpot * (value / found) : value;
+      });
       break;
   }
   validate(changed);

@@ -49,6 +49,16 @@ std::vector<int> share(const std::vector<double>& places, int elements) {
   return counts;
 }
 
+// Floors alone have nodes: one between them would turn, and has no mass.
+int storeys_between(const Beam& beam, const std::vector<double>& places) {
+  if (places.size() == beam.segments.size() + 1) return static_cast<int>(beam.segments.size());
+  std::ostringstream message;
+  message << "a point lies between two floors; expected the height of one:";
+  double height = 0.0;
+  for (const Segment& storey : beam.segments) message << ' ' << (height += storey.length);
+  throw std::invalid_argument(message.str() + " m");
+}
+
 // Element properties between two neighbouring breaks, both inside one segment.
 Mesh::Element stretch(const Beam& beam, double from, double to) {
   Mesh::Element element;
@@ -97,6 +107,7 @@ Mesh cut(const Beam& beam, int elements, const std::vector<double>& points) {
       throw std::invalid_argument(message.str());
     }
   const std::vector<double> places = breaks(beam, points);
+  if (beam.shear_building) elements = storeys_between(beam, places);
   const std::vector<int> counts = share(places, elements);
   Mesh mesh;
   mesh.nodes.push_back({0.0, 0.0});

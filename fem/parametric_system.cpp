@@ -49,6 +49,12 @@ std::vector<int> element_of_strain(const Beam& beam, const Mesh& mesh, const Spa
   return owner;
 }
 
+// Whether all of the region's rigidity goes in proportion with it.
+bool bends(const BeamParameter& parameter) {
+  return parameter.quantity == Quantity::bending_stiffness ||
+         parameter.quantity == Quantity::storey_stiffness;
+}
+
 class Differentiation {
  public:
   Differentiation(const Beam& beam, int elements, const std::vector<Point>& points,
@@ -57,7 +63,7 @@ class Differentiation {
     for (const BeamParameter& parameter : parameters) {
       result_.values.conservativeResize(result_.values.size() + 1);
       result_.values[result_.values.size() - 1] = value_of(beam, parameter);
-      if (parameter.region && parameter.quantity == Quantity::bending_stiffness)
+      if (parameter.region && bends(parameter))
         beam_ = with_nodes(beam_, {parameter.region->first, parameter.region->second});
       needs_chords_ |= parameter.quantity == Quantity::axial_load && beam.axial_load == 0.0;
     }
@@ -67,10 +73,7 @@ class Differentiation {
     const StructuralSystem chorded = needs_chords_ ? assembled(loaded_) : result_.system;
     result_.strain = chorded.stiffness.strain;
     rigidity_ = chorded.stiffness.rigidity;
-    const bool bends = std::any_of(parameters.begin(), parameters.end(), [](const BeamParameter& p) {
-      return p.quantity == Quantity::bending_stiffness;
-    });
-    if (bends) {
+    if (std::any_of(parameters.begin(), parameters.end(), bends)) {
       bending_ = difference(rigidity_, assembled(twice_as_stiff(loaded_)).stiffness.rigidity, 1.0);
       owner_ = element_of_strain(beam_, result_.system.mesh, bending_);
     }
@@ -79,10 +82,9 @@ class Differentiation {
   ParametricSystem finish(const std::vector<BeamParameter>& parameters) {
     for (std::size_t j = 0; j < parameters.size(); ++j) {
       const double value = result_.values[static_cast<Index>(j)];
-      ParametricSystem::Derivative derivative = parameters[j].quantity == Quantity::bending_stiffness
-                                                    ? of_bending(parameters[j], value)
-                                                    : of_other(parameters[j], value);
-      if (derivative.mass.nonZeros() + derivative.rigidity.nonZeros() == 0)
+      ParametricSystem::Derivative derivative =
+          bends(parameters[j]) ? of_bending(parameters[j], value) : of_other(parameters[j], value);
+      if (derivative.mass.nonZeros() + derivative.rigidity.nonZeros() + derivative.damping.nonZeros() == 0)
         throw std::invalid_argument("parameter " + std::to_string(j + 1) +
                                     " has no effect: what it would move is held by a support");
       result_.derivatives.push_back(std::move(derivative));
@@ -134,13 +136,15 @@ class Differentiation {
         : parameter.quantity == Quantity::tip_mass || parameter.quantity == Quantity::body_mass
             ? std::max(value, mass)
         : parameter.quantity == Quantity::tip_rotary_inertia ? std::max(value, mass * length * length)
+        : parameter.quantity == Quantity::storey_damping     ? std::max(value, 1.0)
                                                              : value;
     const bool axial = parameter.quantity == Quantity::axial_load;
     const StructuralSystem moved = assembled(axial ? with_load(loaded_.axial_load + step)
                                                    : with_value(loaded_, parameter, value + step));
     const SparseMatrix mass_slope = difference(result_.system.mass, moved.mass, step);
     return {mass_slope, difference(rigidity_, moved.stiffness.rigidity, step),
-            difference(result_.system.inputs, moved.inputs, step)};
+            difference(result_.system.inputs, moved.inputs, step),
+            difference(result_.system.damping, moved.damping, step)};
   }
 
   Beam with_load(double load) const {

@@ -19,10 +19,12 @@ struct BeamParameter {
     tip_rotary_inertia,            ///< of the tip mass about its own centre [kg m2]
     root_rotational_stiffness,     ///< of an elastic root [N m/rad]
     root_translational_stiffness,  ///< of an elastic root [N/m]
-    axial_load                     ///< P, positive in compression [N]
+    axial_load,                    ///< P, positive in compression [N]
+    storey_stiffness,              ///< 12 E I / h^3, mean over the region's storeys, in proportion [N/m]
+    storey_damping                 ///< of their dashpots, mean, in proportion [N s/m]
   };
   Quantity quantity = Quantity::bending_stiffness;
-  std::optional<std::pair<double, double>> region;  ///< bending stiffness, bodies: from, to [m]; absent: all
+  std::optional<std::pair<double, double>> region;  ///< but for tip, root, load: from, to [m]; absent: all
 };
 
 /// What the beam has of it. @throws std::invalid_argument when it has no such thing (an elastic root, a body
@@ -39,7 +41,7 @@ Beam with_value(const Beam& beam, const BeamParameter& parameter, double value);
 /// @throws std::invalid_argument when a place is off the beam.
 Beam with_nodes(const Beam& beam, const std::vector<double>& positions);
 
-/// Equations that are affine in every parameter p_j, in M, in K and in E:
+/// Equations that are affine in every parameter p_j, in M, in K, in E, and of dashpots in C:
 ///
 ///     M = M_0 + sum_j (p_j - p_0j) M_j,    K = K_0 + sum_j (p_j - p_0j) B^T D_j B
 ///
@@ -52,9 +54,10 @@ struct ParametricSystem {
   SparseMatrix strain;      ///< B of the derivatives (s x n)
 
   struct Derivative {
-    SparseMatrix mass;      ///< M_j (n x n)
-    SparseMatrix rigidity;  ///< D_j (s x s)
-    SparseMatrix inputs;    ///< E_j (n x m)
+    SparseMatrix mass;          ///< M_j (n x n)
+    SparseMatrix rigidity;      ///< D_j (s x s)
+    SparseMatrix inputs;        ///< E_j (n x m)
+    SparseMatrix damping = {};  ///< C_j (n x n); empty: zero
   };
   std::vector<Derivative> derivatives;  ///< q
 

@@ -1,5 +1,7 @@
 #include "experiments/config/beam_description.hpp"
 
+#include <cmath>
+
 #include "experiments/config/read_attachments.hpp"
 
 namespace beamid::experiments {
@@ -12,6 +14,19 @@ Json variation_json(const fem::Variation& quantity) {
   Json values = Json::array();
   for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0}) values.push_back(quantity(s));
   return values;
+}
+
+Json describe_chain(const fem::Beam& beam) {
+  Json json;
+  for (std::size_t i = 0; i < beam.segments.size(); ++i) {
+    const fem::Segment& storey = beam.segments[i];
+    json["masses_kg"].push_back(beam.bodies[i].mass);
+    json["stiffnesses_n_per_m"].push_back(12.0 * storey.section.bending_stiffness.mean() /
+                                          std::pow(storey.length, 3));
+    json["dashpots_n_s_per_m"].push_back(storey.dashpot);
+    json["heights_m"].push_back(storey.length);
+  }
+  return json;
 }
 
 }  // namespace
@@ -34,6 +49,7 @@ Json describe(const fem::Segment& segment) {
 }
 
 Json describe(const fem::Beam& beam, int elements) {
+  if (beam.shear_building) return describe_chain(beam);
   Json json{{"length_m", beam.length()},
             {"mass_kg", beam.mass()},
             {"tip_mass_kg", beam.tip_mass()},

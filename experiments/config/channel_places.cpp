@@ -77,6 +77,7 @@ Record with_places(Record record, const Experiment& experiment) {
   const double length = experiment.beam.length();
   std::vector<Channel*> left;
   for (Channel& channel : record.channels) {
+    if (channel.quantity == Quantity::base_acceleration) continue;  // of all supports
     const bool gauge = channel.quantity == Quantity::strain;
     if (channel.position && (!gauge || channel.distance != 0.0)) continue;
     const Sensor* const sensor = sensor_of(channel, experiment);

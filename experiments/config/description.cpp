@@ -46,6 +46,22 @@ Json anchors_json(const std::vector<fem::DampingAnchor>& anchors) {
   return json;
 }
 
+std::string storeys_text(const fem::Beam& beam) {
+  double softest = INFINITY, stiffest = 0.0, lightest = INFINITY, heaviest = 0.0;
+  for (const fem::Segment& storey : beam.segments) {
+    const double k = 12.0 * storey.section.bending_stiffness.mean() / std::pow(storey.length, 3);
+    softest = std::min(softest, k), stiffest = std::max(stiffest, k);
+  }
+  for (const fem::Body& floor : beam.bodies)
+    lightest = std::min(lightest, floor.mass), heaviest = std::max(heaviest, floor.mass);
+  const auto span = [](double least, double most) {
+    return least == most ? fmt::format("{:.6g}", least) : fmt::format("{:.6g} to {:.6g}", least, most);
+  };
+  return fmt::format("Chain: {} floors of {} kg on storeys of {} N/m, {:.6g} m high; {} degrees of freedom.",
+                     beam.segments.size(), span(lightest, heaviest), span(softest, stiffest), beam.length(),
+                     beam.segments.size());
+}
+
 }  // namespace
 
 std::string bending_stiffness_text(const fem::Beam& beam) {
@@ -54,6 +70,7 @@ std::string bending_stiffness_text(const fem::Beam& beam) {
 }
 
 std::string beam_text(const fem::Beam& beam, int elements, Eigen::Index coordinates) {
+  if (beam.shear_building) return storeys_text(beam);
   const bool timoshenko =
       std::any_of(beam.segments.begin(), beam.segments.end(),
                   [](const fem::Segment& segment) { return segment.section.shear_stiffness; });

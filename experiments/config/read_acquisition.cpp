@@ -33,7 +33,8 @@ const Schema<Acquisition>& acquisition_keys() {
           .key("repeated", &A::repeated, {0.0, most_repeated},
                "share of samples that show the reading before once more, under a stamp of their own", "0.04")
           .key("force", &A::force,
-               "whether the record holds the exciting force as a channel; that of a release never is one",
+               "whether the record holds the exciting force, or the base's acceleration, as a channel; that "
+               "of a release never is one",
                "false");
   return keys;
 }

@@ -3,6 +3,7 @@
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_acquisition.hpp"
 #include "experiments/config/read_beam.hpp"
+#include "experiments/config/read_chain.hpp"
 #include "experiments/config/read_damping.hpp"
 #include "experiments/config/read_frequency_response.hpp"
 #include "experiments/config/read_identifiability.hpp"
@@ -20,7 +21,7 @@ const Schema<Experiment>& root_keys() {
   static const Schema<Experiment> keys =
       Schema<Experiment>("")
           .key("title", &Experiment::title, "printed on top of results and plots", "\"steel cantilever\"")
-          .tables({"beam", "damping", "excitation"}, table)
+          .tables({"beam", "chain", "damping", "excitation"}, table)
           .tables({"sensors"}, tables)
           .tables({"acquisition", "simulation", "frequency_response", "record", "reduction"}, table)
           .tables({"reductions"}, tables)
@@ -33,6 +34,21 @@ const Schema<Experiment>& root_keys() {
 }
 
 const bool root_keys_registered = register_keys([]() -> const KeyTable& { return root_keys(); });
+
+/// The beam, or the chain as a beam of storeys.
+void read_structure(const TomlTable& root, Experiment& experiment) {
+  if (const auto chain = root.find_table("chain")) {
+    if (root.contains("beam"))
+      throw InputError(root.key_place("chain"), "chain beside beam; expected one structure");
+    experiment.beam = read_chain(*chain);
+    experiment.elements = static_cast<int>(experiment.beam.segments.size());
+    check_places_on_chain(root, experiment.beam);
+    return;
+  }
+  const TomlTable beam = root.table("beam");
+  experiment.beam = read_beam(beam);
+  experiment.elements = read_elements(beam);
+}
 
 /// What is done with the beam itself.
 void read_continuum(const TomlTable& root, Experiment& experiment) {
@@ -62,9 +78,7 @@ Experiment read_experiment(const TomlTable& root) {
                      "frame describes a plane frame, which 'beamid frame' takes; expected a beam");
   check_values(root);
   Experiment experiment = root_keys().read(root);
-  const TomlTable beam = root.table("beam");
-  experiment.beam = read_beam(beam);
-  experiment.elements = read_elements(beam);
+  read_structure(root, experiment);
   experiment.format.irregular = true;  // as [record] has it unless it says otherwise
   if (const auto record = root.find_table("record")) {
     const RecordSection section = read_record_section(*record, &experiment.beam);

@@ -80,7 +80,8 @@ Schema<DescribedParameter> make_parameter_keys() {
           "model `beam`: `\"bending_stiffness\"`, `\"tip_mass\"` (of `tip_mass_kg`, or of the first body at "
           "the tip: a sensor beside it keeps its own), `\"body_mass\"` (of the bodies between `from_m` and "
           "`to_m`, all of them without), `\"tip_rotary_inertia\"`, `\"root_rotational_stiffness\"`, "
-          "`\"root_translational_stiffness\"`, `\"axial_load\"`, `\"damping_ratio\"`, `\"mass_damping\"` and "
+          "`\"root_translational_stiffness\"`, `\"axial_load\"`, of a chain `\"storey_stiffness\"` and "
+          "`\"storey_damping\"` (of its dashpots), `\"damping_ratio\"`, `\"mass_damping\"` and "
           "`\"stiffness_damping\"` (alpha and beta of C = alpha M + beta K); `modal`: `\"frequency\"`, "
           "`\"damping_ratio\"`; `sdof`: `\"stiffness\"`, `\"damping\"`, and `\"mass\"` where a force was "
           "measured; the same and, only where named here or nothing is, `duffing`: `\"cubic_stiffness\"`; "
@@ -95,7 +96,7 @@ Schema<DescribedParameter> make_parameter_keys() {
       .fallback("the quantity, with its mode or number")
       .key("from_m", &P::from, on_beam,
            "`bending_stiffness`: begin of the region whose mean it is; `body_mass`: of the region whose "
-           "bodies are meant; with `to_m`",
+           "bodies are meant; of a chain, of the storeys meant; with `to_m`",
            "0.3")
       .fallback("`0`")
       .key("to_m", &P::to, {.least = 0.0, .on_beam = true, .greater_than = "from_m"}, "end of the region",

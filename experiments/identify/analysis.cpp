@@ -108,7 +108,7 @@ double shown_at(double frequency_hz, double sampling_rate_hz) {
 }
 
 bool RecordAnalysis::forced() const {
-  return !force_channels(record).empty();
+  return !input_channels(record).empty();
 }
 
 const Record& RecordAnalysis::evenly_stamped() const {
@@ -116,7 +116,7 @@ const Record& RecordAnalysis::evenly_stamped() const {
 }
 
 bool asks_free_oscillator(const Experiment& experiment, const Record& record) {
-  return experiment.model.name == "sdof" && experiment.parameters.empty() && force_channels(record).empty();
+  return experiment.model.name == "sdof" && experiment.parameters.empty() && input_channels(record).empty();
 }
 
 VectorXd RecordAnalysis::residual_noise(const ModalEstimate& of) const {

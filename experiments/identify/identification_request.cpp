@@ -42,14 +42,14 @@ bool is_beam_of_one_mode(const IdentificationRequest& one) {
   const bool single = reduction.name == "rayleigh" ||
                       (reduction.name == "modal_truncation" &&
                        (modes == options.end() || modes->second == filters::OptionValue(1.0)));
-  return one.experiment.model.name == "beam" && single && force_channels(one.prepared.record).empty();
+  return one.experiment.model.name == "beam" && single && input_channels(one.prepared.record).empty();
 }
 
 }  // namespace
 
 void cut_decay(IdentificationRequest& one) {
   RecordFormat& format = one.experiment.format;
-  if (format.window || !force_channels(one.prepared.record).empty()) return;
+  if (format.window || !input_channels(one.prepared.record).empty()) return;
   const auto window = decay_window(one.experiment, one.prepared.record);
   if (!window) return;
   format.window = {window->from, window->to};

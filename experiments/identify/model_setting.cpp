@@ -1,5 +1,8 @@
 #include "experiments/identify/model_setting.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/identify/record_inputs.hpp"
 #include "experiments/models/beam_points.hpp"
@@ -12,10 +15,10 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd;
 
-std::vector<Index> channels_where(const Record& record, bool force) {
+std::vector<Index> channels_where(const Record& record, bool input) {
   std::vector<Index> found;
   for (std::size_t i = 0; i < record.channels.size(); ++i)
-    if ((record.channels[i].quantity == Quantity::force) == force) found.push_back(static_cast<Index>(i));
+    if (is_input(record.channels[i].quantity) == input) found.push_back(static_cast<Index>(i));
   return found;
 }
 
@@ -52,12 +55,12 @@ reduction::Training seen_shapes(const Record& record, const fem::Beam& beam) {
 std::vector<Index> output_channels(const Record& record) {
   return channels_where(record, false);
 }
-std::vector<Index> force_channels(const Record& record) {
+std::vector<Index> input_channels(const Record& record) {
   return channels_where(record, true);
 }
 
 filters::Measurements measurements(const Record& record) {
-  const std::vector<Index> outputs = output_channels(record), forces = force_channels(record);
+  const std::vector<Index> outputs = output_channels(record), forces = input_channels(record);
   filters::Measurements result{record.time, record.samples(outputs, Eigen::all), {}};
   if (record.time_resolution < 0.5 * record.interval()) result.time_resolution = record.time_resolution;
   if (!forces.empty()) take_inputs(record.samples(forces, Eigen::all), record.input_path, result);
@@ -76,9 +79,16 @@ ModelSetting model_setting(const Experiment& experiment, const Record& record, c
     rows.push_back(channel.quantity == Quantity::strain ? -1 : points.add(channel.position));
     setting.observations.push_back({channel.quantity, channel.name});
   }
-  for (const Index i : force_channels(record))
-    setting.forces.push_back(points.add(record.channels[i].position));
+  const std::vector<Index> inputs = input_channels(record);
+  for (const Index i : inputs)
+    setting.forces.push_back(
+        record.channels[i].quantity == Quantity::force ? points.add(record.channels[i].position) : -1);
   setting.system = fem::assemble(beam, experiment.elements, points.all());
+  const Index base = setting.system.inputs.cols() - 1;
+  if (std::count(setting.forces.begin(), setting.forces.end(), Index{-1}) > 1)
+    throw std::invalid_argument(
+        "the record holds several channels of base_acceleration; expected one, of all supports together");
+  std::replace(setting.forces.begin(), setting.forces.end(), Index{-1}, base);
 
   const MatrixXd deflections = MatrixXd(setting.system.outputs);
   MatrixXd outputs(static_cast<Index>(rows.size()), setting.system.size());

@@ -20,13 +20,13 @@ namespace beamid::experiments {
 ModelSetting model_setting(const Experiment& experiment, const Record& record, const Choice& reduction,
                            const std::filesystem::path& folder = {});
 
-/// The record as a filter takes it: forces are inputs, which run between their samples as the record says
-/// (record_inputs.hpp), the rest outputs, in the record's order; stamps
-/// that lie on a regular grid to within their printed precision count as regular.
+/// The record as a filter takes it: forces and the acceleration of the base are inputs, which run between
+/// their samples as the record says (record_inputs.hpp), the rest outputs, in the record's order; stamps that
+/// lie on a regular grid to within their printed precision count as regular.
 filters::Measurements measurements(const Record& record);
 
 /// Rows of the record that are outputs, or inputs.
 std::vector<Eigen::Index> output_channels(const Record& record);
-std::vector<Eigen::Index> force_channels(const Record& record);
+std::vector<Eigen::Index> input_channels(const Record& record);
 
 }  // namespace beamid::experiments

@@ -32,7 +32,7 @@ RecordInputs take_inputs(const MatrixXd& samples, std::optional<InputPath> state
                          filters::Measurements& to) {
   if (const Index missing = samples.size() - samples.array().isFinite().count(); missing > 0)
     throw std::invalid_argument(
-        fmt::format("{} readings of measured forces are missing or not finite; expected all of them, for the "
+        fmt::format("{} readings of measured inputs are missing or not finite; expected all of them, for the "
                     "motion depends on every one",
                     missing));
   RecordInputs result{stated.value_or(InputPath::linear), stated.has_value(), to.size() - 1, 0};
@@ -65,7 +65,7 @@ filters::InputPaths decimated_inputs(const filters::Measurements& from, Index in
 }
 
 std::optional<RecordInputs> record_inputs(const Record& record) {
-  const std::vector<Index> forces = force_channels(record);
+  const std::vector<Index> forces = input_channels(record);
   if (forces.empty()) return {};
   filters::Measurements unused;
   unused.time = record.time;
@@ -89,7 +89,7 @@ std::string words(const RecordInputs& inputs) {
   std::string gaps;
   if (inputs.straight > 0)
     gaps = fmt::format("; straight over {} of {} intervals, at uneven stamps", inputs.straight, inputs.steps);
-  return fmt::format("Measured forces are taken as {}{} (input = \"{}\"{}).", how, gaps,
+  return fmt::format("Measured inputs are taken as {}{} (input = \"{}\"{}).", how, gaps,
                      to_string(inputs.path), inputs.stated ? "" : ", chosen by the stamps");
 }
 

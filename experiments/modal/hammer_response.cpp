@@ -18,12 +18,16 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::MatrixXcd, Eigen::VectorXd, Eigen::V
 
 Index force_row(const Record& record) {
   Index row = -1;
-  for (Index i = 0; i < record.samples.rows(); ++i)
+  for (Index i = 0; i < record.samples.rows(); ++i) {
+    if (record.channels[i].quantity == Quantity::base_acceleration)
+      throw std::invalid_argument(
+          "the record holds the acceleration of the base; frequency responses expect a hammer's force alone");
     if (record.channels[i].quantity == Quantity::force) {
       if (row >= 0)
         throw std::invalid_argument("the record has several channels of force; expected the hammer's alone");
       row = i;
     }
+  }
   if (row < 0)
     throw std::invalid_argument(
         "the record has no channel of force; frequency responses need one (--column, --quantity force)");

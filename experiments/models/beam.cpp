@@ -10,6 +10,7 @@
 // whose shapes depend on what is asked.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -34,12 +35,16 @@ const std::vector<std::string> quantities{"bending_stiffness",
                                           "root_rotational_stiffness",
                                           "root_translational_stiffness",
                                           "axial_load",
+                                          "storey_stiffness",
+                                          "storey_damping",
                                           "damping_ratio",
                                           "mass_damping",
                                           "stiffness_damping"};
 
 std::vector<ParameterChoice> choices_of(const ModelSetting& setting) {
-  if (setting.parameters.empty()) return {{"bending_stiffness"}, {"damping_ratio"}};
+  const bool storeys = setting.continuum && setting.continuum->beam.shear_building;
+  if (setting.parameters.empty())
+    return {{storeys ? "storey_stiffness" : "bending_stiffness"}, {"damping_ratio"}};
   for (const ParameterChoice& choice : setting.parameters) require_quantity(choice, quantities, "beam");
   return setting.parameters;
 }
@@ -61,6 +66,11 @@ void add_drives(const fem::ParametricSystem& equations, MotionDescription& descr
   }
 }
 
+bool asks_about_dashpots(const fem::ParametricSystem& equations) {
+  return std::any_of(equations.derivatives.begin(), equations.derivatives.end(),
+                     [](const auto& slope) { return slope.damping.nonZeros() > 0; });
+}
+
 VectorXd elastic(const fem::Modes& modes) {
   return modes.angular_frequency.tail(modes.size() - modes.rigid);
 }
@@ -69,7 +79,8 @@ VectorXd elastic(const fem::Modes& modes) {
 // masses asked about, drives them.
 bool moves_in_modes(const fem::ParametricSystem& equations, const fem::Modes& modes,
                     const MotionDescription& description) {
-  return description.base < 0 && modes.rigid == 0 && equations.system.damping.nonZeros() == 0;
+  return description.base < 0 && modes.rigid == 0 && equations.system.damping.nonZeros() == 0 &&
+         !asks_about_dashpots(equations);
 }
 
 // Whether the lowest modes of the mesh tell its motion. A force moves those above, too: the mesh's own
@@ -169,6 +180,11 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
     places = layout(description, modes.size());
     model->motion = std::make_shared<ReducedMotion>(std::move(small), std::move(description), rows, "mode");
   } else {
+    if (asks_about_dashpots(equations))
+      throw std::invalid_argument(
+          fmt::format("storey_damping of more than {} floors needs a reduction; expected [reduction] of "
+                      "fewer coordinates, or stiffness_damping",
+                      most_dense));
     describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
     model->mode_shapes = shapes;
     places = layout(description, equations.system.size());

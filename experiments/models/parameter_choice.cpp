@@ -30,6 +30,8 @@ const std::vector<ParameterQuantity>& parameter_quantities() {
       {"root_rotational_stiffness", "N m/rad", "n_m_per_rad"},
       {"root_translational_stiffness", "N/m", "n_per_m"},
       {"axial_load", "N", "n"},
+      {"storey_stiffness", "N/m", "n_per_m"},
+      {"storey_damping", "N s/m", "n_s_per_m"},
       {"damping_ratio", "", ""},
       {"mass_damping", "1/s", "per_s"},
       {"stiffness_damping", "s", "s"},
@@ -65,9 +67,12 @@ void require_quantity(const ParameterChoice& choice, const std::vector<std::stri
   if (std::find(known.begin(), known.end(), choice.quantity) == known.end())
     refuse(choice, fmt::format("model '{}' has no parameter '{}'; it asks about {}", model, choice.quantity,
                                joined(known)));
-  if (choice.region && choice.quantity != "bending_stiffness" && choice.quantity != "body_mass")
-    refuse(choice, choice.quantity +
-                       " has no regions; expected bending_stiffness or body_mass, or no from_m and to_m");
+  const std::string& asked = choice.quantity;
+  if (choice.region && asked != "bending_stiffness" && asked != "body_mass" && asked != "storey_stiffness" &&
+      asked != "storey_damping")
+    refuse(choice, asked +
+                       " has no regions; expected bending_stiffness, body_mass, storey_stiffness or "
+                       "storey_damping, or no from_m and to_m");
   if (choice.mode && choice.quantity != "damping_ratio" && choice.quantity != "frequency")
     refuse(choice, choice.quantity + " belongs to no mode; expected damping_ratio or frequency, or no mode");
 }

@@ -13,6 +13,7 @@ const char* si_unit(Quantity quantity) {
     case Quantity::velocity:
       return "m/s";
     case Quantity::acceleration:
+    case Quantity::base_acceleration:
       return "m/s2";
     case Quantity::force:
       return "N";
@@ -34,6 +35,8 @@ const char* to_string(Quantity quantity) {
       return "force";
     case Quantity::strain:
       return "strain";
+    case Quantity::base_acceleration:
+      return "base_acceleration";
   }
   return "";
 }

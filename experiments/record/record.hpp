@@ -8,13 +8,18 @@
 
 namespace beamid::experiments {
 
-enum class Quantity { displacement, velocity, acceleration, force, strain };
+enum class Quantity { displacement, velocity, acceleration, force, strain, base_acceleration };
+
+/// What drives the motion: a force, or the acceleration of all supports together.
+inline bool is_input(Quantity quantity) {
+  return quantity == Quantity::force || quantity == Quantity::base_acceleration;
+}
 
 /// How a measured input runs between its samples: as an anti-aliased converter recorded it, straight from
 /// sample to sample, or constant until the next one (which is late by half an interval).
 enum class InputPath { band_limited, linear, held };
 
-/// SI unit of a quantity: m, m/s, m/s2, N, m/m.
+/// SI unit of a quantity: m, m/s, m/s2, N, m/m, m/s2.
 const char* si_unit(Quantity quantity);
 const char* to_string(Quantity quantity);
 

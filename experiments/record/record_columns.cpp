@@ -85,7 +85,9 @@ std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_
   const auto unit = stated_unit(table.units[index]);
   if (!unit) return meaning;
   if (!meaning) return ColumnMeaning{unit->quantity, column_name_of(table, index), unit->factor};
-  if (unit->quantity != meaning->quantity || unit->factor != meaning->factor)
+  const bool of_base = meaning->quantity == Quantity::base_acceleration;  // whose unit is an acceleration's
+  if (unit->quantity != (of_base ? Quantity::acceleration : meaning->quantity) ||
+      unit->factor != meaning->factor)
     throw InputError({table.file, table.header_line},
                      fmt::format("'{}' has the unit '{}'; expected the one of its name", table.names[index],
                                  table.units[index]));

@@ -18,6 +18,7 @@ const std::vector<Unit>& units(Quantity quantity) {
     case Quantity::velocity:
       return velocity;
     case Quantity::acceleration:
+    case Quantity::base_acceleration:
       return acceleration;
     case Quantity::strain:
       return strain;

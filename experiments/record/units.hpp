@@ -27,7 +27,8 @@ const std::vector<Unit>& units(Quantity quantity);
 const std::vector<Unit>& time_units();
 
 inline constexpr Quantity all_quantities[] = {Quantity::displacement, Quantity::velocity,
-                                              Quantity::acceleration, Quantity::force, Quantity::strain};
+                                              Quantity::acceleration, Quantity::force,
+                                              Quantity::strain,       Quantity::base_acceleration};
 
 /// The quantity of that name: "acceleration".
 std::optional<Quantity> find_quantity(std::string_view name);

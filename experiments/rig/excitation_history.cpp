@@ -115,6 +115,15 @@ VectorXd from_file(const Case& c, Quantity quantity, std::vector<std::string>& n
   });
 }
 
+// A record of the base itself, or of a sensor on it.
+Quantity base_quantity(const Case& c) {
+  const Record record = read_record(c.folder / *c.excitation.file);
+  const bool own = std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& channel) {
+    return channel.quantity == Quantity::base_acceleration;
+  });
+  return own ? Quantity::base_acceleration : Quantity::acceleration;
+}
+
 VectorXd struck(const Case& c) {
   const fem::SparseMatrix mass = c.system.mass;
   const Eigen::SimplicialLDLT<fem::SparseMatrix> solver(mass);
@@ -169,7 +178,7 @@ ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSyst
       break;
     case Kind::base:
       result.base_acceleration =
-          excitation.file ? from_file(c, Quantity::acceleration, result.notes) : sine(c, result.notes);
+          excitation.file ? from_file(c, base_quantity(c), result.notes) : sine(c, result.notes);
       set_input(c, system.inputs.cols() - 1, result.base_acceleration, result);
       break;
   }

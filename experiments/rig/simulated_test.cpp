@@ -150,11 +150,11 @@ VectorXd readings_at(const SampleClock& clock, const VectorXd& step_time, const 
   return readings;
 }
 
-/// The force at the samples as one more channel of the record: a measured test has its force, too. Without it
-/// a forced motion would be taken for a free decay.
-void add_force(SimulatedTest& test, const SampleClock& clock, const VectorXd& force, Index steps,
-               double length) {
-  constexpr double visible = 1e-3;  // of the force's root mean square
+/// The force, or the acceleration of the base, at the samples as one more channel of the record: a measured
+/// test has it, too. Without it a forced motion would be taken for a free decay.
+void add_input(SimulatedTest& test, const SampleClock& clock, const VectorXd& force, Index steps,
+               const Channel& channel) {
+  constexpr double visible = 1e-3;  // of its root mean square
   const Index samples = clock.time.size() - clock.before;
   const VectorXd sampled = force(Eigen::seqN(Index{0}, samples, steps));
   VectorXd missed = VectorXd::Zero(force.size());
@@ -164,15 +164,14 @@ void add_force(SimulatedTest& test, const SampleClock& clock, const VectorXd& fo
   }
   if (const double loss = missed.norm(); loss > visible * force.norm())
     test.notes.push_back(
-        fmt::format("Between the samples the force moves off the straight line by {:.2g} % of its size: an "
-                    "identification that takes the recorded force for straight is wrong by as much. A higher "
+        fmt::format("Between the samples the {} moves off the straight line by {:.2g} % of its size: an "
+                    "identification that takes the record of it for straight is wrong by as much. A higher "
                     "sampling_rate_hz helps.",
-                    100.0 * loss / force.norm()));
+                    channel.quantity == Quantity::force ? "force" : "base", 100.0 * loss / force.norm()));
   test.record.samples.conservativeResize(test.record.samples.rows() + 1, Eigen::NoChange);
   test.record.samples.bottomRows(1) =
-      readings_at(clock, test.response.time, force, steps, Quantity::force).transpose();
-  const double position = *test.excitation.position;
-  test.record.channels.push_back({Quantity::force, name_of_place(position, length), position, 0.0});
+      readings_at(clock, test.response.time, force, steps, channel.quantity).transpose();
+  test.record.channels.push_back(channel);
   test.record.input_path = InputPath::linear;
 }
 
@@ -237,13 +236,19 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
             .transpose();
     test.record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance});
   }
-  if (history.base_acceleration.size() > 0)
+  const bool of_base = history.base_acceleration.size() > 0;
+  if (of_base && !acquisition.force)
     test.record.warnings.emplace_back(
         "The base moves, which the record does not hold: an identification takes this motion for a free "
         "decay.");
   else if (acquisition.force && test.excitation.kind != Excitation::Kind::release &&
-           history.loading.inputs.size() > 0)
-    add_force(test, clock, history.loading.inputs.row(input), steps, experiment.beam.length());
+           history.loading.inputs.size() > 0) {
+    const double position = *test.excitation.position;
+    const Channel force{Quantity::force, name_of_place(position, experiment.beam.length()), position, 0.0};
+    const Channel base{Quantity::base_acceleration, "base_acceleration", {}, 0.0};
+    add_input(test, clock, of_base ? history.base_acceleration : VectorXd(history.loading.inputs.row(input)),
+              steps, of_base ? base : force);
+  }
   lose_samples(acquisition, test.record, settings.seed);
   return test;
 }

@@ -12,7 +12,7 @@ ComparedRecord chosen_channels(ComparedRecord compared, const std::vector<std::s
   const Record& all = compared.record;
   std::vector<std::string> known;
   for (const Channel& channel : all.channels)
-    if (channel.quantity != Quantity::force) known.push_back(channel.name);
+    if (!is_input(channel.quantity)) known.push_back(channel.name);
   for (const std::string& name : names)
     if (const auto found = std::count(known.begin(), known.end(), name); found != 1)
       throw std::invalid_argument(fmt::format("{} channel of motion named '{}'; the record has {}",
@@ -20,7 +20,7 @@ ComparedRecord chosen_channels(ComparedRecord compared, const std::vector<std::s
                                               fmt::join(known, ", ")));
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < all.channels.size(); ++i)
-    if (all.channels[i].quantity == Quantity::force ||
+    if (is_input(all.channels[i].quantity) ||
         std::find(names.begin(), names.end(), all.channels[i].name) != names.end())
       kept.push_back(static_cast<Eigen::Index>(i));
 

@@ -1,10 +1,10 @@
 #include "experiments/identify/compare/true_value.hpp"
 
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "experiments/identify/model_setting.hpp"
+#include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/models/oscillator.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
@@ -15,18 +15,6 @@ namespace {
 
 using Eigen::VectorXd;
 using Property = fem::BeamParameter::Quantity;
-
-const std::map<std::string, Property>& properties() {
-  static const std::map<std::string, Property> known{
-      {"bending_stiffness", Property::bending_stiffness},
-      {"tip_mass", Property::tip_mass},
-      {"body_mass", Property::body_mass},
-      {"tip_rotary_inertia", Property::tip_rotary_inertia},
-      {"root_rotational_stiffness", Property::root_rotational_stiffness},
-      {"root_translational_stiffness", Property::root_translational_stiffness},
-      {"axial_load", Property::axial_load}};
-  return known;
-}
 
 std::optional<double> property(const fem::Beam& beam, const Unknown& unknown, Property which) {
   try {
@@ -57,8 +45,7 @@ double true_mass(const Experiment& truth, const Record& record, const Choice& re
 }
 
 std::optional<double> true_value(const Experiment& truth, double mass, const Unknown& unknown) {
-  if (const auto found = properties().find(unknown.quantity); found != properties().end())
-    return property(truth.beam, unknown, found->second);
+  if (const auto asked = beam_quantity(unknown.quantity)) return property(truth.beam, unknown, *asked);
   if (unknown.quantity == "mass_damping" || unknown.quantity == "stiffness_damping")
     return rayleigh_coefficient(truth.damping, unknown.quantity == "mass_damping");
 

@@ -196,7 +196,7 @@ DampingLawStudy study_damping_law(const Experiment& experiment, const Record& wh
   study.modal =
       dominant_mode(record.samples.row(output_channels(record)[0]).transpose(), record.interval(), modal);
   take_amplitudes(record, study);
-  const SlowRecord slow = slow_record(measurements(record), static_cast<Index>(force_channels(record).size()),
+  const SlowRecord slow = slow_record(measurements(record), static_cast<Index>(input_channels(record).size()),
                                       study.modal.frequency_hz);
   study.decimation = slow.factor;
   study.samples = slow.samples;

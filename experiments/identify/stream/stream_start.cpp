@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 
 void require_free_motion(const Record& earlier) {
-  const std::vector<Index> forces = force_channels(earlier);
+  const std::vector<Index> forces = input_channels(earlier);
   if (!forces.empty())
     throw std::invalid_argument(
         fmt::format("a stream takes free motion; found the measured force '{}', of which a band-limited path "

@@ -27,7 +27,7 @@ Record motion_of(const Record& record) {
   motion.channels.clear();
   Index rows = 0;
   for (Index i = 0; i < record.samples.rows(); ++i) {
-    if (record.channels[i].quantity == Quantity::force) continue;
+    if (is_input(record.channels[i].quantity)) continue;
     motion.samples.row(rows++) = record.samples.row(i);
     motion.channels.push_back(record.channels[i]);
   }

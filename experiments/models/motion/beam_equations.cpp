@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using Property = fem::BeamParameter::Quantity;
 
-constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1;
+constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1, dashpot_doubt = 1.0;
 
 fem::BeamParameter parameter_of(const std::string& quantity,
                                 const std::optional<std::pair<double, double>>& region) {
@@ -59,6 +59,8 @@ std::optional<Property> beam_quantity(const std::string& name) {
   if (name == "root_rotational_stiffness") return Property::root_rotational_stiffness;
   if (name == "root_translational_stiffness") return Property::root_translational_stiffness;
   if (name == "axial_load") return Property::axial_load;
+  if (name == "storey_stiffness") return Property::storey_stiffness;
+  if (name == "storey_damping") return Property::storey_damping;
   return std::nullopt;
 }
 
@@ -73,7 +75,9 @@ std::vector<ParameterDefault> beam_defaults(const fem::Beam& beam,
                       *quantity == Property::tip_rotary_inertia;
     try {
       defaults[j] = {fem::value_of(beam, parameter_of(choice.quantity, choice.region)),
-                     mass ? mass_doubt : stiffness_doubt};
+                     mass                                    ? mass_doubt
+                     : *quantity == Property::storey_damping ? dashpot_doubt
+                                                             : stiffness_doubt};
     } catch (const std::invalid_argument& error) {
       refuse(choice, choice.quantity + ": " + error.what());
     }
@@ -149,7 +153,8 @@ ReducedEquations on_shapes(const fem::ParametricSystem& equations, const MatrixX
   const MatrixXd strains = equations.strain * shapes;
   for (const fem::ParametricSystem::Derivative& slope : equations.derivatives)
     reduced.derivatives.push_back(
-        {project(slope.mass, shapes), project(slope.rigidity, strains), kept(slope.inputs)});
+        {project(slope.mass, shapes), project(slope.rigidity, strains), kept(slope.inputs),
+         slope.damping.nonZeros() > 0 ? project(slope.damping, shapes) : MatrixXd()});
   return reduced;
 }
 

@@ -116,9 +116,9 @@ PhysicalValues physical_values(const MotionDescription& description, const State
 Reads reads(Quantity quantity) {
   if (quantity == Quantity::velocity) return Reads::rates;
   if (quantity == Quantity::acceleration) return Reads::accelerations;
-  if (quantity == Quantity::force)
+  if (is_input(quantity))
     throw std::invalid_argument(
-        "a force is no observation of the motion; expected displacement, velocity, acceleration or strain");
+        "an input is no observation of the motion; expected displacement, velocity, acceleration or strain");
   return Reads::coordinates;
 }
 

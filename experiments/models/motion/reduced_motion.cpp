@@ -58,12 +58,14 @@ ReducedMotion::ReducedMotion(ReducedEquations equations, MotionDescription descr
   decoupled_ = is_diagonal(equations_.damping, rate);
   for (const ReducedEquations::Derivative& slope : equations_.derivatives)
     decoupled_ = decoupled_ && is_diagonal(slope.mass, slope.mass.diagonal().cwiseAbs()) &&
-                 is_diagonal(slope.stiffness, slope.stiffness.diagonal().cwiseAbs());
+                 is_diagonal(slope.stiffness, slope.stiffness.diagonal().cwiseAbs()) &&
+                 (slope.damping.size() == 0 || is_diagonal(slope.damping, slope.damping.diagonal()));
   if (!decoupled_) return;
   make_diagonal(equations_.damping);
   for (ReducedEquations::Derivative& slope : equations_.derivatives) {
     make_diagonal(slope.mass);
     make_diagonal(slope.stiffness);
+    if (slope.damping.size() > 0) make_diagonal(slope.damping);
   }
 }
 
@@ -78,7 +80,7 @@ void ReducedMotion::evaluate(const VectorXd& state, SecondOrderForm& form,
   const MotionDescription& given = description();
   const PhysicalValues at = physical_values(given, layout(), state);
   MatrixXd mass = equations_.mass.asDiagonal(), stiffness = equations_.stiffness.asDiagonal();
-  MatrixXd inputs = equations_.inputs;
+  MatrixXd inputs = equations_.inputs, dashpots = equations_.damping;
   bool lumped = decoupled_;
   for (Index j = 0; j < given.properties(); ++j) {
     const ReducedEquations::Derivative& slope = equations_.derivatives[static_cast<std::size_t>(j)];
@@ -87,10 +89,11 @@ void ReducedMotion::evaluate(const VectorXd& state, SecondOrderForm& form,
     mass += change * slope.mass;
     stiffness += change * slope.stiffness;
     inputs += change * slope.inputs;
+    if (slope.damping.size() > 0) dashpots += change * slope.damping;
   }
   if (lumped && !(mass.diagonal().minCoeff() > 0.0))
     throw std::runtime_error("the parameters leave a mode without mass");
-  MatrixXd damping = equations_.damping + at.mass_damping * mass + at.stiffness_damping * stiffness;
+  MatrixXd damping = dashpots + at.mass_damping * mass + at.stiffness_damping * stiffness;
   std::vector<ModeDamping> modes;
   for (std::size_t i = 0; i < given.damped_modes.size(); ++i) {
     modes.push_back(damping_at(given.damped_modes[i], at.change, at.ratios[static_cast<Index>(i)]));
@@ -128,6 +131,7 @@ void ReducedMotion::evaluate(const VectorXd& state, SecondOrderForm& form,
       slope.stiffness = by.stiffness;
       slope.stiffness.noalias() -= by.mass * form.stiffness;
       slope.damping = at.mass_damping * by.mass + at.stiffness_damping * by.stiffness;
+      if (by.damping.size() > 0) slope.damping += by.damping;
       for (std::size_t i = 0; i < modes.size(); ++i) {
         const VectorXd& g = modes[i].momentum;
         const auto turn = given.damped_modes[i].momentum_slopes.col(drive.index);

@@ -17,6 +17,7 @@ struct ReducedEquations {
   struct Derivative {
     Eigen::MatrixXd mass, stiffness;  ///< M_j, K_j (r x r)
     Eigen::MatrixXd inputs;           ///< E_j (r x m)
+    Eigen::MatrixXd damping = {};     ///< C_j (r x r); empty: zero
   };
   std::vector<Derivative> derivatives;  ///< a
 };

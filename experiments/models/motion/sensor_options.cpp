@@ -19,9 +19,10 @@ MotionDescription describe_sensors(const std::string& model, const ModelSetting&
   if (setting.observations.empty())
     throw std::invalid_argument("model '" + model + "' needs at least one observed quantity");
   for (const Observation& observation : setting.observations)
-    if (observation.quantity == Quantity::force)
+    if (is_input(observation.quantity))
       throw std::invalid_argument("model '" + model +
-                                  "' observes displacement, velocity, acceleration or strain; found force");
+                                  "' observes displacement, velocity, acceleration or strain; found " +
+                                  to_string(observation.quantity));
   const auto rows = setting.system.outputs.rows();
   if (rows != static_cast<Eigen::Index>(setting.observations.size()))
     throw std::invalid_argument(

@@ -97,8 +97,9 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
   if (count > summary.system.size())
     summary.notes.push_back(
         fmt::format("{} modes asked for; the mesh of {} element{} has {} coordinates, and as "
-                    "many modes. More elements have more.",
-                    count, summary.elements, summary.elements == 1 ? "" : "s", summary.system.size()));
+                    "many modes.{}",
+                    count, summary.elements, summary.elements == 1 ? "" : "s", summary.system.size(),
+                    experiment.beam.shear_building ? "" : " More elements have more."));
   count = std::min(count, summary.system.size());
   progress("modes");
   summary.modes = fem::modes(summary.system, count);

@@ -192,7 +192,10 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   results.table(sensor_table(*test));
   if (const std::string text = acquisition_text(*test); !text.empty()) results.paragraph(text);
   if (test->record.channels.size() > test->sensors.size())
-    results.paragraph("The record holds the force, too: " + channel_text(test->record.channels.back()) + ".");
+    results.paragraph(test->record.channels.back().quantity == Quantity::force
+                          ? "The record holds the force, too: " + channel_text(test->record.channels.back()) +
+                                "."
+                          : "The record holds the acceleration of the base, too.");
   add_notes(results, test->notes);
 
   results.attachments.push_back({{"record.csv", "record.toml"}, [test](const std::filesystem::path& folder) {

@@ -120,9 +120,8 @@ PreparationCost preparation_cost(const std::vector<Choice>& choices, const Recor
   const Decay decay{2 * std::numbers::pi * frequency_hz *
                         Complex(-damping_ratio, std::sqrt(1 - damping_ratio * damping_ratio)),
                     course.onset.value_or(record.time[0])};
-  const auto motion =
-      std::find_if(record.channels.begin(), record.channels.end(),
-                   [](const Channel& channel) { return channel.quantity != Quantity::force; });
+  const auto motion = std::find_if(record.channels.begin(), record.channels.end(),
+                                   [](const Channel& channel) { return !is_input(channel.quantity); });
   const Channel& first = motion == record.channels.end() ? record.channels.front() : *motion;
 
   PreparationCost cost{frequency_hz, damping_ratio, {}, {}};

@@ -38,7 +38,7 @@ std::optional<Panel> prepared_spectrum(const Record& record, const std::string& 
 
 Eigen::Index motion_row(const Record& record) {
   for (std::size_t i = 0; i < record.channels.size(); ++i)
-    if (record.channels[i].quantity != Quantity::force) return static_cast<Eigen::Index>(i);
+    if (!is_input(record.channels[i].quantity)) return static_cast<Eigen::Index>(i);
   return 0;
 }
 

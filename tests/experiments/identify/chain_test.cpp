@@ -1,0 +1,157 @@
+// A shear building under a moving base or forces, identified storey by storey. Oracles: the values that its
+// record was simulated with, and the Cramer-Rao bound.
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/record/read_record.hpp"
+#include "experiments/record/write_record.hpp"
+#include "experiments/rig/simulated_test.hpp"
+#include "filters/normal_noise.hpp"
+#include "tests/experiments/results/temporary_folder.hpp"
+
+namespace beamid::experiments::chain_test {
+namespace {
+
+constexpr const char* building = R"toml(
+[chain]
+masses_kg = [1000, 1000, 800]
+stiffnesses_n_per_m = [2.0e6, 1.6e6, 1.2e6]
+dashpots_n_s_per_m = [2000, 1600, 1200]
+heights_m = [3, 3, 3]
+[excitation]
+kind = "base"
+file = "quake.csv"
+[simulation]
+duration_s = 20
+sampling_rate_hz = 100
+steps_per_sample = 4
+[[sensors]]
+quantity = "acceleration"
+position_m = 3
+noise_m_per_s2 = 0.01
+[[sensors]]
+quantity = "acceleration"
+position_m = 9
+noise_m_per_s2 = 0.01
+[model]
+name = "beam"
+[reduction]
+method = "modal_truncation"
+modes = 3
+)toml";
+
+constexpr const char* asked = R"toml(
+[[parameters]]
+quantity = "storey_stiffness"
+from_m = 0
+to_m = 3
+guess_n_per_m = 2.6e6
+[[parameters]]
+quantity = "storey_stiffness"
+from_m = 3
+to_m = 9
+guess_n_per_m = 1.1e6
+[[parameters]]
+quantity = "storey_damping"
+guess_n_s_per_m = 3000
+)toml";
+
+class MovingBase : public testing::Test {
+ protected:
+  MovingBase() {
+    std::ofstream file(place_.path / "quake.csv");
+    file << "time_s,base_acceleration_m_per_s2\n";
+    const Eigen::VectorXd white = filters::standard_normal(2001, 3, 0);
+    double slow = 0.0;
+    for (Eigen::Index k = 0; k < white.size(); ++k)
+      file << 0.01 * static_cast<double>(k) << ',' << (slow += 0.5 * (white[k] - slow)) << '\n';
+  }
+
+  Experiment experiment(const std::string& more, std::uint64_t seed = 1) const {
+    Experiment e = read_experiment(TomlTable::parse(std::string(building) + more, "building.toml"));
+    e.simulation.seed = seed;
+    return e;
+  }
+
+  TemporaryFolder place_;
+};
+
+TEST_F(MovingBase, IsAChannelOfTheRecordAndOfItsFile) {
+  const SimulatedTest test = simulate(experiment(""), place_.path, 0, unwatched);
+  ASSERT_EQ(test.record.channels.size(), 3u);
+  EXPECT_EQ(test.record.channels[2].quantity, Quantity::base_acceleration);
+  EXPECT_TRUE(test.record.warnings.empty());
+  write_record(test.record, place_.path / "record.csv");
+  const Record read = read_record(place_.path / "record.csv");
+  EXPECT_EQ(read.channels[2].quantity, Quantity::base_acceleration);
+  EXPECT_EQ(read.samples.row(2), test.record.samples.row(2));
+}
+
+// rms of (estimate - truth) / bound over seeds: 60 numbers, 1 +- 0.09.
+TEST_F(MovingBase, LetsStoreysBeFoundToTheBound) {
+  double sum = 0.0, own = 0.0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Experiment e = experiment(asked, seed);
+    const ComparedRun run =
+        identify_with_model(e, simulated_record(e, place_.path, unwatched), place_.path, unwatched)
+            .runs.at(0);
+    ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
+    for (const ComparedParameter& p : run.parameters) {
+      ASSERT_TRUE(p.truth && p.bound) << p.estimate.name;
+      sum += std::pow((p.estimate.value - *p.truth) / *p.bound, 2);
+      own += p.estimate.deviation / *p.bound;
+      ++count;
+    }
+  }
+  ASSERT_EQ(count, 60);
+  EXPECT_NEAR(std::sqrt(sum / count), 1.0, 0.25);  // 2.7 of its standard errors
+  EXPECT_NEAR(own / count, 1.0, 0.15);
+}
+
+TEST_F(MovingBase, IsRefusedTwice) {
+  Experiment e = experiment(asked);
+  Record record = simulate(e, place_.path, 0, unwatched).record;
+  record.channels[1] = record.channels[2];
+  EXPECT_THROW(
+      {
+        try {
+          identify_with_model(e, measured_record("", record), {}, unwatched);
+        } catch (const std::invalid_argument& error) {
+          EXPECT_THAT(error.what(), testing::HasSubstr("several channels of base_acceleration"));
+          throw;
+        }
+      },
+      std::invalid_argument);
+}
+
+TEST(Chain, RefusesWhatItsFileCannotHave) {
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      read_experiment(TomlTable::parse(text, "b.toml"));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "read";
+  };
+  using testing::HasSubstr;
+  const std::string two = "[chain]\nmasses_kg = [1, 1]\nstiffnesses_n_per_m = [1, 1]\n";
+  EXPECT_EQ(message(two), "read");
+  EXPECT_THAT(message("[chain]\nmasses_kg = [1, 1]\nstiffnesses_n_per_m = [1]\n"),
+              HasSubstr("1 stiffnesses for 2 floors"));
+  EXPECT_THAT(message("[chain]\nmasses_kg = [1]\n"), HasSubstr("stiffnesses_n_per_m"));
+  EXPECT_THAT(message(two + "[beam]\nlength_m = 1\n"),
+              HasSubstr("chain beside beam; expected one structure"));
+  EXPECT_THAT(message(two + "[[sensors]]\nquantity = \"acceleration\"\nposition_m = 1.5\n"),
+              HasSubstr("position_m is 1.5; expected the height of a floor: 1, 2"));
+  EXPECT_THAT(message(two + "[[sensors]]\nquantity = \"strain\"\nposition_m = 1\ndistance_m = 0.1\n"),
+              HasSubstr("a chain has no sections whose strain could be read"));
+}
+
+}  // namespace
+}  // namespace beamid::experiments::chain_test
