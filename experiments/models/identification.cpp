@@ -43,7 +43,7 @@ filters::FilterRun filter_record(const JointModel& model, const filters::Measure
   const auto filter = filters::filter_registry().make(
       settings.filter, settings.filter_options,
       filters::discretise(model.motion, record.interval(), settings.discretisation,
-                          {{}, settings.output_noise}));
+                          {settings.process_noise, settings.output_noise}));
   filters::Gaussian initial = settings.initial;
   filters::FilterRun run;
   for (int pass = 1; pass <= settings.passes; ++pass) {

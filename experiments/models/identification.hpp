@@ -22,6 +22,7 @@ struct IdentificationSettings {
   /// poor first guess.
   int passes = 1;
   filters::OnFailure on_failure = filters::OnFailure::stop;
+  Eigen::MatrixXd process_noise = {};  ///< Q of the state per step; empty: none
 };
 
 /// The belief that the next pass over the record starts from: `initial` with the constants that `last` found

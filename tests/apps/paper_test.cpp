@@ -115,7 +115,9 @@ TEST_F(PaperFiles, AreTheWholeSet) {
   EXPECT_EQ(first_.code, 0) << first_.err;
   EXPECT_THAT(first_.out, HasSubstr("\nWritten to one\n"));
   std::vector<std::string> expected{"report.html", "results.json", "timing.json", "modes.pvd"};
-  for (const char* figure : {"figure_2", "figure_3", "figure_5", "figure_6", "damping_law"})
+  for (const char* figure :
+       {"figure_2", "figure_3", "figure_5", "figure_6", "damping_law", "step_experiment", "generator_matrix",
+        "predicted_differences", "bias_by_process_noise", "error_by_start"})
     for (const char* ending : {".svg", ".png", ".gp", ".csv"})
       expected.push_back(figure + std::string(ending));
   for (const char* table : {"table_1", "table_2", "table_3", "table_4", "table_5", "discretisation_bias"})

@@ -44,6 +44,10 @@ BeamCase prepare(const TestBeam& test) {
   return beam;
 }
 
+double second_mode_velocity(const BeamCase& beam) {
+  return std::abs(beam.released.modal_amplitudes[1]) * beam.released.modes.angular_frequency[1];
+}
+
 BeamSettings tuned_settings(const BeamCase& beam) {
   const double frequency = beam.released.modes.frequency_hz()[0];
   BeamSettings settings;
@@ -112,6 +116,9 @@ Identification identify(const BeamCase& beam, const filters::Measurements& motio
   identification.initial.mean << motion.outputs.col(0), settings.first_stiffness, settings.first_damping;
   identification.initial.covariance = settings.initial_variance.asDiagonal();
   identification.output_noise = settings.noise_variance.asDiagonal();
+  if (settings.process_variance > 0.0)
+    identification.process_noise =
+        Eigen::Vector4d(settings.process_variance, settings.process_variance, 0.0, 0.0).asDiagonal();
   return experiments::identify(beam.model, motion, identification);
 }
 

@@ -24,6 +24,7 @@ struct BeamSettings {
   Eigen::Vector4d initial_variance{1e-4, 1e-1, 200.0 * 200.0, 3.0 * 3.0};  ///< P0
   double first_stiffness = 0.0;                                            ///< K0 [N/m]
   double first_damping = 0.3;                                              ///< C0 [N s/m]
+  double process_variance = 0.0;  ///< Q of displacement [m2] and velocity [m2/s2], per step
 };
 
 /// A test beam with everything that does not depend on noise or filter.
@@ -36,6 +37,8 @@ struct BeamCase {
   double stiffness_bound = 0, damping_bound = 0;  ///< Cramer-Rao, acceleration observed over the whole record
 };
 BeamCase prepare(const TestBeam& test);
+/// Amplitude of the second mode's velocity at the tip after the release [m/s].
+double second_mode_velocity(const BeamCase& beam);
 
 /// The processing that reaches the bound: high-pass at f1/2, low-pass at 2.5 f1, three cycles left out.
 BeamSettings tuned_settings(const BeamCase& beam);

@@ -128,9 +128,16 @@ Figure damping_law_figure(const Outcome& outcome) {
 }  // namespace
 
 std::vector<Figure> figures(const Outcome& outcome) {
-  return {convergence_figure(outcome, "figure_2", 2), convergence_figure(outcome, "figure_3", 3),
+  return {convergence_figure(outcome, "figure_2", 2),
+          convergence_figure(outcome, "figure_3", 3),
           reproduction_figure(outcome.beams[1], "figure_5"),
-          reproduction_figure(outcome.beams[4], "figure_6"), damping_law_figure(outcome)};
+          reproduction_figure(outcome.beams[4], "figure_6"),
+          damping_law_figure(outcome),
+          step_figure(outcome.step),
+          digit_figure(outcome.digits),
+          prediction_figure(outcome.predictions),
+          covariance_figure(outcome.covariances),
+          start_figure(outcome.start)};
 }
 
 Attachment mode_shapes(const Outcome& outcome) {

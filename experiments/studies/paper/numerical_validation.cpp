@@ -4,24 +4,39 @@
 #include <numbers>
 
 #include "experiments/models/one_coordinate.hpp"
-#include "fem/free_decay.hpp"
+#include "experiments/signal/random.hpp"
+#include "experiments/studies/paper/data_generator.hpp"
 
 namespace beamid::experiments::paper {
 namespace {
 
+// The first sample is one interval after the release.
 filters::Measurements simulate_oscillator(const ValidationSettings& settings) {
-  const Oscillator& truth = settings.truth;
   const auto samples = static_cast<Eigen::Index>(std::lround(settings.duration / settings.interval));
-  const auto one = [](double value) { return Eigen::VectorXd::Constant(1, value); };
   filters::Measurements record;
   record.time = Eigen::VectorXd::LinSpaced(samples, 1.0, static_cast<double>(samples)) * settings.interval;
-  const fem::Motion motion = fem::free_decay(one(settings.release), one(truth.angular_frequency()),
-                                             one(truth.damping_ratio()), record.time);
+  const Eigen::MatrixXd motion =
+      generate_decay(settings.data, settings.truth, settings.release, settings.interval, samples);
   record.outputs.resize(static_cast<Eigen::Index>(settings.observed.size()), samples);
-  for (Eigen::Index i = 0; i < record.outputs.rows(); ++i)
-    record.outputs.row(i) =
-        settings.observed[i] == Quantity::displacement ? motion.displacement : motion.velocity;
+  for (Eigen::Index i = 0; i < record.outputs.rows(); ++i) {
+    const Eigen::Index row = settings.observed[i] == Quantity::displacement ? 0 : 1;
+    record.outputs.row(i) = motion.row(row);
+    if (settings.sensor_noise[row] > 0.0)
+      record.outputs.row(i) +=
+          settings.sensor_noise[row] *
+          standard_normal(samples, settings.seed, static_cast<std::uint64_t>(row)).transpose();
+  }
   return record;
+}
+
+// R, by what is observed
+Eigen::MatrixXd output_noise_of(const ValidationSettings& settings) {
+  Eigen::VectorXd variance(static_cast<Eigen::Index>(settings.observed.size()));
+  for (Eigen::Index i = 0; i < variance.size(); ++i)
+    variance[i] = settings.observed[i] == Quantity::velocity && settings.velocity_variance > 0.0
+                      ? settings.velocity_variance
+                      : settings.noise_variance;
+  return variance.asDiagonal();
 }
 
 }  // namespace
@@ -48,14 +63,16 @@ Identification validate(const std::string& filter, const std::string& scheme,
                         const ValidationSettings& settings, filters::Keep keep) {
   const auto model =
       model_registry().make("sdof", {}, at_one_point(one_coordinate(settings.truth), settings.observed));
-  const auto outputs = static_cast<Eigen::Index>(settings.observed.size());
   IdentificationSettings identification;
   identification.filter = filter;
   identification.discretisation = scheme;
   identification.initial.mean =
       Eigen::Vector4d(settings.release, 0.0, settings.first_stiffness, settings.first_damping);
   identification.initial.covariance = settings.initial_variance.asDiagonal();
-  identification.output_noise = settings.noise_variance * Eigen::MatrixXd::Identity(outputs, outputs);
+  identification.output_noise = output_noise_of(settings);
+  if (settings.process_variance > 0.0)
+    identification.process_noise =
+        Eigen::Vector4d(settings.process_variance, settings.process_variance, 0.0, 0.0).asDiagonal();
   identification.start = filters::Start::one_interval_before;
   identification.passes = settings.passes;
   return identify(*model, simulate_oscillator(settings), identification, keep);

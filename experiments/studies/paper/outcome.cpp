@@ -31,7 +31,9 @@ BeamOutcome examine_case(const TestBeam& test, int number, std::uint64_t seed, i
   }
   const BeamSettings wide = wide_settings(beam);
   outcome.wide_true = identify(beam, true_motion(beam), wide, "ekf", "exponential");
-  outcome.wide_processed = identify(beam, process(record, wide), wide, "ekf", "exponential");
+  const filters::Measurements processed = process(record, wide);
+  outcome.wide_processed = identify(beam, processed, wide, "ekf", "exponential");
+  outcome.wide_euler = identify(beam, processed, wide, "ekf", "forward_euler");
   outcome.wide_zero_phase =
       identify(beam, process(record, zero_phase_wide_settings(beam)), wide, "ekf", "exponential");
   const BeamSettings zero_phase = zero_phase_settings(beam);
@@ -60,6 +62,19 @@ Outcome investigate(std::uint64_t seed, int trials, const Progress& progress) {
     outcome.beams.push_back(examine_case(test_beams[i], static_cast<int>(i), seed, trials));
     countdown.count(static_cast<std::size_t>(trials));
   }
+  progress("specificity, covariances and alternatives");
+  outcome.digits = examine_digits();
+  outcome.covariances = vary_covariances();
+  const BeamOutcome &light = outcome.beams[0], &second = outcome.beams[1];
+  outcome.channels = examine_channels(second.beam, seed);
+  std::vector<const BeamCase*> beams;
+  for (const BeamOutcome& o : outcome.beams) {
+    beams.push_back(&o.beam);
+    outcome.predictions.push_back(predict(o.beam));
+  }
+  outcome.alternatives = examine_alternatives(beams);
+  outcome.start = vary_start(light.beam);
+  outcome.step = vary_step(second.beam, second.motion, second.settings);
   return outcome;
 }
 

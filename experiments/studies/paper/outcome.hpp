@@ -6,9 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "experiments/studies/paper/alternatives.hpp"
 #include "experiments/studies/paper/beam_identification.hpp"
+#include "experiments/studies/paper/covariances.hpp"
 #include "experiments/studies/paper/monte_carlo.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
+#include "experiments/studies/paper/predictions.hpp"
+#include "experiments/studies/paper/specificity.hpp"
+#include "experiments/studies/paper/start_sample.hpp"
+#include "experiments/studies/paper/step_size.hpp"
+#include "experiments/studies/paper/two_channels.hpp"
 #include "experiments/text/progress.hpp"
 
 namespace beamid::experiments::paper {
@@ -43,6 +50,7 @@ struct BeamOutcome {
   /// Exact EKF with the paper's wide prior: on the true motion, after its own processing, after a zero-phase
   /// high-pass.
   Identification wide_true, wide_processed, wide_zero_phase;
+  Identification wide_euler;  ///< forward Euler after the paper's own processing: the chain of 2009
   Identification zero_phase;  ///< exact EKF, tuned processing made zero-phase, both ends left out
   TrialStatistics trials;
 };
@@ -54,6 +62,13 @@ struct Outcome {
   /// Forward Euler with the variance of K and C as printed, 10^-5, after a release of 12 mm and of 1 m.
   Identification literal_variance, literal_variance_large;
   std::vector<BeamOutcome> beams;
+  std::vector<DigitCase> digits;        ///< how specific the published digits are
+  CovarianceOutcome covariances;        ///< the bias against R, Q and P0
+  std::vector<ChannelCase> channels;    ///< what the innovations show
+  std::vector<Prediction> predictions;  ///< of the measured beams, nothing assumed
+  std::vector<AlternativeCase> alternatives;
+  StartOutcome start;  ///< S(0.65), the settings of 2009 and where the record starts
+  StepOutcome step;    ///< S(11.8), the same record at longer steps
 };
 
 /// Runs it all. @param trials seeded repetitions per beam. @param progress is told what is being done.

@@ -23,6 +23,8 @@ Table table_4(const Outcome& outcome);
 Table table_5(const Outcome& outcome);
 /// Wide prior and unmodelled modes: the second cause of failure.
 Table second_cause_table(const Outcome& outcome);
+/// Both schemes before the chain of 2009 and before the tuned one.
+Table chain_table(const Outcome& outcome);
 /// Zero-phase filtering, with its end transients left out and kept.
 Table zero_phase_table(const Outcome& outcome);
 /// Mean and rms error over the seeded trials against the Cramer-Rao bound.
@@ -38,6 +40,8 @@ void tell(const Outcome& outcome, Results& results);
 
 /// The keys of results.json.
 nlohmann::ordered_json values(const Outcome& outcome);
+/// Those of what the argument rests on, beside the paper's own tables.
+nlohmann::ordered_json argument_values(const Outcome& outcome);
 nlohmann::ordered_json configuration(const Outcome& outcome);
 
 }  // namespace beamid::experiments::paper
