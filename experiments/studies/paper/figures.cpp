@@ -53,7 +53,7 @@ Figure convergence_figure(const Outcome& outcome, const char* name, Index index)
   constexpr double beginning = 0.05;  // [s]
   Figure figure{name, {}, 2, 2, 1100};
   for (const auto& [scheme, title] :
-       {std::pair{"forward_euler", "Forward Euler, as the paper"}, {"exponential", "Exact discretisation"}}) {
+       {std::pair{"forward_euler", "Forward Euler"}, {"exponential", "Exact discretisation"}}) {
     Panel panel = convergence(outcome, scheme, title, index);
     figure.panels.push_back(panel);
     panel.title += ", its beginning";

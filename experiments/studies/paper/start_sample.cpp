@@ -61,17 +61,19 @@ Table& errors_of(Table& table, const std::vector<StartCase>& cases,
   return table;
 }
 
-// Error of C against the start; a lost run is a gap.
+// Error of C against the start; runs that lost the motion stand by themselves at the bottom.
 void draw_errors(Panel& panel, const char* label, const std::vector<StartCase>& cases, bool exact,
                  Colour colour) {
-  Eigen::VectorXd x(static_cast<Eigen::Index>(cases.size())), y(x.size());
+  constexpr double bottom = -150.0;
+  Eigen::VectorXd x(static_cast<Eigen::Index>(cases.size())), y(x.size()), gone(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const StartCase& one = cases[static_cast<std::size_t>(i)];
+    const bool is_lost = exact ? one.exact_lost : one.euler_lost;
     x[i] = static_cast<double>(one.sample);
-    const bool gone = exact ? one.exact_lost : one.euler_lost;
-    y[i] = gone ? no_value : exact ? one.exact_error_percent : one.euler_error_percent;
+    y[i] = is_lost ? no_value : exact ? one.exact_error_percent : one.euler_error_percent;
+    gone[i] = is_lost ? bottom - (exact ? 0.0 : 25.0) : no_value;
   }
-  panel.points(label, x, y, colour);
+  panel.points(label, x, y, colour).open_points(std::string(label) + ", lost the motion", x, gone, colour);
 }
 
 }  // namespace
@@ -127,14 +129,14 @@ Figure start_figure(const StartOutcome& outcome) {
   draw_errors(panel, "EKF, exact", outcome.curve, true, Colour::blue);
   draw_errors(panel, "EKF, forward Euler", outcome.curve, false, Colour::vermillion);
   panel.across(0.0, 500.0)
-      .up(-200.0, 1200.0)
+      .up(-200.0, 800.0)
       .level("closed form, forward Euler", outcome.euler_prediction_percent, Colour::vermillion)
       .level("no error", 0.0);
   Figure figure{"error_by_start", {panel}};
   figure.caption = fmt::format(
-      "{} with the settings of 2009: error of C against the sample at which the record starts. A run that "
+      "{} with the settings of 2009: error of C against the sample at which the record starts. Runs that "
       "lost "
-      "the motion, or lies beyond the frame, is not drawn.",
+      "the motion stand at the bottom.",
       outcome.beam);
   return figure;
 }

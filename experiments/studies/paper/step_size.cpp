@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "experiments/models/discretisation_bias.hpp"
 
 namespace beamid::experiments::paper {
@@ -51,8 +53,8 @@ StepOutcome vary_step(const BeamCase& beam, const filters::Measurements& motion,
   Oscillator reference = beam.reference;
   reference.damping *= outcome.steps[0].exact_ratio / reference.damping_ratio();
   constexpr int points = 50;
-  for (int i = 1; i <= points; ++i) {
-    const double dt = 1.05 * outcome.steps.back().interval * i / points;
+  for (int i = 0; i <= points; ++i) {
+    const double dt = std::max(1e-6, 1.05 * outcome.steps.back().interval * i / points);
     outcome.curve.push_back({dt, 0.0, 0.0, seen_through("forward_euler", reference, dt).damping_ratio()});
   }
   return outcome;
@@ -89,6 +91,7 @@ Figure step_figure(const StepOutcome& outcome) {
   const Eigen::VectorXd x = column(outcome.steps, dt);
   Panel panel{"", {"time step [ms]"}, {"damping ratio found [%]"}};
   panel.across(0.0, 1.05 * x[x.size() - 1])
+      .up(0.0, 20.0)
       .line("closed form, forward Euler", column(outcome.curve, dt),
             column(outcome.curve, [](const StepCase& one) { return 100.0 * one.predicted_ratio; }),
             Colour::black)
