@@ -172,6 +172,44 @@ TEST(StudyDocument, QuotesTheLotteryOnTheLightestBeam) {
     largest = std::max(largest, error);
   }
   expect_quoted("gives " + written(least, "%+.0f") + " ... " + written(largest, "%+.0f") + " %");
+  struct Count {
+    int lost = 0, wild = 0, tame = 0;
+    double least = 1e9, largest = -1e9, worst = 0.0;
+  };
+  const auto count = [&](const char* scheme, double frame) {
+    Count found;
+    for (const json& one : results.at("start_curve")) {
+      const json& error = one.at(scheme).at("damping_error_percent");
+      if (error.is_null()) {
+        ++found.lost;
+      } else if (std::abs(error.get<double>()) > frame) {
+        ++found.wild;
+        found.worst = error;
+      } else {
+        ++found.tame;
+        found.least = std::min(found.least, error.get<double>());
+        found.largest = std::max(found.largest, error.get<double>());
+      }
+    }
+    return found;
+  };
+  const Count exact = count("exponential", 250.0), small = count("exponential", 5.0),
+              euler = count("forward_euler", 1000.0);
+  EXPECT_EQ(exact.wild, 1);
+  EXPECT_EQ(euler.wild, 2);
+  expect_quoted("Of " + std::to_string(results.at("start_curve").size()) +
+                " starts within the first half second the exact filter loses the motion from " +
+                std::to_string(exact.lost) + " and makes " + written(exact.worst, "%+.0f") +
+                " % of C from one; from the other " + std::to_string(small.tame));
+  expect_quoted("loses it from " + std::to_string(euler.lost) + ", makes more than +3500 % from " +
+                std::to_string(euler.wild) + ", and ends between " + written(euler.least, "%+.1f") + " and " +
+                written(euler.largest, "%+.1f") + " % from the other " + std::to_string(euler.tame));
+  double spared = 0.0;
+  for (std::size_t i = 1; i < 5; ++i) {
+    const json& errors = results.at("beams").at(i).at("wide_prior").at("true_motion");
+    spared = std::max(spared, std::abs(errors.at("damping_error_percent").get<double>()));
+  }
+  expect_quoted("the exact filter is within " + written(spared, "%.2f") + " % of C there");
   const json& modes = results.at("number_of_modes");
   expect_quoted("two modes instead of eight " +
                 written(modes.at(1).at("exponential").at("damping_error_percent"), "%.0f") +

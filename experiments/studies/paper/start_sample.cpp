@@ -136,7 +136,7 @@ Figure start_figure(const StartOutcome& outcome) {
   figure.caption = fmt::format(
       "{} with the settings of 2009: error of C against the sample at which the record starts. Runs that "
       "lost "
-      "the motion stand at the bottom.",
+      "the motion stand at the bottom; what lies above the frame is not drawn.",
       outcome.beam);
   return figure;
 }
