@@ -41,7 +41,7 @@ Record at_step(const IdentificationRequest& one, const Record& whole, int factor
 }
 
 void refuse_what_no_closed_form_knows(const Record& record) {
-  for (const Index i : force_channels(record))
+  for (const Index i : input_channels(record))
     throw std::invalid_argument(
         fmt::format("channel '{}' is a measured force; expected a free decay: what a discretisation does to "
                     "it is known in closed form, under a force it is not. Leave the channel out of "
