@@ -84,7 +84,7 @@ std::vector<std::string> examples() {
 }
 
 TEST(ConfigurationPage, HoldsExamplesThatAreValid) {
-  ASSERT_EQ(examples().size(), 3u);
+  ASSERT_EQ(examples().size(), 4u);
   const TemporaryFile record("record.toml", examples()[0]), beam("beam.toml", examples()[1]);
   const Experiment with_record = read_experiment(record.path()),
                    with_everything = read_experiment(beam.path());
@@ -92,11 +92,14 @@ TEST(ConfigurationPage, HoldsExamplesThatAreValid) {
   EXPECT_DOUBLE_EQ(with_record.beam.tip_mass(), 1.437 + 0.054);
   EXPECT_EQ(with_everything.beam.segments.size(), 3u);
   EXPECT_EQ(with_everything.sensors.size(), 2u);
-  EXPECT_EQ(read_frame(TomlTable::parse(examples()[2], "frame.toml")).frame.members.size(), 4u);
+  EXPECT_EQ(read_frame(TomlTable::parse(examples()[3], "frame.toml")).frame.members.size(), 4u);
+  const TemporaryFile chain("chain.toml", examples()[2]);
+  EXPECT_EQ(read_experiment(chain.path()).beam.segments.size(), 3u);
 }
 
 TEST(ConfigurationPage, ShowsEveryKeyInItsExamples) {  // also what they leave at its default, as a comment
-  const std::string shown = examples().at(0) + examples().at(1) + examples().at(2);
+  std::string shown;
+  for (const std::string& example : examples()) shown += example;
   for (const KeyTable* table : key_tables())
     for (const Key& key : table->keys())
       if (!key.is_table()) {

@@ -11,7 +11,7 @@
 #include "experiments/record/read_record.hpp"
 #include "experiments/record/write_record.hpp"
 #include "experiments/rig/simulated_test.hpp"
-#include "filters/normal_noise.hpp"
+#include "experiments/signal/random.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"
 
 namespace beamid::experiments::chain_test {
@@ -66,7 +66,7 @@ class MovingBase : public testing::Test {
   MovingBase() {
     std::ofstream file(place_.path / "quake.csv");
     file << "time_s,base_acceleration_m_per_s2\n";
-    const Eigen::VectorXd white = filters::standard_normal(2001, 3, 0);
+    const Eigen::VectorXd white = standard_normal(2001, 3, 0);
     double slow = 0.0;
     for (Eigen::Index k = 0; k < white.size(); ++k)
       file << 0.01 * static_cast<double>(k) << ',' << (slow += 0.5 * (white[k] - slow)) << '\n';
@@ -122,12 +122,12 @@ TEST_F(MovingBase, IsRefusedTwice) {
       {
         try {
           identify_with_model(e, measured_record("", record), {}, unwatched);
-        } catch (const std::invalid_argument& error) {
+        } catch (const InputError& error) {
           EXPECT_THAT(error.what(), testing::HasSubstr("several channels of base_acceleration"));
           throw;
         }
       },
-      std::invalid_argument);
+      InputError);
 }
 
 TEST(Chain, RefusesWhatItsFileCannotHave) {

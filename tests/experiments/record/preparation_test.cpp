@@ -118,7 +118,7 @@ TEST(Decimation, LeavesNoAliasOfAToneAboveItsEdge) {
 
 // Oracle: the cubic itself, on which not-a-knot splines are exact, ends included.
 TEST(CubicSpline, ReproducesACubicThroughUnequalNodes) {
-  const Eigen::VectorXd x = (Eigen::VectorXd(7) << 0, 0.3, 1, 1.2, 2.5, 3, 4.1).finished();
+  const Eigen::VectorXd x{{0.0, 0.3, 1.0, 1.2, 2.5, 3.0, 4.1}};
   const auto cubic = [](double t) { return 1 - t + 2 * t * t - 0.5 * t * t * t; };
   const CubicSpline spline(x, x.unaryExpr(cubic));
   const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(83, 0, 4.1);
