@@ -38,6 +38,8 @@ Dependence dependence(const MatrixXd& columns, const Eigen::VectorXd& lengths) {
   Dependence result;
   for (Index j = 0; j < r; ++j) (j < rank ? result.independent : result.rest).push_back(order[j]);
   const MatrixXd& factor = qr.matrixQR();
+  result.combination.resize(rank, r - rank);
+  if (rank == r) return result;
   result.combination = factor.topLeftCorner(rank, rank)
                            .triangularView<Eigen::Upper>()
                            .solve(factor.topRightCorner(rank, r - rank));
