@@ -87,12 +87,16 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
   if (record.size() < 2) return all;
   mark_gaps(record, all);
   constexpr const char* left_out = "; they are left out.";
+  // Under a moving base broadband noise that comes and goes with the motion is the base's.
+  const bool shaken = std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& one) {
+    return one.quantity == Quantity::base_acceleration;
+  });
   for (Index row = 0; row < record.samples.rows(); ++row) {
     const ChannelDefects channel{&record, row, &all};
     const Eigen::VectorXd signal = record.samples.row(row).transpose();
-    const bool force = channel.channel().quantity == Quantity::force;
+    const bool input = is_input(channel.channel().quantity);  // which may rest, and jump
     const Defects found =
-        find_defects({signal.begin(), signal.end()}, force ? SignalKind::force : SignalKind::motion);
+        find_defects({signal.begin(), signal.end()}, input ? SignalKind::force : SignalKind::motion);
     if (found.dead)
       throw InputError(
           {file.string()},
@@ -100,9 +104,11 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
                       "--column or [[record.channels]] names the others",
                       record_defects_title(channel.channel()), signal.minCoeff(), signal.maxCoeff(),
                       channel.unit(), signal.size(), found.spikes.empty() ? "" : " but for spikes"));
-    if (force) {
+    if (input) {
+      const bool force = channel.channel().quantity == Quantity::force;
       channel.add("clipped at " + channel.levels(found.clipped), found.clipped,
-                  ": the force was larger, and what is computed from it is wrong by that.");
+                  fmt::format(": the {} was larger, and what is computed from it is wrong by that.",
+                              force ? "force" : "acceleration"));
       continue;
     }
     if (!found.spikes.empty())
@@ -112,7 +118,7 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
     channel.add(fmt::format("{} drop-out{}", found.dropped.size(), found.dropped.size() == 1 ? "" : "s"),
                 found.dropped, left_out);
     channel.add("repeats of the reading before", found.repeated, left_out);
-    if (const auto& rattle = found.rattle)
+    if (const auto& rattle = found.rattle; rattle && !shaken)
       channel.add(
           fmt::format("rattle, broadband noise {:.3g} times that of the quiet rest, while the motion is "
                       "large",

@@ -147,7 +147,8 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   for (const ComparedRun& run : comparison.runs)
     results.values["runs"].push_back(comparison_values(run, outputs));
 
-  results.heading(experiment.title.empty() ? "Reduced against continuum" : experiment.title);
+  const char* const usual = comparison.runs.size() == 1 ? "Identification" : "Reduced against continuum";
+  results.heading(experiment.title.empty() ? usual : experiment.title);
   for (const std::string& warning : record.warnings) results.warning(warning);
   for (const std::string& warning : comparison.warnings) results.warning(warning);
   const bool alone = comparison.runs.size() == 1;

@@ -2,12 +2,14 @@
 // record was simulated with, and the Cramer-Rao bound.
 #include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/compare/comparison.hpp"
+#include "experiments/record/prepare/record_defects.hpp"
 #include "experiments/record/read_record.hpp"
 #include "experiments/record/write_record.hpp"
 #include "experiments/rig/simulated_test.hpp"
@@ -112,6 +114,29 @@ TEST_F(MovingBase, LetsStoreysBeFoundToTheBound) {
   ASSERT_EQ(count, 60);
   EXPECT_NEAR(std::sqrt(sum / count), 1.0, 0.25);  // 2.7 of its standard errors
   EXPECT_NEAR(own / count, 1.0, 0.15);
+}
+
+// Readings that are broadband while the base shakes are no loose contact. Oracle: the same readings without
+// the base, which are called one.
+TEST(Chain, UnderAMovingBaseDoesNotRattle) {
+  Record record;
+  record.time = Eigen::VectorXd::LinSpaced(2001, 0.0, 20.0);
+  const Eigen::ArrayXd size =
+      (record.time.array() > 6.0 && record.time.array() < 11.0).select(1.0, 0.05 + 0.0 * record.time.array());
+  const Eigen::ArrayXd shaking = size * standard_normal(2001, 1, 0).array(),
+                       swing = size * (2.0 * std::numbers::pi * 1.6 * record.time.array()).cos();
+  record.samples.resize(2, 2001);
+  record.samples.row(0) =
+      (8.0 * swing + 0.5 * shaking + 0.01 * standard_normal(2001, 1, 1).array()).transpose();
+  record.samples.row(1) = shaking.transpose();
+  record.channels = {{Quantity::acceleration, "tip"}, {Quantity::base_acceleration, "base"}};
+  Record alone = record;
+  alone.samples = record.samples.topRows(1).eval();
+  alone.channels.pop_back();
+  const std::vector<RecordDefect> of_contact = mark_defects(alone, "record.csv");
+  ASSERT_EQ(of_contact.size(), 1u);
+  EXPECT_THAT(of_contact[0].text, testing::HasSubstr("rattle"));
+  EXPECT_TRUE(mark_defects(record, "record.csv").empty());
 }
 
 TEST_F(MovingBase, IsRefusedTwice) {
