@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "fem/parametric_system.hpp"
+#include "fem/shear_building.hpp"
 
 namespace beamid::fem {
 namespace {
@@ -70,10 +71,6 @@ void for_each_storey(AnyBeam& beam, const Region& region, const Function& f) {
     }
     f(storey);
   }
-}
-
-double storey_stiffness(const Segment& storey) {
-  return 12.0 * storey.section.bending_stiffness.mean() / std::pow(storey.length, 3);
 }
 
 double mean_of_storeys(const Beam& beam, const Region& region, double (*value)(const Segment&)) {

@@ -56,6 +56,10 @@ Beam shear_building(const Storeys& storeys) {
   return beam;
 }
 
+double storey_stiffness(const Segment& storey) {
+  return 12.0 * storey.section.bending_stiffness.mean() / std::pow(storey.length, 3);
+}
+
 Storeys soil_column(const std::vector<SoilLayer>& layers) {
   Storeys column;
   for (const SoilLayer& layer : layers) {

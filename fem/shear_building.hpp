@@ -21,6 +21,9 @@ struct Storeys {
 /// @throws std::invalid_argument when the numbers of values differ, or one is impossible
 Beam shear_building(const Storeys& storeys);
 
+/// 12 E I / h^3 of a storey of such a beam [N/m].
+double storey_stiffness(const Segment& storey);
+
 /// A layer of soil, for a column of 1 m2.
 struct SoilLayer {
   double thickness = 0.0;            ///< h [m]

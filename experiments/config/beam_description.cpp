@@ -1,8 +1,7 @@
 #include "experiments/config/beam_description.hpp"
 
-#include <cmath>
-
 #include "experiments/config/read_attachments.hpp"
+#include "fem/shear_building.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -21,8 +20,7 @@ Json describe_chain(const fem::Beam& beam) {
   for (std::size_t i = 0; i < beam.segments.size(); ++i) {
     const fem::Segment& storey = beam.segments[i];
     json["masses_kg"].push_back(beam.bodies[i].mass);
-    json["stiffnesses_n_per_m"].push_back(12.0 * storey.section.bending_stiffness.mean() /
-                                          std::pow(storey.length, 3));
+    json["stiffnesses_n_per_m"].push_back(fem::storey_stiffness(storey));
     json["dashpots_n_s_per_m"].push_back(storey.dashpot);
     json["heights_m"].push_back(storey.length);
   }

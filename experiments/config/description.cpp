@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "experiments/config/beam_description.hpp"
+#include "fem/shear_building.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -49,7 +50,7 @@ Json anchors_json(const std::vector<fem::DampingAnchor>& anchors) {
 std::string storeys_text(const fem::Beam& beam) {
   double softest = INFINITY, stiffest = 0.0, lightest = INFINITY, heaviest = 0.0;
   for (const fem::Segment& storey : beam.segments) {
-    const double k = 12.0 * storey.section.bending_stiffness.mean() / std::pow(storey.length, 3);
+    const double k = fem::storey_stiffness(storey);
     softest = std::min(softest, k), stiffest = std::max(stiffest, k);
   }
   for (const fem::Body& floor : beam.bodies)

@@ -96,11 +96,21 @@ VectorXd let_go(const Case& c, double deflection) {
   });
 }
 
+// The force, or the acceleration of the base, as itself or as a sensor on it reads it.
+Quantity exciting_quantity(const Case& c, const Record& record) {
+  if (c.excitation.kind != Kind::base) return Quantity::force;
+  const bool own = std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& channel) {
+    return channel.quantity == Quantity::base_acceleration;
+  });
+  return own ? Quantity::base_acceleration : Quantity::acceleration;
+}
+
 // Linear between the file's rows, nothing before and after them.
-VectorXd from_file(const Case& c, Quantity quantity, std::vector<std::string>& notes) {
+VectorXd from_file(const Case& c, std::vector<std::string>& notes) {
   const std::filesystem::path file = c.folder / *c.excitation.file;
   const Record record = read_record(file);
-  const VectorXd values = at_place({file.string()}, [&] { return record.channel(quantity); });
+  const VectorXd values =
+      at_place({file.string()}, [&] { return record.channel(exciting_quantity(c, record)); });
   const double begin = record.time[0], end = record.time[record.size() - 1];
   if (begin > 0.0 || end < c.time(c.grid.samples - 1))
     notes.push_back(fmt::format("{} runs from {:g} to {:g} s; outside it the excitation is zero.",
@@ -113,15 +123,6 @@ VectorXd from_file(const Case& c, Quantity quantity, std::vector<std::string>& n
     const double part = (t - record.time[row]) / (record.time[row + 1] - record.time[row]);
     return values[row] + part * (values[row + 1] - values[row]);
   });
-}
-
-// A record of the base itself, or of a sensor on it.
-Quantity base_quantity(const Case& c) {
-  const Record record = read_record(c.folder / *c.excitation.file);
-  const bool own = std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& channel) {
-    return channel.quantity == Quantity::base_acceleration;
-  });
-  return own ? Quantity::base_acceleration : Quantity::acceleration;
 }
 
 VectorXd struck(const Case& c) {
@@ -174,11 +175,10 @@ ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSyst
       set_input(c, input, sine(c, result.notes), result);
       break;
     case Kind::table:
-      set_input(c, input, from_file(c, Quantity::force, result.notes), result);
+      set_input(c, input, from_file(c, result.notes), result);
       break;
     case Kind::base:
-      result.base_acceleration =
-          excitation.file ? from_file(c, base_quantity(c), result.notes) : sine(c, result.notes);
+      result.base_acceleration = excitation.file ? from_file(c, result.notes) : sine(c, result.notes);
       set_input(c, system.inputs.cols() - 1, result.base_acceleration, result);
       break;
   }
