@@ -253,7 +253,7 @@ Eigen::VectorXd nodal(const StructuralSystem& system, const Eigen::VectorXd& q, 
   if (q.size() != system.size())
     throw std::invalid_argument("motion has " + std::to_string(q.size()) + " entries; expected " +
                                 std::to_string(system.size()));
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.mesh.nodes.size()));
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(system.nodes());
   for (Eigen::Index i = 0; i < system.size(); ++i)
     if (system.coordinates[i].kind == kind)
       values[system.coordinates[i].node] = q[i] / system.coordinates[i].scale;

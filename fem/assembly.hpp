@@ -12,7 +12,8 @@ namespace beamid::fem {
 /// Where forces act and motion is observed.
 struct Point {
   std::string name;
-  double position = 0.0;  ///< [m]
+  double position = 0.0;   ///< [m]
+  std::string place = {};  ///< of a structure whose places have names and no positions
 };
 
 /// Finite elements (elements/element.hpp) over the mesh that cut() makes.

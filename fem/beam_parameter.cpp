@@ -217,6 +217,9 @@ double value_of(const Beam& beam, const BeamParameter& parameter) {
       return mean_of_storeys(beam, region, storey_stiffness);
     case Quantity::storey_damping:
       return mean_of_storeys(beam, region, [](const Segment& storey) { return storey.dashpot; });
+    case Quantity::factor:
+      throw std::invalid_argument(
+          "a beam has no named factors; expected a frame's group of members or a system's parameter");
     case Quantity::axial_load:
       break;
   }
@@ -268,6 +271,8 @@ Beam with_value(const Beam& beam, const BeamParameter& parameter, double value) 
       for_each_storey(changed, region_of(beam, parameter), [&](Segment& storey) {
         storey.dashpot = found > 0.0 ? storey.dashpot * (value / found) : value;
       });
+      break;
+    case Quantity::factor:  // value_of() has refused it
       break;
   }
   validate(changed);

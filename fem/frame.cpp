@@ -21,6 +21,8 @@ void check_member(const Frame& frame, std::size_t i) {
     throw std::invalid_argument(name + " has no length; expected joints at different places");
   if (!member.section.axial_stiffness)
     throw std::invalid_argument(name + " has no axial stiffness; expected E A [N], which a frame needs");
+  if (!(member.stiffness_factor > 0.0 && std::isfinite(member.stiffness_factor)))
+    refuse("stiffness factor of " + name, member.stiffness_factor, "a positive number");
   Beam beam;
   beam.segments = {{frame.length(i), member.section}};
   try {

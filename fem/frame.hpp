@@ -13,6 +13,7 @@ namespace beamid::fem {
 struct Frame {
   struct Joint {
     double x = 0.0, y = 0.0;  ///< [m]
+    std::string name = {};    ///< empty: its number, from 1
   };
   /// Between two joints, rigidly fixed to them but for hinges, through which no moment passes. The section
   /// varies from the first joint to the second and needs an axial stiffness.
@@ -20,6 +21,8 @@ struct Frame {
     int first = 0, second = 0;
     Section section;
     bool hinged_at_first = false, hinged_at_second = false;
+    double stiffness_factor = 1.0;  ///< of E I, E A and kappa G A: damage, or what a group is found to have
+    std::string group = {};         ///< whose members share an unknown factor; empty: none
   };
   /// What is held at zero: clamped as it stands, pinned without the rotation, rolling without x or y too.
   struct Support {
@@ -43,6 +46,7 @@ struct Frame {
   std::vector<Body> bodies;
   std::vector<Spring> springs;
   MassModel mass_model = MassModel::consistent;
+  char base_axis = 'x';  ///< along which the base moves, 'x' or 'y'
 
   double length(std::size_t member) const;  ///< [m]
 };

@@ -25,6 +25,16 @@ struct NodeCoordinates {
   bool known = false;
 };
 
+Section stiffened(const Frame::Member& member) {
+  Section section = member.section;
+  if (member.stiffness_factor == 1.0) return section;
+  const Variation factor(member.stiffness_factor);
+  section.bending_stiffness = factor * section.bending_stiffness;
+  for (auto* const rigidity : {&section.shear_stiffness, &section.axial_stiffness})
+    if (*rigidity) *rigidity = factor * **rigidity;
+  return section;
+}
+
 class FrameAssembly {
  public:
   FrameAssembly(const Frame& frame, int elements) : frame_(frame), elements_(elements) {
@@ -123,7 +133,7 @@ class FrameAssembly {
       element.second =
           e + 1 == elements_ ? step.to : add_node(begin, end, static_cast<double>(e + 1) / elements_);
       if (e == 0 || !member.section.is_uniform())
-        matrices = frame_element_matrices(member.section, element, direction, frame_.mass_model);
+        matrices = frame_element_matrices(stiffened(member), element, direction, frame_.mass_model);
       const int inside = matrices.strain.rows() > 3 ? add_coordinate(Kind::generalised, node, 1.0) : -1;
       if (inside >= 0) add_coordinate(Kind::generalised, node, 1.0);
       const bool reaches = !nodes_[element.second].known;

@@ -1,4 +1,4 @@
-// A beam whose properties are unknown: its equations and what each property does to them.
+// A structure whose properties are unknown: its equations and what each property does to them.
 #pragma once
 
 #include <optional>
@@ -21,10 +21,12 @@ struct BeamParameter {
     root_translational_stiffness,  ///< of an elastic root [N/m]
     axial_load,                    ///< P, positive in compression [N]
     storey_stiffness,              ///< 12 E I / h^3, mean over the region's storeys, in proportion [N/m]
-    storey_damping                 ///< of their dashpots, mean, in proportion [N s/m]
+    storey_damping,                ///< of their dashpots, mean, in proportion [N s/m]
+    factor                         ///< of a frame's group of members or a system's matrices, by name [-]
   };
   Quantity quantity = Quantity::bending_stiffness;
   std::optional<std::pair<double, double>> region;  ///< but for tip, root, load: from, to [m]; absent: all
+  std::string name = {};                            ///< of a factor
 };
 
 /// What the beam has of it. @throws std::invalid_argument when it has no such thing (an elastic root, a body

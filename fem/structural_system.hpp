@@ -38,7 +38,7 @@ struct Coordinate {
   Kind kind = Kind::generalised;
   double position = 0.0;  ///< along the beam [m]; meaningless when generalised
   double scale = 1.0;     ///< coordinate = scale x (displacement [m] or rotation [rad])
-  int node = -1;          ///< of the mesh; -1 when generalised
+  int node = -1;          ///< of the mesh, or the number of an unknown without one; -1 when generalised
 };
 
 /// A force between the ground and one point that is not linear: -(k3 x^3 + c2 |x'| x') c, x = c^T q.
@@ -62,10 +62,22 @@ struct StructuralSystem {
   SparseMatrix outputs;                   ///< H (p x n)
   std::vector<std::string> input_names;   ///< m
   std::vector<std::string> output_names;  ///< p
+  Eigen::VectorXd base_shares = {};       ///< of the base's motion in an output's absolute one (p); empty: 1
   std::vector<NonlinearForce> nonlinear_forces;
   Mesh mesh;  ///< empty when reduced
 
   Eigen::Index size() const { return mass.rows(); }
+
+  /// How many nodes coordinates belong to: those of the mesh; without one each unknown is its own.
+  Eigen::Index nodes() const {
+    return mesh.nodes.empty() ? size() : static_cast<Eigen::Index>(mesh.nodes.size());
+  }
+
+  /// Where nodes are along x [m]; without a mesh their numbers, from 1.
+  Eigen::VectorXd node_positions() const {
+    return mesh.nodes.empty() ? Eigen::VectorXd::LinSpaced(size(), 1.0, static_cast<double>(size()))
+                              : mesh.positions();
+  }
 };
 
 }  // namespace beamid::fem

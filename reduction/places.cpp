@@ -73,8 +73,8 @@ std::vector<int> observed_coordinates(const fem::StructuralSystem& system, const
 
 std::vector<int> master_coordinates(const fem::StructuralSystem& system, const std::vector<double>& positions,
                                     const std::string& owner) {
-  require_mesh(system, owner);
   if (positions.empty()) return observed_coordinates(system, owner);
+  require_mesh(system, owner);
   if (is_frame(system))
     throw std::invalid_argument(owner +
                                 ": a position does not tell a joint of a frame; expected none, which means "
