@@ -38,10 +38,11 @@ std::vector<Request> requests_of(const Values& values) {
   std::vector<Request> requests;
   for (std::size_t k = 0; k < configs.size(); ++k) {
     Request request{configs[k], read_experiment(configs[k]), {}};
-    if (request.experiment.beam.shear_building)
-      throw InputError({configs[k]},
-                       "check takes a beam; expected [beam] in place of [chain]. identify asks about the "
-                       "storeys of a chain");
+    if (const fem::Structure& structure = request.experiment.structure;
+        !structure.is_beam() || structure.is_chain())
+      throw InputError({configs[k]}, fmt::format("check takes a beam; expected [beam] in place of [{}]. "
+                                                 "identify and update ask about any structure",
+                                                 structure.kind()));
     request.records = require_record_files(values, request.config, request.experiment.record_file);
     if (configs.size() > 1 && !records.empty()) request.records = {request.records[k]};
     requests.push_back(std::move(request));
@@ -93,7 +94,7 @@ CheckedStructure structure_of(const Request& request, const ModalStudySettings& 
                        fmt::format("{} channels; expected {} as in {}", found.back().record.channels.size(),
                                    found[0].record.channels.size(), found[0].name));
   }
-  CheckedStructure structure{request.config.stem().string(), request.experiment.beam,
+  CheckedStructure structure{request.config.stem().string(), request.experiment.structure.beam(),
                              request.experiment.elements,    request.experiment.damping,
                              observed_modes(found),          found[0].record.channels};
   for (const RecordModes& one : found)

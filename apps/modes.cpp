@@ -2,6 +2,7 @@
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
 #include "apps/deliver.hpp"
+#include "experiments/studies/continuum/frame_modes.hpp"
 #include "experiments/studies/continuum/modal_report.hpp"
 
 namespace beamid::apps {
@@ -10,6 +11,14 @@ namespace {
 int run_modes(const Values& values) {
   const BeamSource source = read_beam(values);
   deliver(values, [&] {
+    if (const fem::Frame* const frame = source.experiment.structure.frame()) {
+      const experiments::FrameExperiment described =
+          experiments::as_frame_experiment(*frame, source.experiment.elements, source.experiment.title);
+      return blame_config(source, [&] {
+        return experiments::report(
+            described, experiments::frame_modes(described, values.whole("modes"), show_progress(values)));
+      });
+    }
     return blame_config(source, [&] {
       const auto summary =
           experiments::summarise_modes(source.experiment, values.whole("modes"), show_progress(values));
@@ -25,7 +34,7 @@ Command modes_command() {
   return {
       "modes",
       "[--config FILE] [BEAM OPTIONS] [--modes K] [--out DIR]",
-      "natural frequencies and mode shapes of a beam, with their errors",
+      "natural frequencies and mode shapes of a structure, with their errors",
       {},
       {{"Options", {whole("modes", "K", 1, 1000, "how many, the lowest").by_default("10"), surface_option()}},
        beam_options(),

@@ -38,7 +38,7 @@ std::vector<Choice> chosen(const BeamSource& source, const Values& values) {
   } else if (experiment.reduction.place.line > 0) {  // the file has the table
     choices = {experiment.reduction};
   } else {
-    choices = default_reductions(experiment.beam);
+    choices = default_reductions(experiment.structure);
     if (values.has("shape-file"))
       choices.insert(choices.begin(), parse_reduction("rayleigh:shape=given", "--shape-file"));
   }

@@ -8,7 +8,7 @@
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_frame.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/models/joint_model.hpp"
@@ -95,29 +95,29 @@ std::string sensors_text(const Experiment& experiment) {
   for (const Sensor& sensor : experiment.sensors) {
     text += (text.empty() ? "" : ", ") + sensor.name + (sensor.name.empty() ? "" : ": ") +
             to_string(sensor.quantity);
-    if (sensor.position) text += fmt::format(" at {:g} m", *sensor.position);
+    text += at_place_text(sensor.position, sensor.place);
   }
   return text;
 }
 
-int validate_frame(const fs::path& file, const TomlTable& root) {
-  const FrameExperiment experiment = read_frame(root);
-  const fem::StructuralSystem system = at_place(
-      {file.string()}, [&] { return fem::assemble(experiment.frame, experiment.elements_per_member); });
-  std::cout << clean_text(file.string()) << ": valid\n"
-            << fmt::format("  {} First mode predicted at {:.4f} Hz.\n", frame_text(experiment, system.size()),
-                           fem::modes(system, 1).frequency_hz()[0]);
-  return 0;
+std::string structure_line(const Experiment& experiment, const fem::StructuralSystem& system) {
+  const fem::Structure& structure = experiment.structure;
+  const std::string first =
+      fmt::format("irst mode predicted at {:.4f} Hz", fem::modes(system, 1).frequency_hz()[0]);
+  if (!structure.is_beam())
+    return fmt::format("  {:<8} {} F{}.\n", structure.kind(),
+                       structure_text(experiment, experiment.elements, system.size()), first);
+  const fem::Beam& beam = structure.beam();
+  return fmt::format("  beam     {:g} m, EI = {} N m2, {:.6g} kg with {:.6g} kg at its tip; f{}\n",
+                     beam.length(), bending_stiffness_text(beam), beam.mass(), beam.tip_mass(), first);
 }
 
 int run_validate(const Values& values) {
   const fs::path file = values.texts("file")[0];
   const TomlTable root = TomlTable::read(file);
-  if (root.contains("frame") && !root.contains("beam") && !values.has("record"))
-    return validate_frame(file, root);
   const Experiment experiment = read_experiment(root);
   const fem::StructuralSystem system =
-      at_place({file.string()}, [&] { return fem::assemble(experiment.beam, experiment.elements); });
+      at_place({file.string()}, [&] { return fem::assemble(experiment.structure, experiment.elements); });
   std::string record_line = "none named; " + columns_text(experiment.format);
   std::string parameters = parameters_text(experiment);
   fs::path record_file;
@@ -135,21 +135,15 @@ int run_validate(const Values& values) {
                               columns_text(experiment.format));
   }
 
-  const fem::Beam& beam = experiment.beam;
   std::cout << clean_text(file.string()) << ": valid\n";
   for (const std::string& sentence : implausible(experiment)) std::cout << "  " << sentence << "\n";
-  std::cout
-      << fmt::format(
-             "  beam     {:g} m, EI = {} N m2, {:.6g} kg with {:.6g} kg at its tip; first mode predicted at "
-             "{:.4f} Hz\n",
-             beam.length(), bending_stiffness_text(beam), beam.mass(), beam.tip_mass(),
-             fem::modes(system, 1).frequency_hz()[0])
-      << (experiment.sensors.empty() ? "" : "  sensors  " + clean_text(sensors_text(experiment)) + "\n")
-      << "  record   " << clean_text(record_line) << "\n"
-      << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
-                     experiment.reduction.name, experiment.model.name, experiment.filter.name,
-                     experiment.discretisation)
-      << "  asks for " << clean_text(parameters) << "\n";
+  std::cout << structure_line(experiment, system)
+            << (experiment.sensors.empty() ? "" : "  sensors  " + clean_text(sensors_text(experiment)) + "\n")
+            << "  record   " << clean_text(record_line) << "\n"
+            << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
+                           experiment.reduction.name, experiment.model.name, experiment.filter.name,
+                           experiment.discretisation)
+            << "  asks for " << clean_text(parameters) << "\n";
   return 0;
 }
 

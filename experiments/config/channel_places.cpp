@@ -6,7 +6,9 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "experiments/models/beam_points.hpp"
+#include "experiments/config/read_place.hpp"
+#include "experiments/config/structure_description.hpp"
+#include "experiments/models/structure_points.hpp"
 #include "experiments/record/column_name.hpp"
 
 namespace beamid::experiments {
@@ -37,8 +39,14 @@ bool same_column(const Channel& one, const Channel& other) {
   return column_names(first)[1] == column_names(second)[1];
 }
 
-double place_of(const Sensor& sensor, const fem::Beam& beam) {
-  return sensor.position.value_or(fem::natural_point(beam).position);
+double place_of(const Sensor& sensor, const fem::Structure& structure) {
+  return sensor.position.value_or(fem::natural_point(structure).position);
+}
+
+std::string name_of(const Sensor& sensor, const fem::Structure& structure) {
+  if (!sensor.name.empty()) return sensor.name;
+  if (!structure.has_positions()) return sensor.place;
+  return name_of_place(place_of(sensor, structure), structure.extent());
 }
 
 // The sensor that a channel comes from; null where none is named like it and several are of its quantity.
@@ -47,10 +55,7 @@ const Sensor* sensor_of(const Channel& channel, const Experiment& experiment) {
   int alike = 0;
   for (const Sensor& sensor : experiment.sensors) {
     if (sensor.quantity != channel.quantity) continue;
-    const std::string name = sensor.name.empty()
-                                 ? name_of_place(place_of(sensor, experiment.beam), experiment.beam.length())
-                                 : sensor.name;
-    if (same_column(channel, {sensor.quantity, name})) return &sensor;
+    if (same_column(channel, {sensor.quantity, name_of(sensor, experiment.structure)})) return &sensor;
     only = &sensor;
     ++alike;
   }
@@ -63,18 +68,38 @@ const Sensor* sensor_of(const Channel& channel, const Experiment& experiment) {
     if (sensor.quantity == channel.quantity && !sensor.name.empty())
       named += (named.empty() ? "" : ", ") + sensor.name;
   throw std::invalid_argument(
-      fmt::format("where channel '{}' ({}) sits on the beam is not known; expected position_m in "
+      fmt::format("where channel '{}' ({}) sits on the {} is not known; expected {} in "
                   "[[record.channels]]{}, or a "
                   "[[sensors]] of that name{}",
-                  channel.name, to_string(channel.quantity),
+                  channel.name, to_string(channel.quantity), experiment.structure.kind(),
+                  experiment.structure.has_positions() ? "position_m" : "at",
                   channel.quantity == Quantity::strain ? " with the gauge's distance_m" : "",
                   named.empty() ? "" : "; the file names " + named));
+}
+
+// Channels of a structure whose places have names: no place is the natural one.
+Record with_named_places(Record record, const Experiment& experiment) {
+  const std::vector<std::string> places = fem::place_names(experiment.structure);
+  for (Channel& channel : record.channels) {
+    if (channel.quantity == Quantity::base_acceleration) continue;  // of all supports
+    if (channel.place.empty())
+      if (const Sensor* const sensor = sensor_of(channel, experiment)) channel.place = sensor->place;
+    for (const std::string& place : places)
+      if (channel.place.empty() && same_column(channel, {channel.quantity, place})) channel.place = place;
+    if (channel.place.empty()) refuse_unplaced(channel, experiment);
+    if (std::find(places.begin(), places.end(), channel.place) == places.end())
+      throw std::invalid_argument(fmt::format("channel '{}' sits at '{}'; expected {}", channel.name,
+                                              channel.place, expected_place(experiment.structure)));
+  }
+  return record;
 }
 
 }  // namespace
 
 Record with_places(Record record, const Experiment& experiment) {
-  const double length = experiment.beam.length();
+  const fem::Structure& structure = experiment.structure;
+  if (!structure.has_positions()) return with_named_places(std::move(record), experiment);
+  const double length = structure.extent();
   std::vector<Channel*> left;
   for (Channel& channel : record.channels) {
     if (channel.quantity == Quantity::base_acceleration) continue;  // of all supports
@@ -82,7 +107,7 @@ Record with_places(Record record, const Experiment& experiment) {
     if (channel.position && (!gauge || channel.distance != 0.0)) continue;
     const Sensor* const sensor = sensor_of(channel, experiment);
     if (sensor) {
-      channel.position = place_of(*sensor, experiment.beam);
+      channel.position = place_of(*sensor, structure);
       channel.distance = sensor->distance;
     } else if (!channel.position && !gauge) {
       channel.position = place_in_name(channel.name, length);
@@ -97,12 +122,12 @@ Record with_places(Record record, const Experiment& experiment) {
     const bool sensors = std::any_of(experiment.sensors.begin(), experiment.sensors.end(), alike);
     if (!one || sensors || channel->quantity == Quantity::strain) refuse_unplaced(*channel, experiment);
   }
-  for (Channel* const channel : left) channel->position = fem::natural_point(experiment.beam).position;
+  for (Channel* const channel : left) channel->position = fem::natural_point(structure).position;
   return record;
 }
 
 std::string channel_text(const Channel& channel) {
-  const std::string where = channel.position ? fmt::format(" at {:g} m", *channel.position) : "";
+  const std::string where = at_place_text(channel.position, channel.place);
   const std::string quantity = to_string(channel.quantity);
   return (channel.name.empty() || channel.name == quantity ? quantity : channel.name + ": " + quantity) +
          where;
@@ -122,6 +147,7 @@ nlohmann::ordered_json channel_values(const Record& record) {
                       {"unit", si_unit(channel.quantity)}});
     values.back()["position_m"] =
         channel.position ? nlohmann::ordered_json(*channel.position) : nlohmann::ordered_json(nullptr);
+    if (!channel.place.empty()) values.back()["at"] = channel.place;
   }
   return values;
 }

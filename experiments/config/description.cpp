@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "experiments/config/beam_description.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "fem/shear_building.hpp"
 
 namespace beamid::experiments {
@@ -121,9 +121,10 @@ Json describe(const fem::DampingLaw& law) {
 }
 
 Json describe(const Experiment& experiment) {
-  return {{"title", experiment.title},
-          {"beam", describe(experiment.beam, experiment.elements)},
-          {"damping", describe(experiment.damping)}};
+  Json json{{"title", experiment.title}};
+  json.update(describe(experiment.structure, experiment.elements));
+  json["damping"] = describe(experiment.damping);
+  return json;
 }
 
 Json number_or_null(double value) {

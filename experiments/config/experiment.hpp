@@ -1,4 +1,4 @@
-// One beam and what is done with it, as its TOML file describes it (docs/configuration.md).
+// One structure and what is done with it, as its TOML file describes it (docs/configuration.md).
 #pragma once
 
 #include <map>
@@ -14,17 +14,18 @@
 #include "experiments/models/prior.hpp"
 #include "experiments/record/record_format.hpp"
 #include "experiments/text/choice.hpp"
-#include "fem/beam.hpp"
 #include "fem/damping.hpp"
+#include "fem/structure.hpp"
 #include "filters/running_filter.hpp"
 
 namespace beamid::experiments {
 
-/// A beam, a test of it and what is done with the record: all that an experiment file may say, in SI units.
+/// A structure, a test of it and what is done with the record: all that an experiment file may say, in SI
+/// units.
 struct Experiment {
   std::string title;
-  fem::Beam beam;
-  int elements = 40;
+  fem::Structure structure;
+  int elements = 40;  ///< of a beam, or of each member of a frame
   fem::DampingLaw damping;
   Excitation excitation;
   std::vector<Sensor> sensors;  ///< none: displacement and acceleration at the natural point

@@ -18,6 +18,8 @@ Json describe_member(const fem::Frame& frame, std::size_t i) {
   json.update(describe(fem::Segment{frame.length(i), member.section}));
   if (member.hinged_at_first) json["hinged_at_first"] = true;
   if (member.hinged_at_second) json["hinged_at_second"] = true;
+  if (member.stiffness_factor != 1.0) json["stiffness_factor"] = member.stiffness_factor;
+  if (!member.group.empty()) json["group"] = member.group;
   return json;
 }
 
@@ -34,6 +36,15 @@ const std::vector<std::pair<std::string, fem::Frame::Support>>& frame_support_ki
       {"sliding_x", {0, false, true, true}},  {"sliding_y", {0, true, false, true}},
       {"guided", {0, false, false, true}}};
   return kinds;
+}
+
+FrameExperiment as_frame_experiment(const fem::Frame& frame, int elements_per_member,
+                                    const std::string& title) {
+  FrameExperiment experiment{title, frame, {}, elements_per_member};
+  for (std::size_t i = 0; i < frame.joints.size(); ++i)
+    experiment.joint_names.push_back(frame.joints[i].name.empty() ? fmt::format("{}", i + 1)
+                                                                  : frame.joints[i].name);
+  return experiment;
 }
 
 std::string frame_support_kind(const fem::Frame::Support& support) {

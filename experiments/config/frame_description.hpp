@@ -17,6 +17,10 @@ struct FrameExperiment {
   int elements_per_member = 20;
 };
 
+/// With a name for each joint: its own, or its number.
+FrameExperiment as_frame_experiment(const fem::Frame& frame, int elements_per_member,
+                                    const std::string& title);
+
 /// "clamped", "rolling_x", ...: what a support holds. Rolling and sliding are along the axis they name,
 /// rolling with and sliding without a rotation; a guide holds the rotation alone.
 const std::vector<std::pair<std::string, fem::Frame::Support>>& frame_support_kinds();

@@ -80,10 +80,6 @@ fem::Beam read_chain(const TomlTable& table) {
 
 void check_places_on_chain(const TomlTable& root, const fem::Beam& chain) {
   const auto check = [&](const TomlTable& table) {
-    if (table.contains("quantity") && table.text("quantity") == "strain")
-      throw InputError(table.value_place("quantity"),
-                       "a chain has no sections whose strain could be read; expected displacement, velocity "
-                       "or acceleration");
     if (!table.contains("position_m")) return;
     const double position = table.number("position_m");
     double height = 0.0;

@@ -10,7 +10,7 @@ namespace beamid::experiments {
 /// @throws InputError where the numbers of values differ, at a missing or a useless key
 fem::Beam read_chain(const TomlTable& table);
 
-/// @throws InputError at whatever a chain cannot have: a strain gauge, a place between floors.
+/// @throws InputError at a place between floors.
 void check_places_on_chain(const TomlTable& root, const fem::Beam& chain);
 
 }  // namespace beamid::experiments

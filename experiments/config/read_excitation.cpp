@@ -1,4 +1,5 @@
 #include "experiments/config/key_tables.hpp"
+#include "experiments/config/read_place.hpp"
 #include "experiments/config/read_simulation.hpp"
 
 namespace beamid::experiments {
@@ -33,6 +34,8 @@ const Schema<DescribedExcitation>& excitation_keys() {
           .one_of(excitation_kinds())
           .key("position_m", &E::position, on_beam, "where the force acts or the beam is displaced", "1.1")
           .fallback("the tip, or midspan where the tip is held")
+          .with({"release", "static", "impulse", "harmonic", "table", "none"})
+          .key("at", &E::at, "in place of `position_m`, of a frame or a system", "\"ridge.x\"")
           .with({"release", "static", "impulse", "harmonic", "table", "none"})
           .key("deflection_m", &E::deflection,
                "release, none: at that point, in the static shape of a force there", "0.012")
@@ -77,8 +80,9 @@ const bool excitation_keys_registered = register_keys([]() -> const KeyTable& { 
 
 }  // namespace
 
-Excitation read_excitation(const TomlTable& table, double length) {
-  DescribedExcitation read = excitation_keys().read(table, length);
+Excitation read_excitation(const TomlTable& table, const fem::Structure& structure) {
+  DescribedExcitation read = excitation_keys().read(table, structure.extent());
+  read.at = read_place(table, structure, read.kind_name != to_string(Kind::base));
   for (const Kind kind : {Kind::step, Kind::impulse, Kind::harmonic, Kind::base, Kind::table, Kind::free})
     if (read.kind_name == to_string(kind)) read.kind = kind;
   if (read.file && read.file->empty()) table.refuse("file", "the name of a file");

@@ -1,10 +1,13 @@
 #include "experiments/config/read_experiment.hpp"
 
+#include <fmt/format.h>
+
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_acquisition.hpp"
 #include "experiments/config/read_beam.hpp"
 #include "experiments/config/read_chain.hpp"
 #include "experiments/config/read_damping.hpp"
+#include "experiments/config/read_frame.hpp"
 #include "experiments/config/read_frequency_response.hpp"
 #include "experiments/config/read_identifiability.hpp"
 #include "experiments/config/read_methods.hpp"
@@ -12,6 +15,7 @@
 #include "experiments/config/read_prior.hpp"
 #include "experiments/config/read_record_format.hpp"
 #include "experiments/config/read_simulation.hpp"
+#include "experiments/config/read_system.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -21,7 +25,7 @@ const Schema<Experiment>& root_keys() {
   static const Schema<Experiment> keys =
       Schema<Experiment>("")
           .key("title", &Experiment::title, "printed on top of results and plots", "\"steel cantilever\"")
-          .tables({"beam", "chain", "damping", "excitation"}, table)
+          .tables({"beam", "chain", "system", "damping", "excitation"}, table)
           .tables({"sensors"}, tables)
           .tables({"acquisition", "simulation", "frequency_response", "record", "reduction"}, table)
           .tables({"reductions"}, tables)
@@ -35,34 +39,47 @@ const Schema<Experiment>& root_keys() {
 
 const bool root_keys_registered = register_keys([]() -> const KeyTable& { return root_keys(); });
 
-/// The beam, or the chain as a beam of storeys.
+/// The one structure that the file describes.
 void read_structure(const TomlTable& root, Experiment& experiment) {
-  if (const auto chain = root.find_table("chain")) {
-    if (root.contains("beam"))
-      throw InputError(root.key_place("chain"), "chain beside beam; expected one structure");
-    experiment.beam = read_chain(*chain);
-    experiment.elements = static_cast<int>(experiment.beam.segments.size());
-    check_places_on_chain(root, experiment.beam);
-    return;
+  const char* found = nullptr;
+  for (const char* const kind : {"beam", "chain", "frame", "system"})
+    if (root.contains(kind)) {
+      if (found)
+        throw InputError(root.key_place(kind),
+                         fmt::format("{} beside {}; expected one structure", kind, found));
+      found = kind;
+    }
+  if (const auto frame = root.find_table("frame")) {
+    const FrameExperiment described = read_frame_table(*frame);
+    experiment.structure = described.frame;
+    experiment.elements = described.elements_per_member;
+  } else if (const auto system = root.find_table("system")) {
+    experiment.structure = read_system(*system);
+    experiment.elements = 1;
+  } else if (const auto chain = root.find_table("chain")) {
+    experiment.structure = read_chain(*chain);
+    experiment.elements = static_cast<int>(experiment.structure.beam().segments.size());
+    check_places_on_chain(root, experiment.structure.beam());
+  } else {
+    const TomlTable beam = root.table("beam");
+    experiment.structure = read_beam(beam);
+    experiment.elements = read_elements(beam);
   }
-  const TomlTable beam = root.table("beam");
-  experiment.beam = read_beam(beam);
-  experiment.elements = read_elements(beam);
 }
 
-/// What is done with the beam itself.
+/// What is done with the structure itself.
 void read_continuum(const TomlTable& root, Experiment& experiment) {
-  const double length = experiment.beam.length();
+  const fem::Structure& structure = experiment.structure;
   if (const auto damping = root.find_table("damping")) experiment.damping = read_damping(*damping);
   if (const auto excitation = root.find_table("excitation"))
-    experiment.excitation = read_excitation(*excitation, length);
-  experiment.sensors = read_sensors(root, experiment.beam);
+    experiment.excitation = read_excitation(*excitation, structure);
+  experiment.sensors = read_sensors(root, structure);
   experiment.acquisition = read_acquisition(root);
-  experiment.parameters = read_parameters(root, length);
+  experiment.parameters = read_parameters(root, structure);
   if (const auto simulation = root.find_table("simulation"))
     experiment.simulation = read_simulation(*simulation);
   if (const auto response = root.find_table("frequency_response"))
-    experiment.frequency_response = read_frequency_response(*response, length);
+    experiment.frequency_response = read_frequency_response(*response, structure);
 }
 
 }  // namespace
@@ -73,15 +90,12 @@ Experiment read_experiment(const std::filesystem::path& file, const std::vector<
 
 Experiment read_experiment(const TomlTable& root) {
   refuse_unknown_keys(root);
-  if (root.contains("frame"))
-    throw InputError(root.key_place("frame"),
-                     "frame describes a plane frame, which 'beamid frame' takes; expected a beam");
   check_values(root);
   Experiment experiment = root_keys().read(root);
   read_structure(root, experiment);
   experiment.format.irregular = true;  // as [record] has it unless it says otherwise
   if (const auto record = root.find_table("record")) {
-    const RecordSection section = read_record_section(*record, &experiment.beam);
+    const RecordSection section = read_record_section(*record, &experiment.structure);
     experiment.record_file = section.file;
     experiment.format = section.format;
   }

@@ -32,18 +32,21 @@ const Schema<FrameExperiment>& frame_keys() {
               {std::pair{"consistent", fem::MassModel::consistent}, {"lumped", fem::MassModel::lumped}},
               "of the elements; frequencies of bending err by h^4 or by h^2, of stretching by h^2",
               "\"lumped\"")
+          .choice(
+              "base_motion", [](F& f) -> char& { return f.frame.base_axis; },
+              {std::pair{"x", 'x'}, {"y", 'y'}},
+              "along which axis all supports move together, where the base moves", "\"y\"")
           .tables({"joints", "members", "supports", "bodies", "springs"});
   return keys;
 }
 
-struct NamedJoint : Frame::Joint {
-  std::string name;
-};
-
-const Schema<NamedJoint>& joint_keys() {
-  using J = NamedJoint;
+const Schema<Frame::Joint>& joint_keys() {
+  using J = Frame::Joint;
   static const Schema<J> keys = Schema<J>("frame.joints")
-                                    .key("name", &J::name, "for the report", "\"ridge\"")
+                                    .key("name", &J::name,
+                                         "for reports and for places such as `ridge.x`; without blanks "
+                                         "and dots where it is one",
+                                         "\"ridge\"")
                                     .fallback("its number")
                                     .key("x_m", &J::x, "where it is", "3.0")
                                     .required()
@@ -55,6 +58,8 @@ const Schema<NamedJoint>& joint_keys() {
 struct MemberValues {
   std::optional<double> axial_stiffness;
   bool hinged_at_first = false, hinged_at_second = false;
+  double stiffness_factor = 1.0;
+  std::string group;
 };
 
 const Schema<MemberValues>& member_keys() {
@@ -72,6 +77,13 @@ const Schema<MemberValues>& member_keys() {
           .key("axial_stiffness_n", &M::axial_stiffness, positive,
                "E A itself; must be given beside `bending_stiffness_n_m2`", "1.2e8")
           .fallback("E A, from Young's modulus and the section")
+          .key("stiffness_factor", &M::stiffness_factor, positive,
+               "of E I, E A and kappa G A: `0.8` for a member that has lost a fifth", "0.8")
+          .key("group", &M::group,
+               "members of one group share a factor that `[[parameters]]` can ask about, `quantity = "
+               "\"factor\"` with the group as `name`",
+               "\"columns\"")
+          .fallback("none")
           .like(section_keys());
   return keys;
 }
@@ -148,10 +160,11 @@ std::vector<TomlTable> some(const TomlTable& table, const std::string& key) {
 
 void read_joints(const TomlTable& table, FrameExperiment& experiment) {
   for (const TomlTable& one : some(table, "joints")) {
-    const NamedJoint joint = joint_keys().read(one);
+    const Frame::Joint joint = joint_keys().read(one);
+    for (const Frame::Joint& other : experiment.frame.joints)
+      if (!joint.name.empty() && joint.name == other.name)
+        one.refuse("name", "a name that no other joint has");
     experiment.frame.joints.push_back(joint);
-    experiment.joint_names.push_back(
-        one.contains("name") ? joint.name : fmt::format("{}", experiment.frame.joints.size()));
   }
 }
 
@@ -173,6 +186,8 @@ Frame::Member read_member(const TomlTable& table, Frame& frame) {
     table.miss("axial_stiffness_n", "a positive number beside bending_stiffness_n_m2");
   member.hinged_at_first = given.hinged_at_first;
   member.hinged_at_second = given.hinged_at_second;
+  member.stiffness_factor = given.stiffness_factor;
+  member.group = given.group;
   fem::Beam alone;
   alone.segments = {{length, member.section}};
   at_place(table.place(), [&] { fem::validate(alone); });
@@ -231,17 +246,21 @@ FrameExperiment read_frame(const std::filesystem::path& file) {
 
 FrameExperiment read_frame(const TomlTable& root) {
   refuse_unknown_keys(root);
-  const TomlTable table = root.table("frame");
-  refuse_all_but(root, {"title", "frame"}, "beside [frame]");
   check_values(root);
-  FrameExperiment experiment = frame_keys().read(table);
+  FrameExperiment experiment = read_frame_table(root.table("frame"));
   experiment.title = root.find_text("title").value_or("");
+  return experiment;
+}
+
+FrameExperiment read_frame_table(const TomlTable& table) {
+  FrameExperiment experiment = frame_keys().read(table);
   Frame& frame = experiment.frame;
   read_joints(table, experiment);
   read_members(table, frame);
   const int most = std::max(1, most_elements / static_cast<int>(frame.members.size()));
   table.find_whole_number("elements_per_member", 1, most);
   read_frame_attachments(table, frame);
+  experiment.joint_names = as_frame_experiment(frame, 1, "").joint_names;
   at_place(table.place(), [&] { fem::validate(frame); });
   return experiment;
 }

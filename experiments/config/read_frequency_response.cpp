@@ -1,6 +1,7 @@
 #include "experiments/config/read_frequency_response.hpp"
 
 #include "experiments/config/key_tables.hpp"
+#include "experiments/config/read_place.hpp"
 #include "experiments/config/useless_keys.hpp"
 
 namespace beamid::experiments {
@@ -48,7 +49,10 @@ const Schema<PointPair>& pair_keys() {
           .key("input_m", &PointPair::input, on_beam, "where the force acts", "1.1")
           .fallback("the tip, or midspan where the tip is held")
           .key("output_m", &PointPair::output, on_beam, "where motion is observed", "0.55")
-          .fallback("likewise");
+          .fallback("likewise")
+          .key("input_at", &PointPair::input_place, "in place of `input_m`, of a frame or a system",
+               "\"ridge.x\"")
+          .key("output_at", &PointPair::output_place, "likewise", "\"eaves.y\"");
   return keys;
 }
 
@@ -58,11 +62,14 @@ const bool frequency_response_keys_registered[] = {
 
 }  // namespace
 
-FrequencyResponseSettings read_frequency_response(const TomlTable& table, double length) {
+FrequencyResponseSettings read_frequency_response(const TomlTable& table, const fem::Structure& structure) {
   FrequencyResponseSettings settings = frequency_response_keys().read(table);
   if (settings.logarithmic) table.find_number("from_hz", Sign::positive);
-  for (const TomlTable& pair : table.find_tables("pairs"))
-    settings.pairs.push_back(pair_keys().read(pair, length));
+  for (const TomlTable& pair : table.find_tables("pairs")) {
+    settings.pairs.push_back(pair_keys().read(pair, structure.extent()));
+    settings.pairs.back().input_place = read_place(pair, structure, true, "input_at", "input_m");
+    settings.pairs.back().output_place = read_place(pair, structure, true, "output_at", "output_m");
+  }
   if (settings.method.name == "direct")
     refuse_useless(table, {"modes", "residual_modes"}, "with method = \"direct\"", "method = \"modal\"");
   return settings;

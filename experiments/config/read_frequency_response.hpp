@@ -8,6 +8,6 @@ namespace beamid::experiments {
 
 /// @param length of the beam, to which every position must belong [m].
 /// @throws InputError for a useless or a bad value.
-FrequencyResponseSettings read_frequency_response(const TomlTable& table, double length);
+FrequencyResponseSettings read_frequency_response(const TomlTable& table, const fem::Structure& structure);
 
 }  // namespace beamid::experiments

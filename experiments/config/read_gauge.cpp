@@ -1,5 +1,7 @@
 #include "experiments/config/read_gauge.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "experiments/config/schema.hpp"
@@ -7,12 +9,18 @@
 
 namespace beamid::experiments {
 
-void check_gauge_position(const TomlTable& table, const fem::Beam& beam, Quantity quantity) {
-  if (quantity == Quantity::strain && !table.contains("position_m"))
-    table.miss("position_m", Key{.name = "position_m", .range = on_beam}.expected(beam.length()));
+void check_gauge_position(const TomlTable& table, const fem::Structure& structure, Quantity quantity) {
+  if (quantity != Quantity::strain) return;
+  if (!structure.is_beam() || structure.is_chain())
+    throw InputError(table.value_place("quantity"),
+                     fmt::format("a {} has no sections whose strain could be read; expected displacement, "
+                                 "velocity or acceleration",
+                                 structure.kind()));
+  if (!table.contains("position_m"))
+    table.miss("position_m", Key{.name = "position_m", .range = on_beam}.expected(structure.extent()));
 }
 
-double gauge_distance(const TomlTable& table, const fem::Beam& beam, Quantity quantity,
+double gauge_distance(const TomlTable& table, const fem::Structure& structure, Quantity quantity,
                       const std::optional<double>& position, const std::optional<double>& given) {
   if (quantity != Quantity::strain) {
     refuse_useless(table, {"distance_m"}, std::string("for the quantity ") + to_string(quantity),
@@ -22,6 +30,7 @@ double gauge_distance(const TomlTable& table, const fem::Beam& beam, Quantity qu
   if (given && *given != 0.0) return *given;
   const std::string expected = "a number of metres that is not zero: how far the gauge is from the axis";
   if (given) table.refuse("distance_m", expected);
+  const fem::Beam& beam = structure.beam();
   double start = 0.0;
   const double x = position.value_or(0.0);
   for (const fem::Segment& segment : beam.segments) {

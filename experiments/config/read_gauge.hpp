@@ -5,18 +5,18 @@
 
 #include "experiments/record/record.hpp"
 #include "experiments/text/toml_table.hpp"
-#include "fem/beam.hpp"
+#include "fem/structure.hpp"
 
 namespace beamid::experiments {
 
-/// @throws InputError when a strain gauge has no `position_m`.
-void check_gauge_position(const TomlTable& table, const fem::Beam& beam, Quantity quantity);
+/// @throws InputError when a strain gauge has no `position_m`, or sits on no beam with sections.
+void check_gauge_position(const TomlTable& table, const fem::Structure& structure, Quantity quantity);
 
 /// `distance_m` of a strain gauge from the axis, c of -c w'' [m], positive on the side of positive
 /// deflection; absent: half the section's height there. Zero for other quantities.
 /// @throws InputError when the key stands beside another quantity, or the section has no drawn height.
 /// @param position of a strain gauge [m] @param given what the file says [m]
-double gauge_distance(const TomlTable& table, const fem::Beam& beam, Quantity quantity,
+double gauge_distance(const TomlTable& table, const fem::Structure& structure, Quantity quantity,
                       const std::optional<double>& position, const std::optional<double>& given);
 
 }  // namespace beamid::experiments

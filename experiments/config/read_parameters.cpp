@@ -7,6 +7,7 @@
 
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/useless_keys.hpp"
+#include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -81,7 +82,8 @@ Schema<DescribedParameter> make_parameter_keys() {
           "the tip: a sensor beside it keeps its own), `\"body_mass\"` (of the bodies between `from_m` and "
           "`to_m`, all of them without), `\"tip_rotary_inertia\"`, `\"root_rotational_stiffness\"`, "
           "`\"root_translational_stiffness\"`, `\"axial_load\"`, of a chain `\"storey_stiffness\"` and "
-          "`\"storey_damping\"` (of its dashpots), `\"damping_ratio\"`, `\"mass_damping\"` and "
+          "`\"storey_damping\"` (of its dashpots), of a frame or a system `\"factor\"` (of the group of "
+          "members or the parameter that `name` names), `\"damping_ratio\"`, `\"mass_damping\"` and "
           "`\"stiffness_damping\"` (alpha and beta of C = alpha M + beta K); `modal`: `\"frequency\"`, "
           "`\"damping_ratio\"`; `sdof`: `\"stiffness\"`, `\"damping\"`, and `\"mass\"` where a force was "
           "measured; the same and, only where named here or nothing is, `duffing`: `\"cubic_stiffness\"`; "
@@ -91,7 +93,7 @@ Schema<DescribedParameter> make_parameter_keys() {
       .one_of(quantity_names())
       .values("text")
       .required()
-      .key("name", &P::name, "what results call it", "\"crack\"")
+      .key("name", &P::name, "what results call it; of a factor, which one", "\"crack\"")
       .values("at most 100 small letters, digits, `_`")
       .fallback("the quantity, with its mode or number")
       .key("from_m", &P::from, on_beam,
@@ -142,7 +144,23 @@ void refuse_other_units(const TomlTable& table, const ParameterQuantity& quantit
   }
 }
 
-ParameterChoice read_parameter(const TomlTable& table, double length) {
+/// A factor is asked for by its name; regions are those of a beam.
+void check_structure(const TomlTable& table, const ParameterChoice& choice, const fem::Structure& structure) {
+  if (!structure.has_positions())
+    refuse_useless(table, {"from_m", "to_m"}, std::string("for a ") + structure.kind(),
+                   "quantity = \"factor\" and a name");
+  if (choice.quantity != "factor") return;
+  const std::vector<std::string> names = fem::factor_names(structure);
+  const std::string expected =
+      names.empty() ? std::string("groups of a frame's members, or parameters of a system: this ") +
+                          structure.kind() + " has none"
+                    : "one of " + joined(names);
+  if (!table.contains("name")) table.miss("name", expected);
+  if (std::find(names.begin(), names.end(), choice.name) == names.end()) table.refuse("name", expected);
+}
+
+ParameterChoice read_parameter(const TomlTable& table, const fem::Structure& structure) {
+  const double length = structure.extent();
   DescribedParameter choice = parameter_schema().read(table, length);
   refuse_other_units(table, parameter_quantity(choice.quantity));
   const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
@@ -154,16 +172,17 @@ ParameterChoice read_parameter(const TomlTable& table, double length) {
     if (!table.contains(key) && (choice.from || choice.to))
       table.miss(key, parameter_schema().find(key)->expected(length));
   if (choice.from) choice.region = std::pair{*choice.from, *choice.to};
+  check_structure(table, choice, structure);
   choice.place = table.place();
   return choice;
 }
 
 }  // namespace
 
-std::vector<ParameterChoice> read_parameters(const TomlTable& root, double length) {
+std::vector<ParameterChoice> read_parameters(const TomlTable& root, const fem::Structure& structure) {
   std::vector<ParameterChoice> choices;
   for (const TomlTable& table : root.find_tables("parameters"))
-    choices.push_back(read_parameter(table, length));
+    choices.push_back(read_parameter(table, structure));
   return choices;
 }
 

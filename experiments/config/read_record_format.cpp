@@ -6,6 +6,7 @@
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_beam.hpp"
 #include "experiments/config/read_gauge.hpp"
+#include "experiments/config/read_place.hpp"
 #include "experiments/config/read_preparation.hpp"
 #include "experiments/record/record_reader.hpp"
 #include "experiments/record/units.hpp"
@@ -77,7 +78,7 @@ const Schema<DescribedRecord>& record_keys() {
 
 /// One column: its number or name, and its unit.
 struct DescribedColumn {
-  std::string quantity, unit;
+  std::string quantity, unit, place;
   std::optional<double> position, distance;
 };
 
@@ -119,6 +120,8 @@ Schema<DescribedColumn> make_channel_keys() {
       .values(all.c_str())
       .key("position_m", &C::position, on_beam, "where its sensor sits, or where the force acts", "0.35")
       .fallback("the tip, or midspan where the tip is held; none for strain")
+      .key("at", &C::place, "in place of `position_m`, of a frame or a system: its place by name",
+           "\"ridge.x\"")
       .key("distance_m", &C::distance, "strain: of the gauge from the axis, c of -c w''", "0.003")
       .values("number, not 0")
       .fallback("half the section's height");
@@ -160,23 +163,26 @@ ColumnDescription read_column(const TomlTable& table) {
   return column;
 }
 
-/// @param beam that the sensors sit on; null where none is described: positions are then taken as they are.
-ColumnDescription read_channel(const TomlTable& table, const fem::Beam* beam) {
+/// @param structure that the sensors sit on; null where none is described: positions are then taken as they
+/// are.
+ColumnDescription read_channel(const TomlTable& table, const fem::Structure* structure) {
   const DescribedColumn given =
-      beam ? channel_keys().read(table, beam->length()) : channel_keys().read(table);
+      structure ? channel_keys().read(table, structure->extent()) : channel_keys().read(table);
   ColumnDescription channel = read_column(table);
   channel.quantity = *find_quantity(given.quantity);
   channel.factor = factor_of(table, given.quantity, units(channel.quantity));
   channel.position = given.position;
   channel.distance = given.distance.value_or(0.0);
-  if (beam != nullptr) {
-    check_gauge_position(table, *beam, channel.quantity);
-    channel.distance = gauge_distance(table, *beam, channel.quantity, channel.position, given.distance);
+  channel.place = given.place;
+  if (structure != nullptr) {
+    channel.place = read_place(table, *structure, false);
+    check_gauge_position(table, *structure, channel.quantity);
+    channel.distance = gauge_distance(table, *structure, channel.quantity, channel.position, given.distance);
   }
   return channel;
 }
 
-DescribedRecord read_described(const TomlTable& table, const fem::Beam* beam) {
+DescribedRecord read_described(const TomlTable& table, const fem::Structure* structure) {
   check_values(table, "record");
   DescribedRecord record = record_keys().read(table);
   if (record.file && record.file->empty()) table.refuse("file", "the name of a file");
@@ -188,15 +194,15 @@ DescribedRecord read_described(const TomlTable& table, const fem::Beam* beam) {
     record.time->factor = factor_of(*time, "time", time_units());
   }
   for (const TomlTable& channel : table.find_tables("channels"))
-    record.channels.push_back(read_channel(channel, beam));
+    record.channels.push_back(read_channel(channel, structure));
   record.preparation = read_preparation(table);
   return record;
 }
 
 }  // namespace
 
-RecordSection read_record_section(const TomlTable& table, const fem::Beam* beam) {
-  const DescribedRecord record = read_described(table, beam);
+RecordSection read_record_section(const TomlTable& table, const fem::Structure* structure) {
+  const DescribedRecord record = read_described(table, structure);
   return {record.file, record};
 }
 
@@ -205,7 +211,7 @@ RecordSection read_record_section(const std::filesystem::path& file) {
   refuse_unknown_keys(root);
   const TomlTable record = root.table("record");
   if (!root.contains("beam")) return read_record_section(record, nullptr);
-  const fem::Beam beam = read_beam(root.table("beam"));
+  const fem::Structure beam = read_beam(root.table("beam"));
   return read_record_section(record, &beam);
 }
 

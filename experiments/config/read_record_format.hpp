@@ -16,10 +16,10 @@ struct RecordSection {
 };
 
 /// Units are stated, never guessed.
-/// @param beam on which the sensors sit; null where none is described: positions are then not checked against
-/// its length, and a strain gauge's distance from the axis has no default.
+/// @param structure on which the sensors sit; null where none is described: positions are then not checked
+/// against its length, and a strain gauge's distance from the axis has no default.
 /// @throws InputError at the key, for missing ones at the table.
-RecordSection read_record_section(const TomlTable& record, const fem::Beam* beam);
+RecordSection read_record_section(const TomlTable& record, const fem::Structure* structure);
 
 /// The same of a file that need not describe anything else. @throws InputError as above.
 RecordSection read_record_section(const std::filesystem::path& file);

@@ -3,6 +3,7 @@
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_acquisition.hpp"
 #include "experiments/config/read_gauge.hpp"
+#include "experiments/config/read_place.hpp"
 #include "experiments/config/read_simulation.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/record/units.hpp"
@@ -32,6 +33,9 @@ Schema<DescribedSensor> make_sensor_keys() {
       .fallback("`tip`, `root`, or its place")
       .key("position_m", &S::position, on_beam, "where it sits", "1.1")
       .fallback("the tip, or midspan where the tip is held")
+      .key("at", &S::place,
+           "in place of `position_m`, of a frame or a system: a joint and a direction, or a label",
+           "\"ridge.x\"")
       .key("quantity", &S::quantity_name,
            "what it measures; a strain gauge needs its `position_m`, which may be a clamped root",
            "\"acceleration\"")
@@ -75,14 +79,15 @@ const bool sensor_keys_registered = register_keys([]() -> const KeyTable& { retu
 
 }  // namespace
 
-std::vector<Sensor> read_sensors(const TomlTable& root, const fem::Beam& beam) {
+std::vector<Sensor> read_sensors(const TomlTable& root, const fem::Structure& structure) {
   std::vector<Sensor> sensors;
   for (const TomlTable& one : root.find_tables("sensors")) {
-    DescribedSensor sensor = sensor_keys().read(one, beam.length());
+    DescribedSensor sensor = sensor_keys().read(one, structure.extent());
+    sensor.place = read_place(one, structure, true);
     if (sensor.name.size() > 100) one.refuse("name", "at most 100 letters, as files are named after it");
     sensor.quantity = *find_quantity(sensor.quantity_name);
-    check_gauge_position(one, beam, sensor.quantity);
-    sensor.distance = gauge_distance(one, beam, sensor.quantity, sensor.position, sensor.given_distance);
+    check_gauge_position(one, structure, sensor.quantity);
+    sensor.distance = gauge_distance(one, structure, sensor.quantity, sensor.position, sensor.given_distance);
     for (std::size_t i = 0; i < std::size(sensed); ++i)
       if (sensed[i] == sensor.quantity)
         sensor.noise = sensor.deviation[i];

@@ -6,15 +6,16 @@
 #include "experiments/config/acquisition_settings.hpp"
 #include "experiments/config/settings.hpp"
 #include "experiments/text/toml_table.hpp"
+#include "fem/structure.hpp"
 
 namespace beamid::experiments {
 
-/// @param length of the beam, to which every position must belong [m].
+/// @param structure to which every place must belong.
 /// @throws InputError for a missing, a useless or a bad value.
-Excitation read_excitation(const TomlTable& table, double length);
+Excitation read_excitation(const TomlTable& table, const fem::Structure& structure);
 
 /// @param root of the file.
-std::vector<Sensor> read_sensors(const TomlTable& root, const fem::Beam& beam);
+std::vector<Sensor> read_sensors(const TomlTable& root, const fem::Structure& structure);
 
 /// What each of the sensors does wrong. @param root of the file.
 std::vector<SensorDefects> read_defects(const TomlTable& root);

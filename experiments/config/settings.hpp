@@ -31,8 +31,9 @@ struct Excitation {
   double amplitude = 0.0;            ///< harmonic [N], base [m/s2]
   double frequency_hz = 0.0;         ///< harmonic, base [Hz]
   std::optional<std::string>
-      file;          ///< table, base: time and force [N] or acceleration [m/s2]; relative to the TOML file
-  Place place = {};  ///< of the table, for messages
+      file;             ///< table, base: time and force [N] or acceleration [m/s2]; relative to the TOML file
+  Place place = {};     ///< of the table, for messages
+  std::string at = {};  ///< in place of the position, of a structure whose places have names
 };
 
 /// An instrument at one point, its noise white.
@@ -42,6 +43,7 @@ struct Sensor {
   Quantity quantity = Quantity::acceleration;  ///< accelerations are absolute, the rest relative to the base
   double noise = 0.0;                          ///< standard deviation [SI]
   double distance = 0.0;                       ///< strain: of the surface from the axis, c of -c w'' [m]
+  std::string place = {};                      ///< of a structure whose places have names: "ridge.x"
 };
 
 /// How the test is simulated: [simulation].
@@ -56,7 +58,8 @@ struct Simulation {
 
 /// A force here, motion there; absent: the natural point.
 struct PointPair {
-  std::optional<double> input, output;  ///< [m]
+  std::optional<double> input, output;    ///< [m]
+  std::string input_place, output_place;  ///< of a structure whose places have names
 };
 
 /// Which frequency responses are computed, and where: [frequency_response].

@@ -40,7 +40,7 @@ void refuse_dead_channels(const Record& record) {
 }
 
 double beam_frequency_hz(const Experiment& experiment) {
-  return fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+  return fem::modes(fem::assemble(experiment.structure, experiment.elements), 1).frequency_hz()[0];
 }
 
 void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {

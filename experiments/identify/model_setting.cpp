@@ -5,7 +5,7 @@
 
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/identify/record_inputs.hpp"
-#include "experiments/models/beam_points.hpp"
+#include "experiments/models/structure_points.hpp"
 #include "experiments/text/method_choice.hpp"
 #include "fem/gauge_row.hpp"
 #include "fem/parametric_system.hpp"
@@ -24,15 +24,17 @@ std::vector<Index> channels_where(const Record& record, bool input) {
 
 // Nodes where strain is read, and where a region begins or ends: rows of this mesh then fit that of the
 // model.
-fem::Beam with_nodes_for(const Experiment& experiment, const Record& record) {
+fem::Structure with_nodes_for(const Experiment& experiment, const Record& record) {
+  if (!experiment.structure.is_beam()) return experiment.structure;
+  const fem::Beam& beam = experiment.structure.beam();
   std::vector<double> nodes;
   for (const Channel& channel : record.channels)
     if (channel.quantity == Quantity::strain)
-      nodes.push_back(channel.position.value_or(fem::natural_point(experiment.beam).position));
+      nodes.push_back(channel.position.value_or(fem::natural_point(beam).position));
   for (const ParameterChoice& parameter : experiment.parameters)
     if (parameter.region && parameter.quantity == "bending_stiffness")
       nodes.insert(nodes.end(), {parameter.region->first, parameter.region->second});
-  return nodes.empty() ? experiment.beam : fem::with_nodes(experiment.beam, nodes);
+  return nodes.empty() ? beam : fem::with_nodes(beam, nodes);
 }
 
 // What the channels of one quantity show at their places: accelerations have the shapes of displacements.
@@ -70,55 +72,65 @@ filters::Measurements measurements(const Record& record) {
 ModelSetting model_setting(const Experiment& experiment, const Record& record, const Choice& reduction,
                            const std::filesystem::path& folder) {
   ModelSetting setting;
-  const fem::Beam beam = with_nodes_for(experiment, record);
-  BeamPoints points(beam);
+  const fem::Structure structure = with_nodes_for(experiment, record);
+  StructurePoints points(structure);
   const std::vector<Index> channels = output_channels(record);
   std::vector<Index> rows;  // output of the system that a channel reads; a strain gauge has one of its own
   for (const Index i : channels) {
     const Channel& channel = record.channels[i];
-    rows.push_back(channel.quantity == Quantity::strain ? -1 : points.add(channel.position));
+    rows.push_back(channel.quantity == Quantity::strain ? -1 : points.add(channel.position, channel.place));
     setting.observations.push_back({channel.quantity, channel.name});
   }
   const std::vector<Index> inputs = input_channels(record);
   for (const Index i : inputs)
-    setting.forces.push_back(
-        record.channels[i].quantity == Quantity::force ? points.add(record.channels[i].position) : -1);
-  setting.system = fem::assemble(beam, experiment.elements, points.all());
+    setting.forces.push_back(record.channels[i].quantity == Quantity::force
+                                 ? points.add(record.channels[i].position, record.channels[i].place)
+                                 : -1);
+  setting.system = fem::assemble(structure, experiment.elements, points.all());
   const Index base = setting.system.inputs.cols() - 1;
   if (std::count(setting.forces.begin(), setting.forces.end(), Index{-1}) > 1)
     throw std::invalid_argument(
         "the record holds several channels of base_acceleration; expected one, of all supports together");
+  if (std::count(setting.forces.begin(), setting.forces.end(), Index{-1}) == 1 &&
+      Eigen::MatrixXd(setting.system.inputs.col(base)).isZero(0.0))
+    throw std::invalid_argument(
+        "the record holds the acceleration of the base, which does not move the structure; expected "
+        "base_motion in [system]");
   std::replace(setting.forces.begin(), setting.forces.end(), Index{-1}, base);
 
   const MatrixXd deflections = MatrixXd(setting.system.outputs);
   MatrixXd outputs(static_cast<Index>(rows.size()), setting.system.size());
   std::vector<std::string> names;
+  Eigen::VectorXd base_shares = Eigen::VectorXd::Ones(outputs.rows());
   for (Index i = 0; i < outputs.rows(); ++i) {
     const Channel& channel = record.channels[channels[i]];
     if (rows[i] >= 0) {
       outputs.row(i) = deflections.row(rows[i]);
+      if (setting.system.base_shares.size() > 0) base_shares[i] = setting.system.base_shares[rows[i]];
       names.push_back(setting.system.output_names[rows[i]]);
     } else {
-      const double position = channel.position.value_or(fem::natural_point(beam).position);
-      outputs.row(i) = -channel.distance * MatrixXd(fem::gauge_row(setting.system, beam, position));
+      const double position = channel.position.value_or(fem::natural_point(structure).position);
+      outputs.row(i) =
+          -channel.distance * MatrixXd(fem::gauge_row(setting.system, structure.beam(), position));
       names.push_back(channel.name + "_strain");
     }
   }
   setting.system.outputs = outputs.sparseView();
   setting.system.output_names = names;
+  setting.system.base_shares = base_shares;
   setting.damping = experiment.damping;
   setting.parameters = experiment.parameters;
   setting.prior = experiment.prior;
-  setting.continuum = ModelSetting::Continuum{beam, experiment.elements, points.all()};
+  setting.continuum = ModelSetting::Continuum{structure, experiment.elements, points.all()};
   at_place(reduction.place, [&] {
     setting.reduction = reduction::reduction_registry().make(reduction.name, reduction.options);
   });
   if (!reduction.shape_file.empty())
-    setting.training = read_shape(folder / reduction.shape_file, experiment.beam.length());
+    setting.training = read_shape(folder / reduction.shape_file, experiment.structure.beam().length());
   const auto response = reduction.options.values().find("response");
   if (response != reduction.options.values().end() &&
       response->second == filters::OptionValue(std::string("record")))
-    setting.training = seen_shapes(record, experiment.beam);
+    setting.training = seen_shapes(record, experiment.structure.beam());
   return setting;
 }
 

@@ -52,7 +52,7 @@ void check_modes(const Experiment& experiment, Sentences& found) {
   constexpr int enough_elements = 20, rigid_motions = 2;
   try {
     const fem::StructuralSystem system =
-        fem::assemble(experiment.beam, std::min(experiment.elements, enough_elements));
+        fem::assemble(experiment.structure, std::min(experiment.elements, enough_elements));
     const fem::Modes modes = fem::modes(system, std::min<Eigen::Index>(rigid_motions + 1, system.size()));
     if (modes.rigid >= modes.size()) return;
     check_frequency(modes.frequency_hz()[modes.rigid], found);
@@ -125,9 +125,9 @@ void put_first(Results& results, const Sentences& found) {
 }  // namespace
 
 Sentences implausible(const Experiment& experiment) {
-  const fem::Beam& beam = experiment.beam;
   Sentences units;
-  if (beam.shear_building) return units;  // its columns have no sections
+  if (!experiment.structure.is_beam() || experiment.structure.is_chain()) return units;  // without sections
+  const fem::Beam& beam = experiment.structure.beam();
   for (std::size_t i = 0; i < beam.segments.size(); ++i)
     check_segment(beam.segments[i].section, beam.length(),
                   beam.segments.size() == 1 ? "the beam's " : fmt::format("segment {}: the ", i + 1), "beam",

@@ -8,6 +8,7 @@
 #include "experiments/signal/missing_samples.hpp"
 #include "filters/information_factor.hpp"
 #include "filters/sample_walk.hpp"
+#include "filters/whiteness.hpp"
 
 namespace beamid::experiments {
 
@@ -32,7 +33,15 @@ void take_misfit(const filters::Measurements& record, Reproduction& motion) {
   motion.residual_deviation = root_mean_squares(record.outputs - motion.outputs);
   const VectorXd share =
       motion.residual_deviation.cwiseQuotient(root_mean_squares(record.outputs).cwiseMax(1e-300));
-  motion.response_error_percent = 100.0 * share.norm() / std::sqrt(static_cast<double>(share.size()));
+  constexpr double surely_coloured = 1e-3;
+  const double per_channel = 100.0 / std::sqrt(static_cast<double>(share.size()));
+  motion.response_error_percent = per_channel * share.norm();
+  double coloured = 0.0;
+  for (Index i = 0; i < share.size(); ++i) {
+    const VectorXd rest = record.outputs.row(i) - motion.outputs.row(i);
+    if (filters::whiteness_of(rest).p_value < surely_coloured) coloured += share[i] * share[i];
+  }
+  motion.misfit_percent = per_channel * std::sqrt(coloured);
 }
 
 Reproduction reproduce(filters::DiscreteModel& model, const VectorXd& state,

@@ -16,6 +16,7 @@ struct Reproduction {
   Eigen::MatrixXd outputs;              ///< (p x N)
   Eigen::VectorXd residual_deviation;   ///< root mean square of what is left, per channel (p)
   double response_error_percent = 0.0;  ///< 100 ||y - outputs|| / ||y||, channels weighed by their size
+  double misfit_percent = 0.0;  ///< likewise, of channels whose rest is not white: what noise does not explain
 };
 
 /// What the outputs leave of the samples that were read.

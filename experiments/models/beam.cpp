@@ -37,14 +37,25 @@ const std::vector<std::string> quantities{"bending_stiffness",
                                           "axial_load",
                                           "storey_stiffness",
                                           "storey_damping",
+                                          "factor",
                                           "damping_ratio",
                                           "mass_damping",
                                           "stiffness_damping"};
 
+// What is asked where the file asks nothing: the stiffness of all, or each factor, and the damping.
+std::vector<ParameterChoice> own_choices(const ModelSetting& setting) {
+  if (!setting.continuum) return {{"bending_stiffness"}, {"damping_ratio"}};
+  const fem::Structure& structure = setting.continuum->structure;
+  if (structure.is_beam())
+    return {{structure.is_chain() ? "storey_stiffness" : "bending_stiffness"}, {"damping_ratio"}};
+  std::vector<ParameterChoice> choices;
+  for (const std::string& name : fem::factor_names(structure)) choices.push_back({"factor", name});
+  choices.push_back({"damping_ratio"});
+  return choices;
+}
+
 std::vector<ParameterChoice> choices_of(const ModelSetting& setting) {
-  const bool storeys = setting.continuum && setting.continuum->beam.shear_building;
-  if (setting.parameters.empty())
-    return {{storeys ? "storey_stiffness" : "bending_stiffness"}, {"damping_ratio"}};
+  if (setting.parameters.empty()) return own_choices(setting);
   for (const ParameterChoice& choice : setting.parameters) require_quantity(choice, quantities, "beam");
   return setting.parameters;
 }
@@ -121,7 +132,7 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
   MotionDescription description = describe_sensors("beam", setting, options);
   const std::vector<ParameterChoice> choices = choices_of(setting);
   if (!setting.continuum) beam_equations(setting, {});  // says what is missing
-  std::vector<ParameterDefault> defaults = beam_defaults(setting.continuum->beam, choices);
+  std::vector<ParameterDefault> defaults = beam_defaults(setting.continuum->structure, choices);
 
   // The equations need no more than the guesses of the beam's own properties.
   std::vector<Unknown> properties;
@@ -180,6 +191,11 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
     places = layout(description, modes.size());
     model->motion = std::make_shared<ReducedMotion>(std::move(small), std::move(description), rows, "mode");
   } else {
+    if (!setting.continuum->structure.is_beam())
+      throw std::invalid_argument(
+          fmt::format("a {} of more than {} unknowns needs a reduction; expected [reduction] of fewer "
+                      "coordinates, such as modal or craig_bampton",
+                      setting.continuum->structure.kind(), most_dense));
     if (asks_about_dashpots(equations))
       throw std::invalid_argument(
           fmt::format("storey_damping of more than {} floors needs a reduction; expected [reduction] of "
@@ -206,14 +222,14 @@ std::vector<filters::OptionSpec> beam_model_options() {
   return specs;
 }
 
-const bool beam_registered =
-    model_registry().add({"beam",
-                          "the finite-element beam: stiffness, masses, root, axial load "
-                          "and damping unknown, as [[parameters]] asks",
-                          "[rayleigh1877]",
-                          beam_model_options(),
-                          {},
-                          make_beam});
+const bool beam_registered = model_registry().add(
+    {"beam",
+     "the structure itself, beam, chain, frame or system: stiffness, masses, root, axial "
+     "load, factors and damping unknown, as [[parameters]] asks",
+     "[rayleigh1877]",
+     beam_model_options(),
+     {},
+     make_beam});
 
 }  // namespace
 }  // namespace beamid::experiments

@@ -11,8 +11,8 @@
 #include "experiments/models/prior.hpp"
 #include "experiments/models/unknown.hpp"
 #include "experiments/record/record.hpp"
-#include "fem/assembly.hpp"
 #include "fem/damping.hpp"
+#include "fem/structure.hpp"
 #include "filters/continuous_model.hpp"
 #include "filters/registry.hpp"
 #include "reduction/reduction.hpp"
@@ -38,7 +38,7 @@ struct ModelSetting {
 
   /// What the system was assembled from, for models that ask about the beam itself.
   struct Continuum {
-    fem::Beam beam;
+    fem::Structure structure;
     int elements = 0;
     std::vector<fem::Point> points = {};  ///< of the system's inputs, and of its outputs but for the kind
   };

@@ -15,6 +15,7 @@ namespace {
 // Whether two choices would move the same thing.
 bool meet(const ParameterChoice& a, const ParameterChoice& b) {
   if (a.quantity != b.quantity || a.mode != b.mode) return false;
+  if (a.quantity == "factor") return a.name == b.name;
   if (!a.region || !b.region) return true;
   return a.region->first < b.region->second && b.region->first < a.region->second;
 }
@@ -32,6 +33,7 @@ const std::vector<ParameterQuantity>& parameter_quantities() {
       {"axial_load", "N", "n"},
       {"storey_stiffness", "N/m", "n_per_m"},
       {"storey_damping", "N s/m", "n_s_per_m"},
+      {"factor", "", ""},
       {"damping_ratio", "", ""},
       {"mass_damping", "1/s", "per_s"},
       {"stiffness_damping", "s", "s"},

@@ -25,7 +25,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 // One observed channel.
 struct SdofChannel {
   Quantity quantity = Quantity::acceleration;
-  double reading = 1.0;  // r
+  double reading = 1.0;     // r
+  double base_share = 1.0;  // of the base's acceleration that it shows
 };
 
 // What is known of the oscillator.
@@ -85,19 +86,20 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
   void output(const VectorXd& state, const VectorXd& input, VectorXd& output) const override {
     output.resize(static_cast<Index>(observed_.size()));
     for (Index i = 0; i < output.size(); ++i) {
-      const auto& [quantity, reading] = observed_[static_cast<std::size_t>(i)];
+      const auto& [quantity, reading, base_share] = observed_[static_cast<std::size_t>(i)];
       if (quantity == Quantity::displacement) output[i] = reading * state[0];
       if (quantity == Quantity::velocity) output[i] = reading * state[1];
       if (quantity != Quantity::acceleration) continue;
       const double restored = (state[2] * state[0] + state[3] * state[1]) / mass(state);
       output[i] = reading * (pushed(state, input) - restored) + (bias_ > 0 ? state[bias_] : 0.0);
-      if (known_.base >= 0 && input.size() > 0) output[i] += input[known_.base];
+      if (known_.base >= 0 && input.size() > 0)
+        output[i] += base_share * input[known_.base];
     }
   }
   void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) const override {
     jacobian.setZero(static_cast<Index>(observed_.size()), 2 + parameters_);
     for (Index i = 0; i < jacobian.rows(); ++i) {
-      const auto& [quantity, reading] = observed_[static_cast<std::size_t>(i)];
+      const auto& [quantity, reading, unused] = observed_[static_cast<std::size_t>(i)];
       if (quantity == Quantity::displacement) jacobian(i, 0) = reading;
       if (quantity == Quantity::velocity) jacobian(i, 1) = reading;
       if (quantity == Quantity::acceleration) {
@@ -195,8 +197,11 @@ std::unique_ptr<JointModel> make_sdof(const ModelSetting& setting, const filters
     observed.push_back({observation.quantity});
   }
   if (observed.empty()) throw std::invalid_argument("model 'sdof' needs at least one observed quantity");
-  const VectorXd factors = readings(setting);
-  for (std::size_t i = 0; i < observed.size(); ++i) observed[i].reading = factors[static_cast<Index>(i)];
+  const VectorXd factors = readings(setting), shares = base_shares(setting.system);
+  for (std::size_t i = 0; i < observed.size(); ++i) {
+    observed[i].reading = factors[static_cast<Index>(i)];
+    observed[i].base_share = shares[static_cast<Index>(i)];
+  }
   const double reading = system.outputs.coeff(0, 0);  // output per unit of the coordinate
   if (reading == 0.0)
     throw std::invalid_argument("model 'sdof': the reduction does not move its first channel");

@@ -1,4 +1,4 @@
-#include "experiments/models/beam_points.hpp"
+#include "experiments/models/structure_points.hpp"
 
 #include <fmt/format.h>
 
@@ -16,12 +16,20 @@ std::string name_of_place(double position, double length) {
   return position == 0.0 ? std::string("root") : fmt::format("x{:g}m", position);
 }
 
-Eigen::Index BeamPoints::add(const std::optional<double>& position) {
-  const double place = position.value_or(natural_.position);
+Eigen::Index StructurePoints::add(const std::optional<double>& position, const std::string& place) {
+  if (!natural_.place.empty()) return add_named(place.empty() ? natural_.place : place);
+  const double where = position.value_or(natural_.position);
   for (std::size_t i = 0; i < points_.size(); ++i)
-    if (std::abs(points_[i].position - place) <= same_place * length_) return static_cast<Eigen::Index>(i);
-  const bool natural = std::abs(place - natural_.position) <= same_place * length_;
-  points_.push_back({natural ? natural_.name : name_of_place(place, length_), place});
+    if (std::abs(points_[i].position - where) <= same_place * length_) return static_cast<Eigen::Index>(i);
+  const bool natural = std::abs(where - natural_.position) <= same_place * length_;
+  points_.push_back({natural ? natural_.name : name_of_place(where, length_), where});
+  return static_cast<Eigen::Index>(points_.size()) - 1;
+}
+
+Eigen::Index StructurePoints::add_named(const std::string& place) {
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (points_[i].place == place) return static_cast<Eigen::Index>(i);
+  points_.push_back({place, 0.0, place});
   return static_cast<Eigen::Index>(points_.size()) - 1;
 }
 

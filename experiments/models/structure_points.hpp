@@ -1,11 +1,11 @@
-// Where forces act on a beam and its motion is observed.
+// Where forces act on a structure and its motion is observed.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "fem/assembly.hpp"
+#include "fem/structure.hpp"
 
 namespace beamid::experiments {
 
@@ -13,17 +13,21 @@ namespace beamid::experiments {
 std::string name_of_place(double position, double length);
 
 /// Points without repetition, numbered as inputs and outputs of fem::assemble.
-class BeamPoints {
+class StructurePoints {
  public:
-  explicit BeamPoints(const fem::Beam& beam) : natural_(fem::natural_point(beam)), length_(beam.length()) {}
+  explicit StructurePoints(const fem::Structure& structure)
+      : natural_(fem::natural_point(structure)), length_(structure.extent()) {}
 
-  /// @param position [m]; absent: fem::natural_point(). @returns its number.
-  Eigen::Index add(const std::optional<double>& position);
+  /// @param position [m]; absent: fem::natural_point(). @param place its name instead, where places have
+  /// names. @returns its number.
+  Eigen::Index add(const std::optional<double>& position, const std::string& place = {});
 
   const std::vector<fem::Point>& all() const { return points_; }
   const fem::Point& operator[](Eigen::Index number) const { return points_[number]; }
 
  private:
+  Eigen::Index add_named(const std::string& place);
+
   fem::Point natural_;
   double length_;
   std::vector<fem::Point> points_;

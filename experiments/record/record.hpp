@@ -29,6 +29,7 @@ struct Channel {
   std::string name;
   std::optional<double> position = {};  ///< along the beam [m]; absent: the natural point
   double distance = 0.0;                ///< strain: of the surface from the axis, c of -c w'' [m]
+  std::string place = {};               ///< of a structure whose places have names: "ridge.x"
 };
 
 /// N samples of p measured channels, in SI units.

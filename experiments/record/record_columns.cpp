@@ -19,7 +19,7 @@ std::string column_name_of(const RecordTable& table, std::size_t index) {
 RecordColumn find_column(const RecordTable& table, const ColumnDescription& wanted) {
   RecordColumn column{find_index(table, wanted),
                       wanted.factor,
-                      {wanted.quantity, wanted.name, wanted.position, wanted.distance}};
+                      {wanted.quantity, wanted.name, wanted.position, wanted.distance, wanted.place}};
   if (!wanted.stated) {
     const auto meaning = stated_meaning(table, column.index);
     if (!meaning || !meaning->quantity)

@@ -19,6 +19,7 @@ struct ColumnDescription {
   double factor = 1;                    ///< to SI units
   std::optional<double> position = {};  ///< of the sensor or the force [m]; absent: the natural point
   double distance = 0.0;                ///< strain: of the surface from the axis [m]
+  std::string place = {};               ///< by name, where places have names
   bool stated = true;                   ///< false: quantity and factor are what the file itself says
 };
 

@@ -32,6 +32,7 @@ void take_places(const std::filesystem::path& file, const std::vector<std::strin
       Channel& channel = record.channels[i];
       if (columns[i] != *name || channel.position) continue;
       channel.position = one.find_number("position_m", Sign::not_negative);
+      channel.place = one.find_text("at").value_or("");
       channel.distance = one.find_number("distance_m").value_or(channel.distance);
     }
   }
@@ -56,6 +57,7 @@ std::string places_text(const Record& record, const std::string& file_name) {
     text += fmt::format("\n[[record.channels]]\ncolumn = \"{}\"\nquantity = \"{}\"\nunit = \"{}\"\n",
                         columns[i + 1], to_string(channel.quantity), units(channel.quantity).front().symbol);
     if (channel.position) text += fmt::format("position_m = {}\n", *channel.position);
+    if (!channel.place.empty()) text += fmt::format("at = \"{}\"\n", channel.place);
     if (channel.quantity == Quantity::strain) text += fmt::format("distance_m = {}\n", channel.distance);
   }
   return text;

@@ -28,13 +28,26 @@ std::vector<Index> evenly_spread(int count, Index samples) {
   return frames;
 }
 
+// The base's acceleration, as far as it goes the sensor's way, is part of what an accelerometer shows.
 VectorXd clean_history(const SimulatedTest& test, Quantity quantity, Index output, const VectorXd& base) {
   const fem::Response& r = test.response;
   if (quantity == Quantity::displacement || quantity == Quantity::strain) return r.displacement.row(output);
   if (quantity == Quantity::velocity) return r.velocity.row(output);
   VectorXd acceleration = r.acceleration.row(output);
-  if (base.size() > 0) acceleration += base;
+  if (base.size() > 0)
+    acceleration += (test.system.base_shares.size() > 0 ? test.system.base_shares[output] : 1.0) * base;
   return acceleration;
+}
+
+std::string force_name(const Excitation& excitation, const fem::Structure& structure) {
+  return structure.has_positions() ? name_of_place(*excitation.position, structure.extent()) : excitation.at;
+}
+
+void require_base_that_moves(const Excitation& excitation, const fem::StructuralSystem& system) {
+  if (excitation.kind == Excitation::Kind::base &&
+      Eigen::MatrixXd(system.inputs.col(system.inputs.cols() - 1)).isZero(0.0))
+    throw InputError(excitation.place,
+                     "the base moves, which does not move the structure; expected base_motion in [system]");
 }
 
 // An output row for every strain gauge, -c w'' at its node, behind those of the points.
@@ -184,25 +197,29 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   test.sensors = experiment.sensors.empty() ? default_sensors() : experiment.sensors;
   test.excitation = experiment.excitation;
   test.acquisition = acquisition;
-  BeamPoints points(experiment.beam);
+  const fem::Structure& structure = experiment.structure;
+  StructurePoints points(structure);
   std::vector<Index> outputs;
   std::vector<double> gauges;
   for (Sensor& sensor : test.sensors) {
     if (sensor.quantity == Quantity::strain) {
       gauges.push_back(*sensor.position);
       outputs.push_back(-1);
-      if (sensor.name.empty()) sensor.name = name_of_place(*sensor.position, experiment.beam.length());
+      if (sensor.name.empty()) sensor.name = name_of_place(*sensor.position, structure.extent());
       continue;
     }
-    outputs.push_back(points.add(sensor.position));
-    sensor.position = points[outputs.back()].position;
+    outputs.push_back(points.add(sensor.position, sensor.place));
+    if (structure.has_positions()) sensor.position = points[outputs.back()].position;
     if (sensor.name.empty()) sensor.name = points[outputs.back()].name;
   }
-  const Index input = points.add(test.excitation.position);
-  test.excitation.position = points[input].position;
+  const Index input = points.add(test.excitation.position, test.excitation.at);
+  if (structure.has_positions()) test.excitation.position = points[input].position;
   progress("assembling");
-  test.system = fem::assemble(fem::with_nodes(experiment.beam, gauges), experiment.elements, points.all());
-  add_gauges(experiment.beam, test, outputs);
+  test.system =
+      fem::assemble(gauges.empty() ? structure : fem::Structure(fem::with_nodes(structure.beam(), gauges)),
+                    experiment.elements, points.all());
+  if (!gauges.empty()) add_gauges(structure.beam(), test, outputs);
+  require_base_that_moves(experiment.excitation, test.system);
 
   constexpr int fewest_between_stamps = 8;
   const int steps = acquisition.jitter > 0 ? std::max(settings.steps_per_sample, fewest_between_stamps)
@@ -234,7 +251,8 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
     test.record.samples.row(static_cast<Index>(i)) =
         shown_readings(acquisition.of(i), clock.time, readings, noise, settings.seed, rattle_stream + i)
             .transpose();
-    test.record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance});
+    test.record.channels.push_back(
+        {sensor.quantity, sensor.name, sensor.position, sensor.distance, sensor.place});
   }
   const bool of_base = history.base_acceleration.size() > 0;
   if (of_base && !acquisition.force)
@@ -243,8 +261,8 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
         "decay.");
   else if (acquisition.force && test.excitation.kind != Excitation::Kind::release &&
            history.loading.inputs.size() > 0) {
-    const double position = *test.excitation.position;
-    const Channel force{Quantity::force, name_of_place(position, experiment.beam.length()), position, 0.0};
+    const Channel force{Quantity::force, force_name(test.excitation, structure), test.excitation.position,
+                        0.0, test.excitation.at};
     const Channel base{Quantity::base_acceleration, "base_acceleration", {}, 0.0};
     add_input(test, clock, of_base ? history.base_acceleration : VectorXd(history.loading.inputs.row(input)),
               steps, of_base ? base : force);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/config/experiment.hpp"
-#include "experiments/models/beam_points.hpp"
+#include "experiments/models/structure_points.hpp"
 #include "experiments/rig/acquisition.hpp"
 #include "experiments/text/progress.hpp"
 #include "fem/response/response.hpp"

@@ -16,7 +16,7 @@ namespace {
 /// The first mode of the beam that an experiment file describes; its sampling rate, when it states one.
 AtlasSettings described(const std::string& file, AtlasSettings settings) {
   const Experiment experiment = read_experiment(file);
-  const fem::Modes modes = fem::modes(fem::assemble(experiment.beam, experiment.elements), 1);
+  const fem::Modes modes = fem::modes(fem::assemble(experiment.structure, experiment.elements), 1);
   double ratio = settings.beam.damping_ratio();
   if (!std::holds_alternative<fem::Undamped>(experiment.damping))
     ratio = fem::damping_ratios(experiment.damping, modes.angular_frequency)[0];

@@ -10,6 +10,7 @@
 #include "experiments/studies/paper/beam_identification.hpp"
 #include "experiments/studies/paper/monte_carlo.hpp"
 #include "experiments/studies/study.hpp"
+#include "experiments/text/method_choice.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 
@@ -39,9 +40,10 @@ std::vector<Named> five_beams(const PipelineSettings& common) {
 /// The file's beam, damping, release, sampling rate and duration; 0.5 % where it states no damping.
 Named described(const std::string& file, PipelineSettings settings) {
   const Experiment experiment = read_experiment(file);
-  settings.beam = experiment.beam;
+  const fem::Beam beam = at_place({file}, [&] { return experiment.structure.beam(); });
+  settings.beam = beam;
   settings.elements = experiment.elements;
-  const fem::StructuralSystem system = fem::assemble(experiment.beam, experiment.elements);
+  const fem::StructuralSystem system = fem::assemble(beam, experiment.elements);
   const Eigen::VectorXd frequencies =
       fem::modes(system, std::min<Eigen::Index>(8, system.size())).angular_frequency;
   settings.damping_ratios = Eigen::VectorXd::Constant(frequencies.size(), 0.005);

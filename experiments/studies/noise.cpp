@@ -7,6 +7,7 @@
 #include "experiments/studies/noise/report.hpp"
 #include "experiments/studies/paper/test_beams.hpp"
 #include "experiments/studies/study.hpp"
+#include "experiments/text/method_choice.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 
@@ -36,13 +37,14 @@ std::vector<NoiseBeam> five_beams(int modes) {
 /// The file's beam and damping; 0.5 % where it states none.
 NoiseBeam described(const std::string& file, int modes) {
   const Experiment experiment = read_experiment(file);
+  const fem::Beam beam = at_place({file}, [&] { return experiment.structure.beam(); });
   const Eigen::VectorXd frequencies =
-      fem::modes(fem::assemble(experiment.beam, experiment.elements), modes).angular_frequency;
+      fem::modes(fem::assemble(beam, experiment.elements), modes).angular_frequency;
   Eigen::VectorXd ratios = Eigen::VectorXd::Constant(modes, 0.005);
   if (!std::holds_alternative<fem::Undamped>(experiment.damping))
     ratios = fem::damping_ratios(experiment.damping, frequencies);
-  return {experiment.title.empty() ? file : experiment.title, experiment.beam,
-          100.0 * experiment.beam.tip_mass() / experiment.beam.mass(), ratios};
+  return {experiment.title.empty() ? file : experiment.title, beam,
+          100.0 * beam.tip_mass() / beam.mass(), ratios};
 }
 
 class HigherModeStudy final : public Study {

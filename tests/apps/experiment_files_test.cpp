@@ -150,7 +150,7 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
     const Outcome outcome = Workplace().run("validate '" + entry.path().string() + "'");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
-  EXPECT_EQ(found, 26);
+  EXPECT_EQ(found, 29);
 }
 
 // Oracle: the rows that the reader has. A line behind # is a key, too.

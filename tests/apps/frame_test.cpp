@@ -7,7 +7,7 @@
 namespace beamid::apps::frame_test {
 namespace {
 
-using nlohmann::json, testing::HasSubstr, testing::IsEmpty;
+using nlohmann::json, testing::HasSubstr, testing::IsEmpty, testing::StartsWith;
 
 // Four arms of 5 m, 0.125 m square, from joint 1, and what holds each far end.
 std::string cross(const std::string& support) {
@@ -104,11 +104,11 @@ TEST(Frame, OfAFineMeshIsDrawnOnACoarserOne) {
 TEST(Validate, TakesAFrameToo) {
   Workplace place;
   place.write("frame.toml", cross("pinned"));
-  EXPECT_EQ(place.run("validate frame.toml").out,
-            "frame.toml: valid\n  Plane frame: 4 members between 5 joints, 2500 kg; pinned at 2, 3, 4, 5. 32 "
-            "elements per member, 379 degrees of freedom. First mode predicted at 11.3362 Hz.\n");
-  EXPECT_EQ(place.run("validate frame.toml --record r.csv").first_error_line(),
-            "frame.toml:2:2: frame describes a plane frame, which 'beamid frame' takes; expected a beam");
+  EXPECT_THAT(
+      place.run("validate frame.toml").out,
+      StartsWith("frame.toml: valid\n  frame    Plane frame: 4 members between 5 joints, 2500 kg; pinned "
+                 "at 2, 3, 4, 5. 32 elements per member, 379 degrees of freedom. First mode predicted "
+                 "at 11.3362 Hz.\n"));
 }
 
 TEST(Frame, RefusesWhatMakesNoSense) {

@@ -26,9 +26,10 @@ ModelSetting setting_of(const Experiment& experiment, const std::vector<Sensor>&
   const bool of_base = experiment.excitation.kind == Kind::base;
   Record record;
   for (const Sensor& sensor : sensors)
-    record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance});
+    record.channels.push_back({sensor.quantity, sensor.name, sensor.position, sensor.distance, sensor.place});
   if (forced && !of_base)
-    record.channels.push_back({Quantity::force, "force", experiment.excitation.position});
+    record.channels.push_back(
+        {Quantity::force, "force", experiment.excitation.position, 0.0, experiment.excitation.at});
   ModelSetting setting = model_setting(experiment, record, experiment.reduction);
   if (forced && of_base) setting.forces = {setting.system.inputs.cols() - 1};
   return setting;

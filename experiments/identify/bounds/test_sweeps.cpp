@@ -20,13 +20,12 @@ Index samples_of(const Identifiability& result) {
 
 /// Nodes of the mesh that can move, evenly thinned.
 std::vector<double> places(const Experiment& experiment, int most) {
-  const VectorXd nodes = fem::assemble(experiment.beam, experiment.elements).mesh.positions();
+  const fem::Beam& beam = experiment.structure.beam();
+  const VectorXd nodes = fem::assemble(beam, experiment.elements).mesh.positions();
   const auto held = [&](double position) {
-    return std::any_of(experiment.beam.supports.begin(), experiment.beam.supports.end(),
-                       [&](const fem::Support& support) {
-                         return support.deflection &&
-                                std::abs(support.position - position) < 1e-9 * experiment.beam.length();
-                       });
+    return std::any_of(beam.supports.begin(), beam.supports.end(), [&](const fem::Support& support) {
+      return support.deflection && std::abs(support.position - position) < 1e-9 * beam.length();
+    });
   };
   const Index count = std::min<Index>(most + 1, nodes.size());
   std::vector<double> chosen;
@@ -83,6 +82,11 @@ void sweep_in_place(const Experiment& experiment, const std::filesystem::path& f
                     const std::vector<NoisyChannel>& described, Identifiability& result,
                     const Progress& progress) {
   const IdentifiabilitySettings& settings = experiment.identifiability;
+  if (!experiment.structure.has_positions()) {
+    result.notes.push_back(fmt::format("Other places of sensors are not tried on a {}: they have no order.",
+                                       experiment.structure.kind()));
+    return;
+  }
   const Index samples = samples_of(result);
   // The force is asked for as long as in the test itself, so that it ends at the same sample.
   const auto begin = static_cast<Index>(std::llround(result.begin * result.sampling_rate));

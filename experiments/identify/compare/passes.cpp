@@ -208,6 +208,7 @@ void Passes::score(const VectorXd& bound) {
   }
   run_.reproduced = motion_.outputs;
   run_.response_error_percent = motion_.response_error_percent;
+  run_.misfit_percent = motion_.misfit_percent;
 }
 
 }  // namespace beamid::experiments

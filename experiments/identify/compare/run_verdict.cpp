@@ -100,6 +100,20 @@ std::string difference_text(const ModalEstimate& modal, const ComparedRun& run) 
          ". The modal analysis knows no model: trust it, or give the model the modes that it lacks.";
 }
 
+// A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
+// that started otherwise.
+void judge_driven_motion(const RunContext& context, ComparedRun& run) {
+  constexpr double most_of_it = 50.0;
+  if (!context.analysis.forced() || !(run.misfit_percent > most_of_it)) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = fmt::format(
+      "the measured input does not make the record's motion of this model: {:.3g} % of it is left, and is no "
+      "noise. A sensor's place, a sign, a unit or a clock is wrong, an input is missing, or the filter has "
+      "settled on a wrong answer",
+      run.misfit_percent);
+  run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
+}
+
 // Of the general model: its lowest mode beside the modal analysis, its innovations.
 void judge_model(const RunContext& context, ComparedRun& run) {
   const auto& modal = context.analysis.modal;
@@ -110,6 +124,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
     run.mode->damping_ratio_deviation *= run.interval_factor;
     run.mode->frequency_deviation_hz *= run.interval_factor;
   }
+  judge_driven_motion(context, run);
   // A model that has the mode's companions does not have its frequency alone.
   const bool one_mode = run.coordinates == 1 || (modal && modal->companions.empty());
   if (modal && run.mode && one_mode)

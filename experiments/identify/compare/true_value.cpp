@@ -8,7 +8,7 @@
 #include "experiments/models/oscillator.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
-#include "fem/parametric_system.hpp"
+#include "fem/structure.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -16,9 +16,9 @@ namespace {
 using Eigen::VectorXd;
 using Property = fem::BeamParameter::Quantity;
 
-std::optional<double> property(const fem::Beam& beam, const Unknown& unknown, Property which) {
+std::optional<double> property(const fem::Structure& structure, const Unknown& unknown, Property which) {
   try {
-    return fem::value_of(beam, {which, unknown.region});
+    return fem::value_of(structure, {which, unknown.region, unknown.name});
   } catch (const std::invalid_argument&) {
     return {};
   }
@@ -45,12 +45,12 @@ double true_mass(const Experiment& truth, const Record& record, const Choice& re
 }
 
 std::optional<double> true_value(const Experiment& truth, double mass, const Unknown& unknown) {
-  if (const auto asked = beam_quantity(unknown.quantity)) return property(truth.beam, unknown, *asked);
+  if (const auto asked = beam_quantity(unknown.quantity)) return property(truth.structure, unknown, *asked);
   if (unknown.quantity == "mass_damping" || unknown.quantity == "stiffness_damping")
     return rayleigh_coefficient(truth.damping, unknown.quantity == "mass_damping");
 
   const int mode = unknown.mode.value_or(1);
-  const fem::StructuralSystem system = fem::assemble(truth.beam, truth.elements);
+  const fem::StructuralSystem system = fem::assemble(truth.structure, truth.elements);
   const fem::Modes modes = fem::modes(system, mode);
   if (unknown.quantity == "frequency") return modes.frequency_hz()[mode - 1];
   const bool hysteretic = std::holds_alternative<fem::StructuralDamping>(truth.damping);

@@ -14,9 +14,9 @@ using Property = fem::BeamParameter::Quantity;
 
 constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1, dashpot_doubt = 1.0;
 
-fem::BeamParameter parameter_of(const std::string& quantity,
-                                const std::optional<std::pair<double, double>>& region) {
-  return {*beam_quantity(quantity), region};
+/// @param asked a ParameterChoice or an Unknown
+fem::BeamParameter parameter_of(const auto& asked) {
+  return {*beam_quantity(asked.quantity), asked.region, asked.name};
 }
 
 bool same_mesh(const fem::StructuralSystem& a, const fem::StructuralSystem& b) {
@@ -61,10 +61,11 @@ std::optional<Property> beam_quantity(const std::string& name) {
   if (name == "axial_load") return Property::axial_load;
   if (name == "storey_stiffness") return Property::storey_stiffness;
   if (name == "storey_damping") return Property::storey_damping;
+  if (name == "factor") return Property::factor;
   return std::nullopt;
 }
 
-std::vector<ParameterDefault> beam_defaults(const fem::Beam& beam,
+std::vector<ParameterDefault> beam_defaults(const fem::Structure& structure,
                                             const std::vector<ParameterChoice>& choices) {
   std::vector<ParameterDefault> defaults(choices.size());
   for (std::size_t j = 0; j < choices.size(); ++j) {
@@ -74,10 +75,10 @@ std::vector<ParameterDefault> beam_defaults(const fem::Beam& beam,
     const bool mass = *quantity == Property::tip_mass || *quantity == Property::body_mass ||
                       *quantity == Property::tip_rotary_inertia;
     try {
-      defaults[j] = {fem::value_of(beam, parameter_of(choice.quantity, choice.region)),
-                     mass                                    ? mass_doubt
-                     : *quantity == Property::storey_damping ? dashpot_doubt
-                                                             : stiffness_doubt};
+      defaults[j] = {fem::value_of(structure, parameter_of(choice)), mass ? mass_doubt
+                                                                     : *quantity == Property::storey_damping
+                                                                         ? dashpot_doubt
+                                                                         : stiffness_doubt};
     } catch (const std::invalid_argument& error) {
       refuse(choice, choice.quantity + ": " + error.what());
     }
@@ -93,16 +94,16 @@ fem::ParametricSystem beam_equations(const ModelSetting& setting, const std::vec
     throw std::invalid_argument(
         fmt::format("model 'beam' is linear; found {} springs or dashpots that are not",
                     setting.system.nonlinear_forces.size()));
-  fem::Beam beam = setting.continuum->beam;
+  fem::Structure structure = setting.continuum->structure;
   std::vector<fem::BeamParameter> parameters;
   for (const Unknown& unknown : unknowns) {
     if (!beam_quantity(unknown.quantity)) continue;
-    parameters.push_back(parameter_of(unknown.quantity, unknown.region));
-    if (fem::value_of(beam, parameters.back()) != unknown.guess)
-      beam = fem::with_value(beam, parameters.back(), unknown.guess);
+    parameters.push_back(parameter_of(unknown));
+    if (fem::value_of(structure, parameters.back()) != unknown.guess)
+      structure = fem::with_value(structure, parameters.back(), unknown.guess);
   }
   fem::ParametricSystem equations =
-      fem::assemble_parametric(beam, setting.continuum->elements, setting.continuum->points, parameters);
+      fem::assemble_parametric(structure, setting.continuum->elements, setting.continuum->points, parameters);
   fem::StructuralSystem& system = equations.system;
   if (same_mesh(setting.system, system)) {
     system.outputs = setting.system.outputs;
@@ -112,6 +113,7 @@ fem::ParametricSystem beam_equations(const ModelSetting& setting, const std::vec
     system.outputs = rows.sparseView();
   }
   system.output_names = setting.system.output_names;
+  system.base_shares = setting.system.base_shares;
   return equations;
 }
 

@@ -6,17 +6,17 @@
 #include "experiments/models/motion/parametric_motion.hpp"
 #include "experiments/models/motion/reduced_motion.hpp"
 #include "fem/modes.hpp"
-#include "fem/parametric_system.hpp"
+#include "fem/structure.hpp"
 
 namespace beamid::experiments {
 
 /// The quantity of the beam itself that a choice asks about; nothing for damping.
 std::optional<fem::BeamParameter::Quantity> beam_quantity(const std::string& name);
 
-/// What the model believes of each choice about the beam by itself: the value described, stiffnesses and the
-/// axial load to 30 %, masses to 10 %; of dampings nothing.
-/// @throws std::invalid_argument, or an InputError at a choice's place, when the beam has no such thing.
-std::vector<ParameterDefault> beam_defaults(const fem::Beam& beam,
+/// What the model believes of each choice about the structure by itself: the value described, stiffnesses,
+/// factors and the axial load to 30 %, masses to 10 %; of dampings nothing.
+/// @throws std::invalid_argument, or an InputError at a choice's place, when the structure has no such thing.
+std::vector<ParameterDefault> beam_defaults(const fem::Structure& structure,
                                             const std::vector<ParameterChoice>& choices);
 
 /// The equations with the guesses as p_0; output row i is what observation i reads.

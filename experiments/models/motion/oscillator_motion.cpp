@@ -27,6 +27,7 @@ struct Parts {
   std::vector<Index> drives;      // parameter of each unknown (q)
   VectorXd forces;                // e (m); of the base acceleration per mass
   Index base = -1;
+  VectorXd base_shares;                  // of its acceleration that each observation shows (p)
   std::vector<ObservedChannel> sensors;  // p
 
   Index first() const { return law->slips() ? 3 : 2; }  // place of the first eta
@@ -95,7 +96,7 @@ class OscillatorMotion final : public filters::ContinuousModel {
       if (sensor.quantity == Quantity::velocity) output[i] = sensor.reading * state[1];
       if (sensor.quantity != Quantity::acceleration) continue;
       output[i] = sensor.reading * acceleration_now + (sensor.bias >= 0 ? state[sensor.bias] : 0.0);
-      if (parts_.base >= 0 && input.size() > 0) output[i] += input[parts_.base];
+      if (parts_.base >= 0 && input.size() > 0) output[i] += parts_.base_shares[i] * input[parts_.base];
     }
   }
   void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) const override {
@@ -195,7 +196,7 @@ ExpectedOscillator expected_oscillator(const std::string& model, const ModelSett
   const double ratio =
       described ? fem::damping_ratios(setting.damping, VectorXd::Constant(1, omega))[0] : usual_damping_ratio;
   expected.damping = 2.0 * ratio * omega * expected.mass;
-  expected.amplitude = usual_amplitude * (setting.continuum ? setting.continuum->beam.length() : 1.0);
+  expected.amplitude = usual_amplitude * (setting.continuum ? setting.continuum->structure.extent() : 1.0);
   return expected;
 }
 
@@ -211,6 +212,7 @@ std::unique_ptr<JointModel> make_oscillator(const std::string& name, const Model
   Parts parts;
   parts.law = std::move(law);
   parts.base = sensors.base;
+  parts.base_shares = sensors.base_shares;
   parts.forces.resize(static_cast<Index>(setting.forces.size()));
   bool pushed = false;
   for (Index i = 0; i < parts.forces.size(); ++i) {

@@ -12,6 +12,11 @@ std::vector<filters::OptionSpec> sensor_options() {
           {"sensor_drift", false, "", "and the rate at which it drifts"}};
 }
 
+Eigen::VectorXd base_shares(const fem::StructuralSystem& system) {
+  const auto outputs = system.outputs.rows();
+  return system.base_shares.size() == outputs ? system.base_shares : Eigen::VectorXd::Ones(outputs);
+}
+
 MotionDescription describe_sensors(const std::string& model, const ModelSetting& setting,
                                    const filters::Options& options) {
   MotionDescription description;
@@ -45,6 +50,7 @@ MotionDescription describe_sensors(const std::string& model, const ModelSetting&
         names[static_cast<std::size_t>(input)] == "base_acceleration")
       description.base = static_cast<Eigen::Index>(i);
   }
+  description.base_shares = base_shares(setting.system);
   description.sensor_bias = options.flag("sensor_bias");
   description.sensor_drift = options.flag("sensor_drift");
   if (description.sensor_drift && !description.sensor_bias)

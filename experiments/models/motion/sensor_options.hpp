@@ -12,6 +12,9 @@ namespace beamid::experiments {
 /// sensor_bias and sensor_drift.
 std::vector<filters::OptionSpec> sensor_options();
 
+/// Share of the base's acceleration that each output shows (p).
+Eigen::VectorXd base_shares(const fem::StructuralSystem& system);
+
 /// Observations, forces and sensors' offsets.
 /// @throws std::invalid_argument when nothing is observed, a force is, an input does not exist, or there is a
 /// drift without a bias.

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "experiments/results/vtk/nodal_motion.hpp"
-#include "fem/beam.hpp"
 #include "fem/structural_system.hpp"
+#include "fem/structure.hpp"
 
 namespace beamid::experiments {
 
@@ -17,6 +17,8 @@ struct Picture {
 
   /// With the beam that the system was assembled from also its stiffness and its bodies; with `draws_surface`
   /// its real sections.
+  Picture(const fem::Structure& structure, const fem::StructuralSystem& of_system, bool draws_surface = false)
+      : system(of_system), beam(structure.is_beam() ? &structure.beam() : nullptr), surface(draws_surface) {}
   Picture(const fem::Beam& of_beam, const fem::StructuralSystem& of_system, bool draws_surface = false)
       : system(of_system), beam(&of_beam), surface(draws_surface) {}
 

@@ -5,6 +5,7 @@
 #include "experiments/config/description.hpp"
 #include "experiments/config/key_json.hpp"
 #include "experiments/config/read_identifiability.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/results/file.hpp"
 #include "fem/assembly.hpp"
 
@@ -44,9 +45,10 @@ std::string test_text(const Experiment& experiment, const Identifiability& found
   text += " Sensors:";
   for (std::size_t i = 0; i < found.sensors.size(); ++i) {
     const Sensor& sensor = found.sensors[i].sensor;
-    text += fmt::format("{} {} ({} at {:g} m, noise {:.3g} {}{})", i ? "," : "", sensor.name,
-                        to_string(sensor.quantity), sensor.position.value_or(0.0), sensor.noise,
-                        si_unit(sensor.quantity), found.sensors[i].assumed ? ", assumed" : "");
+    text +=
+        fmt::format("{} {} ({}{}, noise {:.3g} {}{})", i ? "," : "", sensor.name, to_string(sensor.quantity),
+                    at_place_text(sensor.position.value_or(0.0), sensor.place), sensor.noise,
+                    si_unit(sensor.quantity), found.sensors[i].assumed ? ", assumed" : "");
   }
   if (found.inputs) text += ". " + words(*found.inputs);
   return text + (found.inputs ? "" : ".") +
@@ -73,8 +75,8 @@ Results report(const Experiment& experiment, const Identifiability& found) {
   results.values = values(found);
 
   results.heading(experiment.title.empty() ? "What can be known" : experiment.title);
-  results.paragraph(beam_text(experiment.beam, experiment.elements,
-                              fem::assemble(experiment.beam, experiment.elements).size()));
+  results.paragraph(structure_text(experiment, experiment.elements,
+                                   fem::assemble(experiment.structure, experiment.elements).size()));
   results.paragraph(test_text(experiment, found));
   results.table(bound_table(found));
   if (found.parameters.size() > 1) {

@@ -70,11 +70,12 @@ Json values(const Identifiability& found) {
             {"parameters", Json::object()}};
   if (found.inputs) json["inputs_between_samples"] = to_string(found.inputs->path);
   for (const Identifiability::UsedSensor& used : found.sensors)
-    json["sensors"].push_back({{"name", used.sensor.name},
-                               {"quantity", to_string(used.sensor.quantity)},
-                               {"position_m", used.sensor.position.value_or(0.0)},
-                               {"noise_si", used.sensor.noise},
-                               {"noise_assumed", used.assumed}});
+    json["sensors"].push_back(
+        {{"name", used.sensor.name},
+         {"quantity", to_string(used.sensor.quantity)},
+         {"position_m", used.sensor.place.empty() ? Json(used.sensor.position.value_or(0.0)) : Json(nullptr)},
+         {"noise_si", used.sensor.noise},
+         {"noise_assumed", used.assumed}});
   for (const ParameterBound& p : found.parameters) json["parameters"][p.name] = values(p);
   json["rank"] = found.report.rank;
   json["condition"] = number_or_null(found.report.condition);

@@ -91,7 +91,7 @@ std::string misfit_text(const Comparison& comparison) {
   for (const ComparedRun& run : comparison.runs) {
     if (!is_sound(run)) continue;
     const bool worse = worse_than_smaller(comparison, run);
-    if (!worse && run.response_error_percent <= much) continue;
+    if (!worse && run.misfit_percent <= much) continue;
     std::string& list = worse ? wrong : poor;
     list += fmt::format("{}{} ({:.3g} %)", list.empty() ? "" : ", ", name_of(comparison, run),
                         run.response_error_percent);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "experiments/config/description.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/results/file.hpp"
 
 namespace beamid::experiments {
@@ -144,8 +145,8 @@ Results report(const Experiment& experiment, const FrequencyResponses& found) {
                                                  {"residual_modes", found.method.residual_modes}};
   results.values = frequency_response_values(experiment, found);
   results.heading(experiment.title.empty() ? "Frequency response" : experiment.title);
-  results.paragraph(
-      beam_text(experiment.beam, static_cast<int>(found.system.mesh.elements.size()), found.system.size()));
+  results.paragraph(structure_text(experiment, static_cast<Eigen::Index>(found.system.mesh.elements.size()),
+                                   found.system.size()));
   results.paragraph(fmt::format("{} at {} frequencies from {:.6g} to {:.6g} Hz, {}. Damping: {}.",
                                 to_string(settings.kind), settings.points, found.frequency_hz[0],
                                 found.frequency_hz[found.frequency_hz.size() - 1], found.method.name,

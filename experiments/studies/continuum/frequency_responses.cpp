@@ -150,14 +150,14 @@ FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Pr
   constexpr Index most_natural = 200;
   const FrequencyResponseSettings& settings = experiment.frequency_response;
   FrequencyResponses all;
-  BeamPoints points(experiment.beam);
+  StructurePoints points(experiment.structure);
   std::vector<fem::InputOutput> numbers;
   for (const PointPair& pair : settings.pairs.empty() ? std::vector<PointPair>(1) : settings.pairs) {
-    const Index input = points.add(pair.input);
-    numbers.push_back({input, points.add(pair.output)});
+    const Index input = points.add(pair.input, pair.input_place);
+    numbers.push_back({input, points.add(pair.output, pair.output_place)});
   }
   progress("assembling");
-  all.system = fem::assemble(experiment.beam, experiment.elements, points.all());
+  all.system = fem::assemble(experiment.structure, experiment.elements, points.all());
   progress("modes");
   fem::Modes modes = fem::modes(all.system, std::min<Index>(20, all.system.size()));
   const Index rigid = modes.rigid;

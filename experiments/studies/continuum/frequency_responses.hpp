@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/config/experiment.hpp"
-#include "experiments/models/beam_points.hpp"
+#include "experiments/models/structure_points.hpp"
 #include "experiments/text/progress.hpp"
 #include "fem/assembly.hpp"
 

@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "experiments/config/description.hpp"
+#include "experiments/config/structure_description.hpp"
+#include "experiments/results/file.hpp"
 #include "experiments/results/mode_figure.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
 #include "experiments/studies/continuum/mode_trust.hpp"
@@ -113,9 +115,25 @@ Json modal_values(const ModalSummary& s) {
   return json;
 }
 
+// Of a structure without a mesh: the unknowns by their labels, phi^T M phi = 1.
+Attachment shapes_file(const std::vector<std::string>& labels, const Eigen::MatrixXd& shapes) {
+  Table table{"mode_shapes", ""};
+  Column unknown{"unknown", "unknown"};
+  unknown.cells.assign(labels.begin(), labels.end());
+  table.column(unknown);
+  for (Index i = 0; i < shapes.cols(); ++i) {
+    Column mode{fmt::format("mode {}", i + 1), fmt::format("mode_{}", i + 1)};
+    mode.cells.assign(shapes.col(i).begin(), shapes.col(i).end());
+    table.column(mode);
+  }
+  return {{"mode_shapes.csv"}, [csv = to_csv(table)](const std::filesystem::path& folder) {
+            write_file(folder / "mode_shapes.csv", csv);
+          }};
+}
+
 /// What the pictures show; it outlives the summary.
 struct ModeDrawing {
-  fem::Beam beam;
+  fem::Structure structure;
   fem::StructuralSystem system;
   Eigen::MatrixXd shapes;
   VectorXd frequencies_hz;
@@ -125,11 +143,12 @@ struct ModeDrawing {
 std::shared_ptr<const ModeDrawing> drawing(const Experiment& experiment, const ModalSummary& s) {
   if (experiment.elements <= most_drawn_elements)
     return std::make_shared<ModeDrawing>(
-        ModeDrawing{experiment.beam, s.system, s.modes.shape, s.frequency_hz()});
-  fem::StructuralSystem system = fem::assemble(experiment.beam, most_drawn_elements, {s.observed});
+        ModeDrawing{experiment.structure, s.system, s.modes.shape, s.frequency_hz()});
+  fem::StructuralSystem system = fem::assemble(experiment.structure, most_drawn_elements, {s.observed});
   const Eigen::MatrixXd shapes = fem::modes(system, std::min(s.modes.size(), system.size())).shape;
   const VectorXd frequencies = s.frequency_hz().head(shapes.cols());
-  return std::make_shared<ModeDrawing>(ModeDrawing{experiment.beam, std::move(system), shapes, frequencies});
+  return std::make_shared<ModeDrawing>(
+      ModeDrawing{experiment.structure, std::move(system), shapes, frequencies});
 }
 
 }  // namespace
@@ -142,7 +161,7 @@ Results report(const Experiment& experiment, const ModalSummary& summary, bool s
   results.values = modal_values(summary);
   results.heading(experiment.title.empty() ? "Natural frequencies" : experiment.title);
   results.paragraph(
-      beam_text(experiment.beam, static_cast<int>(summary.elements), summary.degrees_of_freedom));
+      structure_text(experiment, static_cast<Eigen::Index>(summary.elements), summary.degrees_of_freedom));
   results.table(mode_table(summary));
   if (summary.complex) results.table(complex_table(*summary.complex));
   std::vector<std::string> notes = summary.notes;
@@ -150,11 +169,15 @@ Results report(const Experiment& experiment, const ModalSummary& summary, bool s
     notes.push_back(fmt::format("Pictures show the same beam with {} elements.", most_drawn_elements));
   add_notes(results, notes);
 
+  if (const fem::MatrixSystem* const matrices = experiment.structure.matrices()) {
+    results.attachments.push_back(shapes_file(matrices->labels, summary.modes.shape));
+    return results;
+  }
   const std::shared_ptr<const ModeDrawing> drawn = drawing(experiment, summary);
   results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
   results.attachments.push_back(
       {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {
-         write_mode_shapes(folder, Picture(drawn->beam, drawn->system, surface), drawn->shapes,
+         write_mode_shapes(folder, Picture(drawn->structure, drawn->system, surface), drawn->shapes,
                            drawn->frequencies_hz);
        }});
   return results;

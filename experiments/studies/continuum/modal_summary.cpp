@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/config/beam_description.hpp"
 #include "experiments/config/description.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/studies/continuum/mode_trust.hpp"
 #include "fem/damping.hpp"
 #include "fem/exact/exact_modes.hpp"
@@ -30,13 +30,14 @@ VectorXd unknowns(Index count) {
 VectorXd mesh_error(const Experiment& experiment, const ModalSummary& summary) {
   constexpr int most_refined = 20000;
   const Index count = summary.modes.size();
-  const double order = experiment.beam.mass_model == fem::MassModel::lumped ? 2.0 : 4.0;
+  if (!experiment.structure.is_beam()) return unknowns(count);
+  const fem::Beam& beam = experiment.structure.beam();
+  const double order = beam.mass_model == fem::MassModel::lumped ? 2.0 : 4.0;
   const auto finer = [&](int parts) {
-    return fem::modes(fem::assemble_refined(experiment.beam, experiment.elements, parts, {summary.observed}),
-                      count);
+    return fem::modes(fem::assemble_refined(beam, experiment.elements, parts, {summary.observed}), count);
   };
   if (summary.elements <= most_refined) return discretisation_error(summary.modes, finer(2), finer(4), order);
-  const auto coarse = fem::assemble(experiment.beam, experiment.elements / 2, {summary.observed});
+  const auto coarse = fem::assemble(beam, experiment.elements / 2, {summary.observed});
   const auto elements = static_cast<Index>(coarse.mesh.elements.size());
   if (2 * elements != summary.elements) return unknowns(count);
   return discretisation_error(summary.modes, fem::modes(coarse, std::min(count, coarse.size())), 2.0, order);
@@ -88,18 +89,21 @@ VectorXd ModalSummary::exact_error() const {
 
 ModalSummary summarise_modes(const Experiment& experiment, Index count, const Progress& progress) {
   ModalSummary summary;
-  summary.observed = fem::natural_point(experiment.beam);
+  summary.observed = fem::natural_point(experiment.structure);
   progress("assembling");
-  summary.system = fem::assemble(experiment.beam, experiment.elements, {summary.observed});
+  summary.system = fem::assemble(experiment.structure, experiment.elements, {summary.observed});
   summary.elements = static_cast<Index>(summary.system.mesh.elements.size());
   summary.degrees_of_freedom = summary.system.size();
-  summary.total_mass = total_mass(experiment.beam);
+  summary.total_mass = total_mass(experiment.structure);
   if (count > summary.system.size())
-    summary.notes.push_back(
-        fmt::format("{} modes asked for; the mesh of {} element{} has {} coordinates, and as "
-                    "many modes.{}",
-                    count, summary.elements, summary.elements == 1 ? "" : "s", summary.system.size(),
-                    experiment.beam.shear_building ? "" : " More elements have more."));
+    summary.notes.push_back(fmt::format(
+        "{} modes asked for; the {} has {} coordinates, and as many modes.{}", count,
+        experiment.structure.matrices()
+            ? "system"
+            : fmt::format("mesh of {} element{}", summary.elements, summary.elements == 1 ? "" : "s"),
+        summary.system.size(),
+        !experiment.structure.is_beam() || experiment.structure.is_chain() ? ""
+                                                                           : " More elements have more."));
   count = std::min(count, summary.system.size());
   progress("modes");
   summary.modes = fem::modes(summary.system, count);
@@ -110,7 +114,7 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
   summary.damping_ratio = fem::damping_ratios(experiment.damping, summary.modes.angular_frequency);
   release_shape(summary);
   progress("exact modes");
-  compare_with_exact(experiment.beam, summary);
+  if (experiment.structure.is_beam()) compare_with_exact(experiment.structure.beam(), summary);
   if (summary.system.damping.nonZeros() > 0 && summary.modes.rigid == 0) {
     progress("complex modes");
     summary.complex = fem::complex_modes(summary.system, count);

@@ -7,6 +7,7 @@
 
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/record/axis_label.hpp"
 #include "experiments/record/column_name.hpp"
 #include "experiments/record/record_places.hpp"
@@ -57,8 +58,9 @@ Table sensor_table(const SimulatedTest& test) {
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {
     const Sensor& sensor = test.sensors[i];
     const HistoryPeak peak = peak_of(test, static_cast<Index>(i));
-    table.row({sensor.name, to_string(sensor.quantity), *sensor.position, si_unit(sensor.quantity),
-               peak.value, peak.time, peak.root_mean_square, peak.frequency_hz, sensor.noise});
+    table.row({sensor.name, to_string(sensor.quantity), sensor.position.value_or(std::nan("")),
+               si_unit(sensor.quantity), peak.value, peak.time, peak.root_mean_square, peak.frequency_hz,
+               sensor.noise});
   }
   return table;
 }
@@ -66,26 +68,26 @@ Table sensor_table(const SimulatedTest& test) {
 std::string excitation_text(const SimulatedTest& test) {
   using Kind = Excitation::Kind;
   const Excitation& e = test.excitation;
-  const std::string where = fmt::format("at {:g} m", *e.position);
+  const std::string where = at_place_text(e.position, e.at);
   switch (e.kind) {
     case Kind::release:
       return fmt::format(
-          "{} a static deflection of {:g} m {}.",
+          "{} a static deflection of {:g} m{}.",
           e.duration > 0.0 ? fmt::format("Let go within {:g} s from", e.duration) : "Released from",
           e.deflection.value_or(0.012), where);
     case Kind::free:
-      return fmt::format("Set free with {:g} m and {:g} m/s {}, in {}.", e.deflection.value_or(0.0),
+      return fmt::format("Set free with {:g} m and {:g} m/s{}, in {}.", e.deflection.value_or(0.0),
                          e.velocity, where, e.mode ? fmt::format("mode {}", *e.mode) : "the static shape");
     case Kind::step:
-      return fmt::format("A force of {:g} N {} from t = 0 on.", e.force, where);
+      return fmt::format("A force of {:g} N{} from t = 0 on.", e.force, where);
     case Kind::impulse:
       return fmt::format(
-          "An impulse of {:g} N s {}, {}.", e.momentum, where,
+          "An impulse of {:g} N s{}, {}.", e.momentum, where,
           e.duration > 0.0 ? fmt::format("half a sine of {:g} s", e.duration) : "in an instant");
     case Kind::harmonic:
-      return fmt::format("A force of {:g} N at {:g} Hz {}.", e.amplitude, e.frequency_hz, where);
+      return fmt::format("A force of {:g} N at {:g} Hz{}.", e.amplitude, e.frequency_hz, where);
     case Kind::table:
-      return fmt::format("The force of {} {}.", *e.file, where);
+      return fmt::format("The force of {}{}.", *e.file, where);
     case Kind::base:
       break;
   }
@@ -96,7 +98,8 @@ std::string excitation_text(const SimulatedTest& test) {
 Json describe_excitation(const Excitation& e) {
   using Kind = Excitation::Kind;
   Json json{{"kind", to_string(e.kind)}};
-  if (e.kind != Kind::base) json["position_m"] = *e.position;
+  if (e.kind != Kind::base && e.position) json["position_m"] = *e.position;
+  if (!e.at.empty()) json["at"] = e.at;
   if (e.kind == Kind::release) json["deflection_m"] = e.deflection.value_or(0.012);
   if (e.kind == Kind::release && e.duration > 0.0) json["duration_s"] = e.duration;
   if (e.kind == Kind::free) {
@@ -135,7 +138,7 @@ Json simulation_values(const Experiment& experiment, const SimulatedTest& test) 
     json["sensors"].push_back({{"name", sensor.name},
                                {"column", columns[i + 1]},
                                {"quantity", to_string(sensor.quantity)},
-                               {"position_m", *sensor.position},
+                               {"position_m", number_or_null(sensor.position.value_or(std::nan("")))},
                                {"noise" + unit, sensor.noise},
                                {"peak" + unit, peak.value},
                                {"time_of_peak_s", peak.time},
@@ -183,8 +186,8 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   describe(test->acquisition, results.configuration);
   results.values = simulation_values(experiment, *test);
   results.heading(experiment.title.empty() ? "Simulated response" : experiment.title);
-  results.paragraph(
-      beam_text(experiment.beam, static_cast<int>(test->system.mesh.elements.size()), test->system.size()));
+  results.paragraph(structure_text(experiment, static_cast<Eigen::Index>(test->system.mesh.elements.size()),
+                                   test->system.size()));
   results.paragraph(fmt::format("{} Damping: {}. Method {}: {} steps of {:g} s; {} samples at {:g} Hz.",
                                 excitation_text(*test), fem::name(experiment.damping), settings.method.name,
                                 test->response.time.size() - 1, test->step, test->record.size(),
@@ -206,11 +209,11 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   const std::vector<std::string> columns = column_names(test->record);
   for (std::size_t i = 0; i < test->sensors.size(); ++i)
     results.figures.push_back(sensor_figure(*test, i, columns[i + 1]));
-  if (!test->response.frames.empty())
+  if (!test->response.frames.empty() && !test->system.mesh.nodes.empty())
     results.attachments.push_back(
         {field_history_files(static_cast<Index>(test->response.frames.size())),
-         [test, beam = experiment.beam, surface](const std::filesystem::path& folder) {
-           write_field_history(folder, Picture(beam, test->system, surface), test->response);
+         [test, structure = experiment.structure, surface](const std::filesystem::path& folder) {
+           write_field_history(folder, Picture(structure, test->system, surface), test->response);
          }});
   return results;
 }

@@ -37,9 +37,9 @@ Experiment covered_experiment(double bending_stiffness = covered_stiffness) {
   fem::Section section;
   section.bending_stiffness = bending_stiffness;
   section.mass_per_length = 7850 * 0.03 * 0.004;
-  experiment.beam.segments = {{0.6, section}};
-  experiment.beam.supports = {{0.0}};
-  experiment.beam.bodies = {{0.6, 0.2}};
+  experiment.structure.beam().segments = {{0.6, section}};
+  experiment.structure.beam().supports = {{0.0}};
+  experiment.structure.beam().bodies = {{0.6, 0.2}};
   experiment.elements = 8;
   return experiment;
 }
@@ -49,7 +49,7 @@ Eigen::Vector3d covered_frequencies() {
   static const Eigen::Vector3d frequencies = [] {
     const Experiment experiment = covered_experiment();
     return Eigen::Vector3d(
-        fem::modes(fem::assemble(experiment.beam, experiment.elements), 3).frequency_hz().head<3>());
+        fem::modes(fem::assemble(experiment.structure, experiment.elements), 3).frequency_hz().head<3>());
   }();
   return frequencies;
 }

@@ -30,9 +30,9 @@ Experiment described_experiment() {
   fem::Section section;
   section.bending_stiffness = 210e9 * fem::rectangle_second_moment(0.025, 0.005);
   section.mass_per_length = 7850 * 0.025 * 0.005;
-  experiment.beam.segments = {{0.5, section}};
-  experiment.beam.supports = {{0.0}};
-  experiment.beam.bodies = {{0.5, 0.3}};
+  experiment.structure.beam().segments = {{0.5, section}};
+  experiment.structure.beam().supports = {{0.0}};
+  experiment.structure.beam().bodies = {{0.5, 0.3}};
   experiment.elements = 6;
   return experiment;
 }
@@ -40,7 +40,7 @@ Experiment described_experiment() {
 double described_frequency() {
   static const double frequency = [] {
     const Experiment experiment = described_experiment();
-    return fem::modes(fem::assemble(experiment.beam, experiment.elements), 1).frequency_hz()[0];
+    return fem::modes(fem::assemble(experiment.structure, experiment.elements), 1).frequency_hz()[0];
   }();
   return frequency;
 }

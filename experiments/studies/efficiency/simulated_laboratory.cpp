@@ -87,7 +87,7 @@ struct CantileverMode {
 
 CantileverMode first_mode(const std::string& beam, int elements) {
   const Experiment experiment = read_experiment(TomlTable::parse(beam, "the beam"));
-  const fem::StructuralSystem system = fem::assemble(experiment.beam, elements);
+  const fem::StructuralSystem system = fem::assemble(experiment.structure, elements);
   const fem::Modes modes = fem::modes(system, 2);
   const double tip = (system.outputs * modes.shape.col(0))(0), w = modes.angular_frequency[0];
   const double stiffness = fem::static_stiffness(system);

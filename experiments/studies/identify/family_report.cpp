@@ -44,7 +44,7 @@ Table member_table(const BeamFamily& family) {
   for (std::size_t r = 0; r < family.members.size(); ++r) {
     const ComparedRun& run = family.alone[r].runs[0];
     table.row({family.members[r].name, family.members[r].record_name,
-               family.members[r].experiment.beam.length(), run.frequency_hz.value_or(std::nan("")),
+               family.members[r].experiment.structure.extent(), run.frequency_hz.value_or(std::nan("")),
                run.response_error_percent});
   }
   return table;

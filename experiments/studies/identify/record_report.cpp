@@ -204,8 +204,8 @@ Results report(const Experiment& experiment, const Record& record, const std::st
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
       experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes));
-  if (record.channels.size() > 1 ||
-      *placed.channels[0].position != fem::natural_point(experiment.beam).position)
+  if (record.channels.size() > 1 || !experiment.structure.has_positions() ||
+      *placed.channels[0].position != fem::natural_point(experiment.structure).position)
     results.paragraph("Stiffness, damping and mass are those of the motion at the first channel of " +
                       channels_text(placed) + ".");
   if (found.identification.run.failure) return results;

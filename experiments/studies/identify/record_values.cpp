@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/config/beam_description.hpp"
 #include "experiments/config/description.hpp"
 #include "experiments/config/failure_response.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
 
 namespace beamid::experiments {
@@ -128,13 +128,12 @@ Json configuration(const Experiment& experiment, const Record& record, const Rec
       std::visit([&, key = name](const auto& v) { json[key] = v; }, value);
     return json;
   };
-  Json json{{"title", experiment.title},
-            {"record", record_name},
-            {"sampling_rate_hz", 1.0 / record.interval()},
-            {"beam", describe(experiment.beam, experiment.elements)},
-            {"reduction", choice(experiment.reduction)},
-            {"model", choice(experiment.model)},
-            {"filter", choice(experiment.filter)}};
+  Json json{
+      {"title", experiment.title}, {"record", record_name}, {"sampling_rate_hz", 1.0 / record.interval()}};
+  json.update(describe(experiment.structure, experiment.elements));
+  json["reduction"] = choice(experiment.reduction);
+  json["model"] = choice(experiment.model);
+  json["filter"] = choice(experiment.filter);
   json["filter"]["discretisation"] = experiment.discretisation;
   json["filter"]["on_failure"] = to_string(experiment.on_failure);
   if (!experiment.smoother.empty()) json["filter"]["smoother"] = experiment.smoother;

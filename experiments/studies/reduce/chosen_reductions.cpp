@@ -65,21 +65,22 @@ std::string with_options(const Choice& choice) {
 
 }  // namespace
 
-std::vector<Choice> default_reductions(const fem::Beam& beam) {
+std::vector<Choice> default_reductions(const fem::Structure& structure) {
   const auto& registry = reduction::reduction_registry();
   std::vector<Choice> found;
   const auto add = [&](const std::string& name, const filters::Options& options) {
     found.push_back({name, registry.completed(name, options)});
   };
   add("rayleigh", {});
-  if (is_cantilever(beam)) add("rayleigh", {{"shape", "one_minus_cosine"}});
+  if (structure.is_beam() && is_cantilever(structure.beam()))
+    add("rayleigh", {{"shape", "one_minus_cosine"}});
   for (const auto& [name, entry] : registry.entries()) {
     if (name == "none" || name == "rayleigh") continue;
     filters::Options options;
     const bool at_masters = has_option<std::vector<double>>(entry.options, "masters_m");
     // The interface, the natural point, has two coordinates of its own.
     const bool interface = has_option<std::vector<double>>(entry.options, "interface_m");
-    if (at_masters) options.set("masters_m", masters(beam));
+    if (at_masters && structure.is_beam()) options.set("masters_m", masters(structure.beam()));
     if (!at_masters && has_option<double>(entry.options, "modes"))
       options.set("modes", static_cast<double>(interface ? wanted - 2 : wanted));
     if (has_option<double>(entry.options, "moments")) options.set("moments", static_cast<double>(wanted));

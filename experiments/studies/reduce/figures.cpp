@@ -161,7 +161,9 @@ std::optional<Figure> significance_figure(const ReductionComparison& all) {
 }  // namespace
 
 std::vector<Figure> figures(const ReductionComparison& all) {
-  std::vector<Figure> found{error_figure(all), shape_figure(all), response_figure(all)};
+  std::vector<Figure> found{error_figure(all)};
+  if (!all.system.mesh.nodes.empty()) found.push_back(shape_figure(all));
+  found.push_back(response_figure(all));
   if (all.release.samples > 0) found.push_back(decay_figure(all));
   if (auto significance = significance_figure(all)) found.push_back(std::move(*significance));
   return found;

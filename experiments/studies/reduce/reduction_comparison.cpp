@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "experiments/config/read_reduction.hpp"
-#include "experiments/models/beam_points.hpp"
+#include "experiments/models/structure_points.hpp"
 #include "experiments/studies/reduce/chosen_reductions.hpp"
 #include "experiments/studies/reduce/mode_agreement.hpp"
 #include "experiments/studies/reduce/response_comparison.hpp"
@@ -55,7 +55,7 @@ Reduced reduced_candidate(const Choice& choice, const fem::StructuralSystem& sys
 }
 
 MatrixXd deflections(const fem::StructuralSystem& system, const MatrixXd& shapes) {
-  MatrixXd found(static_cast<Index>(system.mesh.nodes.size()), shapes.cols());
+  MatrixXd found(system.nodes(), shapes.cols());
   for (Index i = 0; i < shapes.cols(); ++i) found.col(i) = fem::nodal_deflection(system, shapes.col(i));
   return found;
 }
@@ -128,7 +128,7 @@ std::vector<ReductionCandidate> reduce_all(const Experiment& experiment, const s
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const Choice& choice = choices[i];
     progress(names[i]);
-    const reduction::Training training = training_of(choice, experiment.beam.length(), folder);
+    const reduction::Training training = training_of(choice, experiment.structure.extent(), folder);
     ReductionCandidate candidate;
     try {
       const auto begin = std::chrono::steady_clock::now();
@@ -165,13 +165,13 @@ ReductionComparison compare_reductions(const Experiment& experiment, const std::
                                        const std::filesystem::path& folder, const Progress& progress) {
   ReductionComparison all;
   all.settings = settings;
-  BeamPoints points(experiment.beam);
+  StructurePoints points(experiment.structure);
   all.observed = points[points.add({})];
-  const Index pulled =
-      points.add(experiment.excitation.kind == Excitation::Kind::release ? experiment.excitation.position
-                                                                         : std::nullopt);
+  const Index pulled = experiment.excitation.kind == Excitation::Kind::release
+                           ? points.add(experiment.excitation.position, experiment.excitation.at)
+                           : points.add({});
   progress("assembling");
-  all.system = fem::assemble(experiment.beam, experiment.elements, points.all());
+  all.system = fem::assemble(experiment.structure, experiment.elements, points.all());
   if (!all.system.nonlinear_forces.empty()) {
     all.system.nonlinear_forces.clear();
     all.notes.emplace_back(

@@ -6,6 +6,7 @@
 
 #include "experiments/config/description.hpp"
 #include "experiments/config/read_reduction.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/results/vtk/vtu_file.hpp"
 
@@ -33,8 +34,9 @@ Attachment meshes(const Experiment& experiment, const std::shared_ptr<const Redu
   Attachment attachment{{"modes_mesh.vtu"}, {}};
   for (const ComparedReduction& one : all->reductions)
     attachment.files.push_back("modes_" + key_of(one.label) + ".vtu");
-  attachment.write = [all, beam = experiment.beam, files = attachment.files](const fs::path& folder) {
-    const Picture picture(beam, all->system);
+  attachment.write = [all, structure = experiment.structure,
+                      files = attachment.files](const fs::path& folder) {
+    const Picture picture(structure, all->system);
     const BeamGrid grid = beam_grid(picture);
     ModelModes mesh;
     const Index shown = all->modes.modes.rigid + all->compared();
@@ -77,8 +79,8 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Reducti
   results.configuration = reduction_configuration(experiment, all);
   results.values = values(all);
   results.heading(experiment.title.empty() ? "Reductions" : experiment.title);
-  results.paragraph(
-      beam_text(experiment.beam, static_cast<int>(all.system.mesh.elements.size()), all.system.size()));
+  results.paragraph(structure_text(experiment, static_cast<Eigen::Index>(all.system.mesh.elements.size()),
+                                   all.system.size()));
   results.paragraph(text_of(all));
   results.table(reduction_table(all));
   results.table(equivalent_table(all));
@@ -86,8 +88,9 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Reducti
   results.table(mac_table(all));
   if (auto table = significance_table(all)) results.table(std::move(*table));
   std::vector<std::string> notes = all.notes;
-  const bool drawn = experiment.elements <= most_drawn_elements;
-  if (!drawn)
+  const bool has_mesh = !all.system.mesh.nodes.empty();
+  const bool drawn = has_mesh && experiment.elements <= most_drawn_elements;
+  if (has_mesh && !drawn)
     notes.push_back(fmt::format("Meshes for ParaView are written up to {} elements.", most_drawn_elements));
   add_notes(results, notes);
   results.figures = figures(all);

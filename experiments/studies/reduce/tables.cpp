@@ -98,7 +98,7 @@ Table mac_table(const ReductionComparison& all) {
   for (Index i = 0; i < all.compared(); ++i)
     table.column({"mode " + number_of(all, i), "mode_" + number_of(all, i) + "_mac", "{:.6f}"});
   table.column({"lowest CoMAC", "lowest_comac", "{:.6f}"}).column({"at [m]", "lowest_comac_m", "{:.4g}"});
-  const VectorXd positions = all.system.mesh.positions();
+  const VectorXd positions = all.system.node_positions();
   for (const ComparedReduction& one : all.reductions) {
     std::vector<Cell> row{one.label};
     for (const double value : one.mac) row.emplace_back(value);
@@ -115,7 +115,7 @@ Table mac_table(const ReductionComparison& all) {
 
 Table comac_table(const ReductionComparison& all) {
   Table table{"comac", ""};
-  const VectorXd positions = all.system.mesh.positions();
+  const VectorXd positions = all.system.node_positions();
   Column at{"x [m]", "position_m"};
   at.cells.assign(positions.begin(), positions.end());
   table.column(at);

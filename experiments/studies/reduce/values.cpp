@@ -38,7 +38,7 @@ Json reduction_of(const ReductionComparison& all, const ComparedReduction& one) 
   json["modes"] = modes_of(all, one);
   const LowestComac lowest = lowest_comac(one.comac);
   json["lowest_comac"] = number_or_null(lowest.value);
-  json["lowest_comac_m"] = lowest.point < 0 ? Json(nullptr) : Json(all.system.mesh.positions()[lowest.point]);
+  json["lowest_comac_m"] = lowest.point < 0 ? Json(nullptr) : Json(all.system.node_positions()[lowest.point]);
   json["static_stiffness_n_per_m"] = number_or_null(one.behaviour.static_stiffness);
   json["static_stiffness_error_percent"] = percent_json(one.static_stiffness_error);
   json["modal_mass_kg"] = number_or_null(one.behaviour.modal_mass);

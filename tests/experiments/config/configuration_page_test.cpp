@@ -84,17 +84,19 @@ std::vector<std::string> examples() {
 }
 
 TEST(ConfigurationPage, HoldsExamplesThatAreValid) {
-  ASSERT_EQ(examples().size(), 4u);
+  ASSERT_EQ(examples().size(), 5u);
   const TemporaryFile record("record.toml", examples()[0]), beam("beam.toml", examples()[1]);
   const Experiment with_record = read_experiment(record.path()),
                    with_everything = read_experiment(beam.path());
   EXPECT_EQ(with_record.record_file, "massa1_test1-1.txt");
-  EXPECT_DOUBLE_EQ(with_record.beam.tip_mass(), 1.437 + 0.054);
-  EXPECT_EQ(with_everything.beam.segments.size(), 3u);
+  EXPECT_DOUBLE_EQ(with_record.structure.beam().tip_mass(), 1.437 + 0.054);
+  EXPECT_EQ(with_everything.structure.beam().segments.size(), 3u);
   EXPECT_EQ(with_everything.sensors.size(), 2u);
-  EXPECT_EQ(read_frame(TomlTable::parse(examples()[3], "frame.toml")).frame.members.size(), 4u);
+  const Experiment frame = read_experiment(TomlTable::parse(examples()[3], "frame.toml"));
+  EXPECT_EQ(frame.structure.frame()->members.size(), 4u);
+  EXPECT_NO_THROW(check_values(TomlTable::parse(examples()[4], "system.toml")));  // its matrices are not here
   const TemporaryFile chain("chain.toml", examples()[2]);
-  EXPECT_EQ(read_experiment(chain.path()).beam.segments.size(), 3u);
+  EXPECT_EQ(read_experiment(chain.path()).structure.beam().segments.size(), 3u);
 }
 
 TEST(ConfigurationPage, ShowsEveryKeyInItsExamples) {  // also what they leave at its default, as a comment

@@ -15,7 +15,7 @@ using std::numbers::pi;
 
 fem::Beam beam_of(const std::string& text) {
   const TemporaryFile file("beam.toml", "[beam]\n" + text);
-  return read_experiment(file.path()).beam;
+  return read_experiment(file.path()).structure.beam();
 }
 
 const std::string steel = "length_m = 2\nwidth_m = 0.06\nheight_m = 0.01\nyoungs_modulus_pa = 2e11\n";
@@ -228,7 +228,7 @@ TEST(Overrides, TakeThePlaceOfTheFilesOwnKeys) {
   const fem::Beam beam =
       read_experiment(file.path(), {{"beam", "length_m", 3.0, "--length"},
                                     {"beam", "mass_kg", 6.0, "--beam-mass", {"mass_per_length_kg_per_m"}}})
-          .beam;
+          .structure.beam();
   EXPECT_EQ(beam.length(), 3.0);
   EXPECT_DOUBLE_EQ(beam.mass(), 6.0);
   EXPECT_EQ(input_error_of(file,

@@ -58,12 +58,12 @@ TEST(ReadExperiment, ReadsEveryKey) {
   const TemporaryFile file("all.toml", complete);
   const Experiment experiment = read_experiment(file.path());
   EXPECT_EQ(experiment.title, "steel cantilever");
-  EXPECT_DOUBLE_EQ(experiment.beam.length(), 1.10);
-  EXPECT_DOUBLE_EQ(experiment.beam.segments[0].section.bending_stiffness(0),
+  EXPECT_DOUBLE_EQ(experiment.structure.beam().length(), 1.10);
+  EXPECT_DOUBLE_EQ(experiment.structure.beam().segments[0].section.bending_stiffness(0),
                    2.12e11 * 0.060 * 0.006 * 0.006 * 0.006 / 12);
-  EXPECT_DOUBLE_EQ(experiment.beam.mass(), 3.055);
-  EXPECT_DOUBLE_EQ(experiment.beam.tip_mass(), 0.40);  // with the sensor
-  EXPECT_DOUBLE_EQ(experiment.beam.bodies.at(0).rotary_inertia, 1e-4);
+  EXPECT_DOUBLE_EQ(experiment.structure.beam().mass(), 3.055);
+  EXPECT_DOUBLE_EQ(experiment.structure.beam().tip_mass(), 0.40);  // with the sensor
+  EXPECT_DOUBLE_EQ(experiment.structure.beam().bodies.at(0).rotary_inertia, 1e-4);
   EXPECT_EQ(experiment.elements, 20);
   EXPECT_EQ(experiment.record_file, "hit.csv");
   const RecordFormat& format = experiment.format;
@@ -104,9 +104,9 @@ TEST(ReadExperiment, NeedsNothingButABeam) {
       "least.toml",
       "beam = { length_m = 2, bending_stiffness_n_m2 = 100, mass_per_length_kg_per_m = 3 }\r\n");
   const Experiment experiment = read_experiment(file.path());
-  EXPECT_EQ(experiment.beam.segments[0].section.bending_stiffness(0), 100);
-  EXPECT_EQ(experiment.beam.mass(), 6);
-  EXPECT_EQ(experiment.beam.tip_mass(), 0);
+  EXPECT_EQ(experiment.structure.beam().segments[0].section.bending_stiffness(0), 100);
+  EXPECT_EQ(experiment.structure.beam().mass(), 6);
+  EXPECT_EQ(experiment.structure.beam().tip_mass(), 0);
   EXPECT_EQ(experiment.elements, 40);
   EXPECT_FALSE(experiment.record_file);
   EXPECT_TRUE(experiment.format.channels.empty());
@@ -120,7 +120,7 @@ TEST(ReadExperiment, TakesADensityWithTheSection) {
   const TemporaryFile file("density.toml",
                            "[beam]\nlength_m = 1\nbending_stiffness_n_m2 = 100\ndensity_kg_per_m3 = 7850\n"
                            "width_m = 0.05\nheight_m = 0.01\n");
-  EXPECT_DOUBLE_EQ(read_experiment(file.path()).beam.mass() / 1, 7850 * 0.05 * 0.01);
+  EXPECT_DOUBLE_EQ(read_experiment(file.path()).structure.beam().mass() / 1, 7850 * 0.05 * 0.01);
 }
 
 struct Refused {
@@ -176,7 +176,7 @@ TEST(ReadExperiment, RefusesUnknownKeysAndOffersTheNearest) {
         "stiffness_deviation_n_per_m, damping_ratio, damping_ratio_deviation"},
        {BEAM "[record]\nchannels = [{ quantity = \"force\", colum = 1 }]\n",
         "bad.toml:6:35: unknown key 'colum' in record.channels; did you mean 'column'? known: quantity, "
-        "column, unit, position_m, distance_m"},
+        "column, unit, position_m, at, distance_m"},
        {BEAM "[record.time]\nunits = \"s\"\n",
         "bad.toml:6:1: unknown key 'units' in record.time; did you mean 'unit'? known: column, unit"}});
 }

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <gmock/gmock.h>
 #include "experiments/config/read_experiment.hpp"
+
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::read_frame_test {
@@ -109,9 +111,7 @@ TEST(ReadFrame, RefusesWhatCannotBe) {
        "frame.toml:17:1: frame.bodies[1] has no effect; expected at least one of mass_kg, "
        "rotary_inertia_kg_m2"},
       {replaced(good, "[frame]", "[frame]\nelements_per_member = 500001"),
-       "frame.toml:2:23: frame.elements_per_member is 500001; expected a whole number from 1 to 500000"},
-      {good + "[damping]\nratio = 0.01\n",
-       "frame.toml:17:2: damping has no use beside [frame]; of use there: title, frame"}};
+       "frame.toml:2:23: frame.elements_per_member is 500001; expected a whole number from 1 to 500000"}};
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text), message);
 }
 
@@ -123,10 +123,16 @@ TEST(ReadFrame, RefusesMisspeltKeysAndALength) {
   EXPECT_EQ(error_of(joints + "[[frame.members]]\nlength_m = 1\n").find("frame.toml:4:1: unknown key "), 0u);
 }
 
-TEST(ReadExperiment, OfAFrameSaysWhoTakesIt) {
+TEST(ReadExperiment, TakesAFrame) {
   const TemporaryFile file("frame.toml", joints + members);
-  EXPECT_EQ(input_error_of(file, [&] { read_experiment(file.path()); }),
-            "frame.toml:1:2: frame describes a plane frame, which 'beamid frame' takes; expected a beam");
+  EXPECT_NE(read_experiment(file.path()).structure.frame(), nullptr);
+}
+
+TEST(ReadExperiment, TakesOneStructure) {
+  const TemporaryFile file("frame.toml",
+                           joints + members + "[chain]\nmasses_kg = [1]\nstiffnesses_n_per_m = [2]\n");
+  EXPECT_THAT(input_error_of(file, [&] { read_experiment(file.path()); }),
+              testing::HasSubstr("frame beside chain; expected one structure"));
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ TEST(ReadExperiment, RefusesBadTablesOfTheContinuum) {
       {"[excitation]\nkind = \"static\"\n", "bad.toml:2:1: excitation.force_n is missing; expected a number"},
       {"[excitation]\nforce_n = 3\n",
        "bad.toml:3:1: excitation.force_n has no use with kind = \"release\"; of use there: kind, "
-       "position_m, deflection_m, duration_s"},
+       "position_m, at, deflection_m, duration_s"},
       {"[excitation]\nkind = \"base\"\n",
        "bad.toml:2:1: excitation.amplitude_m_per_s2 is missing; expected a number, or a file"},
       {"[excitation]\nposition_m = 5\n",

@@ -29,8 +29,8 @@ std::filesystem::path folder() {
 // Catalogue values: 350 mm x 25 mm x 6 mm, 210 GPa, 0.445 kg; an accelerometer of 0.054 kg on the tip.
 Experiment cantilever(double tip_mass) {
   Experiment experiment;
-  experiment.beam = fem::Cantilever{0.350, 210e9 * fem::rectangle_second_moment(0.025, 0.006), 0.445 / 0.350,
-                                    tip_mass + 0.054};
+  experiment.structure = fem::Beam(fem::Cantilever{0.350, 210e9 * fem::rectangle_second_moment(0.025, 0.006),
+                                                   0.445 / 0.350, tip_mass + 0.054});
   return experiment;
 }
 

@@ -39,7 +39,7 @@ TEST(ModelSetting, HasAnOutputWhereEachChannelSits) {
       record({{Quantity::acceleration, "a", 0.55}, {Quantity::force, "f", 0.33}, {Quantity::velocity, "v"}}),
       none);
   const fem::StructuralSystem by_hand =
-      fem::assemble(e.beam, e.elements, {{"a", 0.55}, {"v", 1.1}, {"f", 0.33}});
+      fem::assemble(e.structure, e.elements, {{"a", 0.55}, {"v", 1.1}, {"f", 0.33}});
   EXPECT_EQ((MatrixXd(setting.system.outputs) - MatrixXd(by_hand.outputs).topRows(2)).norm(), 0.0);
   ASSERT_EQ(setting.forces.size(), 1u);
   EXPECT_EQ((MatrixXd(setting.system.inputs).col(setting.forces[0]) - MatrixXd(by_hand.inputs).col(2)).norm(),
@@ -53,8 +53,8 @@ TEST(ModelSetting, ReadsStrainAlsoAtAClampedRootAndBesideRegions) {
   gauge.distance = 0.003;
   const ModelSetting setting = model_setting(e, record({gauge, {Quantity::acceleration, "tip"}}), none);
   const fem::StructuralSystem by_hand =
-      fem::assemble(fem::with_nodes(e.beam, {0.0, 0.47}), e.elements, {{"tip", 1.1}});
-  const MatrixXd curvature = MatrixXd(fem::gauge_row(by_hand, e.beam, 0.0));
+      fem::assemble(fem::with_nodes(e.structure.beam(), {0.0, 0.47}), e.elements, {{"tip", 1.1}});
+  const MatrixXd curvature = MatrixXd(fem::gauge_row(by_hand, e.structure.beam(), 0.0));
   EXPECT_LT((MatrixXd(setting.system.outputs).row(0) + 0.003 * curvature).norm(), 1e-14 * curvature.norm());
   const auto model = model_registry().make("beam", {}, setting);
   EXPECT_EQ(model->unknowns.size(), 1u);

@@ -6,7 +6,7 @@ experiments::Experiment SimulatedBeam::experiment() const {
   experiments::Experiment experiment;
   fem::Cantilever believed = beam;
   believed.bending_stiffness *= 1.1;
-  experiment.beam = believed;
+  experiment.structure = fem::Beam(believed);
   return experiment;
 }
 

@@ -7,7 +7,7 @@ experiments::ModelSetting beam_setting(const fem::Beam& beam, int elements,
                                        const std::vector<double>& forces) {
   using Eigen::Index, Eigen::MatrixXd;
   experiments::ModelSetting setting;
-  experiments::BeamPoints points(beam);
+  experiments::StructurePoints points(beam);
   std::vector<double> nodes;
   for (const SensorAt& sensor : sensors) {
     if (sensor.quantity == Quantity::strain)

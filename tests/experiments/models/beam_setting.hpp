@@ -1,8 +1,8 @@
 // A steel cantilever of the paper as an identification setting: sensors, forces, parameters.
 #pragma once
 
-#include "experiments/models/beam_points.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "experiments/models/structure_points.hpp"
 #include "fem/parametric_system.hpp"
 #include "tests/fem/five_beams.hpp"
 

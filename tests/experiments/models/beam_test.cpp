@@ -82,7 +82,7 @@ ModelSetting rich_setting() {
                                              {Quantity::strain, 0.3},
                                              {Quantity::displacement, 1.1}},
                                             {1.1, 0.5});
-  setting.continuum->beam = fem::with_nodes(setting.continuum->beam, {0.3});
+  setting.continuum->structure = fem::with_nodes(setting.continuum->structure.beam(), {0.3});
   setting.forces.push_back(setting.system.inputs.cols() - 1);  // the base, too
   setting.damping = fem::ModalDamping{{0.004, 0.01}};
   setting.parameters = everything;
@@ -243,8 +243,9 @@ TEST(BeamModel, GivesTheDerivativesOfEveryParameterInEveryForm) {
     if (reduced) test::reduce_by(setting, "modal_truncation", {{"modes", 3.0}});
     if (!reduced) setting.continuum->elements = 10;
     if (!reduced) {
-      ModelSetting small = test::beam_setting(
-          setting.continuum->beam, 7, {{Quantity::acceleration, 1.1}, {Quantity::displacement, 1.1}}, {1.1});
+      ModelSetting small =
+          test::beam_setting(setting.continuum->structure.beam(), 7,
+                             {{Quantity::acceleration, 1.1}, {Quantity::displacement, 1.1}}, {1.1});
       small.damping = setting.damping;
       small.parameters = setting.parameters;
       setting = small;

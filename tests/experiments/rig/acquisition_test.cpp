@@ -50,7 +50,7 @@ TEST(SampleInstants, RefuseAMedianThatNoJitterOfThisKindHas) {
 
 Experiment rig() {
   Experiment experiment;
-  experiment.beam = test::steel_beam(0.360490);
+  experiment.structure = fem::Beam(test::steel_beam(0.360490));
   experiment.damping = fem::ModalDamping{{0.005}};
   experiment.excitation.deflection = 0.012;
   Sensor sensor;
@@ -216,7 +216,8 @@ TEST(QuadraticDashpot, LetsTheDampingFallWithAmplitude) {
   Experiment experiment = rig();
   constexpr double mass = 1.109401, amplitude = 0.0118415, w = 2 * std::numbers::pi * 3.455527194845;
   experiment.damping = fem::CaugheyDamping{{{3.455527194845, 0.002}}};
-  experiment.beam.dashpots.push_back({1.10, 0.0, 0.0, 0.005 * 3 * std::numbers::pi * mass / (4 * amplitude)});
+  experiment.structure.beam().dashpots.push_back(
+      {1.10, 0.0, 0.0, 0.005 * 3 * std::numbers::pi * mass / (4 * amplitude)});
   experiment.excitation.mode = 1;
   experiment.excitation.kind = Excitation::Kind::free;
   experiment.excitation.deflection = amplitude;

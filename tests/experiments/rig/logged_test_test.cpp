@@ -16,7 +16,7 @@ using testing::Contains, testing::HasSubstr, testing::ThrowsMessage;
 
 Experiment rig() {
   Experiment experiment;
-  experiment.beam = test::steel_beam(0.360490);
+  experiment.structure = fem::Beam(test::steel_beam(0.360490));
   experiment.damping = fem::ModalDamping{{0.005}};
   experiment.excitation.deflection = 0.012;
   Sensor sensor;

@@ -447,8 +447,8 @@ TEST(Sweep, ReachesTablesWithinTablesAndTheTruthAlone) {
   const Experiment believed = experiment_of(source, plan, 1), truth = experiment_of(source, plan, 1, true);
   EXPECT_EQ(believed.sensors[0].noise, 0.002);
   EXPECT_EQ(believed.elements, 12);
-  EXPECT_EQ(believed.beam.tip_mass(), 0.36);
-  EXPECT_EQ(truth.beam.tip_mass(), 0.4);
+  EXPECT_EQ(believed.structure.beam().tip_mass(), 0.36);
+  EXPECT_EQ(truth.structure.beam().tip_mass(), 0.4);
   EXPECT_EQ(truth.simulation.seed, 2u);
   EXPECT_THAT([&] { experiment_of(source, plan_with({"sensors[2].noise_m=1"}), 0); },
               ThrowsMessage<InputError>(HasSubstr("there is no sensors[2]; sensors has 1 tables")));

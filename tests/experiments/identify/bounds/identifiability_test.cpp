@@ -125,7 +125,7 @@ TEST(Identifiability, GrowsWithRecordSensorsAndRate) {
 
 TEST(Identifiability, AssumesNoiseAndDampingWhereNoneIsDescribedAndSaysSo) {
   Experiment experiment;
-  experiment.beam = read_experiment(TomlTable::parse(beam_text, "test")).beam;
+  experiment.structure = read_experiment(TomlTable::parse(beam_text, "test")).structure.beam();
   experiment.elements = 10;
   experiment.simulation.duration = 2.0;
   experiment.model = {"modal", model_registry().completed("modal", {}), {"test"}};

@@ -60,7 +60,8 @@ TEST(Comparison, FindsTheBeamOnTheModelThatHasItsModes) {
 ComparedRecord struck(const Experiment& e) {
   constexpr int steps = 8;
   constexpr double interval = 1e-3;
-  const fem::StructuralSystem system = fem::assemble(e.beam, e.elements, {{"middle", 0.55}, {"tip", 1.1}});
+  const fem::StructuralSystem system =
+      fem::assemble(e.structure, e.elements, {{"middle", 0.55}, {"tip", 1.1}});
   const Eigen::Index samples = 1001;
   fem::Loading loading{{}, {}, Eigen::MatrixXd::Zero(system.inputs.cols(), (samples - 1) * steps + 1)};
   for (Eigen::Index k = 0; k < 40 * steps; ++k)

@@ -34,7 +34,7 @@ TEST_P(DrivenThroughout, IsIdentified) {
   Experiment experiment;
   fem::Cantilever described = beam;
   described.bending_stiffness *= 1.05;
-  experiment.beam = described;
+  experiment.structure = fem::Beam(described);
   experiment.model.name = tested.model;
   if (tested.noise) experiment.noise[Quantity::acceleration] = 0.05;
   if (tested.prior) experiment.prior = {1.05 * truth.stiffness, 0.1 * truth.stiffness, 0.01, 0.01};

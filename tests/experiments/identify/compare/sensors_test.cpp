@@ -59,7 +59,7 @@ TEST(Sdof, IsAboutTheFirstChannelWhereverThatSits) {
   std::swap(e.sensors[0], e.sensors[1]);
   const Comparison found = compare(e, simulated_record(e, {}, silent), {}, silent);
   ASSERT_EQ(found.runs[0].status, ComparedRun::Status::converged) << found.runs[0].reason;
-  const fem::StructuralSystem system = fem::assemble(e.beam, e.elements, {{"mid", 0.55}});
+  const fem::StructuralSystem system = fem::assemble(e.structure, e.elements, {{"mid", 0.55}});
   const fem::Modes modes = fem::modes(system, 1);
   const double there = (system.outputs * modes.shape.col(0))[0];
   EXPECT_NEAR(found.runs[0].parameters[0].estimate.value * std::pow(there / modes.angular_frequency[0], 2),

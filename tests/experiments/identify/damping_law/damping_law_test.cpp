@@ -60,7 +60,7 @@ Record decay(const Truth& truth, double seconds, double noise, std::uint64_t see
 
 Experiment described() {
   Experiment experiment;
-  experiment.beam = test::steel_beam(0.36049);
+  experiment.structure = fem::Beam(test::steel_beam(0.36049));
   return experiment;
 }
 

@@ -103,7 +103,8 @@ TEST(Stream, FollowsTheBeamItself) {
             "time_s,bending_stiffness_n_m2,bending_stiffness_deviation_n_m2,damping_ratio,"
             "damping_ratio_deviation,mean_normalised_square,status\n");
   const auto stiffness = stream.shown()[0];
-  const double truth = experiment.beam.segments[0].section.bending_stiffness(0.0) / 1.1;  // assumed 10 % too stiff
+  const double truth =
+      experiment.structure.beam().segments[0].section.bending_stiffness(0.0) / 1.1;  // assumed 10 % too stiff
   EXPECT_NEAR(stiffness.value, truth, 0.02 * truth);
   EXPECT_EQ(stream.status(), StreamedIdentification::Status::settled);
 }
@@ -118,7 +119,8 @@ class Disturbed : public testing::Test {
 
   StreamedIdentification streamed() const {
     StreamedIdentification stream(experiment_, simulated.record({Quantity::acceleration}, 0.01, 22));
-    for (Index k = 0; k < record_.size(); ++k) EXPECT_TRUE(stream.take_in(sample(k))) << k << " " << testing::PrintToString(stream.news());
+    for (Index k = 0; k < record_.size(); ++k)
+      EXPECT_TRUE(stream.take_in(sample(k))) << k << " " << testing::PrintToString(stream.news());
     return stream;
   }
 

@@ -69,6 +69,7 @@ Case make(const std::string& name, const fem::Beam& beam, int elements,
   system.outputs = observed.sparseView();
   description.forces = {1, 2};  // at the tip, and the acceleration of the base
   description.base = 1;
+  description.base_shares = VectorXd::Ones(static_cast<Index>(description.observations.size()));
   description.sensor_bias = true;
   description.sensor_drift = drift;
   return result;
@@ -423,7 +424,8 @@ TEST(ContinuumMotion, SaysWhatItCannotDo) {
               HasSubstr("4 output rows for 3 observations"));
   given = cases()[0];
   given.description.observations[1].quantity = Quantity::force;
-  EXPECT_THAT(refusal([&] { ContinuumMotion(given.equations, given.description); }), HasSubstr("an input is no observation"));
+  EXPECT_THAT(refusal([&] { ContinuumMotion(given.equations, given.description); }),
+              HasSubstr("an input is no observation"));
   given = cases()[0];
   given.description.forces = {7};
   EXPECT_THAT(refusal([&] { ContinuumMotion(given.equations, given.description); }),

@@ -55,7 +55,7 @@ TEST(FollowingMotion, HasTheModesOfTheBeamAtItsUnknowns) {
   const std::vector<double> moved{-0.2034, 0.1171, 0.0512};
   SecondOrderForm form;
   model.motion.evaluate(model.state(moved), form, nullptr);
-  fem::Beam beam = setting().continuum->beam;
+  fem::Beam beam = setting().continuum->structure.beam();
   for (std::size_t j = 0; j < moved.size(); ++j) {
     const Unknown& unknown = model.joint->unknowns[j];
     const auto quantity =

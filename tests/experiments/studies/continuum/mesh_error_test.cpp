@@ -17,7 +17,7 @@ using Eigen::Index, Eigen::VectorXd;
 
 ModalSummary summary_of(const fem::Beam& beam, int elements, Index modes) {
   Experiment experiment;
-  experiment.beam = beam;
+  experiment.structure = beam;
   experiment.elements = elements;
   return summarise_modes(experiment, modes, [](const std::string&) {});
 }

@@ -14,7 +14,7 @@ const Progress silent = [](const std::string&) {};
 
 Experiment experiment_of(const fem::Beam& beam, int elements) {
   Experiment experiment;
-  experiment.beam = beam;
+  experiment.structure = beam;
   experiment.elements = elements;
   return experiment;
 }

@@ -9,7 +9,7 @@ namespace {
 
 Experiment experiment_with(std::vector<Sensor> sensors) {
   Experiment experiment;
-  experiment.beam = test::steel_beam(0.36);
+  experiment.structure = fem::Beam(test::steel_beam(0.36));
   experiment.damping = fem::ModalDamping{{0.005}};
   experiment.sensors = std::move(sensors);
   experiment.simulation.duration = 0.1;

@@ -52,7 +52,7 @@ TEST(LaboratoryTest, TellsTheIdentificationNothingButTheBeam) {
 TEST(LaboratoryTest, KnowsItsFrequency) {
   const LaboratoryTest test = laboratory_test(1, 0);
   const Experiment rig = read_experiment(TomlTable::parse(test.rig, "rig.toml"));
-  const fem::Beam& beam = rig.beam;
+  const fem::Beam& beam = rig.structure.beam();
   const fem::Cantilever exact{beam.length(), beam.segments[0].section.bending_stiffness.mean(),
                               beam.mass() / beam.length(), beam.tip_mass()};
   EXPECT_NEAR(fem::ExactMode(exact, 1).angular_frequency() / (2 * std::numbers::pi) / test.frequency_hz, 1.0,

@@ -20,7 +20,7 @@ std::vector<Choice> parsed(const std::vector<std::string>& texts) {
 
 TEST(DefaultReductions, HoldEveryRegisteredOneButNone) {
   std::set<std::string> names;
-  for (const Choice& choice : default_reductions(test::steel_beam(0.0))) {
+  for (const Choice& choice : default_reductions(fem::Beam(test::steel_beam(0.0)))) {
     EXPECT_TRUE(choice.place.file.empty());
     names.insert(choice.name);
   }

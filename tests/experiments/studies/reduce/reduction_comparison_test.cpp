@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 Experiment beam_of(double tip_mass) {
   Experiment experiment;
-  experiment.beam = test::steel_beam(tip_mass);
+  experiment.structure = fem::Beam(test::steel_beam(tip_mass));
   return experiment;
 }
 
@@ -121,7 +121,7 @@ TEST(ReductionComparison, AssumesADampingAndSaysSo) {
   experiment.damping = fem::ModalDamping{{0.01}};
   EXPECT_FALSE(compared(experiment, {"rayleigh"}).damping_assumed);
   experiment.damping = {};
-  experiment.beam.dashpots.push_back({1.1, 0.05, 0.0, 0.0});
+  experiment.structure.beam().dashpots.push_back({1.1, 0.05, 0.0, 0.0});
   EXPECT_FALSE(compared(experiment, {"rayleigh"}).damping_assumed);
 }
 
@@ -135,7 +135,7 @@ TEST(ReductionComparison, OfAnUndampedBeamHasNoResponseError) {
 
 TEST(ReductionComparison, OfAFreeBeamHasNoDecay) {
   Experiment experiment = beam_of(0.0);
-  experiment.beam.supports.clear();
+  experiment.structure.beam().supports.clear();
   const ReductionComparison all = compared(experiment, {"modal_truncation:modes=4"}, 2);
   EXPECT_EQ(all.modes.modes.rigid, 2);
   EXPECT_EQ(all.release.samples, 0);
@@ -146,7 +146,7 @@ TEST(ReductionComparison, OfAFreeBeamHasNoDecay) {
 
 TEST(ReductionComparison, LeavesOutWhatNobodyAskedForAndRefusesTheRest) {
   Experiment experiment = beam_of(0.0);
-  experiment.beam.supports.clear();
+  experiment.structure.beam().supports.clear();
   EXPECT_THROW(compared(experiment, {"rayleigh"}), InputError);  // no static shape
   std::vector<Choice> choices{parse_reduction("rayleigh", ""),
                               parse_reduction("modal_truncation:modes=4", "")};
@@ -158,8 +158,8 @@ TEST(ReductionComparison, LeavesOutWhatNobodyAskedForAndRefusesTheRest) {
 // A stiff little beam: a record at 1 kHz would hold less than a sample of a period.
 TEST(ReductionComparison, SamplesAStiffBeamFaster) {
   Experiment experiment = beam_of(0.0);
-  for (auto& segment : experiment.beam.segments) segment.length *= 0.02;
-  experiment.beam.supports = {{0.0, true, true}};
+  for (auto& segment : experiment.structure.beam().segments) segment.length *= 0.02;
+  experiment.structure.beam().supports = {{0.0, true, true}};
   const ReductionComparison all = compared(experiment, {"rayleigh"});
   EXPECT_NEAR(all.release.sampling_rate_hz / all.mode_hz(0), 250.0, 1e-9);
 }

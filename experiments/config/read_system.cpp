@@ -1,0 +1,125 @@
+#include "experiments/config/read_system.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "experiments/config/key_tables.hpp"
+#include "experiments/text/matrix_market.hpp"
+#include "experiments/text/method_choice.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+struct GivenMatrices {
+  std::string mass, damping, stiffness;  // names of files; empty: none
+};
+
+struct GivenSystem : GivenMatrices {
+  std::optional<std::vector<std::string>> labels;
+  std::optional<std::vector<double>> base_motion;
+};
+
+struct GivenFactor : GivenMatrices {
+  std::string name;
+  double value = 1.0;
+};
+
+const Schema<GivenSystem>& system_keys() {
+  using S = GivenSystem;
+  static const Schema<S> keys =
+      Schema<S>("system")
+          .key("mass", &S::mass, "Matrix Market file of M [kg], beside the experiment file", "\"M.mtx\"")
+          .required()
+          .key("stiffness", &S::stiffness, "of K [N/m], or of K_0 where parameters add theirs", "\"K.mtx\"")
+          .required()
+          .key("damping", &S::damping, "of C [N s/m]; beside `[damping]` both count", "\"C.mtx\"")
+          .fallback("none")
+          .key("labels", &S::labels, "names of the unknowns, in the order of the rows",
+               "[\"floor1\", \"floor2\"]")
+          .fallback("their numbers, `\"1\"` on")
+          .key("base_motion", &S::base_motion, any_number,
+               "how far each unknown goes when all supports move by 1 m: 1 for a displacement along the "
+               "motion, 0 across it and for rotations; without it the base cannot move",
+               "[1, 1]")
+          .fallback("none")
+          .tables({"parameters"});
+  return keys;
+}
+
+const Schema<GivenFactor>& system_parameter_keys() {
+  using P = GivenFactor;
+  static const Schema<P> keys =
+      Schema<P>("system.parameters")
+          .key("name", &P::name, "what `[[parameters]]` with `quantity = \"factor\"` calls it", "\"k1\"")
+          .required()
+          .key("value", &P::value, "theta of K = K_0 + sum theta_j K_j, likewise M and C", "1.0")
+          .key("mass", &P::mass, "Matrix Market file of M_j", "\"M1.mtx\"")
+          .fallback("zero")
+          .key("damping", &P::damping, "of C_j", "\"C1.mtx\"")
+          .fallback("zero")
+          .key("stiffness", &P::stiffness, "of K_j", "\"K1.mtx\"")
+          .fallback("zero")
+          .at_least_one({"mass", "damping", "stiffness"});
+  return keys;
+}
+
+const bool system_keys_registered[] = {
+    register_keys([]() -> const KeyTable& { return system_keys(); }),
+    register_keys([]() -> const KeyTable& { return system_parameter_keys(); })};
+
+/// @param size rows and columns it must have; 0: any number of both, the same
+fem::SparseMatrix matrix_of(const TomlTable& table, const char* key, const std::string& file,
+                            Eigen::Index size) {
+  if (file.empty()) {
+    if (table.contains(key)) table.refuse(key, "the name of a Matrix Market file");
+    return {};
+  }
+  const auto path = std::filesystem::path(table.place().file).parent_path() / file;
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError(table.value_place(key),
+                     fmt::format("'{}' is no file; expected a Matrix Market file", path.string()));
+  fem::SparseMatrix matrix = read_matrix_market(path);
+  const Eigen::Index expected = size > 0 ? size : matrix.rows();
+  if (matrix.rows() != expected || matrix.cols() != expected)
+    throw InputError(table.value_place(key), fmt::format("'{}' is {} x {}; expected {} x {}", file,
+                                                         matrix.rows(), matrix.cols(), expected, expected));
+  return matrix;
+}
+
+bool is_plain_name(const std::string& name) {
+  return !name.empty() && name.size() <= 100 && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+}  // namespace
+
+fem::MatrixSystem read_system(const TomlTable& table) {
+  const GivenSystem given = system_keys().read(table);
+  fem::MatrixSystem system;
+  system.mass = matrix_of(table, "mass", given.mass, 0);
+  const Eigen::Index n = system.mass.rows();
+  system.stiffness = matrix_of(table, "stiffness", given.stiffness, n);
+  system.damping = matrix_of(table, "damping", given.damping, n);
+  for (const TomlTable& one : table.find_tables("parameters")) {
+    const GivenFactor factor = system_parameter_keys().read(one);
+    if (!is_plain_name(factor.name))
+      one.refuse("name", "at most 100 small letters, digits and underscores, as in a key");
+    system.parameters.push_back({factor.name, factor.value, matrix_of(one, "mass", factor.mass, n),
+                                 matrix_of(one, "damping", factor.damping, n),
+                                 matrix_of(one, "stiffness", factor.stiffness, n)});
+  }
+  if (given.labels)
+    system.labels = *given.labels;
+  else
+    for (Eigen::Index i = 0; i < n; ++i) system.labels.push_back(fmt::format("{}", i + 1));
+  if (given.base_motion)
+    system.base_motion =
+        Eigen::VectorXd::Map(given.base_motion->data(), static_cast<Eigen::Index>(given.base_motion->size()));
+  at_place(table.place(), [&] { fem::validate(system); });
+  return system;
+}
+
+}  // namespace beamid::experiments
