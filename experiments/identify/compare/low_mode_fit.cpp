@@ -136,6 +136,44 @@ LowModeLinearisation descend(const LowModeFit& fit, const filters::Measurements&
   return now;
 }
 
+bool is_stiffness(const Unknown& unknown) {
+  return unknown.quantity.ends_with("stiffness") || unknown.quantity == "factor";
+}
+
+// c where all stiffnesses are s times those of the guess; empty where a form does not allow it.
+VectorXd scaled_stiffness(const JointModel& model, const FirstGuess& guess, double s) {
+  const auto q = static_cast<Index>(model.unknown_places.size());
+  VectorXd change = VectorXd::Zero(q);
+  for (Index j = 0; j < q; ++j) {
+    const Unknown& unknown = model.unknowns[static_cast<std::size_t>(j)];
+    const double state = guess.mean[model.unknown_places[static_cast<std::size_t>(j)]];
+    if (!is_stiffness(unknown)) continue;
+    try {
+      change[j] = unknown.to_state(s * unknown.to_physical(state)) - state;
+    } catch (const std::invalid_argument&) {
+      return {};
+    }
+  }
+  return root_of(guess.unknowns).completeOrthogonalDecomposition().solve(change);
+}
+
+// Many stiffnesses that are wrong together are beyond the reach of a descent in all of them: a mode of
+// another frequency has another phase after a few periods. All that are wrong by one factor are found first.
+VectorXd best_common_stiffness(const LowModeFit& fit, const JointModel& model, const FirstGuess& guess,
+                               const filters::Measurements& part) {
+  constexpr double widest = 3.0;
+  constexpr int steps = 12;  // to either side
+  VectorXd best = VectorXd::Zero(fit.unknowns());
+  if (std::count_if(model.unknowns.begin(), model.unknowns.end(), is_stiffness) < 2) return best;
+  double least = fit.at(best, part).cost;
+  for (int i = -steps; i <= steps; ++i) {
+    const VectorXd c = scaled_stiffness(model, guess, std::pow(widest, static_cast<double>(i) / steps));
+    if (i == 0 || c.size() == 0) continue;
+    if (const double cost = fit.at(c, part).cost; cost < least) least = cost, best = c;
+  }
+  return best;
+}
+
 }  // namespace
 
 MatrixXd root_of(const MatrixXd& covariance) {
@@ -157,9 +195,10 @@ FirstGuess fit_low_modes(const JointModel& model, const std::vector<Observation>
   const Index samples = record.measurements.size(), q = fit.unknowns();
   const double period = 2.0 * std::numbers::pi / fit.low_modes(guess.mean).mode_frequencies.maxCoeff();
   const double interval = record.measurements.time[samples - 1] / static_cast<double>(samples - 1);
-  VectorXd c = VectorXd::Zero(q);
   LowModeLinearisation found;
   Index part = std::max(fewest_fit_samples, static_cast<Index>(std::ceil(first_periods * period / interval)));
+  VectorXd c =
+      best_common_stiffness(fit, model, guess, beginning(record.measurements, std::min(4 * part, samples)));
   for (bool whole = false; !whole; part *= 2) {
     whole = part >= samples;
     found = descend(fit, beginning(record.measurements, std::min(part, samples)), c);

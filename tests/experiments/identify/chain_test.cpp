@@ -116,6 +116,33 @@ TEST_F(MovingBase, LetsStoreysBeFoundToTheBound) {
   EXPECT_NEAR(own / count, 1.0, 0.15);
 }
 
+// Guesses alternately half as large again and half as large as the truth: no common factor mends them, and no
+// filter follows six modes from there.
+TEST_F(MovingBase, LetsStoreysBeFoundFromGuessesFiftyPercentOff) {
+  std::string text =
+      "[chain]\nmasses_kg = [1000, 1000, 1000, 1000, 1000, 1000]\n"
+      "stiffnesses_n_per_m = [2.0e6, 2.0e6, 1.6e6, 1.6e6, 1.2e6, 1.2e6]\n"
+      "[damping]\nratio = 0.02\n[excitation]\nkind = \"base\"\nfile = \"quake.csv\"\n"
+      "[simulation]\nduration_s = 12\nsampling_rate_hz = 100\nsteps_per_sample = 4\n"
+      "[model]\nname = \"beam\"\n[reduction]\nmethod = \"none\"\n[compare]\npasses = 5\n";
+  for (const int floor : {2, 3, 5, 6})
+    text += "[[sensors]]\nposition_m = " + std::to_string(floor) + "\nnoise_m_per_s2 = 0.02\n";
+  const double truth[] = {2.0e6, 2.0e6, 1.6e6, 1.6e6, 1.2e6, 1.2e6};
+  for (int i = 0; i < 6; ++i)
+    text += "[[parameters]]\nquantity = \"storey_stiffness\"\nfrom_m = " + std::to_string(i) +
+            "\nto_m = " + std::to_string(i + 1) + "\nrelative_deviation = 0.5\nguess_n_per_m = " +
+            std::to_string((i % 2 == 0 ? 1.5 : 0.5) * truth[i]) + "\n";
+  const Experiment e = read_experiment(TomlTable::parse(text, "six.toml"));
+  const ComparedRun run =
+      identify_with_model(e, simulated_record(e, place_.path, unwatched), place_.path, unwatched).runs.at(0);
+  ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Estimate& found = run.parameters[i].estimate;
+    EXPECT_LE(std::abs(found.value - truth[i]), 4.0 * found.deviation) << found.name;
+    EXPECT_LE(found.deviation, 0.01 * truth[i]) << found.name;
+  }
+}
+
 // Readings that are broadband while the base shakes are no loose contact. Oracle: the same readings without
 // the base, which are called one.
 TEST(Chain, UnderAMovingBaseDoesNotRattle) {
