@@ -3,8 +3,10 @@
 #include <iostream>
 
 #include "apps/command.hpp"
+#include "apps/starters.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/text/input_error.hpp"
+#include "experiments/text/spelling.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -12,78 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 using experiments::InputError;
 
-constexpr const char* starter =
-    R"toml(# An experiment for beamid: the beam and what is done with it. Put your own values in place of these.
-# Numbers are SI, and keys carry the unit. Lines behind # show what else may stand there; docs/configuration.md has
-# every key.  Check:      beamid validate FILE
-#             compute:    beamid modes --config FILE        (simulate, frf: likewise)
-#             identify:   beamid identify RECORD --config FILE --out results
-title = "steel cantilever with a tip mass"
-
-[beam]                              # a uniform cantilever; segments, taper, springs, damage, ...: see every key
-length_m = 1.10
-width_m = 0.060                     # of the section, across the direction of bending
-height_m = 0.006                    # of the section, along the direction of bending
-youngs_modulus_pa = 2.12e11
-# bending_stiffness_n_m2 = 228.96   # EI, instead of youngs_modulus_pa, width_m and height_m
-mass_kg = 3.055                     # the beam alone
-# mass_per_length_kg_per_m = 2.777  # instead of mass_kg
-# density_kg_per_m3 = 7850          # instead of mass_kg, with width_m and height_m
-tip_mass_kg = 0.360                 # 0 without one
-# tip_rotary_inertia_kg_m2 = 1e-4   # of the tip mass about its own centre
-# tip_eccentricity_m = 0.02         # of that centre beyond the tip
-sensor_mass_kg = 0.0                # accelerometer at the tip, beside the tip mass
-# support = "clamped-free"          # root-tip: every pair of clamped, pinned, guided, free
-# axial_load_n = 10.0               # positive in compression
-# theory = "timoshenko"             # with poissons_ratio; else Euler-Bernoulli
-# poissons_ratio = 0.3
-# elements = 40
-
-[record]                            # a text file of numbers in columns
-file = "record.csv"                 # relative to this file; a RECORD on the command line comes first
-# header_lines = 23                 # when more than one line stands before the numbers
-# sampling_rate_hz = 1000.0         # when the printed times are rounded, or there are none
-# window_s = [0.8, 1.6]             # part of the record to use; damping often depends on amplitude, hence on it
-time = { column = 1, unit = "s" }   # by number from 1, or by name: column = "Time"; units s, ms, us
-channels = [                        # what was measured at the tip, in which column and unit
-  { quantity = "acceleration", column = 2, unit = "m/s2" },  # m/s2, mm/s2 or g
-  # { quantity = "displacement", column = 3, unit = "mm" },  # m, mm or um
-]
-
-# [damping]                         # for modes, simulate and frf
-# ratio = 0.002                     # of every mode; Rayleigh's law and others: see every key
-
-# [excitation]                      # for simulate: release, static, impulse, harmonic, base, table, none
-# kind = "release"
-# deflection_m = 0.012
-
-# [simulation]                      # for simulate
-# duration_s = 5.0
-# sampling_rate_hz = 1000.0
-
-# [frequency_response]              # for frf
-# from_hz = 1.0
-# to_hz = 200.0
-
-[filter]
-method = "ekf"                      # beamid list filters
-discretisation = "exponential"      # beamid list discretisations; forward_euler is the error of the 2009 paper
-
-# [reduction]
-# method = "rayleigh"               # beamid list reductions
-
-# [prior]                           # believed beforehand; what is left out is worked out from beam and record
-# stiffness_n_per_m = 510.0
-# stiffness_deviation_n_per_m = 150.0
-# damping_ratio = 0.01
-# damping_ratio_deviation = 0.01
-
-# [noise]                           # standard deviation; estimated from the record unless given
-# acceleration_m_per_s2 = 0.05
-)toml";
-
 int run_new(const Values& values) {
   const fs::path file = values.texts("file")[0];
+  const std::string starter = starter_file(values.text("structure"));
   if (file == "-") {
     std::cout << starter;
     return 0;
@@ -95,21 +28,26 @@ int run_new(const Values& values) {
   const fs::path folder = fs::absolute(file).parent_path();
   if (!fs::is_directory(folder)) throw InputError({file.string()}, "no folder '" + folder.string() + "'");
   experiments::write_file(file, starter);
-  std::cout << "Written: " << file.string() << "\nNext: put your beam and record in, then: beamid validate "
-            << file.string() << "\n";
+  std::cout << "Written: " << file.string()
+            << "\nNext: put your structure and record in, then: beamid validate " << file.string() << "\n";
   return 0;
 }
 
 }  // namespace
 
 Command new_command() {
-  return {"new",
-          "FILE [--force]",
-          "a commented experiment file to start from",
-          {{.name = "file", .required = true, .hint = "('-' for standard output)"}},
-          {{"Options", {flag("force", "replace a file that exists")}}},
-          "  beamid new cantilever.toml\n  beamid new - | less\n",
-          run_new};
+  return {
+      "new",
+      "FILE [--structure KIND] [--force]",
+      "a commented experiment file to start from",
+      {{.name = "file", .required = true, .hint = "('-' for standard output)"}},
+      {{"Options",
+        {text("structure", "KIND", "what the file describes: " + experiments::joined(starter_structures()))
+             .one_of(starter_structures())
+             .by_default("beam"),
+         flag("force", "replace a file that exists")}}},
+      "  beamid new cantilever.toml\n  beamid new building.toml --structure chain\n  beamid new - | less\n",
+      run_new};
 }
 
 }  // namespace beamid::apps

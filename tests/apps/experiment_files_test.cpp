@@ -141,6 +141,26 @@ TEST(Validate, SaysWhatIsMissing) {
             "no.toml: no such file; expected a TOML file");
 }
 
+// What a structure's file describes is simulated and identified as it stands. Oracle: its own values.
+TEST(New, WritesAFileForEveryStructureThatRuns) {
+  for (const std::string structure : {"chain", "frame", "system"}) {
+    Workplace place;
+    const std::string header = "%%MatrixMarket matrix coordinate real symmetric\n2 2 ";
+    place.write("M.mtx", header + "2\n1 1 1000\n2 2 800\n");
+    place.write("K0.mtx", header + "3\n1 1 1.2e6\n2 1 -1.2e6\n2 2 1.2e6\n");
+    place.write("K1.mtx", header + "1\n1 1 2e6\n");
+    ASSERT_EQ(place.run("new mine.toml --structure " + structure).code, 0);
+    const Outcome checked = place.run("validate mine.toml");
+    EXPECT_EQ(checked.code, 0) << structure << checked.err;
+    const Outcome shaken = place.run("simulate --config mine.toml --out shaken");
+    EXPECT_EQ(shaken.code, 0) << structure << shaken.err;
+    const Outcome found = place.run("identify shaken/record.csv --config mine.toml");
+    EXPECT_EQ(found.code, 0) << structure << found.err;
+    EXPECT_THAT(found.out, HasSubstr("converged")) << structure;
+  }
+  EXPECT_EQ(Workplace().run("new mine.toml --structure bridge").code, 2);
+}
+
 TEST(Tutorials, HoldExperimentFilesThatAreValid) {
   int found = 0;
   for (const auto& entry : fs::recursive_directory_iterator(source("docs/tutorials"))) {

@@ -1,0 +1,238 @@
+#include "apps/starters.hpp"
+
+namespace beamid::apps {
+namespace {
+
+constexpr const char* beam_starter =
+    R"toml(# An experiment for beamid: the beam and what is done with it. Put your own values in place of these.
+# Numbers are SI, and keys carry the unit. Lines behind # show what else may stand there; docs/configuration.md has
+# every key.  Check:      beamid validate FILE
+#             compute:    beamid modes --config FILE        (simulate, frf: likewise)
+#             identify:   beamid identify RECORD --config FILE --out results
+title = "steel cantilever with a tip mass"
+
+[beam]                              # a uniform cantilever; segments, taper, springs, damage, ...: see every key
+length_m = 1.10
+width_m = 0.060                     # of the section, across the direction of bending
+height_m = 0.006                    # of the section, along the direction of bending
+youngs_modulus_pa = 2.12e11
+# bending_stiffness_n_m2 = 228.96   # EI, instead of youngs_modulus_pa, width_m and height_m
+mass_kg = 3.055                     # the beam alone
+# mass_per_length_kg_per_m = 2.777  # instead of mass_kg
+# density_kg_per_m3 = 7850          # instead of mass_kg, with width_m and height_m
+tip_mass_kg = 0.360                 # 0 without one
+# tip_rotary_inertia_kg_m2 = 1e-4   # of the tip mass about its own centre
+# tip_eccentricity_m = 0.02         # of that centre beyond the tip
+sensor_mass_kg = 0.0                # accelerometer at the tip, beside the tip mass
+# support = "clamped-free"          # root-tip: every pair of clamped, pinned, guided, free
+# axial_load_n = 10.0               # positive in compression
+# theory = "timoshenko"             # with poissons_ratio; else Euler-Bernoulli
+# poissons_ratio = 0.3
+# elements = 40
+
+[record]                            # a text file of numbers in columns
+file = "record.csv"                 # relative to this file; a RECORD on the command line comes first
+# header_lines = 23                 # when more than one line stands before the numbers
+# sampling_rate_hz = 1000.0         # when the printed times are rounded, or there are none
+# window_s = [0.8, 1.6]             # part of the record to use; damping often depends on amplitude, hence on it
+time = { column = 1, unit = "s" }   # by number from 1, or by name: column = "Time"; units s, ms, us
+channels = [                        # what was measured at the tip, in which column and unit
+  { quantity = "acceleration", column = 2, unit = "m/s2" },  # m/s2, mm/s2 or g
+  # { quantity = "displacement", column = 3, unit = "mm" },  # m, mm or um
+]
+
+# [damping]                         # for modes, simulate and frf
+# ratio = 0.002                     # of every mode; Rayleigh's law and others: see every key
+
+# [excitation]                      # for simulate: release, static, impulse, harmonic, base, table, none
+# kind = "release"
+# deflection_m = 0.012
+
+# [simulation]                      # for simulate
+# duration_s = 5.0
+# sampling_rate_hz = 1000.0
+
+# [frequency_response]              # for frf
+# from_hz = 1.0
+# to_hz = 200.0
+
+[filter]
+method = "ekf"                      # beamid list filters
+discretisation = "exponential"      # beamid list discretisations; forward_euler is the error of the 2009 paper
+
+# [reduction]
+# method = "rayleigh"               # beamid list reductions
+
+# [prior]                           # believed beforehand; what is left out is worked out from beam and record
+# stiffness_n_per_m = 510.0
+# stiffness_deviation_n_per_m = 150.0
+# damping_ratio = 0.01
+# damping_ratio_deviation = 0.01
+
+# [noise]                           # standard deviation; estimated from the record unless given
+# acceleration_m_per_s2 = 0.05
+)toml";
+
+constexpr const char* head =
+    R"toml(# An experiment for beamid: a structure and what is done with it. Put your own values in place of these.
+# Numbers are SI, and keys carry the unit; docs/configuration.md has every key.
+#   beamid validate FILE;  beamid modes --config FILE;  beamid identifiability --config FILE
+#   beamid simulate --config FILE --out shaken;  beamid identify shaken/record.csv --config FILE --out results
+)toml";
+
+constexpr const char* chain_starter = R"toml(title = "three floors"
+
+[chain]                             # from the lowest floor up; [[chain.layers]] for a column of soil
+masses_kg = [1000, 1000, 800]
+stiffnesses_n_per_m = [2.0e6, 1.6e6, 1.2e6]
+heights_m = [3, 3, 3]               # places are heights above the base
+# dashpots_n_s_per_m = [300, 240, 180]
+
+[[sensors]]                         # accelerations are absolute
+position_m = 3
+noise_m_per_s2 = 0.01
+[[sensors]]
+position_m = 9
+noise_m_per_s2 = 0.01
+
+[[parameters]]                      # what is asked: the storey between two floors
+quantity = "storey_stiffness"
+from_m = 0
+to_m = 3
+[[parameters]]
+quantity = "storey_stiffness"
+from_m = 3
+to_m = 9
+[[parameters]]
+quantity = "damping_ratio"
+
+[reduction]
+method = "none"
+)toml";
+
+constexpr const char* frame_starter = R"toml(title = "a portal frame"
+
+[frame]
+elements_per_member = 4
+base_motion = "x"                   # along which axis a moving base goes
+joints = [
+  { name = "left_foot", x_m = 0, y_m = 0 }, { name = "left", x_m = 0, y_m = 3 },
+  { name = "right", x_m = 4, y_m = 3 }, { name = "right_foot", x_m = 4, y_m = 0 },
+]
+supports = [{ joint = 1, kind = "clamped" }, { joint = 4, kind = "clamped" }]
+bodies = [{ joint = 2, mass_kg = 800 }, { joint = 3, mass_kg = 800 }]
+
+[[frame.members]]                   # joints by their number, from 1
+first = 1
+second = 2
+group = "columns"                   # members of a group share a factor on E I and E A
+width_m = 0.1
+height_m = 0.1
+youngs_modulus_pa = 2.1e11
+density_kg_per_m3 = 7850
+# stiffness_factor = 0.8            # of a member that has lost a fifth
+[[frame.members]]
+first = 4
+second = 3
+group = "columns"
+width_m = 0.1
+height_m = 0.1
+youngs_modulus_pa = 2.1e11
+density_kg_per_m3 = 7850
+[[frame.members]]
+first = 2
+second = 3
+group = "girder"
+width_m = 0.1
+height_m = 0.12
+youngs_modulus_pa = 2.1e11
+density_kg_per_m3 = 7850
+
+[[sensors]]                         # a place is a joint and a direction
+at = "left.x"
+noise_m_per_s2 = 0.01
+[[sensors]]
+at = "left.y"
+noise_m_per_s2 = 0.01
+
+[[parameters]]                      # what is asked: the factors of groups
+quantity = "factor"
+name = "columns"
+[[parameters]]
+quantity = "damping_ratio"
+
+[reduction]
+method = "modal_truncation"
+modes = 4
+)toml";
+
+constexpr const char* system_starter = R"toml(title = "matrices of one's own"
+
+# Matrix Market files beside this one; from Python:
+#   from scipy.io import mmwrite
+#   mmwrite("M.mtx", M); mmwrite("K0.mtx", K0); mmwrite("K1.mtx", K1)      # K = K0 + k1 K1
+[system]
+mass = "M.mtx"
+stiffness = "K0.mtx"
+# damping = "C.mtx"
+# labels = ["floor1", "floor2"]     # of the unknowns; else "1", "2", ...
+# base_motion = [1, 1]              # how far each unknown goes when all supports move by 1 m
+
+[[system.parameters]]               # factors on parts of K, M or C
+name = "k1"
+stiffness = "K1.mtx"
+
+[[sensors]]                         # a place is the label of an unknown
+at = "2"
+noise_m_per_s2 = 0.01
+
+[[parameters]]                      # what is asked
+quantity = "factor"
+name = "k1"
+[[parameters]]
+quantity = "damping_ratio"
+
+[reduction]
+method = "none"                     # more than 30 unknowns need one: modal_truncation, craig_bampton, ...
+)toml";
+
+constexpr const char* tail = R"toml(
+[damping]
+ratio = 0.02
+
+[excitation]                        # for simulate: release, static, impulse, harmonic, base, table, none
+kind = "%s"
+%s
+[simulation]
+duration_s = 20
+sampling_rate_hz = 100
+
+# [record]                          # a file of your own: which column is what
+# file = "record.csv"
+# time = { column = 1, unit = "s" }
+# channels = [{ quantity = "acceleration", column = 2, unit = "g", %s }]
+
+[model]
+name = "beam"                       # the structure itself, whichever it is
+)toml";
+
+std::string with(std::string text, const std::string& value) {
+  return text.replace(text.find("%s"), 2, value);
+}
+
+}  // namespace
+
+const std::vector<std::string>& starter_structures() {
+  static const std::vector<std::string> kinds{"beam", "chain", "frame", "system"};
+  return kinds;
+}
+
+std::string starter_file(const std::string& structure) {
+  if (structure == "beam") return beam_starter;
+  const bool chain = structure == "chain", frame = structure == "frame";
+  const std::string place = chain ? "position_m = 9" : frame ? "at = \"left.x\"" : "at = \"2\"";
+  const std::string described = chain ? chain_starter : frame ? frame_starter : system_starter;
+  return head + described + with(with(with(tail, "release"), place + "\ndeflection_m = 0.01\n"), place);
+}
+
+}  // namespace beamid::apps
