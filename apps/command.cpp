@@ -23,6 +23,7 @@ const std::vector<CommandGroup>& command_groups() {
       {"Records",
        {inspect_command(), prepare_command(), track_command(), stream_command(), check_command(),
         steps_command()}},
+      {"Modes measured", {update_command(), twins_command()}},
       {"Beams and tests to come",
        {frf_command(), frame_command(), reduce_command(), identifiability_command()}},
       {"Many runs", {sweep_command(), efficiency_command()}},

@@ -73,6 +73,8 @@ Command steps_command();
 Command stream_command();
 Command sweep_command();
 Command track_command();
+Command twins_command();
+Command update_command();
 Command validate_command();
 /// Every registered study is a command of its own.
 std::vector<Command> study_commands();

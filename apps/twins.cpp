@@ -1,0 +1,41 @@
+// beamid twins: every set of parameters that explains the modes as well.
+#include "apps/deliver.hpp"
+#include "apps/update_options.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/config/read_modal_data.hpp"
+#include "experiments/identify/plausibility.hpp"
+#include "experiments/studies/twins/report.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using namespace experiments;
+
+int run_twins(const Values& values) {
+  const Experiment experiment = read_experiment(values.text("config"));
+  deliver(values, [&] {
+    const ModalData data =
+        values.has("modes") ? read_modal_data(values.text("modes"), experiment) : described_modes(experiment);
+    Results results = twins_report(experiment, studied_update(values, experiment, data));
+    warn(results, experiment);
+    return results;
+  });
+  return 0;
+}
+
+}  // namespace
+
+Command twins_command() {
+  return {"twins",
+          "[MODES] --config FILE [--model-error PERCENT] [--starts N] [--out DIR]",
+          "every set of parameters that explains the modes as well, and what would decide",
+          {{"modes", false, false}},
+          {update_options(), output_options()},
+          "  beamid twins --config building.toml\n"
+          "  beamid twins modes.toml --config building.toml --out twins\n",
+          run_twins,
+          "Without MODES the frequencies of the structure as described are taken, as many as there are "
+          "parameters.\n"};
+}
+
+}  // namespace beamid::apps

@@ -1,0 +1,39 @@
+// beamid update: parameters of a structure from measured frequencies and shapes.
+#include "apps/deliver.hpp"
+#include "apps/update_options.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/config/read_modal_data.hpp"
+#include "experiments/identify/plausibility.hpp"
+#include "experiments/studies/update/report.hpp"
+
+namespace beamid::apps {
+namespace {
+
+using namespace experiments;
+
+int run_update(const Values& values) {
+  const Experiment experiment = read_experiment(values.text("config"));
+  const ModalData data = read_modal_data(values.text("modes"), experiment);
+  deliver(values, [&] {
+    Results results = report(experiment, studied_update(values, experiment, data));
+    warn(results, experiment);
+    return results;
+  });
+  return 0;
+}
+
+}  // namespace
+
+Command update_command() {
+  return {"update",
+          "MODES --config FILE [--model-error PERCENT] [--starts N] [--out DIR]",
+          "parameters of a structure from measured frequencies and shapes",
+          {{"modes", false, true, "a TOML file of [[modes]], or the results.json of beamid modal"}},
+          {update_options(), output_options()},
+          "  beamid update modes.toml --config building.toml\n"
+          "  beamid update found/results.json --config building.toml --out updated\n"
+          "  beamid update modes.toml --config beam.toml --model-error 0.2 --starts 1000\n",
+          run_update};
+}
+
+}  // namespace beamid::apps

@@ -1,0 +1,56 @@
+#include <stdexcept>
+
+#include "experiments/identify/update/modal_model.hpp"
+#include "experiments/models/motion/beam_equations.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+/// Every storey by itself, or the bending stiffness.
+std::vector<ParameterChoice> natural_choices(const Experiment& experiment) {
+  if (!experiment.beam.shear_building) return {{"bending_stiffness"}};
+  std::vector<ParameterChoice> choices;
+  double height = 0.0;
+  for (const auto& storey : experiment.beam.segments) {
+    ParameterChoice choice{"storey_stiffness"};
+    choice.region = {height, std::min(height + storey.length, experiment.beam.length())};
+    height += storey.length;
+    choices.push_back(choice);
+  }
+  return choices;
+}
+
+bool moves_frequencies(const std::string& quantity) {
+  return beam_quantity(quantity) && quantity != "storey_damping";
+}
+
+bool is_damping(const std::string& quantity) {
+  return quantity == "storey_damping" || quantity == "damping_ratio" || quantity == "mass_damping" ||
+         quantity == "stiffness_damping";
+}
+
+}  // namespace
+
+AskedParameters asked_parameters(const Experiment& experiment) {
+  AskedParameters asked;
+  std::vector<ParameterChoice> choices;
+  for (const ParameterChoice& choice : experiment.parameters) {
+    if (moves_frequencies(choice.quantity)) {
+      choices.push_back(choice);
+      continue;
+    }
+    if (!is_damping(choice.quantity))
+      refuse(choice, "the structure has no " + choice.quantity +
+                         " that modes would depend on; expected a stiffness, a mass or axial_load");
+    asked.left_out.push_back(choice.name.empty() ? choice.quantity : choice.name);
+  }
+  if (choices.empty()) choices = natural_choices(experiment);
+  asked.unknowns = unknowns_of(choices, beam_defaults(experiment.beam, choices));
+  for (const ParameterChoice& choice : choices) {
+    asked.parameters.push_back({*beam_quantity(choice.quantity), choice.region});
+    asked.has_prior.push_back(choice.deviation || choice.relative_deviation);
+  }
+  return asked;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,101 @@
+#include "experiments/identify/update/least_squares.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr int most_iterations = 200;
+constexpr double longest_step = 1.0, shortest_step = 1e-11, least_gain = 1e-15;
+
+std::optional<ModalResidual::Value> value_at(const ModalResidual& residual, const VectorXd& x,
+                                             bool jacobian) {
+  try {
+    ModalResidual::Value value = residual.at(x, jacobian);
+    if (value.residual.allFinite()) return value;
+  } catch (const std::runtime_error&) {
+  } catch (const std::invalid_argument&) {  // a value that the structure cannot have
+  }
+  return std::nullopt;
+}
+
+std::vector<bool> held_by_bounds(const SearchSpace& space, const VectorXd& x, const VectorXd& gradient) {
+  std::vector<bool> on_bound(static_cast<std::size_t>(x.size()));
+  for (Index j = 0; j < x.size(); ++j)
+    on_bound[static_cast<std::size_t>(j)] =
+        (x[j] <= space.lower()[j] && gradient[j] >= 0.0) || (x[j] >= space.upper()[j] && gradient[j] <= 0.0);
+  return on_bound;
+}
+
+VectorXd step_from(const MatrixXd& normal, const VectorXd& gradient, const std::vector<bool>& on_bound,
+                   double damping) {
+  MatrixXd damped = normal;
+  VectorXd right = -gradient;
+  for (Index j = 0; j < right.size(); ++j) {
+    damped(j, j) += damping * std::max(normal(j, j), 1e-12 * normal.diagonal().maxCoeff()) + 1e-300;
+    if (!on_bound[static_cast<std::size_t>(j)]) continue;
+    damped.row(j).setZero();
+    damped.col(j).setZero();
+    damped(j, j) = 1.0;
+    right[j] = 0.0;
+  }
+  return damped.ldlt().solve(right);
+}
+
+}  // namespace
+
+std::optional<Fit> least_squares(const ModalResidual& residual, const VectorXd& start) {
+  const SearchSpace& space = residual.space();
+  VectorXd x = start.cwiseMax(space.lower()).cwiseMin(space.upper());
+  auto value = value_at(residual, x, true);
+  if (!value) return std::nullopt;
+  Fit fit;
+  double damping = 1e-3;
+  int small_gains = 0;
+  while (fit.iterations < most_iterations) {
+    const MatrixXd normal = value->jacobian.transpose() * value->jacobian;
+    const VectorXd gradient = value->jacobian.transpose() * value->residual;
+    const std::vector<bool> on_bound = held_by_bounds(space, x, gradient);
+    bool moved = false;
+    while (!moved && damping < 1e12) {
+      ++fit.iterations;
+      VectorXd step = step_from(normal, gradient, on_bound, damping);
+      const double length = step.cwiseAbs().maxCoeff();
+      if (!std::isfinite(length)) {
+        damping *= 10.0;
+        continue;
+      }
+      if (length > longest_step) step *= longest_step / length;
+      const VectorXd there = (x + step).cwiseMax(space.lower()).cwiseMin(space.upper());
+      auto next = value_at(residual, there, true);
+      const double before = value->chi_square();
+      if (next && next->chi_square() <= before) {
+        const double gain = before - next->chi_square();
+        small_gains = gain <= 1e-10 * before ? small_gains + 1 : 0;
+        const double went = (there - x).cwiseAbs().maxCoeff();
+        fit.converged = went < shortest_step || gain <= least_gain * before || small_gains > 3;
+        x = there;
+        value = std::move(next);
+        damping = std::max(damping * 0.1, 1e-12);
+        moved = true;
+      } else {
+        fit.converged = length < 1e-8;
+        if (fit.converged) break;
+        damping *= 5.0;
+      }
+    }
+    if (fit.converged || !moved) break;
+  }
+  fit.converged = fit.converged || damping >= 1e12;
+  fit.on_bound = held_by_bounds(space, x, value->jacobian.transpose() * value->residual);
+  fit.x = std::move(x);
+  fit.value = std::move(*value);
+  return fit;
+}
+
+}  // namespace beamid::experiments

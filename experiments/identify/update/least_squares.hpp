@@ -1,0 +1,27 @@
+// Least squares of a modal residual within a box.
+#pragma once
+
+#include <optional>
+
+#include "experiments/identify/update/modal_residual.hpp"
+
+namespace beamid::experiments {
+
+/// Where a search ended.
+struct Fit {
+  Eigen::VectorXd x;
+  ModalResidual::Value value;  ///< with its Jacobian
+  std::vector<bool> on_bound;  ///< held there against the residual's slope
+  int iterations = 0;
+  bool converged = false;
+
+  double chi_square() const { return value.chi_square(); }
+};
+
+/// Levenberg-Marquardt [marquardt1963] on the coordinates that are free: one on a bound that the residual would
+/// push beyond it stays there. A step is at most 1 in every coordinate. Points without modes count as
+/// infinitely far.
+/// @return nothing when there are no modes at the start.
+std::optional<Fit> least_squares(const ModalResidual& residual, const Eigen::VectorXd& start);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,40 @@
+// Everything that updating a structure by measured modes finds.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/identify/twins/deciding_measurement.hpp"
+#include "experiments/identify/twins/twins.hpp"
+#include "experiments/identify/update/updating.hpp"
+
+namespace beamid::experiments {
+
+/// The model and its residual, then the answers. It is not copied: the residual refers to the model.
+struct UpdateStudy {
+  std::unique_ptr<const ModalModel> model;
+  std::unique_ptr<const SearchSpace> space;
+  std::unique_ptr<const ModalResidual> residual;
+  UpdateSettings settings;
+  TwinSearch twins;
+  Updating updating;
+  PredictedModes described;                   ///< before anything is changed
+  std::vector<DecidingMeasurement> deciding;  ///< between the sets that fit as well
+  std::vector<std::string> warnings;          ///< sentences (update_warnings.hpp)
+
+  const ModalData& data() const { return residual->data(); }
+  const std::vector<Unknown>& unknowns() const { return model->asked().unknowns; }
+  /// All that fit as well, and none can be missing.
+  bool complete() const { return twins.complete(); }
+};
+
+/// @throws InputError, std::invalid_argument as the parts do.
+UpdateStudy study_update(const Experiment& experiment, const ModalData& data, const UpdateSettings& settings,
+                         const Progress& progress = unwatched);
+
+/// The frequencies of the structure as described, as many as parameters are asked about, as if measured.
+ModalData described_modes(const Experiment& experiment);
+
+}  // namespace beamid::experiments
