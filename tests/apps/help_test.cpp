@@ -47,10 +47,10 @@ TEST_P(EveryCommand, RefusesAnUnknownOption) {
 
 INSTANTIATE_TEST_SUITE_P(All, EveryCommand,
                          testing::Values("budget", "noise", "paper", "inspect", "prepare", "modal",
-                                         "identify", "check", "steps", "track", "stream", "compare",
-                                         "identifiability", "efficiency", "sweep", "modes", "frame",
-                                         "simulate", "frf", "reduce", "new", "validate", "list", "report",
-                                         "help", "completion"),
+                                         "identify", "check", "update", "twins", "steps", "track", "stream",
+                                         "compare", "identifiability", "efficiency", "sweep", "modes",
+                                         "frame", "simulate", "frf", "reduce", "new", "validate", "list",
+                                         "report", "help", "completion"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 // The everyday ones stand first.
@@ -60,7 +60,8 @@ TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(outcome.first_error_line(),
             "beamid: unknown command 'quaternion'; known: modes, simulate, identify, modal, compare, report, "
-            "inspect, prepare, track, stream, check, steps, frf, frame, reduce, identifiability, sweep, "
+            "inspect, prepare, track, stream, check, steps, update, twins, frf, frame, reduce, "
+            "identifiability, sweep, "
             "efficiency, "
             "atlas, budget, noise, paper, new, validate, list, completion, help");
 }
