@@ -1,5 +1,6 @@
 #include "fem/frame.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -34,6 +35,19 @@ void check_member(const Frame& frame, std::size_t i) {
 
 }  // namespace
 
+int first_joint_apart(const Frame& frame) {
+  std::vector<bool> reached(frame.joints.size(), false);
+  reached[0] = true;
+  for (bool more = true; more;) {
+    more = false;
+    for (const Frame::Member& member : frame.members)
+      if (reached[member.first] != reached[member.second])
+        reached[member.first] = reached[member.second] = more = true;
+  }
+  const auto apart = std::find(reached.begin(), reached.end(), false);
+  return apart == reached.end() ? -1 : static_cast<int>(apart - reached.begin());
+}
+
 double Frame::length(std::size_t member) const {
   const Joint &first = joints[members[member].first], &second = joints[members[member].second];
   return std::hypot(second.x - first.x, second.y - first.y);
@@ -66,6 +80,9 @@ void validate(const Frame& frame) {
   for (int joint = 0; joint < count; ++joint)
     if (!used[joint])
       throw std::invalid_argument("joint " + std::to_string(joint) + " has no member; expected at least one");
+  if (const int apart = first_joint_apart(frame); apart >= 0)
+    throw std::invalid_argument("joint " + std::to_string(apart) +
+                                " is not connected with joint 0; expected members between all parts");
   for (const Frame::Support& support : frame.supports) check_joint("a support", support.joint);
   for (const Frame::Body& body : frame.bodies) {
     check_joint("a body", body.joint);

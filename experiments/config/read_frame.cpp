@@ -205,6 +205,10 @@ void read_members(const TomlTable& table, Frame& frame) {
   for (std::size_t i = 0; i < joints.size(); ++i)
     if (!used[i])
       throw InputError(joints[i].place(), joints[i].name() + " ends no member; expected one at least");
+  if (const int apart = fem::first_joint_apart(frame); apart >= 0)
+    throw InputError(joints[static_cast<std::size_t>(apart)].place(),
+                     joints[static_cast<std::size_t>(apart)].name() +
+                         " is not connected with the first; expected members between all parts of the frame");
 }
 
 void read_frame_attachments(const TomlTable& table, Frame& frame) {

@@ -34,13 +34,13 @@ void keep_better(std::optional<DecidingMeasurement>& best, DecidingMeasurement o
 // its standard deviation is that of a component of the unit pair.
 std::optional<DecidingMeasurement> best_ratio(const std::vector<SetModes>& sets, double trust) {
   std::optional<DecidingMeasurement> best;
-  const auto places = static_cast<Index>(sets[0].positions.size());
+  const auto places = static_cast<Index>(sets[0].places.size());
   for (Index mode = 0; mode < sets[0].frequency_hz.size(); ++mode)
     for (Index b = 0; b < places; ++b)
       for (Index a = 0; a < b; ++a) {
         DecidingMeasurement one{MeasurementKind::shape_ratio, static_cast<int>(mode) + 1,
-                                sets[0].positions[static_cast<std::size_t>(a)],
-                                sets[0].positions[static_cast<std::size_t>(b)]};
+                                sets[0].places[static_cast<std::size_t>(a)],
+                                sets[0].places[static_cast<std::size_t>(b)]};
         one.separation = std::numeric_limits<double>::infinity();
         for (const SetModes& set : sets) one.predicted.push_back(set.shapes(a, mode) / set.shapes(b, mode));
         for (std::size_t s = 0; s < sets.size(); ++s)
@@ -81,12 +81,12 @@ std::optional<DecidingMeasurement> best_mass(const ModalModel& model, const std:
   std::optional<DecidingMeasurement> best;
   if (!model.dense()) return best;
   const double mass = mass_share * translated_mass(model, values[0]);
-  for (std::size_t place = 0; place < sets[0].positions.size(); ++place) {
+  for (std::size_t place = 0; place < sets[0].places.size(); ++place) {
     std::vector<VectorXd> frequencies;
     for (const VectorXd& value : values)
       frequencies.push_back(frequencies_with_mass(model, value, sets[0].coordinates[place], mass));
     DecidingMeasurement one{MeasurementKind::added_mass};
-    one.position = sets[0].positions[place];
+    one.place = sets[0].places[place];
     one.mass = mass;
     one.separation = std::numeric_limits<double>::infinity();
     const Index kept = std::min(measured, frequencies[0].size());

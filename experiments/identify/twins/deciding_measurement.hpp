@@ -17,9 +17,9 @@ struct DecidingMeasurement {
     parameter     ///< the quantity itself: a floor weighed
   };
   Kind kind = Kind::shape_ratio;
-  int mode = 0;                        ///< from 1; added_mass: that which moves most apart
-  double position = 0, reference = 0;  ///< [m]; shape_ratio: of the second sensor and of the first
-  double mass = 0;                     ///< added_mass [kg]
+  int mode = 0;                            ///< from 1; added_mass: that which moves most apart
+  std::string place = {}, reference = {};  ///< shape_ratio: of the second sensor and of the first
+  double mass = 0;                         ///< added_mass [kg]
   std::string parameter = {};
   std::vector<double> predicted = {};  ///< by each set: ratio, [Hz], [Hz], [SI]
   /// Of any two sets the smallest distance of their predictions, in standard deviations.

@@ -1,5 +1,7 @@
 #include "experiments/identify/twins/set_modes.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <numbers>
 
@@ -18,6 +20,22 @@ std::vector<std::pair<Index, double>> deflections_in(const ModalModel& model) {
     if (coordinates[i].kind == fem::Coordinate::Kind::deflection)
       found.emplace_back(static_cast<Index>(i), coordinates[i].scale);
   return found;
+}
+
+// A joint of a frame by its name, a place between joints by where it is.
+std::string place_text(const ModalModel& model, Index coordinate) {
+  const fem::StructuralSystem& system = model.described().system;
+  const fem::Coordinate& there = system.coordinates[static_cast<std::size_t>(coordinate)];
+  if (const fem::MatrixSystem* const matrices = model.structure().matrices())
+    return matrices->labels[static_cast<std::size_t>(coordinate)];
+  if (const fem::Frame* const frame = model.structure().frame()) {
+    const auto node = static_cast<std::size_t>(there.node);
+    if (node < frame->joints.size())
+      return (frame->joints[node].name.empty() ? fmt::format("{}", node + 1) : frame->joints[node].name) +
+             ".y";
+    return fmt::format("({:.3g} m, {:.3g} m).y", system.mesh.nodes[node].x, system.mesh.nodes[node].y);
+  }
+  return fmt::format("{:.4g} m", there.position);
 }
 
 VectorXd frequencies_of(const VectorXd& eigenvalues) {
@@ -40,9 +58,7 @@ SetModes set_modes(const ModalModel& model, const VectorXd& values, std::size_t 
     const auto& [coordinate, scale] = deflections[i - 1];
     modes.coordinates.insert(modes.coordinates.begin(), coordinate);
     scales.insert(scales.begin(), scale);
-    modes.positions.insert(
-        modes.positions.begin(),
-        model.described().system.coordinates[static_cast<std::size_t>(coordinate)].position);
+    modes.places.insert(modes.places.begin(), place_text(model, coordinate));
   }
   modes.shapes.resize(static_cast<Index>(scales.size()), kept);
   for (Index a = 0; a < modes.shapes.rows(); ++a)

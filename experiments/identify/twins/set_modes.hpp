@@ -11,7 +11,7 @@ namespace beamid::experiments {
 /// Modes with their deflections at places where a sensor could sit.
 struct SetModes {
   Eigen::VectorXd frequency_hz;           ///< (k)
-  std::vector<double> positions;          ///< [m] (p), about ten of them, evenly spread over the structure
+  std::vector<std::string> places;        ///< "1.2 m", "ridge.x" (p), about ten of them, evenly spread
   std::vector<Eigen::Index> coordinates;  ///< of the system, deflections there (p)
   Eigen::MatrixXd shapes;                 ///< (p x k) [m]
 };

@@ -6,14 +6,24 @@
 namespace beamid::experiments {
 namespace {
 
-/// Every storey by itself, or the bending stiffness.
+/// Every storey or factor by itself, or the bending stiffness.
 std::vector<ParameterChoice> natural_choices(const Experiment& experiment) {
-  if (!experiment.beam.shear_building) return {{"bending_stiffness"}};
   std::vector<ParameterChoice> choices;
+  if (!experiment.structure.is_beam()) {
+    for (const std::string& name : fem::factor_names(experiment.structure))
+      choices.push_back({"factor", name});
+    if (choices.empty())
+      throw std::invalid_argument(std::string("the ") + experiment.structure.kind() +
+                                  " has nothing that may be unknown; expected groups of members, or "
+                                  "parameters of matrices");
+    return choices;
+  }
+  if (!experiment.structure.is_chain()) return {{"bending_stiffness"}};
+  const fem::Beam& chain = experiment.structure.beam();
   double height = 0.0;
-  for (const auto& storey : experiment.beam.segments) {
+  for (const auto& storey : chain.segments) {
     ParameterChoice choice{"storey_stiffness"};
-    choice.region = {height, std::min(height + storey.length, experiment.beam.length())};
+    choice.region = {height, std::min(height + storey.length, chain.length())};
     height += storey.length;
     choices.push_back(choice);
   }
@@ -45,9 +55,9 @@ AskedParameters asked_parameters(const Experiment& experiment) {
     asked.left_out.push_back(choice.name.empty() ? choice.quantity : choice.name);
   }
   if (choices.empty()) choices = natural_choices(experiment);
-  asked.unknowns = unknowns_of(choices, beam_defaults(experiment.beam, choices));
+  asked.unknowns = unknowns_of(choices, beam_defaults(experiment.structure, choices));
   for (const ParameterChoice& choice : choices) {
-    asked.parameters.push_back({*beam_quantity(choice.quantity), choice.region});
+    asked.parameters.push_back({*beam_quantity(choice.quantity), choice.region, choice.name});
     asked.has_prior.push_back(choice.deviation || choice.relative_deviation);
   }
   return asked;

@@ -30,7 +30,7 @@ std::vector<std::pair<Index, Index>> clusters_of(const VectorXd& frequency) {
 
 }  // namespace
 
-ModalModel::ModalModel(const UpdatedStructure& structure, int elements, std::vector<fem::Point> points,
+ModalModel::ModalModel(const fem::Structure& structure, int elements, std::vector<fem::Point> points,
                        AskedParameters asked, Index count)
     : structure_(structure), elements_(elements), points_(std::move(points)), asked_(std::move(asked)) {
   described_ = fem::assemble_parametric(structure_, elements_, points_, asked_.parameters);
@@ -67,7 +67,7 @@ ModalModel::Found ModalModel::found(const VectorXd& values, bool slopes) const {
     if (solver.info() != Eigen::Success) throw std::runtime_error("the mass matrix is not positive definite");
     return {solver.eigenvalues(), solver.eigenvectors(), {}};
   }
-  UpdatedStructure there = structure_;
+  fem::Structure there = structure_;
   for (std::size_t j = 0; j < asked_.parameters.size(); ++j)
     if (fem::value_of(there, asked_.parameters[j]) != values[static_cast<Index>(j)])
       there = fem::with_value(there, asked_.parameters[j], values[static_cast<Index>(j)]);

@@ -7,13 +7,9 @@
 
 #include "experiments/config/experiment.hpp"
 #include "experiments/models/unknown.hpp"
-#include "fem/assembly.hpp"
-#include "fem/parametric_system.hpp"
+#include "fem/structure.hpp"
 
 namespace beamid::experiments {
-
-/// The structure of an experiment: a beam, or a chain.
-using UpdatedStructure = decltype(Experiment::beam);
 
 /// What [[parameters]] asks of the structure itself.
 struct AskedParameters {
@@ -23,7 +19,8 @@ struct AskedParameters {
   std::vector<std::string> left_out;           ///< names of those that frequencies do not depend on: dampings
 };
 
-/// Those of the file; without any, every storey of a chain by itself, or the bending stiffness.
+/// Those of the file; without any, every storey of a chain or every factor by itself, or the bending
+/// stiffness.
 /// @throws InputError as unknowns_of(), and when nothing is left to ask about.
 AskedParameters asked_parameters(const Experiment& experiment);
 
@@ -46,9 +43,10 @@ class ModalModel {
  public:
   /// @param points sensors; @param count modes that at() finds at most
   /// @throws std::invalid_argument as assemble_parametric()
-  ModalModel(const UpdatedStructure& structure, int elements, std::vector<fem::Point> points,
+  ModalModel(const fem::Structure& structure, int elements, std::vector<fem::Point> points,
              AskedParameters asked, Eigen::Index count);
 
+  const fem::Structure& structure() const { return structure_; }
   const AskedParameters& asked() const { return asked_; }
   const fem::ParametricSystem& described() const { return described_; }
   const std::vector<fem::Point>& points() const { return points_; }
@@ -65,7 +63,7 @@ class ModalModel {
   std::pair<Eigen::MatrixXd, Eigen::MatrixXd> matrices(const Eigen::VectorXd& values) const;
 
  private:
-  UpdatedStructure structure_;
+  fem::Structure structure_;
   int elements_;
   std::vector<fem::Point> points_;
   AskedParameters asked_;

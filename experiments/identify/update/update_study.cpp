@@ -24,9 +24,10 @@ std::vector<fem::Point> sensor_points(const Experiment& experiment, bool shapes)
                                   "' reads a strain; expected displacement, velocity or acceleration where "
                                   "shapes are compared");
     points.push_back({fmt::format("sensor{}", points.size() + 1),
-                      sensor.position ? *sensor.position : fem::natural_point(experiment.beam).position});
+                      sensor.position ? *sensor.position : fem::natural_point(experiment.structure).position,
+                      sensor.place});
   }
-  if (points.empty()) points.push_back(fem::natural_point(experiment.beam));
+  if (points.empty()) points.push_back(fem::natural_point(experiment.structure));
   return points;
 }
 
@@ -43,7 +44,7 @@ UpdateStudy study_update(const Experiment& experiment, const ModalData& data, co
                          const Progress& progress) {
   UpdateStudy study;
   study.settings = settings;
-  study.model = std::make_unique<const ModalModel>(experiment.beam, experiment.elements,
+  study.model = std::make_unique<const ModalModel>(experiment.structure, experiment.elements,
                                                    sensor_points(experiment, data.has_shapes()),
                                                    asked_parameters(experiment), modes_needed(data));
   study.space = std::make_unique<const SearchSpace>(study.model->asked());
@@ -62,8 +63,8 @@ UpdateStudy study_update(const Experiment& experiment, const ModalData& data, co
 ModalData described_modes(const Experiment& experiment) {
   const AskedParameters asked = asked_parameters(experiment);
   const auto q = static_cast<Index>(asked.unknowns.size());
-  const ModalModel model(experiment.beam, experiment.elements, {fem::natural_point(experiment.beam)}, asked,
-                         q);
+  const ModalModel model(experiment.structure, experiment.elements,
+                         {fem::natural_point(experiment.structure)}, asked, q);
   VectorXd guess(q);
   for (Index j = 0; j < q; ++j) guess[j] = asked.unknowns[static_cast<std::size_t>(j)].guess;
   const PredictedModes modes = model.at(guess, false);

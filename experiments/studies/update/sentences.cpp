@@ -105,13 +105,13 @@ std::string deciding_text(const DecidingMeasurement& one) {
   const auto [least, most] = std::minmax_element(one.predicted.begin(), one.predicted.end());
   switch (one.kind) {
     case DecidingMeasurement::Kind::shape_ratio:
-      return fmt::format("motion at {:.4g} m over that at {:.4g} m in mode {}: {:.3g} to {:.3g}",
-                         one.position, one.reference, one.mode, *least, *most);
+      return fmt::format("motion at {} over that at {} in mode {}: {:.3g} to {:.3g}", one.place,
+                         one.reference, one.mode, *least, *most);
     case DecidingMeasurement::Kind::frequency:
       return fmt::format("frequency of mode {}: {:.4g} to {:.4g} Hz", one.mode, *least, *most);
     case DecidingMeasurement::Kind::added_mass:
-      return fmt::format("the frequencies with {:.3g} kg added at {:.4g} m; mode {}: {:.4g} to {:.4g} Hz",
-                         one.mass, one.position, one.mode, *least, *most);
+      return fmt::format("the frequencies with {:.3g} kg added at {}; mode {}: {:.4g} to {:.4g} Hz", one.mass,
+                         one.place, one.mode, *least, *most);
     case DecidingMeasurement::Kind::parameter:
       return fmt::format("{} weighed: {:.4g} to {:.4g} kg", one.parameter, *least, *most);
   }

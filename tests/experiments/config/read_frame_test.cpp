@@ -111,7 +111,12 @@ TEST(ReadFrame, RefusesWhatCannotBe) {
        "frame.toml:17:1: frame.bodies[1] has no effect; expected at least one of mass_kg, "
        "rotary_inertia_kg_m2"},
       {replaced(good, "[frame]", "[frame]\nelements_per_member = 500001"),
-       "frame.toml:2:23: frame.elements_per_member is 500001; expected a whole number from 1 to 500000"}};
+       "frame.toml:2:23: frame.elements_per_member is 500001; expected a whole number from 1 to 500000"},
+      {replaced(joints, "}]\n", "}, { x_m = 9, y_m = 0 }, { x_m = 9, y_m = 2 }]\n") + members +
+           "[[frame.members]]\nfirst = 4\nsecond = 5\nbending_stiffness_n_m2 = 2\n"
+           "axial_stiffness_n = 1e6\nmass_per_length_kg_per_m = 1\n",
+       "frame.toml:2:95: frame.joints[4] is not connected with the first; expected members between all parts "
+       "of the frame"}};
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text), message);
 }
 

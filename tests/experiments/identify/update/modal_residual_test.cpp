@@ -20,7 +20,7 @@ double derivative_error(const Experiment& experiment, Index modes, double error_
   std::vector<fem::Point> points;
   for (const Sensor& sensor : experiment.sensors)
     points.push_back({"s" + std::to_string(points.size()), sensor.position.value()});
-  const ModalModel model(experiment.beam, experiment.elements, points, asked_parameters(experiment),
+  const ModalModel model(experiment.structure, experiment.elements, points, asked_parameters(experiment),
                          modes + 2);
   const SearchSpace space(model.asked());
   VectorXd truth = VectorXd::Zero(space.size());
@@ -94,7 +94,7 @@ TEST(ModalResidual, OfAShapeIsItsMac) {
   const Experiment experiment = four_storeys();
   std::vector<fem::Point> points;
   for (int floor = 1; floor <= 4; ++floor) points.push_back({"s" + std::to_string(floor), double(floor)});
-  const ModalModel model(experiment.beam, experiment.elements, points, asked_parameters(experiment), 4);
+  const ModalModel model(experiment.structure, experiment.elements, points, asked_parameters(experiment), 4);
   const SearchSpace space(model.asked());
   ModalData data = predicted_data(experiment, model.described().values, 1);
   data.modes[0].shape = VectorXd{{-3.0, -5.0, -9.0, -8.0}};

@@ -37,7 +37,8 @@ ModalData predicted_data(const Experiment& experiment, const Eigen::VectorXd& va
   std::vector<fem::Point> points;
   for (const Sensor& sensor : experiment.sensors)
     points.push_back({fmt::format("s{}", points.size()), sensor.position.value()});
-  const ModalModel model(experiment.beam, experiment.elements, points, asked_parameters(experiment), count);
+  const ModalModel model(experiment.structure, experiment.elements, points, asked_parameters(experiment),
+                         count);
   const PredictedModes modes = model.at(values, false);
   ModalData data{"test", {}};
   for (Eigen::Index i = 0; i < count; ++i) {
