@@ -72,9 +72,10 @@ std::optional<Fit> least_squares(const ModalResidual& residual, const VectorXd& 
       }
       if (length > longest_step) step *= longest_step / length;
       const VectorXd there = (x + step).cwiseMax(space.lower()).cwiseMin(space.upper());
-      auto next = value_at(residual, there, true);
+      auto next = value_at(residual, there, false);
       const double before = value->chi_square();
       if (next && next->chi_square() <= before) {
+        next = value_at(residual, there, true);
         const double gain = before - next->chi_square();
         small_gains = gain <= 1e-10 * before ? small_gains + 1 : 0;
         const double went = (there - x).cwiseAbs().maxCoeff();

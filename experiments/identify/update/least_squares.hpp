@@ -18,8 +18,8 @@ struct Fit {
   double chi_square() const { return value.chi_square(); }
 };
 
-/// Levenberg-Marquardt [marquardt1963] on the coordinates that are free: one on a bound that the residual would
-/// push beyond it stays there. A step is at most 1 in every coordinate. Points without modes count as
+/// Levenberg-Marquardt [marquardt1963] on the coordinates that are free: one on a bound that the residual
+/// would push beyond it stays there. A step is at most 1 in every coordinate. Points without modes count as
 /// infinitely far.
 /// @return nothing when there are no modes at the start.
 std::optional<Fit> least_squares(const ModalResidual& residual, const Eigen::VectorXd& start);

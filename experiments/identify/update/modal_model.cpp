@@ -75,7 +75,7 @@ ModalModel::Found ModalModel::found(const VectorXd& values, bool slopes) const {
       fem::assemble_parametric(there, elements_, points_, asked_.parameters).system;
   const fem::Modes modes = fem::modes(system, std::min(size(), slopes ? 2 * count_ + 6 : count_));
   Found result{modes.angular_frequency.cwiseAbs2(), modes.shape, {}};
-  if (slopes && !points_.empty() && modes.rigid == 0)
+  if (slopes && points_.size() > 1 && modes.rigid == 0)
     result.compliance =
         fem::StiffnessSolver(system.stiffness).solve(MatrixXd(system.outputs.transpose())).transpose();
   return result;
@@ -103,7 +103,7 @@ void ModalModel::add_slopes(const Found& all, PredictedModes& modes) const {
   const Index k = count_, q = parameters(), m = all.shapes.cols();
   const MatrixXd seen = described_.system.outputs * all.shapes;  // (p x m)
   modes.frequency_slopes.resize(k, q);
-  modes.shape_slopes.assign(static_cast<std::size_t>(k), MatrixXd(seen.rows(), q));
+  if (seen.rows() > 1) modes.shape_slopes.assign(static_cast<std::size_t>(k), MatrixXd(seen.rows(), q));
   for (Index j = 0; j < q; ++j) {
     const auto& slope = described_.derivatives[static_cast<std::size_t>(j)];
     const bool heavy = slope.mass.nonZeros() > 0;
@@ -117,7 +117,7 @@ void ModalModel::add_slopes(const Found& all, PredictedModes& modes) const {
       const double dlambda = lowest.col(i).dot(load), f = modes.frequency_hz[i];
       modes.frequency_slopes(i, j) =
           f > 0.0 ? dlambda / (8.0 * std::numbers::pi * std::numbers::pi * f) : 0.0;
-      if (seen.rows() == 0) continue;
+      if (seen.rows() < 2) continue;  // no shape to compare
       const auto [first, number] = modes.cluster[static_cast<std::size_t>(i)];
       const VectorXd work = all.shapes.transpose() * load;  // phi_m^T F but for m = i
       VectorXd change = VectorXd::Zero(seen.rows());

@@ -29,7 +29,7 @@ struct PredictedModes {
   Eigen::VectorXd frequency_hz;               ///< (k) ascending
   Eigen::MatrixXd shapes;                     ///< (p x k) displacements at the sensors
   Eigen::MatrixXd frequency_slopes;           ///< (k x q) df / dp; empty unless asked for
-  std::vector<Eigen::MatrixXd> shape_slopes;  ///< of each mode (p x q), without its neighbours' part
+  std::vector<Eigen::MatrixXd> shape_slopes;  ///< of each mode (p x q), without its neighbours' part; p > 1
   /// Modes so close that only the space of their shapes is determined: first and number, for each mode.
   std::vector<std::pair<Eigen::Index, Eigen::Index>> cluster;
 };

@@ -67,6 +67,11 @@ std::size_t Updating::as_well() const {
       std::count_if(sets.begin(), sets.end(), [](const ParameterSet& set) { return set.as_well; }));
 }
 
+bool Updating::continuum() const {
+  return std::any_of(open.begin(), open.end(),
+                     [](const OpenDirection& direction) { return std::isinf(direction.deviation); });
+}
+
 int default_starts(const ModalModel& model) {
   if (model.dense()) return model.size() <= 32 ? 300 : 100;
   const double work = static_cast<double>(model.size()) * static_cast<double>(model.parameters() + 10);
@@ -93,11 +98,12 @@ Updating update(const ModalResidual& residual, const UpdateSettings& settings,
         "other initial estimates or bounds");
   order_sets(result.sets);
   judge_parameters(residual, result);
-  if (!result.open.empty()) {  // every set is one of a continuum: other ends of searches say nothing
+  if (result.continuum()) {  // other ends of searches say nothing
+    ParameterSet first = std::move(result.sets.front());
     for (std::size_t i = 1; i < result.sets.size(); ++i)
-      result.sets[0].starts += result.sets[i].as_well ? result.sets[i].starts : 0;
-    std::erase_if(result.sets,
-                  [&](const ParameterSet& set) { return &set != &result.sets[0] && set.as_well; });
+      if (result.sets[i].as_well) first.starts += result.sets[i].starts;
+    std::erase_if(result.sets, [&](const ParameterSet& set) { return set.as_well; });
+    result.sets.insert(result.sets.begin(), std::move(first));
   }
   for (std::size_t i = 0; i < result.sets.size(); ++i)
     if (!result.sets[i].as_well) result.ended_elsewhere += result.sets[i].starts;

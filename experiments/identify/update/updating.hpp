@@ -49,6 +49,7 @@ struct Updating {
   double widening = 1.0;         ///< of the intervals, where the first set's chi^2 is above its limit
   const ParameterSet& best() const { return sets.front(); }
   bool explains() const { return widening == 1.0; }
+  bool continuum() const;  ///< some combination changes nothing at all: sets are points of a continuum
   std::size_t as_well() const;
 };
 

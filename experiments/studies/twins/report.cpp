@@ -10,7 +10,7 @@ constexpr std::size_t most_twins_shown = 12;
 std::string twins_verdict(const UpdateStudy& study) {
   const std::size_t sets = study.updating.as_well();
   if (!study.updating.explains()) return update_verdict(study).first;
-  if (!study.updating.open.empty())
+  if (study.updating.continuum())
     return "Not a number of sets but a continuum explains the modes: " + update_verdict(study).first;
   const std::size_t exact = study.twins.values.size();
   std::string text =
@@ -33,7 +33,7 @@ Results twins_report(const Experiment& experiment, const UpdateStudy& study) {
     results.paragraph(twins_verdict(study));
   else
     results.warning(twins_verdict(study), !study.updating.explains());
-  if (study.updating.open.empty()) results.paragraph(completeness_text(study));
+  if (!study.updating.continuum()) results.paragraph(completeness_text(study));
   for (const std::string& warning : study.warnings) results.warning(warning);
   results.table(set_table(study, most_twins_shown,
                           study.updating.explains() && study.twins.values.size() > study.updating.as_well()));

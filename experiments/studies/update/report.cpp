@@ -42,9 +42,9 @@ Results report(const Experiment& experiment, const UpdateStudy& study) {
   for (const std::string& remark : study.data().remarks) results.paragraph(remark);
   results.heading("Other sets that fit as well");
   results.paragraph(starts_text(study));
-  if (study.updating.open.empty()) results.paragraph(completeness_text(study));
+  if (!study.updating.continuum()) results.paragraph(completeness_text(study));
   if (study.updating.sets.size() > 1) results.table(set_table(study, most_sets_shown, true));
-  if (!study.updating.open.empty())
+  if (study.updating.continuum())
     results.paragraph("Of a continuum of sets that fit as well one is shown.");
   else if (study.updating.as_well() == 1)
     results.paragraph("No other set fits as well.");

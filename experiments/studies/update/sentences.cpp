@@ -52,8 +52,9 @@ std::pair<std::string, bool> update_verdict(const UpdateStudy& study) {
             false};
   if (!updating.open.empty()) {
     const auto names = undetermined(study);
-    return {fmt::format("{} of {} parameters {} not determined by these modes: {}.", names.size(),
-                        study.unknowns().size(), names.size() == 1 ? "is" : "are", joined(names)),
+    return {fmt::format("{} of {} parameters {} not determined by these modes: {}.{}", names.size(),
+                        study.unknowns().size(), names.size() == 1 ? "is" : "are", joined(names),
+                        updating.as_well() > 1 ? " Besides, " + sets_text(updating) + "." : ""),
             false};
   }
   if (updating.as_well() > 1)
