@@ -41,7 +41,7 @@ std::vector<Request> requests_of(const Values& values) {
     if (const fem::Structure& structure = request.experiment.structure;
         !structure.is_beam() || structure.is_chain())
       throw InputError({configs[k]}, fmt::format("check takes a beam; expected [beam] in place of [{}]. "
-                                                 "identify and update ask about any structure",
+                                                 "update fits any structure to modes, identify to a record",
                                                  structure.kind()));
     request.records = require_record_files(values, request.config, request.experiment.record_file);
     if (configs.size() > 1 && !records.empty()) request.records = {request.records[k]};
