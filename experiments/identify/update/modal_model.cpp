@@ -28,6 +28,18 @@ std::vector<std::pair<Index, Index>> clusters_of(const VectorXd& frequency) {
   return clusters;
 }
 
+// First row and number of rows in which two symmetric matrices have entries.
+std::pair<Index, Index> touched_by(const fem::SparseMatrix& a, const fem::SparseMatrix& b) {
+  Index first = a.rows(), end = 0;
+  for (const fem::SparseMatrix* matrix : {&a, &b})
+    for (Index column = 0; column < matrix->outerSize(); ++column)
+      if (fem::SparseMatrix::InnerIterator(*matrix, column)) {
+        first = std::min(first, column);
+        end = std::max(end, column + 1);
+      }
+  return {std::min(first, end), std::max<Index>(0, end - first)};
+}
+
 }  // namespace
 
 ModalModel::ModalModel(const fem::Structure& structure, int elements, std::vector<fem::Point> points,
@@ -107,28 +119,30 @@ void ModalModel::add_slopes(const Found& all, PredictedModes& modes) const {
   for (Index j = 0; j < q; ++j) {
     const auto& slope = described_.derivatives[static_cast<std::size_t>(j)];
     const bool heavy = slope.mass.nonZeros() > 0;
+    const auto [from, rows] = touched_by(stiffness_slopes_[static_cast<std::size_t>(j)], slope.mass);
     const MatrixXd lowest = all.shapes.leftCols(k);
-    const MatrixXd forces = stiffness_slopes_[static_cast<std::size_t>(j)] * lowest,
-                   momenta = heavy ? MatrixXd(slope.mass * lowest) : MatrixXd();
+    MatrixXd loads = stiffness_slopes_[static_cast<std::size_t>(j)] * lowest;  // F but for lambda' M phi
+    const MatrixXd momenta = heavy ? MatrixXd(slope.mass * lowest) : MatrixXd();
+    if (heavy) loads -= momenta * all.eigenvalues.head(k).asDiagonal();
+    const MatrixXd work = all.shapes.middleRows(from, rows).transpose() * loads.middleRows(from, rows);
+    MatrixXd statics;
+    if (all.compliance.size() > 0)
+      statics = all.compliance.middleCols(from, rows) * loads.middleRows(from, rows);
     for (Index i = 0; i < k; ++i) {
-      const double lambda = all.eigenvalues[i];
-      VectorXd load = forces.col(i);
-      if (heavy) load -= lambda * momenta.col(i);
-      const double dlambda = lowest.col(i).dot(load), f = modes.frequency_hz[i];
+      const double lambda = all.eigenvalues[i], f = modes.frequency_hz[i];
       modes.frequency_slopes(i, j) =
-          f > 0.0 ? dlambda / (8.0 * std::numbers::pi * std::numbers::pi * f) : 0.0;
+          f > 0.0 ? work(i, i) / (8.0 * std::numbers::pi * std::numbers::pi * f) : 0.0;
       if (seen.rows() < 2) continue;  // no shape to compare
       const auto [first, number] = modes.cluster[static_cast<std::size_t>(i)];
-      const VectorXd work = all.shapes.transpose() * load;  // phi_m^T F but for m = i
       VectorXd change = VectorXd::Zero(seen.rows());
       for (Index a = 0; a < m; ++a) {
         const double mu = all.eigenvalues[a];
         const bool near = a >= first && a < first + number;
         double share = near ? 0.0 : 1.0 / (mu - lambda);
         if (all.compliance.size() > 0) share -= 1.0 / mu;
-        change -= share * work[a] * seen.col(a);
+        change -= share * work(a, i) * seen.col(a);
       }
-      if (all.compliance.size() > 0) change -= all.compliance * load;
+      if (all.compliance.size() > 0) change -= statics.col(i);
       if (heavy) change -= 0.5 * lowest.col(i).dot(momenta.col(i)) * seen.col(i);
       modes.shape_slopes[static_cast<std::size_t>(i)].col(j) = change;
     }
