@@ -11,6 +11,9 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr int most_iterations = 200;
+// Coordinates are logarithms, alike in scale: what hardly changes anything is damped as the others are, in
+// part.
+constexpr double least_scale = 1e-3, least_damping = 1e-10;
 constexpr double longest_step = 1.0, shortest_step = 1e-11, least_gain = 1e-15;
 
 std::optional<ModalResidual::Value> value_at(const ModalResidual& residual, const VectorXd& x,
@@ -37,7 +40,7 @@ VectorXd step_from(const MatrixXd& normal, const VectorXd& gradient, const std::
   MatrixXd damped = normal;
   VectorXd right = -gradient;
   for (Index j = 0; j < right.size(); ++j) {
-    damped(j, j) += damping * std::max(normal(j, j), 1e-12 * normal.diagonal().maxCoeff()) + 1e-300;
+    damped(j, j) += damping * std::max(normal(j, j), least_scale * normal.diagonal().maxCoeff()) + 1e-300;
     if (!on_bound[static_cast<std::size_t>(j)]) continue;
     damped.row(j).setZero();
     damped.col(j).setZero();
@@ -58,7 +61,7 @@ std::optional<Fit> least_squares(const ModalResidual& residual, const VectorXd& 
   const bool slopes_apart = residual.model().dense();
   const double enough = slopes_apart ? 0.0 : 1e-7;  // of chi^2, where modes have fewer digits
   Fit fit;
-  double damping = 1e-3;
+  double damping = 1e-2;
   int small_gains = 0;
   while (fit.iterations < most_iterations) {
     const MatrixXd normal = value->jacobian.transpose() * value->jacobian;
@@ -86,7 +89,7 @@ std::optional<Fit> least_squares(const ModalResidual& residual, const VectorXd& 
                         gain <= std::max(least_gain * before, enough * (1.0 + before)) || small_gains > 3;
         x = there;
         value = std::move(next);
-        damping = std::max(damping * 0.1, 1e-12);
+        damping = std::max(damping * 0.1, least_damping);
         moved = true;
       } else {
         fit.converged = length < 1e-8;
