@@ -127,7 +127,10 @@ BeamSource read_beam(const Values& values, const std::vector<KeyOption>& more) {
     source.experiment = read_experiment(TomlTable::parse(study_beam, "the study's beam", overrides));
     if (!changed) source.experiment.title = "The study's steel beam (no --config and no other beam given)";
   }
-  if (values.has("elements")) source.experiment.elements = values.whole("elements");
+  if (values.has("elements")) {
+    source.experiment.elements = values.whole("elements");
+    require_mesh_memory(source.experiment.elements);
+  }
   return source;
 }
 

@@ -1,5 +1,10 @@
 #include "apps/command_line.hpp"
 
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -14,6 +19,28 @@
 
 namespace beamid::apps {
 namespace {
+
+constexpr const char no_memory[] =
+    "beamid: more memory was asked for than there is; expected a smaller record, mesh or ensemble\n";
+
+/// Where nothing catches: before main(), or in what may not throw.
+[[noreturn]] void end_at_once() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, no_memory, sizeof no_memory - 1);
+    _exit(1);
+  } catch (...) {
+  }
+  std::abort();
+}
+
+/// Before all else that is done before main(). A file of the largest size allowed (`ulimit -f`) is an error
+/// of the write then, as a full disk is, and no signal.
+[[gnu::constructor(101)]] void prepare_for_the_worst() {
+  std::set_terminate(end_at_once);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
 
 /// Says what was wrong. Names of files and what they hold may not command a terminal.
 int refuse(const char* before, const std::exception& error, const std::string& after = "") {
@@ -64,8 +91,7 @@ int run_command_line(int count, char** words) {
   } catch (const std::invalid_argument& error) {
     return refuse("beamid: ", error);
   } catch (const std::bad_alloc&) {
-    std::cerr
-        << "beamid: more memory was asked for than there is; expected a smaller record, mesh or ensemble\n";
+    std::cerr << no_memory;
     return 1;
   } catch (const std::filesystem::filesystem_error& error) {
     const std::string file = error.path2().empty() ? error.path1().string() : error.path2().string();

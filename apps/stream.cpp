@@ -67,14 +67,6 @@ void require_replaceable(const fs::path& file) {
   throw UsageError(file.string() + " exists and is no state that --save-state wrote; expected another name");
 }
 
-// Beside the file first: a state is there as a whole or not at all.
-void save(const StreamedIdentification& stream, const fs::path& file) {
-  const fs::path part = fmt::format("{}.partial-{}", file.string(), getpid());
-  fs::remove(part);  // a link there would be followed
-  write_file(part, stream.save().dump(1) + "\n");
-  fs::rename(part, file);
-}
-
 void tell(const std::vector<std::string>& news) {
   for (const std::string& sentence : news) std::cerr << sentence << "\n";
 }
@@ -131,10 +123,11 @@ int run_stream(const Values& values) {
   if (values.has("save-state")) {
     at_place(experiment.filter.place, [&] { stream.check_can_be_saved(); });
     require_replaceable(values.text("save-state"));
+    require_writable(values.text("save-state"));
   }
   if (values.has("resume")) resume(stream, values.text("resume"));
   const auto keep = [&] {
-    if (values.has("save-state")) save(stream, values.text("save-state"));
+    if (values.has("save-state")) replace_file(values.text("save-state"), stream.save().dump(1) + "\n");
   };
   int signal = 0;
   bool failed = false;

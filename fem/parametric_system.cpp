@@ -116,7 +116,7 @@ class Differentiation {
     const Mesh& mesh = result_.system.mesh;
     const double slack = 1e-9 * beam_.length();
     const auto [from, to] = parameter.region.value_or(std::pair{0.0, beam_.length()});
-    const auto inside = [&](Index row) {
+    const auto inside = [&, from = from, to = to](Index row) {
       const int element = owner_[static_cast<std::size_t>(row)];
       if (element < 0) return false;
       const Mesh::Element& e = mesh.elements[static_cast<std::size_t>(element)];

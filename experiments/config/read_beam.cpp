@@ -9,6 +9,7 @@
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_segment.hpp"
 #include "experiments/config/useless_keys.hpp"
+#include "experiments/text/memory_need.hpp"
 #include "experiments/text/method_choice.hpp"
 #include "fem/buckling.hpp"
 
@@ -145,7 +146,15 @@ fem::Beam read_beam(const TomlTable& table) {
 }
 
 int read_elements(const TomlTable& table) {
-  return beam_keys().read(table).elements;
+  const int elements = beam_keys().read(table).elements;
+  at_place(table.value_place("elements"), [&] { require_mesh_memory(elements); });
+  return elements;
+}
+
+void require_mesh_memory(double elements, double modes) {
+  constexpr double mesh = 2000, mode = 64;  // [bytes of an element], measured
+  require_memory(elements, modes > 0 ? fmt::format("elements with {:g} modes", modes) : "elements",
+                 mesh + mode * modes);
 }
 
 }  // namespace beamid::experiments

@@ -18,6 +18,10 @@ fem::Beam read_beam(const TomlTable& table);
 /// Finite elements along the beam.
 int read_elements(const TomlTable& table);
 
+/// @throws std::invalid_argument where memory does not hold a mesh and so many of its modes
+/// (memory_need.hpp).
+void require_mesh_memory(double elements, double modes = 0);
+
 /// "clamped-free" and every other pair of clamped, pinned, guided, free: root first, then tip.
 const std::vector<std::string>& end_supports();
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "experiments/config/key_tables.hpp"
+#include "experiments/text/memory_need.hpp"
+#include "experiments/text/method_choice.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
@@ -49,6 +51,8 @@ Simulation read_simulation(const TomlTable& table) {
     throw InputError(table.place(),
                      fmt::format("{} s at {} Hz make {:.6g} samples; expected 1 to {:g}", simulation.duration,
                                  simulation.sampling_rate, samples, most_samples));
+  constexpr double sample = 170;  // [bytes], of one sensor: its responses and what is reported, measured
+  at_place(table.place(), [&] { require_memory(samples, "samples of a simulated record", sample); });
   const auto methods = fem::response_methods();
   const auto method = std::find_if(methods.begin(), methods.end(),
                                    [&](const auto& m) { return m.name == simulation.method.name; });

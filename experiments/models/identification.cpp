@@ -1,10 +1,13 @@
 #include "experiments/models/identification.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "experiments/models/divergence.hpp"
+#include "experiments/text/memory_need.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -29,6 +32,15 @@ std::vector<Eigen::Index> kept_places(const JointModel& model) {
   return places;
 }
 
+/// Of filters that draw samples of the state.
+void require_sample_memory(const IdentificationSettings& settings, Eigen::Index states) {
+  constexpr double copies = 4;
+  for (const char* drawn : {"particles", "members"})
+    if (settings.filter_options.values().contains(drawn))
+      require_memory(settings.filter_options.number(drawn), fmt::format("{} of {} states", drawn, states),
+                     copies * sizeof(double) * static_cast<double>(states));
+}
+
 }  // namespace
 
 filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& initial,
@@ -40,6 +52,7 @@ filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& i
 
 filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
                                  const IdentificationSettings& settings, filters::Keep keep) {
+  require_sample_memory(settings, settings.initial.mean.size());
   const auto filter = filters::filter_registry().make(
       settings.filter, settings.filter_options,
       filters::discretise(model.motion, record.interval(), settings.discretisation,

@@ -17,6 +17,7 @@
 #include <new>
 
 #include "experiments/record/apart_pipe.hpp"
+#include "experiments/text/memory_need.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -114,10 +115,13 @@ int wait_for(pid_t child) {
 
 ReadingLimits reading_limits(std::size_t file_bytes) {
   constexpr std::size_t compression = 1100;  // more than deflate ever reaches
-  constexpr std::size_t most = std::size_t{1} << 27, spare = std::size_t{256} << 20;
+  constexpr std::size_t most = std::size_t{1} << 25, spare = std::size_t{256} << 20;
   ReadingLimits limits;
   limits.numbers = std::min(file_bytes * compression / 4 + 64, std::max(most, file_bytes));
   limits.seconds = 1.0 + 4.0 * static_cast<double>(file_bytes) / 1e6;
+  // What a file claims is not taken for granted: this process holds the numbers twice beside the child.
+  const auto fitting = static_cast<std::size_t>(std::min(memory_left() / (5 * sizeof(double)), 1e15));
+  limits.numbers = std::min(limits.numbers, fitting);
   limits.bytes = spare + 3 * sizeof(double) * limits.numbers;
   return limits;
 }

@@ -16,8 +16,9 @@ struct ReadingLimits {
   std::size_t bytes = 0;    ///< of memory, beside what this process has
 };
 
-/// By a file's size: as many numbers as compression can have put into it, but no more than 2^27 (1 GiB) or
-/// one for each of its bytes; memory for three copies of them; one second and four more for each megabyte.
+/// By a file's size: as many numbers as compression can have put into it, but no more than 2^25 (256 MiB) or
+/// one for each of its bytes, nor than fit here (memory_need.hpp); memory for three copies of them; one
+/// second and four more for each megabyte.
 ReadingLimits reading_limits(std::size_t file_bytes);
 
 /// Collects signals in a child process, whose crashes, endless loops and hunger for memory end as a message.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
 
 #include "experiments/results/envelope.hpp"
@@ -138,6 +139,19 @@ void write_data(const Figure& figure, const std::filesystem::path& folder) {
   write_file(folder / (figure.name + ".gp"), gnuplot_script(figure));
 }
 
+namespace {
+
+/// Whether a picture is there to its end: a full disk cuts it off, and gnuplot does not always say so.
+bool is_whole(const std::filesystem::path& picture) {
+  const std::string_view end = picture.extension() == ".svg" ? "</svg>" : "IEND";
+  std::ifstream stream(picture, std::ios::binary | std::ios::ate);
+  std::string last(16, '\0');
+  stream.seekg(-static_cast<std::streamoff>(last.size()), std::ios::end).read(last.data(), 16);
+  return stream && last.find(end) != std::string::npos;
+}
+
+}  // namespace
+
 void draw(const Figure& figure, const std::filesystem::path& folder) {
   constexpr double longest = 120;  // [s]
   const auto fail = [&](const std::string& why, bool hopeless) {
@@ -157,10 +171,9 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
   if (gnuplot.exit_code != 0)
     fail(fmt::format("gnuplot failed (exit code {}): {}", gnuplot.exit_code, gnuplot.output), false);
   for (const char* ending : {".svg", ".png"}) {
-    std::error_code error;
     const auto picture = folder / (figure.name + ending);
-    if (const auto size = std::filesystem::file_size(picture, error); error || size == 0)
-      throw std::runtime_error("figure '" + figure.name + "': gnuplot left no " +
+    if (!is_whole(picture))
+      throw std::runtime_error("figure '" + figure.name + "': gnuplot left no whole " +
                                picture.filename().string() + "; is the disk full? " + gnuplot.output);
   }
 }

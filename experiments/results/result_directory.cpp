@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -97,17 +95,10 @@ void unlock(const fs::path& folder) {
 // Removes what processes have left that ended before their commit: folders named `prefix` and the process.
 void clear_abandoned(const fs::path& parent, const std::string& prefix) {
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(parent, ignored)) {
-    const std::string name = entry.path().filename().string();
-    const char* const end = name.data() + name.size();
-    pid_t process = 0;
-    if (!name.starts_with(prefix) || std::from_chars(name.data() + prefix.size(), end, process).ptr != end ||
-        process <= 0)
-      continue;
-    if (kill(process, 0) == 0 || errno != ESRCH) continue;
-    const int lock = open_locked(entry.path());  // not of a process of another machine or container
+  for (const fs::path& folder : abandoned(parent, prefix)) {
+    const int lock = open_locked(folder);  // not of a process of another machine or container
     if (lock < 0) continue;
-    fs::remove_all(entry.path(), ignored);
+    fs::remove_all(folder, ignored);
     close(lock);
   }
 }

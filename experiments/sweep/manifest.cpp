@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/json_file.hpp"
@@ -21,9 +18,8 @@ namespace {
 
 /// Of a file that is not there too: cases that need it say so.
 std::string hash_of_file(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return "not there";
-  return hash_of(std::string(std::istreambuf_iterator<char>(stream), {}));
+  if (!fs::exists(file)) return "not there";
+  return hash_of(read_bytes(file, "a file for the cases of a sweep"));
 }
 
 /// Files that an experiment file names, in its own words, with their hashes. One that cannot be read names

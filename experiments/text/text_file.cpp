@@ -6,12 +6,23 @@
 #include <vector>
 
 #include "experiments/text/input_error.hpp"
+#include "experiments/text/memory_need.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 bool is_binary(char byte) {
   return byte >= 0 && byte < '\t';
+}
+
+/// Refuses what memory does not hold as bytes and, at 8 bytes each, as the numbers that they may be. Of a
+/// pipe no size is known before its end.
+void require_fitting(const std::filesystem::path& file, double bytes) {
+  try {
+    require_memory(bytes, "bytes of a file", 8.0);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({file.string()}, error.what());
+  }
 }
 
 }  // namespace
@@ -22,6 +33,8 @@ std::ifstream open_input(const std::filesystem::path& file, const std::string& e
   const std::filesystem::file_status status = std::filesystem::status(file, failure);
   if (!std::filesystem::exists(status)) throw InputError(place, "no such file; expected " + expected);
   if (std::filesystem::is_directory(status)) throw InputError(place, "a directory; expected " + expected);
+  if (std::filesystem::is_fifo(status))  // a file is read more than once: what it is, then what it holds
+    throw InputError(place, "a pipe; expected " + expected + " in a file");
   if (std::filesystem::is_character_file(status)) throw InputError(place, "a device; expected " + expected);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(place, "cannot be opened; expected " + expected + " that may be read");
@@ -30,6 +43,9 @@ std::ifstream open_input(const std::filesystem::path& file, const std::string& e
 
 std::string read_bytes(const std::filesystem::path& file, const std::string& expected) {
   std::ifstream stream = open_input(file, expected);
+  std::error_code unknown;
+  const auto size = std::filesystem::file_size(file, unknown);
+  if (!unknown) require_fitting(file, static_cast<double>(size));
   std::string bytes;
   for (std::vector<char> part(1 << 16); stream;) {
     stream.read(part.data(), static_cast<std::streamsize>(part.size()));

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "experiments/config/description.hpp"
+#include "experiments/config/read_beam.hpp"
 #include "experiments/results/mode_figure.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
 #include "experiments/studies/continuum/mode_trust.hpp"
@@ -101,6 +102,8 @@ std::shared_ptr<const FrameDrawing> drawing(const FrameExperiment& experiment, c
 }  // namespace
 
 FrameModes frame_modes(const FrameExperiment& experiment, Index count, const Progress& progress) {
+  const auto members = static_cast<double>(experiment.frame.members.size());
+  require_mesh_memory(members * experiment.elements_per_member, static_cast<double>(count));
   FrameModes found;
   progress("assembling");
   found.system = fem::assemble(experiment.frame, experiment.elements_per_member);

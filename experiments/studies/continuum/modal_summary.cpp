@@ -8,6 +8,7 @@
 
 #include "experiments/config/description.hpp"
 #include "experiments/config/structure_description.hpp"
+#include "experiments/config/read_beam.hpp"
 #include "experiments/studies/continuum/mode_trust.hpp"
 #include "fem/damping.hpp"
 #include "fem/exact/exact_modes.hpp"
@@ -88,6 +89,7 @@ VectorXd ModalSummary::exact_error() const {
 }
 
 ModalSummary summarise_modes(const Experiment& experiment, Index count, const Progress& progress) {
+  require_mesh_memory(experiment.elements, static_cast<double>(count));
   ModalSummary summary;
   summary.observed = fem::natural_point(experiment.structure);
   progress("assembling");

@@ -1,7 +1,6 @@
 #include "experiments/studies/report/joined_report.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -192,9 +191,7 @@ void write_joined_report(const std::vector<fs::path>& folders, const fs::path& f
   sections.insert(sections.begin(), {"Methods and versions", methods_html(results, commands)});
   if (results.size() > 1)
     sections.insert(sections.begin(), {"Side by side", side_by_side_html(results, all)});
-  const fs::path partial = file.string() + ".partial-" + std::to_string(getpid());
-  write_file(partial, report_page(sections));
-  fs::rename(partial, file);
+  replace_file(file, report_page(sections));
 }
 
 }  // namespace beamid::experiments

@@ -14,6 +14,7 @@
 #include "experiments/sweep/repeats.hpp"
 #include "experiments/sweep/sweep.hpp"
 #include "experiments/text/countdown.hpp"
+#include "experiments/text/memory_need.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -58,6 +59,10 @@ std::size_t cases_in(const std::vector<SweepRow>& rows) {
 std::vector<SweepRow> perform(const SweepSource& source, const SweepPlan& plan, const SweepSettings& settings,
                               const Progress& progress) {
   read_once(source);
+  constexpr double case_bytes =
+      sizeof(SweepRow) + 64;  // one row, without its texts, and its place in the queue
+  require_memory(static_cast<double>(plan.cases()) / static_cast<double>(settings.shard.count),
+                 "cases of a sweep", case_bytes);
   std::optional<Journal> journal;
   std::vector<SweepRow> rows;
   if (settings.done) rows = read_cases(*settings.done, plan).rows;

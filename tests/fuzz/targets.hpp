@@ -1,0 +1,18 @@
+// Everything in beamid that reads bytes from outside, one function for each kind.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace beamid::fuzz {
+
+struct Target {
+  const char* name;  ///< of its folders below tests/fuzz
+  /// Reads these bytes as a file of its kind. What beamid refuses in one message (exit code 2) is caught; any
+  /// other exception, a crash, or a result that breaks a promise (abort) is a finding.
+  void (*read)(const std::string& bytes);
+};
+
+const std::vector<Target>& targets();
+
+}  // namespace beamid::fuzz
