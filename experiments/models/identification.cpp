@@ -52,11 +52,11 @@ filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& i
 
 filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
                                  const IdentificationSettings& settings, filters::Keep keep) {
-  require_sample_memory(settings, settings.initial.mean.size());
   const auto filter = filters::filter_registry().make(
       settings.filter, settings.filter_options,
       filters::discretise(model.motion, record.interval(), settings.discretisation,
                           {settings.process_noise, settings.output_noise}));
+  require_sample_memory(settings, settings.initial.mean.size());
   filters::Gaussian initial = settings.initial;
   filters::FilterRun run;
   for (int pass = 1; pass <= settings.passes; ++pass) {

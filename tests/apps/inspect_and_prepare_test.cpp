@@ -55,6 +55,19 @@ TEST(Inspect, CountsDamagedLinesWhichOtherCommandsRefuse) {
   EXPECT_EQ(place.run("modal decay.csv --skip-malformed").code, 0);
 }
 
+// It was refused for a rate that nobody had stated.
+TEST(Inspect, TakesARecordWhoseSecondHalfIsFaster) {
+  const Workplace place;
+  std::string text = "time_s,acceleration_m_per_s2\n";
+  double time = 0.0;
+  for (int k = 0; k < 400; ++k, time += k < 210 ? 0.004 : 0.001)
+    text += std::to_string(time) + "," + std::to_string(std::cos(20.0 * time)) + "\n";
+  place.write("faster.csv", text);
+  const Outcome outcome = place.run("inspect faster.csv");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("median interval 0.004 s"));
+}
+
 TEST(Inspect, RefusesWhatIsNoRecord) {
   Workplace place;
   place.write("words.csv", "nothing but words\n");

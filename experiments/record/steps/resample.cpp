@@ -97,10 +97,12 @@ class Resample final : public PreparationStep {
     if (count < fewest)
       throw std::invalid_argument(fmt::format("{} samples; expected {} or more", count, fewest));
     const VectorXd steps = record.time.tail(count - 1) - record.time.head(count - 1);
-    const double usual = median(steps), rate = rate_ > 0 ? rate_ : 1 / usual, gap = largest_gap_ * usual;
+    const double usual = median(steps), gap = largest_gap_ * usual;
     const Eigen::Array<bool, Eigen::Dynamic, 1> within = steps.array() <= gap;
     const double mean = within.select(steps.array(), 0).sum() / static_cast<double>(within.count());
-    if (rate * mean < 0.9)
+    constexpr double enough = 0.9;  // of the mean rate, which is the higher one where half the record is slow
+    const double rate = rate_ > 0 ? rate_ : usual <= mean / enough ? 1 / usual : 1 / mean;
+    if (rate * mean < enough)
       throw std::invalid_argument(
           fmt::format("rate_hz is {:g} where samples come at {:g} Hz; expected no less: "
                       "a step = \"decimate\" behind this one keeps aliases out",
