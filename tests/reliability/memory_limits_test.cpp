@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "experiments/text/memory_need.hpp"
-#include "tests/apps/run_command.hpp"
+#include "tests/reliability/shell.hpp"
 
 namespace beamid::reliability::memory_limits_test {
 namespace {
@@ -58,6 +58,10 @@ class MemoryLimit : public testing::TestWithParam<Asked> {
     }
     place_.write("begun.uff", "    -1\n    58\n");
     apps::fs::resize_file(place_.folder() / "begun.uff", std::uintmax_t{1} << 40);
+  }
+
+  void SetUp() override {
+    if (sanitized) GTEST_SKIP() << "under sanitizers";
   }
 
   Workplace place_;

@@ -44,6 +44,10 @@ class NoMemory : public testing::TestWithParam<Command> {
     EXPECT_NE(outcome.err, "") << which;
   }
 
+  void SetUp() override {
+    if (sanitized) GTEST_SKIP() << "under sanitizers";
+  }
+
   Workplace place_;
   Outcome whole_;
   int failures_ = 0;

@@ -7,6 +7,13 @@
 
 namespace beamid::reliability {
 
+/// Sanitizers have a malloc of their own and take terabytes of addresses: no limit of these can be tested.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool sanitized = true;
+#else
+inline constexpr bool sanitized = false;
+#endif
+
 /// What a POSIX shell does with a script in which "$beamid" is the command; its exit code is the last one's.
 inline apps::Outcome shell(const apps::Workplace& place, const std::string& script) {
   return place.run("--version >/dev/null; beamid='" BEAMID_COMMAND "'; {\n" + script + "\n}");
