@@ -6,7 +6,9 @@
 #include <iostream>
 #include <iterator>
 #include <optional>
+#include <utility>
 
+#include "apps/receiver.hpp"
 #include "experiments/results/print.hpp"
 #include "experiments/text/clean_text.hpp"
 
@@ -31,6 +33,14 @@ void warn_of_undrawn(const experiments::Results& results, const std::filesystem:
         << "beamid: warning: " << undrawn << " of " << results.figures.size()
         << " figures are not drawn: gnuplot is missing, failed or did not end ('warnings' of results.json "
            "says which; the Debian package gnuplot-nox has it). All else is written.\n";
+  const auto is_missing = [&](const std::string& file) { return !std::filesystem::exists(folder / file); };
+  const auto incomplete = [&](const experiments::Attachment& one) {
+    return std::any_of(one.files.begin(), one.files.end(), is_missing);
+  };
+  if (std::any_of(results.attachments.begin(), results.attachments.end(), incomplete))
+    std::cerr
+        << "beamid: warning: meshes for ParaView are not written: libbeamid_vtk.so is missing or of another "
+           "version (the Debian package beamid-paraview has it). All else is written.\n";
 }
 
 // What --config names, for the page: it repeats the run.
@@ -57,12 +67,13 @@ void deliver(const Values& values, const std::function<experiments::Results()>& 
   experiments::Results results = find();
   results.command_line = values.command_line();
   results.experiment_file = experiment_text(values);
-  if (!quiet && !values.has("verbose") && !values.has("no-progress")) clear_progress();
+  if (!quiet && !values.receiver() && !values.has("verbose") && !values.has("no-progress")) clear_progress();
   if (directory) {
     experiments::write(results, *directory);
     warn_of_undrawn(results, directory->path());
     directory->commit();
   }
+  if (values.receiver() != nullptr) return values.receiver()->take(std::move(results));
   if (values.has("json")) {
     experiments::print_json(std::cout, results);
     return;

@@ -12,7 +12,7 @@
 namespace beamid::apps {
 
 /// Checks --out before any work is done, runs `find`, prints its results (text, or results.json with --json)
-/// and writes them to --out.
+/// and writes them to --out. Where a program receives them, nothing is printed.
 void deliver(const Values& values, const std::function<experiments::Results()>& find);
 
 }  // namespace beamid::apps

@@ -33,7 +33,8 @@ Interruption::Interruption(const std::string& sentence) {
   for (const int signal : ending_signals) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
-    if (before.sa_handler == SIG_IGN) continue;  // as in a shell's background
+    // Ignored, as in a shell's background, or the matter of the program around the command.
+    if (before.sa_handler != SIG_DFL) continue;
     struct sigaction action {};
     action.sa_handler = say_and_end;
     sigaction(signal, &action, nullptr);

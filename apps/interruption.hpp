@@ -6,7 +6,7 @@
 namespace beamid::apps {
 
 /// While it lives, Ctrl-C or a request to end prints a sentence on standard error; the program then ends as
-/// it would without. One at a time.
+/// it would without. A handler that another had installed is left alone. One at a time.
 class Interruption {
  public:
   explicit Interruption(const std::string& sentence);

@@ -117,7 +117,7 @@ bool is_complete(const fs::path& out, const nlohmann::ordered_json& manifest) {
   return true;
 }
 
-Processes* all_processes = nullptr;  // while the command runs
+thread_local Processes* all_processes = nullptr;  // while the command runs
 
 /// Processes that mpirun started beside the first do nothing but help it.
 int with_processes(const std::function<int()>& work) {

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <mutex>
 
+#include "apps/receiver.hpp"
 #include "experiments/text/clean_text.hpp"
 #include "experiments/text/words.hpp"
 
@@ -57,6 +58,8 @@ Page terminal_page() {
 }
 
 experiments::Progress show_progress(const Values& values) {
+  if (Receiver* const receiver = values.receiver())
+    return [receiver](const std::string& what) { receiver->progress(what); };
   static std::mutex one_at_a_time;
   if (values.has("verbose"))
     return [started = std::chrono::steady_clock::now()](const std::string& what) {

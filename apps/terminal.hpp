@@ -13,7 +13,8 @@ experiments::Page terminal_page();
 
 /// What is being done, on one line of standard error that is written over, where that is a terminal and
 /// neither --quiet nor --no-progress is given; with --verbose a line each with the time since the start,
-/// terminal or not. Safe to call from any thread.
+/// terminal or not; where a program receives what is found, that program is told. Safe to call from any
+/// thread.
 experiments::Progress show_progress(const Values& values);
 
 /// Wipes that line.

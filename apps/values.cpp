@@ -133,8 +133,8 @@ std::vector<po::option> parsed(const Command& command, const Words& words) {
 
 }  // namespace
 
-Values::Values(const Command& command, const Words& words)
-    : command_(&command), line_("beamid " + command.name) {
+Values::Values(const Command& command, const Words& words, Receiver* receiver)
+    : command_(&command), receiver_(receiver), line_("beamid " + command.name) {
   std::size_t place = 0;
   for (const po::option& one : parsed(command, words)) {
     const Words& values = one.value;

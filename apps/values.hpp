@@ -13,6 +13,7 @@
 namespace beamid::apps {
 
 struct Command;
+class Receiver;
 
 /// Words on the command line that make no sense: printed after the command's name and with a hint to its
 /// --help, exit code 2.
@@ -28,9 +29,10 @@ class Values {
   ///
   /// --help and --version end the reading: what stands behind them is not looked at.
   /// @param command lives longer.
+  /// @param receiver of what is found, where that is a program and no terminal; lives longer
   /// @throws UsageError on an option that the command does not have, with the one that was probably meant, on
   ///     values that are missing, of the wrong type or out of range, on words too many or too few.
-  Values(const Command& command, const Words& words);
+  Values(const Command& command, const Words& words, Receiver* receiver = nullptr);
 
   /// Whether the option, or a word of this name, is on the command line.
   bool has(const std::string& name) const { return given_.contains(name); }
@@ -45,6 +47,7 @@ class Values {
   void set(const std::string& flag) { given_[flag]; }  ///< as if it were on the command line
 
   const Command& command() const { return *command_; }
+  Receiver* receiver() const { return receiver_; }  ///< null: a terminal, a file or a pipe
   /// What repeats the command: "beamid modes --modes 5". Where its results went is no part of it.
   const std::string& command_line() const { return line_; }
 
@@ -53,6 +56,7 @@ class Values {
   void check(const Option& option) const;
 
   const Command* command_;
+  Receiver* receiver_;
   std::map<std::string, Words> given_;
   std::string line_;
 };

@@ -3,6 +3,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "filters/stop_request.hpp"
+
 namespace beamid::filters {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -59,6 +61,8 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
   running.start(initial, settings.start);
   Sample sample;
   for (Index step = 0; step < samples; ++step) {
+    constexpr Index between_looks = 64;
+    if (step % between_looks == 0) heed_stop_request();
     take_sample(measurements, step, sample);
     if (!running.move_to(sample.time)) break;
     if (settings.keep == Keep::all_beliefs) result.predicted.push_back(running.belief());

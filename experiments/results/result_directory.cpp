@@ -12,6 +12,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -73,8 +74,13 @@ bool exchange(const fs::path& one, const fs::path& other) {
 }
 
 // Locks that this process holds on its staging folders, of which the system frees it however it ends.
-std::map<fs::path, int>& held() {
-  static std::map<fs::path, int> locks;
+struct StagingLocks {
+  std::mutex one_at_a_time;  // results may be written by several threads
+  std::map<fs::path, int> held;
+};
+
+StagingLocks& staging_locks() {
+  static StagingLocks locks;
   return locks;
 }
 
@@ -85,10 +91,18 @@ int open_locked(const fs::path& folder) {
   return -1;
 }
 
+void keep_locked(const fs::path& folder) {
+  auto& [one_at_a_time, held] = staging_locks();
+  const std::lock_guard guard(one_at_a_time);
+  if (const int lock = open_locked(folder); lock >= 0) held.insert_or_assign(folder, lock);
+}
+
 void unlock(const fs::path& folder) {
-  if (const auto lock = held().find(folder); lock != held().end()) {
+  auto& [one_at_a_time, held] = staging_locks();
+  const std::lock_guard guard(one_at_a_time);
+  if (const auto lock = held.find(folder); lock != held.end()) {
     close(lock->second);
-    held().erase(lock);
+    held.erase(lock);
   }
 }
 
@@ -168,7 +182,7 @@ const fs::path& ResultDirectory::path() {
     fs::remove_all(staging_);  // of a killed process that had the same number
     clear_abandoned(parent, staging_prefix(destination_));
     fs::create_directory(staging_);
-    if (const int lock = open_locked(staging_); lock >= 0) held().insert_or_assign(staging_, lock);
+    keep_locked(staging_);
     if (fs::exists(destination_)) fs::permissions(staging_, fs::status(destination_).permissions());
   } catch (const fs::filesystem_error& error) {
     throw std::runtime_error("cannot write output folder '" + given_.string() +

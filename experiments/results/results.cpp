@@ -99,12 +99,25 @@ std::vector<std::string> draw_all(const std::vector<Figure>& figures, const std:
   return failures;
 }
 
+// Meshes too are pictures that may be missing.
+void write_attachments(const Results& results, const std::filesystem::path& folder,
+                       std::vector<std::string>& failures) {
+  for (const Attachment& attachment : results.attachments) {
+    try {
+      attachment.write(folder);
+    } catch (const NotDrawn& failure) {
+      failures.emplace_back(failure.what());
+    }
+  }
+}
+
 // "files" names what is there, "warnings" why a picture is not.
 void tell_undrawn(Json& json, const std::vector<std::string>& failures, const std::filesystem::path& folder) {
   Json files = Json::array();
   for (const auto& file : json["files"]) {
     const std::filesystem::path path = file.get<std::string>();
-    const bool picture = path.extension() == ".svg" || path.extension() == ".png";
+    const std::string kind = path.extension();
+    const bool picture = kind == ".svg" || kind == ".png" || kind == ".vtu" || kind == ".pvd";
     if (!picture || std::filesystem::exists(folder / path)) files.push_back(file);
   }
   json.erase("files");
@@ -142,10 +155,10 @@ void write(const Results& results, ResultDirectory& directory) {
   for (const auto& part : results.report)
     if (const auto* table = std::get_if<Table>(&part)) directory.write(table->name + ".csv", to_csv(*table));
   for (const Figure& figure : results.figures) write_data(figure, directory.path());
-  if (const auto failures = draw_all(results.figures, directory.path()); !failures.empty())
-    tell_undrawn(json, failures, directory.path());
+  std::vector<std::string> failures = draw_all(results.figures, directory.path());
+  write_attachments(results, directory.path(), failures);
+  if (!failures.empty()) tell_undrawn(json, failures, directory.path());
   directory.write("results.json", text_of(json));
-  for (const Attachment& attachment : results.attachments) attachment.write(directory.path());
   directory.write("report.html", report_page({report_section(results, directory.path())}));
   Json timing;
   timing["schema_version"] = schema_version;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "beamid/testing/oscillator.hpp"
+#include "filters/stop_request.hpp"
 
 namespace beamid::filter_run_test {
 namespace {
@@ -26,6 +27,22 @@ TEST(Run, KeepsWhatItHasWhenADiscretisationCannotTakeTheStep) {
   EXPECT_NE(run.failure->reason.find("CVode"), std::string::npos) << run.failure->reason;
   EXPECT_TRUE(std::isnan(run.failure->smallest_eigenvalue));
   EXPECT_NEAR(run.last.mean[0], 1.0, 1e-12);  // the belief after the first sample
+}
+
+TEST(Run, EndsWhereItsThreadWasAskedToStopAndOnlyThen) {
+  const auto model = std::make_shared<test::Oscillator>(1.0);
+  const auto filter = filters::filter_registry().make(
+      "ekf", {}, filters::discretise(model, 0.1, "exponential", {{}, MatrixXd::Constant(1, 1, 1e-4)}));
+  const filters::Gaussian initial{Eigen::Vector4d(1.0, 0.0, 4.0, 0.1), 1e-2 * MatrixXd::Identity(4, 4)};
+  const filters::Measurements record{Eigen::VectorXd::LinSpaced(5, 0.0, 0.4), MatrixXd::Ones(1, 5), {}};
+  std::atomic<bool> asked = false;
+  {
+    const filters::StopRequest request(asked);
+    EXPECT_FALSE(filters::run(*filter, initial, record).failure);
+    asked = true;
+    EXPECT_THROW(filters::run(*filter, initial, record), filters::Stopped);
+  }
+  EXPECT_FALSE(filters::run(*filter, initial, record).failure);
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ inline const std::vector<Library>& libraries() {
        {"Eigen/", "unsupported/Eigen/"},
        {"fem/", "reduction/", "filters/", "experiments/", "apps/"},
        true},
-      {"VTK", {"vtk"}, {"experiments/results/vtk/", "experiments/results/library_versions.cpp"}},
+      {"VTK", {"vtk"}, {"experiments/results/vtk/module/", "experiments/results/library_versions.cpp"}},
       {"toml++", {"toml"}, {"experiments/text/", "experiments/results/library_versions.cpp"}},
       {"nlohmann-json", {"nlohmann/"}, {"experiments/", "apps/"}, true},
       {"fmt", {"fmt/"}, {"experiments/", "apps/"}, true},
@@ -82,8 +82,11 @@ inline const std::vector<Library>& libraries() {
       {"matio", {"matio"}, {"experiments/record/files/"}},
       {"oneTBB", {"tbb/", "oneapi/"}, {"experiments/"}},
       {"Boost.Math", {"boost/math/"}, {"fem/", "filters/", "experiments/"}},
+      {"pybind11", {"pybind11/"}, {"apps/python/"}},
       {"Boost.Program_options", {"boost/program_options"}, {"apps/values.cpp"}},
-      {"POSIX", {"unistd.h", "fcntl.h", "poll.h", "spawn.h", "signal.h", "sys/"}, {"experiments/", "apps/"}}};
+      {"POSIX",
+       {"unistd.h", "dlfcn.h", "fcntl.h", "poll.h", "spawn.h", "signal.h", "sys/"},
+       {"experiments/", "apps/"}}};
   return known;
 }
 

@@ -1,6 +1,7 @@
-#include "experiments/results/vtk/vtu_file.hpp"
+// What VTK does for beamid, as a library of its own: it is loaded when a mesh is written (vtu_file.cpp), so
+// that nothing else waits for VTK, or needs it installed.
+#include "experiments/results/vtk/vtu_text.hpp"
 
-#include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
@@ -10,10 +11,6 @@
 #include <vtkPoints.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
-
-#include <stdexcept>
-
-#include "experiments/results/file.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -63,8 +60,9 @@ void add_point_data(vtkUnstructuredGrid* to, const PointArray& values) {
 
 }  // namespace
 
-void write_vtu(const std::filesystem::path& file, const BeamGrid& grid,
-               const std::vector<PointArray>& arrays) {
+extern "C" __attribute__((visibility("default"))) bool beamid_vtu_text(const BeamGrid& grid,
+                                                                       const std::vector<PointArray>& arrays,
+                                                                       std::string& text) {
   vtkNew<vtkUnstructuredGrid> out;
   set_mesh(out, grid);
   for (const PointArray& array : arrays) add_point_data(out, array);
@@ -78,17 +76,11 @@ void write_vtu(const std::filesystem::path& file, const BeamGrid& grid,
   writer->SetDataModeToBinary();  // every digit
   writer->SetCompressorTypeToNone();
   writer->WriteToOutputStringOn();  // VTK does not notice a full disk, write_file does
-  if (writer->Write() == 0) throw std::runtime_error("VTK cannot write '" + file.string() + "'");
-  write_file(file, writer->GetOutputString());
+  if (writer->Write() == 0) return false;
+  text = writer->GetOutputString();
+  return true;
 }
 
-void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<double, std::string>>& steps) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-      "  <Collection>\n";
-  for (const auto& [time, name] : steps)
-    text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", time, name);
-  write_file(file, text + "  </Collection>\n</VTKFile>\n");
-}
+extern "C" __attribute__((visibility("default"))) const char* const beamid_vtk_made_for = BEAMID_VERSION;
 
 }  // namespace beamid::experiments

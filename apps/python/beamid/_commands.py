@@ -1,0 +1,362 @@
+"""A function for every command, made of the core's own list of options."""
+import contextlib
+import inspect
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+from . import _beamid
+from ._errors import InputError, unknown
+from ._record import Record, RecordFile
+from ._results import Results, write_input
+from ._specification import commands, keyword_of, table_of_key, tables
+from ._structures import Experiment, Table, _with_absolute_files, checked
+from ._toml import toml_text
+
+SHELL_ONLY = ("help", "completion", "man")  # Python has its own: help(beamid.identify), the Tab key
+NOT_OFFERED = ("json", "quiet", "config")  # Results have both; config is an argument of every function
+UNKNOWN = "unknown"  # unknown=[...] is parameters=[...] of model="beam", unless a model is named
+
+
+class _Call:
+    """One call on its way to the command's words."""
+
+    def __init__(self, name, arguments, keywords):
+        self.name, self.about = name, commands()[name]
+        self.options = {option["name"]: option for option in self.about["options"]}
+        self.keywords = {keyword_of(option): option for option in self.about["options"]
+                         if option["name"] not in NOT_OFFERED}
+        self.takes = [word["name"] for word in self.about["words"]]
+        self.root, self.records, self.words = {}, [], []
+        self.inputs = {}  # files that have only been in memory, by name
+        self.config = keywords.pop("config", None)
+        for argument in arguments:
+            self.take_argument(argument)
+        self.option_words, self.given = [], keywords
+        for keyword, value in keywords.items():
+            if value is not None:
+                self.take_keyword(keyword, value)
+
+    # Arguments: structures, records, and the command's own words.
+
+    def take_argument(self, argument):
+        if isinstance(argument, (Record, RecordFile)):
+            self.records.append(argument)
+        elif isinstance(argument, Experiment):
+            self.merge(argument.keywords)
+        elif isinstance(argument, Table):
+            self.merge({argument._table: argument.keywords})
+        elif isinstance(argument, (list, tuple)):
+            for one in argument:
+                self.take_argument(one)
+        elif isinstance(argument, (str, os.PathLike)):
+            if "record" in self.takes:
+                self.records.append(RecordFile(argument, {}))
+            else:
+                self.words.append(os.fspath(argument))
+        else:
+            raise InputError(f"{self.name} takes no {type(argument).__name__}; expected records, structures "
+                             "(Beam, Chain, Frame, Experiment) or names of files")
+
+    def merge(self, root):
+        for table, value in checked("", root, self.name).items():
+            if table in self.root and isinstance(value, dict):
+                self.root[table] = {**self.root[table], **value}
+            else:
+                self.root[table] = value
+
+    # Keywords: the command's options, tables of the experiment file, keys of these.
+
+    def take_keyword(self, keyword, value):
+        option = self.keywords.get(keyword)
+        is_table = isinstance(value, dict) or (isinstance(value, (list, tuple)) and
+                                               any(isinstance(one, dict) for one in value))
+        if option and not (is_table and keyword in tables()[""]):
+            self.option_words += self.option(option, value)
+            return
+        if not self.takes_experiment():
+            raise unknown(self.name, keyword, self.known_keywords())
+        table = "parameters" if keyword == UNKNOWN else keyword
+        if keyword == UNKNOWN and "model" not in self.root and "model" not in self.given:
+            self.take_keyword("model", "beam")
+        if isinstance(value, Table) and value._table == table:
+            value = value.keywords
+        if table in tables()[""]:
+            self.merge({table: value})
+            return
+        holders = table_of_key().get(keyword, [])
+        if len(holders) > 1:
+            raise InputError(f"{keyword!r} is a key of {' and '.join(f'[{one}]' for one in holders)}; expected it in "
+                             f"a table, such as {holders[0]}={{{keyword!r}: {value!r}}}")
+        if not holders:
+            raise unknown(self.name, keyword, self.known_keywords())
+        self.merge({holders[0]: {keyword: value}} if holders[0] else {keyword: value})
+
+    def takes_experiment(self):
+        return "config" in self.options or self.name == "validate"
+
+    def known_keywords(self):
+        if not self.takes_experiment():
+            return self.keywords
+        return [*self.keywords, *tables()[""], *table_of_key(), UNKNOWN, "config"]
+
+    def option(self, option, value):
+        name = "--" + option["name"]
+        if option["type"] == "flag":
+            return [name] if value else []
+        if isinstance(value, Table):
+            root = value.keywords if isinstance(value, Experiment) else {value._table: value.keywords}
+            return [name, self.add_experiment(option["name"] + ".toml", root)]
+        values = _flat(value)
+        if option["values"] != 1:
+            return [name, *values]
+        if len(values) > 1 and not option["repeats"]:
+            raise InputError(f"{keyword_of(option)} is {value!r}; expected one value")
+        return [word for one in values for word in (name, one)]
+
+    # Files for the command.
+
+    def add_experiment(self, name, root):
+        self.inputs[name] = toml_text(_with_absolute_files(root, os.getcwd()))
+        return name
+
+    def add_records(self):
+        """Words that name the records; what [record] says of them goes into the experiment."""
+        for record in self.records[1:]:
+            if record.keys != self.records[0].keys:
+                raise InputError(f"records {self.records[0].name!r} and {record.name!r} have different keys; expected "
+                                 "the same channels and window, since a command reads all of them alike")
+        names = []
+        for number, record in enumerate(self.records, 1):
+            name = record.path
+            if name is None:
+                name = record.file_name
+                if name in self.inputs:
+                    stem, ending = os.path.splitext(name)
+                    name = f"{stem}{number}{ending}"
+                self.inputs[name] = record
+            names.append(name)
+        if not names:
+            return []
+        if self.records[0].keys:
+            mine = self.root.get("record", {})
+            self.root["record"] = {**self.records[0].keys, **mine}
+        if "record" in self.takes:
+            return names
+        for option in ("record", "like"):
+            if option in self.options:
+                return ["--" + option, *names]
+        raise InputError(f"{self.name} takes no record")
+
+    def all_words(self):
+        """The command's words, with the names of the files that are still to be written."""
+        records = self.add_records()
+        configs = [os.fspath(one) for one in (self.config if isinstance(self.config, (list, tuple)) else
+                                              [self.config] if self.config is not None else [])]
+        if self.root:
+            if len(configs) > 1:
+                raise InputError("several config files take no structure or key beside them")
+            if configs:
+                base = Experiment.read(configs[0]).keywords
+                given, self.root = self.root, {}
+                self.merge(base)
+                self.merge(given)
+            configs = [self.add_experiment("experiment.toml", self.root)]
+        if self.name == "validate" and not self.words:
+            return [*configs, *records, *self.option_words]
+        return [*self.words, *records, *(word for one in configs for word in ("--config", one)), *self.option_words]
+
+
+def _flat(value):
+    if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
+        values = value.tolist() if hasattr(value, "tolist") else value
+        return [word for one in (values if isinstance(values, (list, tuple)) else [values]) for word in _flat(one)]
+    return [repr(value) if isinstance(value, float) else os.fspath(value) if isinstance(value, os.PathLike)
+            else str(value)]
+
+
+def _placed(words, inputs, folder):
+    return [os.path.join(folder, word) if word in inputs else word for word in words]
+
+
+def _without_folder(message, folder):
+    """Files that the user never saw are no places: "beam.length_m is -1; expected a positive number"."""
+    if not folder:
+        return message
+    message = re.sub(re.escape(folder) + r"/[^/:]*\.toml(:\d+)*: ", "", message)
+    return message.replace(folder + "/", "")
+
+
+def _memory_for(inputs):
+    """A folder in memory, where there is one with room; else None, the usual place."""
+    size = sum(30 * content.numbers for content in inputs.values() if isinstance(content, Record))  # bytes of text
+    try:
+        free = os.statvfs("/dev/shm")
+    except OSError:
+        return None
+    has_room = free.f_bavail * free.f_frsize > 10 * (size + 1_000_000)
+    return "/dev/shm" if has_room and os.access("/dev/shm", os.W_OK | os.X_OK) else None
+
+
+@contextlib.contextmanager
+def _folder_of(inputs):
+    """A private folder with these files, for the time of a call; none where nothing has only been in memory."""
+    if not inputs:
+        yield ""
+        return
+    with tempfile.TemporaryDirectory(prefix="beamid_", dir=_memory_for(inputs)) as folder:
+        for file, content in inputs.items():
+            write_input(content, os.path.join(folder, file))
+        yield folder
+
+
+def call(name, arguments, keywords):
+    one = _Call(name, arguments, dict(keywords))
+    words = one.all_words()
+    with _folder_of(one.inputs) as folder:
+        outcome = _beamid.run(name, _placed(words, one.inputs, folder))
+        if outcome.message:
+            message = _without_folder(outcome.message, folder)
+            raise (InputError if outcome.code == 2 else RuntimeError)(message)
+        if not outcome.has_results:
+            return _without_folder(outcome.report(), folder)
+    return Results(outcome, shlex.join(["beamid", name, *words]), one.inputs)
+
+
+def stream(record, *arguments, **keywords):
+    """Estimates after each sample, as `beamid stream` prints them: a dictionary of columns, numpy arrays (N).
+
+    :param record: whose samples arrive one after the other, as its file says or as [record] prepares them
+    :param arguments: a structure; like=RECORD, an earlier record of the rig, from which noise, amplitude and sampling
+        interval are taken; without it this one
+
+    >>> import beamid
+    >>> folder = "docs/tutorials/02_identify_a_record/"
+    >>> found = beamid.stream(beamid.read(folder + "tip_acceleration.csv"), config=folder + "cantilever.toml")
+    >>> round(found["damping_ratio"][-1], 4), found["status"][-1]
+    (0.0045, 'settled')
+    """
+    from ._results import _columns  # pylint: disable=import-outside-toplevel
+
+    record = record if isinstance(record, (Record, RecordFile)) else RecordFile(record, {})
+    one = _Call("stream", arguments, dict(keywords))
+    with tempfile.TemporaryDirectory(prefix="beamid_") as folder:
+        if not one.records and "like" not in keywords:
+            one.records = [record]
+        words = one.all_words()
+        for file, content in one.inputs.items():
+            write_input(content, os.path.join(folder, file))
+        if record.path is None:
+            record.save(os.path.join(folder, "samples.csv"))
+            record = RecordFile(os.path.join(folder, "samples.csv"), record.keys)
+        lines = "".join(f"{t!r},{','.join(map(repr, row))}\n" for t, row in
+                        zip(record.time.tolist(), record.samples.tolist()))
+        search = os.pathsep.join([os.path.dirname(os.path.dirname(__file__)), os.environ.get("PYTHONPATH", "")])
+        done = subprocess.run([sys.executable, "-m", "beamid", "stream", *_placed(words, one.inputs, folder)],
+                              input=lines, capture_output=True, text=True, check=False,
+                              env={**os.environ, "PYTHONPATH": search.rstrip(os.pathsep)})
+        if done.returncode == 2:
+            raise InputError(_without_folder(done.stderr.strip(), folder))
+    header, *rows = [line.split(",") for line in done.stdout.splitlines()]
+    return _columns([{key: _number(cell) for key, cell in zip(header, row)} for row in rows])
+
+
+def _number(cell):
+    try:
+        return float(cell)
+    except ValueError:
+        return cell or None
+
+
+def _described(name):
+    """The docstring of a command's function."""
+    about = commands()[name]
+    lines = [about["summary"][0].upper() + about["summary"][1:] + ".", ""]
+    places = ["a record or several" if word["name"] == "record" and word["several"] else
+              "a record" if word["name"] == "record" else word["name"] for word in about["words"]]
+    if _takes_structure(about):
+        places.append("a structure: Beam, Chain, Frame or Experiment")
+    if places:
+        lines += [f":param arguments: {'; '.join(places)}"]
+    for option in about["options"]:
+        if option["name"] in NOT_OFFERED:
+            continue
+        several = "; several as a list" if option["repeats"] else ""
+        lines.append(f":param {keyword_of(option)}: {option['help']}{several}")
+    if _takes_structure(about):
+        lines += [":param config: an experiment file (TOML); what else is given takes the place of its keys",
+                  ":param keys: tables and keys of an experiment file: filter=\"ukf\", window_s=(0.8, 1.6), ..."]
+    lines += [":returns: Results" if about["has_results"] else ":returns: what the command prints",
+              ":raises InputError: naming what was found and what was expected"]
+    if name in EXAMPLES:
+        lines += ["", EXAMPLES[name].strip("\n")]
+    return "\n".join(lines)
+
+
+def _takes_structure(about):
+    return any(option["name"] == "config" for option in about["options"]) or about["name"] == "validate"
+
+
+def _signature(name):
+    kinds = inspect.Parameter
+    about = commands()[name]
+    parameters = [kinds("arguments", kinds.VAR_POSITIONAL)]
+    if _takes_structure(about):
+        parameters.append(kinds("config", kinds.KEYWORD_ONLY, default=None))
+    parameters += [kinds(keyword_of(option), kinds.KEYWORD_ONLY, default=None)
+                   for option in about["options"] if option["name"] not in NOT_OFFERED]
+    if _takes_structure(about):
+        parameters.append(kinds("keys", kinds.VAR_KEYWORD))
+    return inspect.Signature(parameters)
+
+
+def function(name):
+    """The function of a command."""
+    if name == "stream":
+        return stream
+
+    def run(*arguments, **keywords):
+        return call(name, arguments, keywords)
+
+    run.__name__ = run.__qualname__ = name
+    run.__module__ = "beamid"
+    run.__doc__ = _described(name)
+    run.__signature__ = _signature(name)
+    return run
+
+
+def names():
+    """Of all functions: the commands of the core but those that only a shell needs."""
+    return [name for name in commands() if name not in SHELL_ONLY]
+
+
+EXAMPLES = {
+    "identify": """
+>>> import beamid
+>>> record = beamid.read("docs/tutorials/02_identify_a_record/tip_acceleration.csv")
+>>> beam = beamid.Beam(length_m=1.1, width_m=0.06, height_m=0.006, youngs_modulus_pa=2.12e11, mass_kg=3.055,
+...                    tip_mass_kg=0.36049)
+>>> found = beamid.identify(record, beam, window_s=(2, 10))
+>>> found["damping_ratio"], found["frequency_hz"]
+(0.004498 +- 0.000012, 3.455519 +- 0.000041)
+""",
+    "modal": """
+>>> import beamid
+>>> found = beamid.modal("docs/tutorials/02_identify_a_record/tip_acceleration.csv", window=(2, 10))
+>>> found.tables["modes"]["frequency_hz"].round(3)
+array([3.456])
+""",
+    "frf": """
+>>> import beamid
+>>> found = beamid.frf(damping_ratio=0.01, from_=1, to=30)
+>>> found.command
+'beamid frf --damping-ratio 0.01 --from 1 --to 30'
+""",
+    "list": """
+>>> import beamid
+>>> print(beamid.list("smoothers").splitlines()[2])   # doctest: +NORMALIZE_WHITESPACE
+rts   Rauch-Tung-Striebel smoother, linear about the filtered mean    -
+"""}
