@@ -63,6 +63,15 @@ class Vocabulary(unittest.TestCase):
             beamid.modes(beamid.Beam(length_m=-1.0, bending_stiffness_n_m2=1.0, mass_kg=1.0))
         self.assertEqual(str(refused.exception), "beam.length_m is -1; expected a positive number")
 
+    def test_what_the_command_says_of_options_is_said_of_keywords(self):
+        for call, message in (
+                (lambda: beamid.modes(elements=0), "modes: elements is 0; expected a whole number from 1 to "),
+                (lambda: beamid.identify("a.csv"), "identify needs a structure; expected a Beam, "),
+                (lambda: beamid.identify("a.csv", "nowhere.toml"), "nowhere.toml: no such file")):
+            with self.assertRaises(beamid.InputError) as refused:
+                call()
+            self.assertTrue(str(refused.exception).startswith(message), str(refused.exception))
+
     def test_a_text_stands_for_the_first_key_of_a_table(self):
         self.assertEqual(beamid.Experiment(filter="ukf", parameters=["mass", {"quantity": "tip_mass"}]).keywords,
                          {"filter": {"method": "ukf"}, "parameters": [{"quantity": "mass"}, {"quantity": "tip_mass"}]})

@@ -53,7 +53,9 @@ class _Call:
             for one in argument:
                 self.take_argument(one)
         elif isinstance(argument, (str, os.PathLike)):
-            if "record" in self.takes:
+            if os.fspath(argument).endswith(".toml") and "config" in self.options and self.config is None:
+                self.config = argument
+            elif "record" in self.takes:
                 self.records.append(RecordFile(argument, {}))
             else:
                 self.words.append(os.fspath(argument))
@@ -165,6 +167,9 @@ class _Call:
                 self.merge(base)
                 self.merge(given)
             configs = [self.add_experiment("experiment.toml", self.root)]
+        if not configs and self.options.get("config", {}).get("required"):
+            raise InputError(f"{self.name} needs a structure; expected a Beam, Chain, Frame or Experiment, or "
+                             "an experiment file, config=FILE")
         if self.name == "validate" and not self.words:
             return [*configs, *records, *self.option_words]
         return [*self.words, *records, *(word for one in configs for word in ("--config", one)), *self.option_words]
@@ -182,12 +187,14 @@ def _placed(words, inputs, folder):
     return [os.path.join(folder, word) if word in inputs else word for word in words]
 
 
-def _without_folder(message, folder):
-    """Files that the user never saw are no places: "beam.length_m is -1; expected a positive number"."""
-    if not folder:
-        return message
-    message = re.sub(re.escape(folder) + r"/[^/:]*\.toml(:\d+)*: ", "", message)
-    return message.replace(folder + "/", "")
+def _python_message(message, name, folder):
+    """Files that the user never saw are no places, and an option is a keyword: "modes: elements is 0; expected ..."."""
+    message = message.removeprefix("beamid: ")
+    for option in commands()[name]["options"]:
+        message = re.sub(rf"--{option['name']}\b(?!-)", keyword_of(option), message)
+    if folder:
+        message = re.sub(re.escape(folder) + r"/[^/:]*\.toml(:\d+)*: ", "", message).replace(folder + "/", "")
+    return message
 
 
 def _memory_for(inputs):
@@ -219,10 +226,9 @@ def call(name, arguments, keywords):
     with _folder_of(one.inputs) as folder:
         outcome = _beamid.run(name, _placed(words, one.inputs, folder))
         if outcome.message:
-            message = _without_folder(outcome.message, folder)
-            raise (InputError if outcome.code == 2 else RuntimeError)(message)
+            raise (InputError if outcome.code == 2 else RuntimeError)(_python_message(outcome.message, name, folder))
         if not outcome.has_results:
-            return _without_folder(outcome.report(), folder)
+            return outcome.report().replace(folder + "/", "") if folder else outcome.report()
     return Results(outcome, shlex.join(["beamid", name, *words]), one.inputs)
 
 
@@ -259,7 +265,7 @@ def stream(record, *arguments, **keywords):
                               input=lines, capture_output=True, text=True, check=False,
                               env={**os.environ, "PYTHONPATH": search.rstrip(os.pathsep)})
         if done.returncode == 2:
-            raise InputError(_without_folder(done.stderr.strip(), folder))
+            raise InputError(_python_message(done.stderr.split("\nTry: ")[0].strip(), "stream", folder))
     header, *rows = [line.split(",") for line in done.stdout.splitlines()]
     return _columns([{key: _number(cell) for key, cell in zip(header, row)} for row in rows])
 
@@ -278,7 +284,7 @@ def _described(name):
     places = ["a record or several" if word["name"] == "record" and word["several"] else
               "a record" if word["name"] == "record" else word["name"] for word in about["words"]]
     if _takes_structure(about):
-        places.append("a structure: Beam, Chain, Frame or Experiment")
+        places.append("a structure: Beam, Chain, Frame or Experiment, or an experiment file, NAME.toml")
     if places:
         lines += [f":param arguments: {'; '.join(places)}"]
     for option in about["options"]:
