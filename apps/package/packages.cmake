@@ -11,12 +11,11 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "identification of beams from vibration re
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
     WORLD_READ WORLD_EXECUTE)
 set(CPACK_SOURCE_GENERATOR TGZ)
 set(CPACK_SOURCE_PACKAGE_FILE_NAME beamid-${PROJECT_VERSION})
-set(CPACK_SOURCE_IGNORE_FILES "/build/" "/results/" "/\\\\.git/" "/\\\\.cache/" "__pycache__" "compile_commands.json"
+set(CPACK_SOURCE_IGNORE_FILES "/build/" "/results/" "/[.]git/" "/[.]cache/" "__pycache__" "compile_commands.json"
     "CMakeUserPresets.json")
 
 set(CPACK_COMPONENTS_ALL command development paraview)
