@@ -10,6 +10,7 @@ import tempfile
 
 from . import _beamid
 from ._errors import InputError, unknown
+from ._matrices import as_matrices, matrix_files
 from ._record import Record, RecordFile
 from ._results import Results, write_input
 from ._specification import commands, keyword_of, table_of_key, tables
@@ -61,7 +62,7 @@ class _Call:
                 self.words.append(os.fspath(argument))
         else:
             raise InputError(f"{self.name} takes no {type(argument).__name__}; expected records, structures "
-                             "(Beam, Chain, Frame, Experiment) or names of files")
+                             "(Beam, Chain, Frame, System, Experiment) or names of files")
 
     def merge(self, root):
         for table, value in checked("", root, self.name).items():
@@ -122,7 +123,12 @@ class _Call:
     # Files for the command.
 
     def add_experiment(self, name, root):
-        self.inputs[name] = toml_text(_with_absolute_files(root, os.getcwd()))
+        root = _with_absolute_files(root, os.getcwd())
+        if "system" in root:
+            told, files = matrix_files(as_matrices(root["system"], "system"))
+            root = {**root, "system": told}
+            self.inputs.update(files)
+        self.inputs[name] = toml_text(root)
         return name
 
     def add_records(self):
@@ -168,7 +174,7 @@ class _Call:
                 self.merge(given)
             configs = [self.add_experiment("experiment.toml", self.root)]
         if not configs and self.options.get("config", {}).get("required"):
-            raise InputError(f"{self.name} needs a structure; expected a Beam, Chain, Frame or Experiment, or "
+            raise InputError(f"{self.name} needs a structure; expected a Beam, Chain, Frame, System or Experiment, or "
                              "an experiment file, config=FILE")
         if self.name == "validate" and not self.words:
             return [*configs, *records, *self.option_words]

@@ -3,6 +3,7 @@ import os
 import tomllib
 
 from ._errors import InputError, unknown
+from ._matrices import as_matrices
 from ._specification import STRUCTURES, tables, takes_options
 
 
@@ -98,6 +99,24 @@ class Frame(Table):
     _table = "frame"
 
 
+class System(Table):
+    """Mass, stiffness and damping matrices of one's own, as [system] describes them: K = K_0 + sum theta_j K_j, likewise
+    M and C. A matrix is a numpy array, a sparse matrix of scipy, or the name of a Matrix Market file.
+
+    >>> import beamid, numpy as np
+    >>> lower, upper = np.diag([2e6, 0.0]), 1.5e6 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    >>> building = beamid.System(mass=np.diag([1000.0, 800.0]), stiffness=upper, labels=["floor", "roof"],
+    ...                          parameters=[{"name": "lower", "stiffness": lower}])
+    >>> beamid.modes(building, modes=2).tables["modes"]["frequency_hz"].round(3)
+    array([ 4.283, 11.45 ])
+    """
+
+    _table = "system"
+
+    def __init__(self, **keywords):
+        super().__init__(**as_matrices(keywords, "System"))
+
+
 class Experiment(Table):
     """A whole experiment file: its tables as keywords, a structure among them.
 
@@ -128,7 +147,8 @@ def _with_absolute_files(value, folder):
         return [_with_absolute_files(one, folder) for one in value]
     if not isinstance(value, dict):
         return value
-    return {key: os.path.join(folder, one) if isinstance(one, str) and (key == "file" or key.endswith("_file"))
+    return {key: os.path.join(folder, one) if isinstance(one, str) and (key == "file" or key.endswith("_file") or
+                                                                         one.endswith(".mtx"))
             else _with_absolute_files(one, folder) for key, one in value.items()}
 
 

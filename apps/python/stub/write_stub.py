@@ -2,7 +2,7 @@
 """Prints the stub of the package from the core's own list of options and tables:
 ./bootstrap python apps/python/stub/write_stub.py > apps/python/beamid/__init__.pyi"""
 from beamid import _commands, _specification
-from beamid._structures import Beam, Chain, Experiment, Frame
+from beamid._structures import Beam, Chain, Experiment, Frame, System
 
 HEAD = '''# Written by apps/python/stub/write_stub.py: do not edit.
 import os
@@ -93,7 +93,9 @@ def option_type(option):
 
 
 def keywords_of_table(table):
-    return [f"{key}: {TYPES[about['type']]} | None = ..." for key, about in _specification.tables()[table].items()]
+    matrices = ("mass", "damping", "stiffness") if table == "system" else ()
+    return [f"{key}: {'Any' if key in matrices else TYPES[about['type']]} | None = ..."
+            for key, about in _specification.tables()[table].items()]
 
 
 def signature(name, first, keywords, result, indent=""):
@@ -120,7 +122,7 @@ def main():
                     "None", "    "))
     print("    @property\n    def numbers(self) -> int: ...\n    @property\n    def path(self) -> None: ...\n    @property\n    def file_name(self) -> str: ...")
     print("    def save(self, path: _Path) -> None: ...\n")
-    for one in (Beam, Chain, Frame, Experiment):
+    for one in (Beam, Chain, Frame, System, Experiment):
         print(f"class {one.__name__}(_Structure):")
         print(signature("__init__", "self", ["*", *keywords_of_table(one._table)], "None", "    "))
         print("    @classmethod\n    def read(cls, path: _Path) -> Experiment: ...\n" if one is Experiment else "")

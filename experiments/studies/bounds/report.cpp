@@ -6,6 +6,7 @@
 #include "experiments/config/key_json.hpp"
 #include "experiments/config/read_identifiability.hpp"
 #include "experiments/config/structure_description.hpp"
+#include "experiments/studies/update/report.hpp"
 #include "experiments/results/file.hpp"
 #include "fem/assembly.hpp"
 
@@ -75,6 +76,7 @@ Results report(const Experiment& experiment, const Identifiability& found) {
   results.values = values(found);
 
   results.heading(experiment.title.empty() ? "What can be known" : experiment.title);
+  if (const std::string text = twins_warning(experiment); !text.empty()) results.warning(text);
   results.paragraph(structure_text(experiment, experiment.elements,
                                    fem::assemble(experiment.structure, experiment.elements).size()));
   results.paragraph(test_text(experiment, found));

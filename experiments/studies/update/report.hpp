@@ -17,6 +17,9 @@ Results report(const Experiment& experiment, const UpdateStudy& study);
 std::pair<std::string, bool> update_verdict(const UpdateStudy& study);
 /// "6 sets of parameters explain these modes equally well"
 std::string sets_text(const Updating& updating);
+/// Where several stiffnesses are asked about: how many sets of them have the frequencies of the structure as
+/// described; empty where it is the only one, where the parameters are too many to look, or not stiffnesses.
+std::string twins_warning(const Experiment& experiment);
 /// What else there is to say, a sentence each.
 std::vector<std::string> update_sentences(const UpdateStudy& study);
 /// "storey_stiffness_1 up by 1 % with storey_stiffness_2 down by 0.8 %"

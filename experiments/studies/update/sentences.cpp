@@ -119,6 +119,29 @@ std::string deciding_text(const DecidingMeasurement& one) {
   return "";
 }
 
+std::string twins_warning(const Experiment& experiment) {
+  constexpr std::size_t most = 6;  // under a second
+  constexpr ModelTrust exactly{0.0005, 0.03};
+  constexpr int few_starts = 40;
+  const auto asked = std::count_if(
+      experiment.parameters.begin(), experiment.parameters.end(), [](const ParameterChoice& choice) {
+        return choice.quantity.ends_with("_stiffness") || choice.quantity == "factor";
+      });
+  if (asked < 2 || asked > static_cast<std::ptrdiff_t>(most)) return {};
+  try {
+    if (fem::assemble(experiment.structure, experiment.elements).size() > static_cast<Index>(most)) return {};
+    const UpdateStudy study = study_update(experiment, described_modes(experiment), {exactly, few_starts});
+    if (study.updating.as_well() < 2) return {};
+    return fmt::format(
+        "Not unique by frequencies alone: {}, those of the structure as described ('beamid twins --config "
+        "FILE' lists them). An estimate near another set has small intervals, too. Sensors that tell the "
+        "shapes apart decide, or initial estimates that are near.",
+        sets_text(study.updating));
+  } catch (const std::exception&) {  // the command itself says what is wrong
+    return {};
+  }
+}
+
 std::vector<std::string> update_sentences(const UpdateStudy& study) {
   const Updating& updating = study.updating;
   std::vector<std::string> sentences;
