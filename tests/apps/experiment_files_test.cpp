@@ -166,11 +166,12 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
   for (const auto& entry : fs::recursive_directory_iterator(source("docs/tutorials"))) {
     if (entry.path().extension() != ".toml") continue;
     if (fs::exists(entry.path().parent_path() / "CMakeLists.txt")) continue;  // for a command of their own
+    if (contents(entry.path()).find("[[modes]]") != std::string::npos) continue;  // measured modes
     ++found;
     const Outcome outcome = Workplace().run("validate '" + entry.path().string() + "'");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
-  EXPECT_EQ(found, 29);
+  EXPECT_EQ(found, 30);
 }
 
 // Oracle: the rows that the reader has. A line behind # is a key, too.

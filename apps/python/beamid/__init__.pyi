@@ -114,17 +114,22 @@ class Chain(_Structure):
 
 class Frame(_Structure):
     def __init__(self, *, elements_per_member: int | None = ..., mass_model: str | None = ...,
-        joints: _Tables | None = ..., members: _Tables | None = ..., supports: _Tables | None = ...,
-        bodies: _Tables | None = ..., springs: _Tables | None = ...) -> None: ...
+        base_motion: str | None = ..., joints: _Tables | None = ..., members: _Tables | None = ...,
+        supports: _Tables | None = ..., bodies: _Tables | None = ..., springs: _Tables | None = ...) -> None: ...
+
+class System(_Structure):
+    def __init__(self, *, mass: Any | None = ..., stiffness: Any | None = ..., damping: Any | None = ...,
+        labels: Sequence[str] | None = ..., base_motion: npt.ArrayLike | None = ...,
+        parameters: _Tables | None = ...) -> None: ...
 
 class Experiment(_Structure):
     def __init__(self, *, title: str | None = ..., beam: _Table | _Structure | None = ...,
-        chain: _Table | _Structure | None = ..., damping: _Table | _Structure | None = ...,
-        excitation: _Table | _Structure | None = ..., sensors: _Tables | None = ...,
-        acquisition: _Table | _Structure | None = ..., simulation: _Table | _Structure | None = ...,
-        frequency_response: _Table | _Structure | None = ..., record: _Table | _Structure | None = ...,
-        reduction: _Table | _Structure | None = ..., reductions: _Tables | None = ...,
-        model: _Table | _Structure | None = ..., parameters: _Tables | None = ...,
+        chain: _Table | _Structure | None = ..., system: _Table | _Structure | None = ...,
+        damping: _Table | _Structure | None = ..., excitation: _Table | _Structure | None = ...,
+        sensors: _Tables | None = ..., acquisition: _Table | _Structure | None = ...,
+        simulation: _Table | _Structure | None = ..., frequency_response: _Table | _Structure | None = ...,
+        record: _Table | _Structure | None = ..., reduction: _Table | _Structure | None = ...,
+        reductions: _Tables | None = ..., model: _Table | _Structure | None = ..., parameters: _Tables | None = ...,
         filter: _Table | _Structure | None = ..., filters: _Tables | None = ...,
         compare: _Table | _Structure | None = ..., identifiability: _Table | _Structure | None = ...,
         prior: _Table | _Structure | None = ..., noise: _Table | _Structure | None = ...,
@@ -204,6 +209,12 @@ def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     steps: int | None = ..., believed_xi: _Number | None = ..., scheme: str | None = ...,
     interval: _Number | None = ..., frequency: _Number | None = ..., out: _Path | None = ...,
     force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+def update(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
+    shape_error: _Number | None = ..., starts: int | None = ..., out: _Path | None = ..., force: bool | None = ...,
+    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+def twins(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
+    shape_error: _Number | None = ..., starts: int | None = ..., out: _Path | None = ..., force: bool | None = ...,
+    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def frf(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., from_: _Number | None = ...,
     to: _Number | None = ..., kind: str | None = ..., length: _Number | None = ..., width: _Number | None = ...,
     height: _Number | None = ..., diameter: _Number | None = ..., youngs_modulus: _Number | None = ...,
@@ -257,7 +268,7 @@ def noise(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., m
     **keys: Any) -> Results: ...
 def paper(*arguments: _Argument, seed: _Number | None = ..., trials: _Number | None = ..., out: _Path | None = ...,
     force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...) -> Results: ...
-def new(*arguments: _Argument, force: bool | None = ...) -> str: ...
+def new(*arguments: _Argument, structure: str | None = ..., force: bool | None = ...) -> str: ...
 def validate(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., record: _Path | None = ...,
     **keys: Any) -> str: ...
 def list(*arguments: _Argument) -> str: ...

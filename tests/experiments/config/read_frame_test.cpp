@@ -115,7 +115,7 @@ TEST(ReadFrame, RefusesWhatCannotBe) {
       {replaced(joints, "}]\n", "}, { x_m = 9, y_m = 0 }, { x_m = 9, y_m = 2 }]\n") + members +
            "[[frame.members]]\nfirst = 4\nsecond = 5\nbending_stiffness_n_m2 = 2\n"
            "axial_stiffness_n = 1e6\nmass_per_length_kg_per_m = 1\n",
-       "frame.toml:2:95: frame.joints[4] is not connected with the first; expected members between all parts "
+       "frame.toml:2:93: frame.joints[4] is not connected with the first; expected members between all parts "
        "of the frame"}};
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text), message);
 }

@@ -50,7 +50,7 @@ TEST(SweepTruth, IsThatOfTheBeamSimulatedWhateverMassIsAssumed) {
   const double bias = 100.0 * (assumed.mass / lighter.mass - 1.0);  // of M omega^2 with the wrong M: 5.8 %
   ASSERT_GT(bias, 5.0);
   for (const bool once : {true, false}) {
-    const SweepPlan plan = plan_with({"truth.structure.beam().tip_mass_kg=0.30"}, 8, once);
+    const SweepPlan plan = plan_with({"truth.beam.tip_mass_kg=0.30"}, 8, once);
     const auto rows = swept(plan);
     for (const PointStatistics& one : statistics(plan, rows)) {
       EXPECT_NEAR(one.bias_percent, bias, 5.0 * one.bias_percent_error + 0.05) << one.parameter << once;
