@@ -31,6 +31,7 @@ class PageOfKeys {
     }
     if (section_ == nullptr || !line.starts_with("| `")) {
       lines_.push_back(line);
+      if (end_of_rows_ == 0 && line.starts_with("|---")) end_of_rows_ = lines_.size();  // of none yet
       return;
     }
     const Key* const key = section_->find(quoted_word(line));

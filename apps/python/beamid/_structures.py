@@ -165,8 +165,8 @@ def keys_text(name):
     return "\n".join(lines)
 
 
-for _class in (Beam, Chain, Frame):
+for _class in (Beam, Chain, Frame, System):
     _class.__doc__ += f"\n    Keywords\n\n{keys_text(_class._table)}\n    "
 assert {_class._table for _class in (Beam, Chain, Frame, System)} == set(STRUCTURES)
-for _class in (Beam, Chain, Frame, Experiment):
+for _class in (Beam, Chain, Frame, System, Experiment):
     _class.__module__ = "beamid"

@@ -56,6 +56,8 @@ TEST(ConfigurationPage, GainsANewKeyLosesAnOldOneAndKeepsItsText) {
   EXPECT_THAT(written, HasSubstr("|\n| `discretisations` | texts |"));
   EXPECT_THAT(written, HasSubstr("|\n\nAfter.\n"));
   EXPECT_THAT(written, testing::Not(HasSubstr("gone")));
+  EXPECT_THAT(with_current_keys("### `[compare]`\n\n| key | type |\n|---|---|\n\nAfter.\n"),
+              HasSubstr("|---|---|\n| `discretisations` | texts |"));
 }
 
 TEST(ConfigurationPage, SaysOfEveryKeyWhatItMeansByAnExampleThatMayStandInAFile) {
