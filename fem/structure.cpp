@@ -9,13 +9,6 @@
 namespace beamid::fem {
 namespace {
 
-template <class... Functions>
-struct Either : Functions... {
-  using Functions::operator()...;
-};
-template <class... Functions>
-Either(Functions...) -> Either<Functions...>;
-
 double diagonal(const Frame& frame) {
   double left = INFINITY, right = -INFINITY, low = INFINITY, high = -INFINITY;
   for (const Frame::Joint& joint : frame.joints) {

@@ -22,7 +22,7 @@ text: str = beamid.list("filters")
 class Stub(unittest.TestCase):
     def test_the_stub_is_what_write_stub_writes(self):
         made = subprocess.run([sys.executable, SOURCE / "apps/python/stub/write_stub.py"], capture_output=True, text=True, check=True).stdout
-        self.assertEqual(STUB.read_text(), made, "apps/python/stub/write_stub.py > apps/python/beamid/__init__.pyi")
+        self.assertEqual(STUB.read_text(), made, "run apps/python/stub/write_stub.py as its first lines say")
 
     def test_public_names_are_those_of_the_module(self):
         tree = ast.parse(STUB.read_text())

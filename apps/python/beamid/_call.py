@@ -123,8 +123,8 @@ class _Call:
     def add_experiment(self, name, root):
         root = _with_absolute_files(root, os.getcwd())
         if "system" in root:
-            told, files = matrix_files(as_matrices(root["system"], "system"))
-            root = {**root, "system": told}
+            keywords, files = matrix_files(as_matrices(root["system"], "system"))
+            root = {**root, "system": keywords}
             self.inputs.update(files)
         self.inputs[name] = toml_text(root)
         return name

@@ -45,8 +45,8 @@ def matrix_files(system, name="system"):
         if key == "parameters":
             keywords[key] = []
             for number, part in enumerate(one, 1):
-                told, more = matrix_files(part, f"{name}_{number}")
-                keywords[key].append(told)
+                inner, more = matrix_files(part, f"{name}_{number}")
+                keywords[key].append(inner)
                 files.update(more)
         elif isinstance(one, Matrix):
             keywords[key] = f"{name}_{key}.mtx"

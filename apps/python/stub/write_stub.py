@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Prints the stub of the package from the core's own list of options and tables:
-./bootstrap python apps/python/stub/write_stub.py > apps/python/beamid/__init__.pyi"""
+./bootstrap python apps/python/stub/write_stub.py > stub.pyi && mv stub.pyi apps/python/beamid/__init__.pyi
+(straight into the package it would be empty while it is read)"""
 from beamid import _commands, _specification
 from beamid._structures import Beam, Chain, Experiment, Frame, System
 

@@ -44,6 +44,7 @@ class LowModeFit {
         unknowns_(root_of(guess.unknowns)) {}
 
   Index unknowns() const { return unknowns_.cols(); }
+  const MatrixXd& root() const { return unknowns_; }  // U of the guess's covariance U U^T (q x q)
 
   // The modes that the record holds, at a state's unknowns; there is always the first.
   JointModel low_modes(const VectorXd& state) const {
@@ -140,7 +141,8 @@ bool is_stiffness(const Unknown& unknown) {
   return unknown.quantity.ends_with("stiffness") || unknown.quantity == "factor";
 }
 
-// c where all stiffnesses are s times those of the guess; empty where a form does not allow it.
+// What the state's unknowns change by where all stiffnesses are s times those of the guess (q); empty where a
+// form does not allow it.
 VectorXd scaled_stiffness(const JointModel& model, const FirstGuess& guess, double s) {
   const auto q = static_cast<Index>(model.unknown_places.size());
   VectorXd change = VectorXd::Zero(q);
@@ -154,7 +156,7 @@ VectorXd scaled_stiffness(const JointModel& model, const FirstGuess& guess, doub
       return {};
     }
   }
-  return root_of(guess.unknowns).completeOrthogonalDecomposition().solve(change);
+  return change;
 }
 
 // Many stiffnesses that are wrong together are beyond the reach of a descent in all of them: a mode of
@@ -165,10 +167,12 @@ VectorXd best_common_stiffness(const LowModeFit& fit, const JointModel& model, c
   constexpr int steps = 12;  // to either side
   VectorXd best = VectorXd::Zero(fit.unknowns());
   if (std::count_if(model.unknowns.begin(), model.unknowns.end(), is_stiffness) < 2) return best;
+  const auto root = fit.root().completeOrthogonalDecomposition();
   double least = fit.at(best, part).cost;
   for (int i = -steps; i <= steps; ++i) {
-    const VectorXd c = scaled_stiffness(model, guess, std::pow(widest, static_cast<double>(i) / steps));
-    if (i == 0 || c.size() == 0) continue;
+    const VectorXd change = scaled_stiffness(model, guess, std::pow(widest, static_cast<double>(i) / steps));
+    if (i == 0 || change.size() == 0) continue;
+    const VectorXd c = root.solve(change);
     if (const double cost = fit.at(c, part).cost; cost < least) least = cost, best = c;
   }
   return best;
@@ -204,7 +208,7 @@ FirstGuess fit_low_modes(const JointModel& model, const std::vector<Observation>
     found = descend(fit, beginning(record.measurements, std::min(part, samples)), c);
   }
   if (!std::isfinite(found.cost)) return guess;
-  const MatrixXd u = root_of(guess.unknowns);
+  const MatrixXd& u = fit.root();
   const MatrixXd information = found.root.transpose() * found.root + MatrixXd::Identity(q, q);
   return {next_start(model, {guess.mean, {}}, {found.state, {}}).mean,
           u * information.ldlt().solve(u.transpose())};

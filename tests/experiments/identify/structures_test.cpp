@@ -146,7 +146,7 @@ TEST_F(DamagedFrame, IsFoundByItsGroups) {
   }
 }
 
-// Sensors that are told to sit in each other's place leave motion that no parameters explain.
+// Sensors described in each other's place leave motion that no parameters explain.
 TEST_F(DamagedFrame, ContradictsSensorsInWrongPlaces) {
   std::swap(record_.channels[0].place, record_.channels[1].place);
   const ComparedRun run = identified(record_);
