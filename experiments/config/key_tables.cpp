@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "experiments/config/known_names.hpp"
+#include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -34,6 +36,14 @@ struct UnknownKey {
   std::string message;
 };
 
+// Of a long table only the way to its keys is worth a line.
+std::string expected_keys(const std::string& key, const std::string& name, const KeyTable& section) {
+  constexpr std::size_t most_listed = 25;
+  const std::vector<std::string> names = section.names();
+  if (names.size() <= most_listed || nearest(key, names)) return known_names(key, names);
+  return fmt::format("'beamid list keys {}' shows the {} that there are", name, names.size());
+}
+
 /// @param name the table's, without the number that an element of an array has in its own name.
 void collect_unknown(const TomlTable& table, const std::string& name, std::vector<UnknownKey>& unknown) {
   const KeyTable* const section = find_key_table(name);
@@ -45,7 +55,7 @@ void collect_unknown(const TomlTable& table, const std::string& name, std::vecto
     } else if (!section->has_options()) {
       unknown.push_back(
           {table.key_place(key), fmt::format("unknown key '{}'{}; {}", key, name.empty() ? "" : " in " + name,
-                                             known_names(key, section->names()))});
+                                             expected_keys(key, name, *section))});
     }
   }
 }
@@ -86,9 +96,12 @@ void refuse_unknown_keys(const TomlTable& root) {
                    [](const UnknownKey& a, const UnknownKey& b) { return a.place.line < b.place.line; });
   std::string message = unknown.front().message;
   constexpr std::size_t most = 10;
-  for (std::size_t i = 1; i < std::min(unknown.size(), most); ++i)
-    message.append("\n").append(to_string(unknown[i].place)).append(": ").append(unknown[i].message);
-  if (unknown.size() > most) message += fmt::format("\n... and {} more unknown keys", unknown.size() - most);
+  std::set<std::string> said{message};
+  for (std::size_t i = 1; i < unknown.size() && said.size() < most; ++i)
+    if (said.insert(unknown[i].message).second)
+      message.append("\n").append(to_string(unknown[i].place)).append(": ").append(unknown[i].message);
+  if (unknown.size() > said.size())
+    message += fmt::format("\n... and {} more unknown keys", unknown.size() - said.size());
   throw InputError(unknown.front().place, message);
 }
 
