@@ -22,7 +22,7 @@ const std::vector<CommandGroup>& command_groups() {
         report_command()}},
       {"Records",
        {inspect_command(), prepare_command(), track_command(), stream_command(), check_command(),
-        steps_command()}},
+        steps_command(), substructures_command()}},
       {"Modes measured", {update_command(), twins_command()}},
       {"Beams and tests to come",
        {frf_command(), frame_command(), reduce_command(), identifiability_command()}},

@@ -71,6 +71,7 @@ Command report_command();
 Command simulate_command();
 Command steps_command();
 Command stream_command();
+Command substructures_command();
 Command sweep_command();
 Command track_command();
 Command twins_command();

@@ -68,6 +68,11 @@ struct StructuralSystem {
 
   Eigen::Index size() const { return mass.rows(); }
 
+  /// Whether the last input, the acceleration of the base, moves anything.
+  bool is_moved_by_base() const {
+    return inputs.cols() > 0 && !Eigen::MatrixXd(inputs.col(inputs.cols() - 1)).isZero(0.0);
+  }
+
   /// How many nodes coordinates belong to: those of the mesh; without one each unknown is its own.
   Eigen::Index nodes() const {
     return mesh.nodes.empty() ? size() : static_cast<Eigen::Index>(mesh.nodes.size());

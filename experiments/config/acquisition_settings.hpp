@@ -29,10 +29,11 @@ struct Acquisition {
   double jitter = 0.0;            ///< standard deviation of the intervals, a share of their mean
   double median_shortfall = 0.0;  ///< by which the median interval is shorter than the mean, a share of it
   int gaps = 0;                   ///< how often samples are missing
-  std::pair<double, double> gap{0.01, 0.3};  ///< shortest and longest gap [s]
-  double repeated = 0.0;                     ///< share of samples that show the reading before once more
-  bool force = true;                         ///< the exciting force is measured, but for a release
-  std::vector<SensorDefects> sensors = {};   ///< in the order of the sensors; missing ones have no defect
+  std::pair<double, double> gap{0.01, 0.3};    ///< shortest and longest gap [s]
+  double repeated = 0.0;                       ///< share of samples that show the reading before once more
+  bool force = true;                           ///< the exciting force is measured, but for a release
+  double force_noise = 0.0, base_noise = 0.0;  ///< standard deviations of that record [N], [m/s2]
+  std::vector<SensorDefects> sensors = {};     ///< in the order of the sensors; missing ones have no defect
 
   bool operator==(const Acquisition&) const = default;
 
@@ -41,6 +42,8 @@ struct Acquisition {
     Acquisition ideal;
     ideal.gap = gap;
     ideal.force = force;
+    ideal.force_noise = force_noise;
+    ideal.base_noise = base_noise;
     ideal.sensors.resize(sensors.size());
     return *this == ideal;
   }

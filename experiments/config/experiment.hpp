@@ -28,8 +28,9 @@ struct Experiment {
   int elements = 40;  ///< of a beam, or of each member of a frame
   fem::DampingLaw damping;
   Excitation excitation;
-  std::vector<Sensor> sensors;  ///< none: displacement and acceleration at the natural point
-  Acquisition acquisition;      ///< of a virtual test
+  std::vector<Excitation> further_excitations;  ///< that act at the same time, forces and the base's motion
+  std::vector<Sensor> sensors;                  ///< none: displacement and acceleration at the natural point
+  Acquisition acquisition;                      ///< of a virtual test
   Simulation simulation;
   FrequencyResponseSettings frequency_response;
   std::optional<std::string> record_file;  ///< relative to the TOML file's folder
@@ -47,6 +48,7 @@ struct Experiment {
   std::vector<std::string> discretisations;  ///< likewise; none: `discretisation`
   int passes = 3;                            ///< over the record, of every run of a comparison
   IdentifiabilitySettings identifiability;
+  std::vector<PartOfStructure> parts;  ///< to be identified one by one
   PriorBelief prior;
   std::map<Quantity, double> noise;     ///< standard deviation per quantity [SI]; absent: from the record
   Choice noise_method{"residual", {}};  ///< how absent ones are found: residual, likelihood, before_event

@@ -35,7 +35,11 @@ const Schema<Acquisition>& acquisition_keys() {
           .key("force", &A::force,
                "whether the record holds the exciting force, or the base's acceleration, as a channel; that "
                "of a release never is one",
-               "false");
+               "false")
+          .key("force_noise_n", &A::force_noise, not_negative,
+               "standard deviation of the noise of that channel", "0.5")
+          .key("base_noise_m_per_s2", &A::base_noise, not_negative, "likewise, of the base's acceleration",
+               "0.01");
   return keys;
 }
 

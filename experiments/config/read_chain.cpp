@@ -94,6 +94,7 @@ void check_places_on_chain(const TomlTable& root, const fem::Beam& chain) {
   };
   for (const TomlTable& sensor : root.find_tables("sensors")) check(sensor);
   if (const auto excitation = root.find_table("excitation")) check(*excitation);
+  for (const TomlTable& excitation : root.find_tables("excitations")) check(excitation);
   if (const auto record = root.find_table("record"))
     for (const TomlTable& channel : record->find_tables("channels")) check(channel);
 }

@@ -12,6 +12,7 @@
 #include "experiments/config/read_identifiability.hpp"
 #include "experiments/config/read_methods.hpp"
 #include "experiments/config/read_parameters.hpp"
+#include "experiments/config/read_parts.hpp"
 #include "experiments/config/read_prior.hpp"
 #include "experiments/config/read_record_format.hpp"
 #include "experiments/config/read_simulation.hpp"
@@ -26,11 +27,11 @@ const Schema<Experiment>& root_keys() {
       Schema<Experiment>("")
           .key("title", &Experiment::title, "printed on top of results and plots", "\"steel cantilever\"")
           .tables({"beam", "chain", "system", "damping", "excitation"}, table)
-          .tables({"sensors"}, tables)
+          .tables({"excitations", "sensors"}, tables)
           .tables({"acquisition", "simulation", "frequency_response", "record", "reduction"}, table)
           .tables({"reductions"}, tables)
           .tables({"model"}, table)
-          .tables({"parameters"}, tables)
+          .tables({"parameters", "substructures"}, tables)
           .tables({"filter"}, table)
           .tables({"filters"}, tables)
           .tables({"compare", "identifiability", "prior", "noise", "frame", "sweep"}, table);
@@ -73,9 +74,14 @@ void read_continuum(const TomlTable& root, Experiment& experiment) {
   if (const auto damping = root.find_table("damping")) experiment.damping = read_damping(*damping);
   if (const auto excitation = root.find_table("excitation"))
     experiment.excitation = read_excitation(*excitation, structure);
+  if (const auto several = read_simultaneous_excitations(root, structure); !several.empty()) {
+    experiment.excitation = several.front();
+    experiment.further_excitations.assign(several.begin() + 1, several.end());
+  }
   experiment.sensors = read_sensors(root, structure);
   experiment.acquisition = read_acquisition(root);
   experiment.parameters = read_parameters(root, structure);
+  experiment.parts = read_parts(root, structure);
   if (const auto simulation = root.find_table("simulation"))
     experiment.simulation = read_simulation(*simulation);
   if (const auto response = root.find_table("frequency_response"))

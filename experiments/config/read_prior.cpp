@@ -25,7 +25,7 @@ const Schema<PriorBelief>& prior_keys() {
 
 struct NoiseValues {
   std::string method = "residual";
-  std::optional<double> displacement, velocity, acceleration, strain;
+  std::optional<double> displacement, velocity, acceleration, strain, force, base, support;
 };
 
 const Schema<NoiseValues>& noise_keys() {
@@ -48,7 +48,15 @@ const Schema<NoiseValues>& noise_keys() {
           .key("acceleration_m_per_s2", &N::acceleration, positive, "noise of acceleration channels", "0.05")
           .fallback("estimated")
           .key("strain_m_per_m", &N::strain, positive, "noise of strain channels", "1e-7")
-          .fallback("estimated");
+          .fallback("estimated")
+          .key("force_n", &N::force, positive, "noise of measured forces", "0.5")
+          .fallback("forces are exact")
+          .key("base_acceleration_m_per_s2", &N::base, positive, "noise of the base's measured acceleration",
+               "0.01")
+          .fallback("it is exact")
+          .key("support_acceleration_m_per_s2", &N::support, positive,
+               "noise of the accelerations that are imposed at places", "0.01")
+          .fallback("they are exact");
   return keys;
 }
 
@@ -69,6 +77,9 @@ void read_prior(const TomlTable& root, Experiment& experiment) {
   take(Quantity::velocity, noise.velocity);
   take(Quantity::acceleration, noise.acceleration);
   take(Quantity::strain, noise.strain);
+  take(Quantity::force, noise.force);
+  take(Quantity::base_acceleration, noise.base);
+  take(Quantity::support_acceleration, noise.support);
   if (table->contains("method")) experiment.noise_method = {noise.method, {}, table->value_place("method")};
 }
 

@@ -80,6 +80,7 @@ const Schema<DescribedRecord>& record_keys() {
 struct DescribedColumn {
   std::string quantity, unit, place;
   std::optional<double> position, distance;
+  double noise = 0.0;
 };
 
 std::string quoted_symbols(const std::vector<Unit>& known, const char* separator) {
@@ -124,7 +125,13 @@ Schema<DescribedColumn> make_channel_keys() {
            "\"ridge.x\"")
       .key("distance_m", &C::distance, "strain: of the gauge from the axis, c of -c w''", "0.003")
       .values("number, not 0")
-      .fallback("half the section's height");
+      .fallback("half the section's height")
+      .key(
+          "noise", &C::noise, positive,
+          "standard deviation of its white noise, in `unit`. Of an input: its samples are taken as uncertain "
+          "by as much ([theory](theory/parts_of_structures.md#inputs-that-are-not-exact))",
+          "0.02")
+      .fallback("that of `[noise]`; an input is exact");
 }
 
 const Schema<DescribedColumn>& time_keys() {
@@ -174,6 +181,7 @@ ColumnDescription read_channel(const TomlTable& table, const fem::Structure* str
   channel.position = given.position;
   channel.distance = given.distance.value_or(0.0);
   channel.place = given.place;
+  channel.noise = given.noise;
   if (structure != nullptr) {
     channel.place = read_place(table, *structure, false);
     check_gauge_position(table, *structure, channel.quantity);

@@ -14,6 +14,10 @@ namespace beamid::experiments {
 /// @throws InputError for a missing, a useless or a bad value.
 Excitation read_excitation(const TomlTable& table, const fem::Structure& structure);
 
+/// Each of [[excitations]], which act at the same time; none without.
+/// @param root of the file. @throws InputError also beside [excitation].
+std::vector<Excitation> read_simultaneous_excitations(const TomlTable& root, const fem::Structure& structure);
+
 /// @param root of the file.
 std::vector<Sensor> read_sensors(const TomlTable& root, const fem::Structure& structure);
 

@@ -12,6 +12,8 @@ const char* to_string(Excitation::Kind kind) {
       return "impulse";
     case Excitation::Kind::harmonic:
       return "harmonic";
+    case Excitation::Kind::random:
+      return "random";
     case Excitation::Kind::base:
       return "base";
     case Excitation::Kind::table:

@@ -17,9 +17,10 @@ namespace beamid::experiments {
 /// What sets the beam in motion. Absent values are worked out or zero.
 struct Excitation {
   /// release: from rest in the static shape of a force; step: a constant force from t = 0 on; impulse: a
-  /// momentum at once or a half sine; harmonic: amplitude sin(2 pi f t); base: the ground accelerates; table:
-  /// a force from a file; free: from a given displacement and velocity.
-  enum class Kind { release, step, impulse, harmonic, base, table, free };
+  /// momentum at once or a half sine; harmonic: amplitude sin(2 pi f t); random: normal numbers, 2 f a
+  /// second, straight between them; base: the ground accelerates; table: a force from a file; free: from a
+  /// given displacement and velocity.
+  enum class Kind { release, step, impulse, harmonic, random, base, table, free };
   Kind kind = Kind::release;
   std::optional<double> position;  ///< of the force, or of the point displaced [m]; absent: the natural point
   std::optional<double> deflection;  ///< release, free: at that point [m]; release: 0.012 when absent
@@ -28,8 +29,8 @@ struct Excitation {
   double force = 0.0;                ///< step [N]
   double momentum = 0.0;             ///< impulse [N s]
   double duration = 0.0;             ///< impulse: of the half sine [s]; 0: at once
-  double amplitude = 0.0;            ///< harmonic [N], base [m/s2]
-  double frequency_hz = 0.0;         ///< harmonic, base [Hz]
+  double amplitude = 0.0;            ///< harmonic, random (root mean square) [N], base [m/s2]
+  double frequency_hz = 0.0;         ///< harmonic, random, base [Hz]
   std::optional<std::string>
       file;             ///< table, base: time and force [N] or acceleration [m/s2]; relative to the TOML file
   Place place = {};     ///< of the table, for messages
@@ -44,6 +45,15 @@ struct Sensor {
   double noise = 0.0;                          ///< standard deviation [SI]
   double distance = 0.0;                       ///< strain: of the surface from the axis, c of -c w'' [m]
   std::string place = {};                      ///< of a structure whose places have names: "ridge.x"
+};
+
+/// A part of a structure between sections whose motion was measured.
+struct PartOfStructure {
+  std::string name;
+  std::optional<double> from, to;     ///< sections [m]; absent: as far as the structure goes
+  std::vector<std::string> supports;  ///< in their place, where places have names
+  std::string inside;                 ///< a place of the part, which says on which side of them it is
+  Place place = {};                   ///< of the table, for messages
 };
 
 /// How the test is simulated: [simulation].

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -84,6 +85,12 @@ void take_complete_forces(RecordAnalysis& found) {
     found.record.samples.row(i) = found.even.filled.row(i).select(std::nan(""), found.record.samples.row(i));
 }
 
+bool has_supports(const Record& record) {
+  return std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& channel) {
+    return channel.quantity == Quantity::support_acceleration;
+  });
+}
+
 std::string aliased_text(double beam_hz, double rate, double shown) {
   return fmt::format(
       "ALIASED: the beam's first mode, at {:.5g} Hz, lies above half the sampling rate, {:.5g} Hz. The "
@@ -152,7 +159,10 @@ RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
   if (found.aliased) found.warnings.push_back(aliased_text(described, rate, found.expected_hz));
   if (found.forced()) {
     take_complete_forces(found);
-    find_driven_mode(found);
+    if (has_supports(found.record))
+      found.modal_failure = "a part between supports has other frequencies than the whole";
+    else
+      find_driven_mode(found);
   } else {
     find_decaying_mode(experiment, found);
   }

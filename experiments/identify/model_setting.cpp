@@ -65,7 +65,8 @@ filters::Measurements measurements(const Record& record) {
   const std::vector<Index> outputs = output_channels(record), forces = input_channels(record);
   filters::Measurements result{record.time, record.samples(outputs, Eigen::all), {}};
   if (record.time_resolution < 0.5 * record.interval()) result.time_resolution = record.time_resolution;
-  if (!forces.empty()) take_inputs(record.samples(forces, Eigen::all), record.input_path, result);
+  if (!forces.empty())
+    take_inputs(record.samples(forces, Eigen::all), record.input_path, result, imposed_inputs(record));
   return result;
 }
 
@@ -82,17 +83,20 @@ ModelSetting model_setting(const Experiment& experiment, const Record& record, c
     setting.observations.push_back({channel.quantity, channel.name});
   }
   const std::vector<Index> inputs = input_channels(record);
-  for (const Index i : inputs)
-    setting.forces.push_back(record.channels[i].quantity == Quantity::force
-                                 ? points.add(record.channels[i].position, record.channels[i].place)
-                                 : -1);
+  for (const Index i : inputs) {
+    const Channel& channel = record.channels[i];
+    if (channel.quantity == Quantity::support_acceleration)
+      setting.supports.push_back(static_cast<Index>(setting.forces.size()));
+    setting.forces.push_back(
+        channel.quantity == Quantity::base_acceleration ? -1 : points.add(channel.position, channel.place));
+  }
   setting.system = fem::assemble(structure, experiment.elements, points.all());
   const Index base = setting.system.inputs.cols() - 1;
   if (std::count(setting.forces.begin(), setting.forces.end(), Index{-1}) > 1)
     throw std::invalid_argument(
         "the record holds several channels of base_acceleration; expected one, of all supports together");
   if (std::count(setting.forces.begin(), setting.forces.end(), Index{-1}) == 1 &&
-      Eigen::MatrixXd(setting.system.inputs.col(base)).isZero(0.0))
+      !setting.system.is_moved_by_base())
     throw std::invalid_argument(
         "the record holds the acceleration of the base, which does not move the structure; expected "
         "base_motion in [system]");

@@ -14,6 +14,16 @@ using Eigen::Index, Eigen::MatrixXd;
 
 constexpr double unevenness = 0.01;  // of the mean interval
 
+// Paths of the lower degree, with these inputs from the higher (m (d + 1) x N).
+MatrixXd with_smooth_rows(const MatrixXd& low, const MatrixXd& smooth, Index inputs,
+                          const std::vector<Index>& rows) {
+  MatrixXd paths = MatrixXd::Zero(smooth.rows(), smooth.cols());
+  paths.topRows(low.rows()) = low;
+  for (const Index row : rows)
+    for (Index j = row; j < smooth.rows(); j += inputs) paths.row(j) = smooth.row(j);
+  return paths;
+}
+
 }  // namespace
 
 const char* to_string(InputPath path) {
@@ -28,27 +38,38 @@ const char* to_string(InputPath path) {
   return "";
 }
 
-RecordInputs take_inputs(const MatrixXd& samples, std::optional<InputPath> stated,
-                         filters::Measurements& to) {
+std::vector<Index> imposed_inputs(const Record& record) {
+  const std::vector<Index> inputs = input_channels(record);
+  std::vector<Index> imposed;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (record.channels[static_cast<std::size_t>(inputs[i])].quantity == Quantity::support_acceleration)
+      imposed.push_back(static_cast<Index>(i));
+  return imposed;
+}
+
+RecordInputs take_inputs(const MatrixXd& samples, std::optional<InputPath> stated, filters::Measurements& to,
+                         const std::vector<Index>& imposed) {
   if (const Index missing = samples.size() - samples.array().isFinite().count(); missing > 0)
     throw std::invalid_argument(
         fmt::format("{} readings of measured inputs are missing or not finite; expected all of them, for the "
                     "motion depends on every one",
                     missing));
   RecordInputs result{stated.value_or(InputPath::linear), stated.has_value(), to.size() - 1, 0};
-  if (stated == InputPath::held) {
-    to.inputs = samples;
-    return result;
-  }
-  to.inputs = filters::straight_path(samples).columns;
-  if (stated == InputPath::linear || result.steps < 1) return result;
+  const bool held = stated == InputPath::held;
+  to.inputs = held ? samples : filters::straight_path(samples).columns;
+  const bool all_stated = stated && stated != InputPath::band_limited;
+  if ((all_stated && imposed.empty()) || result.steps < 1) return result;
   const filters::InputPaths smooth =
       filters::band_limited_path(to.time, samples, unevenness * to.interval() + 2.0 * to.time_resolution);
-  if (stated && smooth.band_limited == 0)
+  if (stated == InputPath::band_limited && smooth.band_limited == 0)
     throw std::invalid_argument(
         "input is 'band_limited', and no stamps are even; expected 'linear', or a record that is resampled "
         "first");
-  if (!stated && 2 * smooth.band_limited < result.steps) return result;
+  if (stated != InputPath::band_limited && 2 * smooth.band_limited < result.steps) return result;
+  if (all_stated) {
+    to.inputs = with_smooth_rows(to.inputs, smooth.columns, samples.rows(), imposed);
+    return result;
+  }
   to.inputs = smooth.columns;
   result.path = InputPath::band_limited;
   result.straight = result.steps - smooth.band_limited;
@@ -70,7 +91,7 @@ std::optional<RecordInputs> record_inputs(const Record& record) {
   filters::Measurements unused;
   unused.time = record.time;
   if (record.time_resolution < 0.5 * record.interval()) unused.time_resolution = record.time_resolution;
-  return take_inputs(record.samples(forces, Eigen::all), record.input_path, unused);
+  return take_inputs(record.samples(forces, Eigen::all), record.input_path, unused, imposed_inputs(record));
 }
 
 std::string words(const RecordInputs& inputs) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/record/record.hpp"
 #include "filters/input_path.hpp"
@@ -24,10 +25,15 @@ const char* to_string(InputPath path);
 /// Takes the inputs' samples (m x N) into `to`, whose stamps are set: band-limited where at least half of the
 /// stamps are even, else straight, unless the path is stated. Intervals count as even within 1 % of their
 /// mean and what the stamps are printed to.
+/// @param imposed rows that are motions of supports: band-limited as all motion of a structure is, whatever
+/// is stated of the others
 /// @throws std::invalid_argument when a band-limited path is stated and no stamps are even, or a reading is
 /// not finite.
 RecordInputs take_inputs(const Eigen::MatrixXd& samples, std::optional<InputPath> stated,
-                         filters::Measurements& to);
+                         filters::Measurements& to, const std::vector<Eigen::Index>& imposed = {});
+
+/// Which of a record's inputs are motions of supports.
+std::vector<Eigen::Index> imposed_inputs(const Record& record);
 
 /// The m inputs of a record low-passed and decimated (signal/decimation.hpp) to even stamps, on the same kind
 /// of path; none without inputs.

@@ -19,7 +19,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::MatrixXcd, Eigen::VectorXd, Eigen::V
 Index force_row(const Record& record) {
   Index row = -1;
   for (Index i = 0; i < record.samples.rows(); ++i) {
-    if (record.channels[i].quantity == Quantity::base_acceleration)
+    const Quantity quantity = record.channels[i].quantity;
+    if (is_input(quantity) && quantity != Quantity::force)
       throw std::invalid_argument(
           "the record holds the acceleration of the base; frequency responses expect a hammer's force alone");
     if (record.channels[i].quantity == Quantity::force) {

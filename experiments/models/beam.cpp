@@ -19,6 +19,7 @@
 #include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/models/motion/following_motion.hpp"
 #include "experiments/models/motion/sensor_options.hpp"
+#include "experiments/models/motion/supported_motion.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -128,16 +129,88 @@ FollowingMotion::Equations equations_at(const ModelSetting& setting, const std::
   };
 }
 
+void place_unknowns(const StateLayout& places, JointModel& model) {
+  for (Index j = 0; j < static_cast<Index>(model.unknowns.size()); ++j)
+    model.unknown_places.push_back(places.unknowns + j);
+  model.offsets = places.offsets;
+}
+
+std::vector<Unknown> properties_of(const std::vector<ParameterChoice>& choices,
+                                   const std::vector<ParameterDefault>& defaults) {
+  std::vector<Unknown> properties;
+  for (std::size_t j = 0; j < choices.size(); ++j)
+    if (beam_quantity(choices[j].quantity)) properties.push_back(unknown_of(choices[j], defaults[j]));
+  return properties;
+}
+
+// What lies between supports whose motion was measured (supported_motion.hpp). Its modes are those with the
+// supports at rest; where these move, what is inside follows in static shapes.
+std::unique_ptr<JointModel> make_part(const ModelSetting& setting, MotionDescription description,
+                                      const std::vector<ParameterChoice>& choices,
+                                      std::vector<ParameterDefault>& defaults) {
+  if (setting.reduction && !reduce(setting.system, *setting.reduction, setting.training).identity)
+    throw std::invalid_argument(
+        "a part between supports is identified in its own coordinates; expected [reduction] method = "
+        "\"none\"");
+  const fem::ParametricSystem equations = beam_equations(setting, properties_of(choices, defaults));
+  SupportedEquations part =
+      supported_equations(equations, description.forces, setting.supports, description.base);
+  const fem::ParametricSystem held = held_at_supports(equations, part);
+  const Index inside = part.inside(), n = inside + part.supports;
+  const fem::Modes modes = fem::modes(held.system, inside);
+  if (modes.rigid > 0)
+    throw std::invalid_argument("the part between the supports moves without strain; expected more supports");
+  add_damping_defaults(setting.damping, modes.angular_frequency, choices, defaults);
+  description.unknowns = unknowns_of(choices, defaults);
+  add_drives(equations, description);
+  describe_damping(setting.damping, modes.angular_frequency, damped_modes(held, modes), description);
+
+  auto model = std::make_unique<JointModel>();
+  model->unknowns = description.unknowns;
+  const VectorXd scale = scale_of_modes(held.system, description.observations, modes.shape);
+  // Accelerometers do not see where a support was at first, nor how fast: from there any motion x_0 + x_1 t
+  // of the supports, what is inside following in static shapes, has no acceleration. It is taken from rest at
+  // zero, which then loses nothing.
+  const bool sees_supports =
+      std::any_of(description.observations.begin(), description.observations.end(),
+                  [](const Observation& one) { return one.quantity != Quantity::acceleration; });
+  const Index moved = sees_supports ? part.supports : 0;
+  MatrixXd shapes = MatrixXd::Zero(n, inside + moved);
+  shapes.topLeftCorner(inside, 1) = scale[0] * modes.shape.col(0);
+  shapes.topRightCorner(inside, inside - 1) =
+      modes.shape.rightCols(inside - 1) * scale.tail(inside - 1).asDiagonal();
+  if (moved > 0) {
+    shapes.block(0, 1, inside, moved) = -part.stiffness.topLeftCorner(inside, inside)
+                                             .ldlt()
+                                             .solve(part.stiffness.topRightCorner(inside, moved));
+    shapes.block(inside, 1, moved, moved).setIdentity();
+  }
+  model->mode_shapes = shapes;
+  model->mode_frequencies.setConstant(inside + moved, modes.angular_frequency[0]);
+  model->mode_frequencies.tail(inside - 1) = modes.angular_frequency.tail(inside - 1);
+
+  VectorXd typical = VectorXd::Constant(n, modes.angular_frequency[0]);
+  typical.head(inside) =
+      (part.stiffness.diagonal().head(inside).array() / part.mass.diagonal().head(inside).array())
+          .cwiseMax(0.0)
+          .sqrt()
+          .max(modes.angular_frequency[0]);
+  const MatrixXd rows = MatrixXd(equations.system.outputs)(Eigen::all, part.coordinates);
+  const StateLayout places = layout(description, n);
+  model->motion = std::make_shared<SupportedMotion>(std::move(part), std::move(description), rows, typical);
+  place_unknowns(places, *model);
+  return model;
+}
+
 std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters::Options& options) {
   MotionDescription description = describe_sensors("beam", setting, options);
   const std::vector<ParameterChoice> choices = choices_of(setting);
   if (!setting.continuum) beam_equations(setting, {});  // says what is missing
   std::vector<ParameterDefault> defaults = beam_defaults(setting.continuum->structure, choices);
 
+  if (!setting.supports.empty()) return make_part(setting, std::move(description), choices, defaults);
   // The equations need no more than the guesses of the beam's own properties.
-  std::vector<Unknown> properties;
-  for (std::size_t j = 0; j < choices.size(); ++j)
-    if (beam_quantity(choices[j].quantity)) properties.push_back(unknown_of(choices[j], defaults[j]));
+  const std::vector<Unknown> properties = properties_of(choices, defaults);
   fem::ParametricSystem equations = beam_equations(setting, properties);
   reduction::ReducedModel reduced;
   if (setting.reduction)
@@ -206,9 +279,7 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
     places = layout(description, equations.system.size());
     model->motion = std::make_shared<ContinuumMotion>(std::move(equations), std::move(description));
   }
-  for (Index j = 0; j < static_cast<Index>(model->unknowns.size()); ++j)
-    model->unknown_places.push_back(places.unknowns + j);
-  model->offsets = places.offsets;
+  place_unknowns(places, *model);
   return model;
 }
 

@@ -16,7 +16,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 JointModel with_modes_at(JointModel model, const VectorXd& state) {
   const auto* motion = dynamic_cast<const SecondOrderMotion*>(model.motion.get());
-  if (!motion) return model;
+  if (!motion || !motion->has_modes_of_its_own()) return model;
   SecondOrderForm form;
   motion->evaluate(state, form, nullptr);
   // W = M^-1 K with M and K symmetric: real eigenvalues omega^2.
@@ -40,11 +40,12 @@ JointModel with_modes_at(JointModel model, const VectorXd& state) {
 MatrixXd motion_slopes(const JointModel& model, const VectorXd& state) {
   const Index r = model.motion_size(), q = static_cast<Index>(model.unknowns.size());
   MatrixXd slopes = MatrixXd::Zero(state.size(), q);
-  if (!dynamic_cast<const SecondOrderMotion*>(model.motion.get())) return slopes;
+  const auto* motion = dynamic_cast<const SecondOrderMotion*>(model.motion.get());
+  if (!motion || !motion->has_modes_of_its_own()) return slopes;
   const MatrixXd& shapes = model.mode_shapes;
-  MatrixXd motion(r, 2);
-  motion << state.head(r), state.segment(r, r);
-  const MatrixXd amplitudes = shapes.colPivHouseholderQr().solve(motion);  // a, b (k x 2)
+  MatrixXd start(r, 2);
+  start << state.head(r), state.segment(r, r);
+  const MatrixXd amplitudes = shapes.colPivHouseholderQr().solve(start);  // a, b (k x 2)
   // The same modes elsewhere: their part along each shape held at one, which makes Phi(eta) smooth.
   const auto moved = [&](std::size_t j, double step) -> MatrixXd {
     VectorXd there = state;

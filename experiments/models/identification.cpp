@@ -8,6 +8,7 @@
 
 #include "experiments/models/divergence.hpp"
 #include "experiments/text/memory_need.hpp"
+#include "filters/noisy_inputs.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -41,7 +42,31 @@ void require_sample_memory(const IdentificationSettings& settings, Eigen::Index 
                      copies * sizeof(double) * static_cast<double>(states));
 }
 
+filters::FilterRun filter_passes(filters::Filter& filter, const JointModel& model,
+                                 const filters::Measurements& record, const IdentificationSettings& settings,
+                                 filters::Keep keep, const filters::NoisyInputs* noisy = nullptr) {
+  filters::Gaussian initial = settings.initial;
+  filters::FilterRun run;
+  for (int pass = 1; pass <= settings.passes; ++pass) {
+    const bool last = pass == settings.passes;
+    run = filters::run(filter, noisy ? noisy->with_errors(initial) : initial, record,
+                       {last ? keep : filters::Keep::last_belief, settings.start, {}, settings.on_failure});
+    if (noisy) {
+      run.last = noisy->without_errors(run.last);
+      for (auto* beliefs : {&run.predicted, &run.filtered})
+        for (filters::Gaussian& belief : *beliefs) belief = noisy->without_errors(belief);
+    }
+    if (run.failure) break;
+    initial = next_start(model, initial, run.last);
+  }
+  return run;
+}
+
 }  // namespace
+
+bool has_noise(const Eigen::VectorXd& inputs) {
+  return inputs.size() > 0 && inputs.maxCoeff() > 0.0;
+}
 
 filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& initial,
                              const filters::Gaussian& last) {
@@ -52,21 +77,19 @@ filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& i
 
 filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
                                  const IdentificationSettings& settings, filters::Keep keep) {
-  const auto filter = filters::filter_registry().make(
-      settings.filter, settings.filter_options,
+  std::unique_ptr<filters::DiscreteModel> discrete =
       filters::discretise(model.motion, record.interval(), settings.discretisation,
-                          {settings.process_noise, settings.output_noise}));
+                          {settings.process_noise, settings.output_noise});
   require_sample_memory(settings, settings.initial.mean.size());
-  filters::Gaussian initial = settings.initial;
-  filters::FilterRun run;
-  for (int pass = 1; pass <= settings.passes; ++pass) {
-    const bool last = pass == settings.passes;
-    run = filters::run(*filter, initial, record,
-                       {last ? keep : filters::Keep::last_belief, settings.start, {}, settings.on_failure});
-    if (run.failure) break;
-    initial = next_start(model, initial, run.last);
+  const filters::NoisyInputs* noisy = nullptr;
+  if (has_noise(settings.input_noise)) {
+    auto with_errors = std::make_unique<filters::NoisyInputs>(std::move(discrete), settings.input_noise);
+    noisy = with_errors.get();
+    discrete = std::move(with_errors);
   }
-  return run;
+  const auto filter =
+      filters::filter_registry().make(settings.filter, settings.filter_options, std::move(discrete));
+  return filter_passes(*filter, model, record, settings, keep, noisy);
 }
 
 bool is_oscillator(const JointModel& model) {

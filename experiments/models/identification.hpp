@@ -23,7 +23,12 @@ struct IdentificationSettings {
   int passes = 1;
   filters::OnFailure on_failure = filters::OnFailure::stop;
   Eigen::MatrixXd process_noise = {};  ///< Q of the state per step; empty: none
+  /// Standard deviations of the inputs' white noise (m); empty: they are exact (noisy_inputs.hpp).
+  Eigen::VectorXd input_noise = {};
 };
+
+/// Whether any input's samples are uncertain.
+bool has_noise(const Eigen::VectorXd& inputs);
 
 /// The belief that the next pass over the record starts from: `initial` with the constants that `last` found
 /// but for the nuisance parameters, what is known of which must not be counted twice.

@@ -18,6 +18,12 @@ ModelSetting at_one_point(const fem::StructuralSystem& system, const std::vector
   return setting;
 }
 
+void require_no_supports(const std::string& model, const ModelSetting& setting) {
+  if (!setting.supports.empty())
+    throw std::invalid_argument("model '" + model +
+                                "' has no place for support_acceleration; expected [model] name = \"beam\"");
+}
+
 reduction::ReducedModel reduced(const ModelSetting& setting) {
   if (setting.reduction) return reduce(setting.system, *setting.reduction, setting.training);
   const auto none = reduction::reduction_registry().make("none", {});

@@ -30,8 +30,9 @@ struct ModelSetting {
   fem::StructuralSystem system;  ///< the continuum as described; output row i is what observation i reads
   std::shared_ptr<const reduction::Reduction> reduction;  ///< absent: none
   reduction::Training training = {};
-  std::vector<Observation> observations;  ///< p
-  std::vector<Eigen::Index> forces = {};  ///< inputs of the system that the record holds, in its order (m)
+  std::vector<Observation> observations;    ///< p
+  std::vector<Eigen::Index> forces = {};    ///< inputs of the system that the record holds, in its order (m)
+  std::vector<Eigen::Index> supports = {};  ///< which of these are accelerations imposed where they act
   std::vector<ParameterChoice> parameters = {};  ///< none: what the model asks about by itself
   fem::DampingLaw damping = {};                  ///< as described; guesses of damping ratios come from it
   PriorBelief prior = {};                        ///< of one degree of freedom
@@ -76,6 +77,9 @@ struct JointModel {
 
   Eigen::Index motion_size() const { return mode_shapes.rows(); }  ///< r
 };
+
+/// @throws std::invalid_argument where the record has a support_acceleration: only model beam takes one.
+void require_no_supports(const std::string& model, const ModelSetting& setting);
 
 using ModelRegistry = filters::Registry<JointModel, const ModelSetting&>;
 ModelRegistry& model_registry();

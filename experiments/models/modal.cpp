@@ -122,6 +122,7 @@ VectorXd ratios_of(const ModelSetting& setting, const fem::StructuralSystem& sys
 
 std::unique_ptr<JointModel> make_modal(const ModelSetting& setting, const filters::Options& options) {
   MotionDescription description = describe_sensors("modal", setting, options);
+  require_no_supports("modal", setting);
   const reduction::ReducedModel small = reduced(setting);
   const double wanted = options.number("modes");
   const Index all = small.system.size();

@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "experiments/models/joint_model.hpp"
+#include "experiments/models/motion/sensor_options.hpp"
 #include "fem/modes.hpp"
 
 namespace beamid::experiments {
@@ -92,8 +93,7 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
       if (quantity != Quantity::acceleration) continue;
       const double restored = (state[2] * state[0] + state[3] * state[1]) / mass(state);
       output[i] = reading * (pushed(state, input) - restored) + (bias_ > 0 ? state[bias_] : 0.0);
-      if (known_.base >= 0 && input.size() > 0)
-        output[i] += base_share * input[known_.base];
+      if (known_.base >= 0 && input.size() > 0) output[i] += base_share * input[known_.base];
     }
   }
   void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) const override {
@@ -184,6 +184,7 @@ std::unique_ptr<JointModel> make_sdof(const ModelSetting& setting, const filters
   if (system.size() != 1)
     throw std::invalid_argument("model 'sdof' needs a reduction to one coordinate; this one keeps " +
                                 std::to_string(system.size()));
+  require_no_supports("sdof", setting);
   std::vector<SdofChannel> observed;
   std::vector<Index> accelerometers;
   auto model = std::make_unique<JointModel>();

@@ -14,6 +14,7 @@ const char* si_unit(Quantity quantity) {
       return "m/s";
     case Quantity::acceleration:
     case Quantity::base_acceleration:
+    case Quantity::support_acceleration:
       return "m/s2";
     case Quantity::force:
       return "N";
@@ -37,6 +38,8 @@ const char* to_string(Quantity quantity) {
       return "strain";
     case Quantity::base_acceleration:
       return "base_acceleration";
+    case Quantity::support_acceleration:
+      return "support_acceleration";
   }
   return "";
 }

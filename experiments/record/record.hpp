@@ -8,18 +8,28 @@
 
 namespace beamid::experiments {
 
-enum class Quantity { displacement, velocity, acceleration, force, strain, base_acceleration };
+enum class Quantity {
+  displacement,
+  velocity,
+  acceleration,
+  force,
+  strain,
+  base_acceleration,
+  support_acceleration
+};
 
-/// What drives the motion: a force, or the acceleration of all supports together.
+/// What drives the motion: a force, the acceleration of all supports together, or that of one point whose
+/// motion is taken as it was measured, whatever holds it.
 inline bool is_input(Quantity quantity) {
-  return quantity == Quantity::force || quantity == Quantity::base_acceleration;
+  return quantity == Quantity::force || quantity == Quantity::base_acceleration ||
+         quantity == Quantity::support_acceleration;
 }
 
 /// How a measured input runs between its samples: as an anti-aliased converter recorded it, straight from
 /// sample to sample, or constant until the next one (which is late by half an interval).
 enum class InputPath { band_limited, linear, held };
 
-/// SI unit of a quantity: m, m/s, m/s2, N, m/m, m/s2.
+/// SI unit of a quantity: m, m/s, m/s2, N, m/m, m/s2, m/s2.
 const char* si_unit(Quantity quantity);
 const char* to_string(Quantity quantity);
 
@@ -30,6 +40,7 @@ struct Channel {
   std::optional<double> position = {};  ///< along the beam [m]; absent: the natural point
   double distance = 0.0;                ///< strain: of the surface from the axis, c of -c w'' [m]
   std::string place = {};               ///< of a structure whose places have names: "ridge.x"
+  double noise = 0.0;                   ///< standard deviation of its white noise; 0: not stated
 };
 
 /// N samples of p measured channels, in SI units.

@@ -19,7 +19,8 @@ std::string column_name_of(const RecordTable& table, std::size_t index) {
 RecordColumn find_column(const RecordTable& table, const ColumnDescription& wanted) {
   RecordColumn column{find_index(table, wanted),
                       wanted.factor,
-                      {wanted.quantity, wanted.name, wanted.position, wanted.distance, wanted.place}};
+                      {wanted.quantity, wanted.name, wanted.position, wanted.distance, wanted.place,
+                       wanted.noise * wanted.factor}};
   if (!wanted.stated) {
     const auto meaning = stated_meaning(table, column.index);
     if (!meaning || !meaning->quantity)
@@ -85,8 +86,9 @@ std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_
   const auto unit = stated_unit(table.units[index]);
   if (!unit) return meaning;
   if (!meaning) return ColumnMeaning{unit->quantity, column_name_of(table, index), unit->factor};
-  const bool of_base = meaning->quantity == Quantity::base_acceleration;  // whose unit is an acceleration's
-  if (unit->quantity != (of_base ? Quantity::acceleration : meaning->quantity) ||
+  const bool imposed = meaning->quantity == Quantity::base_acceleration ||
+                       meaning->quantity == Quantity::support_acceleration;  // in units of an acceleration
+  if (unit->quantity != (imposed ? Quantity::acceleration : meaning->quantity) ||
       unit->factor != meaning->factor)
     throw InputError({table.file, table.header_line},
                      fmt::format("'{}' has the unit '{}'; expected the one of its name", table.names[index],

@@ -21,6 +21,7 @@ struct ColumnDescription {
   double distance = 0.0;                ///< strain: of the surface from the axis [m]
   std::string place = {};               ///< by name, where places have names
   bool stated = true;                   ///< false: quantity and factor are what the file itself says
+  double noise = 0.0;                   ///< standard deviation, in the column's unit; 0: not stated
 };
 
 /// How a record's file is to be read, and what is done with the record before anything else sees it.

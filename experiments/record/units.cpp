@@ -19,6 +19,7 @@ const std::vector<Unit>& units(Quantity quantity) {
       return velocity;
     case Quantity::acceleration:
     case Quantity::base_acceleration:
+    case Quantity::support_acceleration:
       return acceleration;
     case Quantity::strain:
       return strain;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "experiments/record/read_record.hpp"
+#include "experiments/signal/random.hpp"
 #include "experiments/text/method_choice.hpp"
 #include "fem/modes.hpp"
 #include "fem/stiffness_solver.hpp"
@@ -25,6 +26,7 @@ struct Case {
   Index input;
   const fem::TimeGrid& grid;
   const std::filesystem::path& folder;
+  std::uint64_t seed;
 
   double time(Index k) const { return static_cast<double>(k) * grid.interval; }
 };
@@ -65,6 +67,21 @@ VectorXd sine(const Case& c, std::vector<std::string>& notes) {
         c.excitation.frequency_hz, 1.0 / (c.excitation.frequency_hz * c.grid.interval), 100.0 * loss));
   return VectorXd::NullaryExpr(c.grid.samples,
                                [&](Index k) { return c.excitation.amplitude * std::sin(turn * c.time(k)); });
+}
+
+// Normal numbers, 2 f of them a second, straight between them: each excitation has a stream of its own.
+VectorXd random_force(const Case& c) {
+  const double rate = 2.0 * c.excitation.frequency_hz, end = c.time(c.grid.samples - 1);
+  const auto count = static_cast<Index>(std::ceil(rate * end)) + 2;
+  constexpr std::uint64_t first_stream = 5000;
+  const VectorXd drawn = c.excitation.amplitude *
+                         standard_normal(count, c.seed, first_stream + static_cast<std::uint64_t>(c.input));
+  return VectorXd::NullaryExpr(c.grid.samples, [&](Index k) {
+    const double at = rate * c.time(k);
+    const Index before = std::min(static_cast<Index>(at + 1e-9), count - 2);
+    const double part = std::max(at - static_cast<double>(before), 0.0);
+    return (1.0 - part) * drawn[before] + part * drawn[before + 1];
+  });
 }
 
 void check_duration(const Case& c) {
@@ -140,10 +157,27 @@ void set_input(const Case& c, Index input, const VectorXd& history, ExcitationHi
 
 }  // namespace
 
+bool has_force_history(const Excitation& excitation) {
+  switch (excitation.kind) {
+    case Kind::step:
+    case Kind::harmonic:
+    case Kind::random:
+    case Kind::table:
+    case Kind::base:
+      return true;
+    case Kind::impulse:
+      return excitation.duration > 0.0;
+    case Kind::release:
+    case Kind::free:
+      break;
+  }
+  return false;
+}
+
 ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSystem& system, Index input,
-                         const fem::TimeGrid& grid, const std::filesystem::path& folder) {
+                         const fem::TimeGrid& grid, const std::filesystem::path& folder, std::uint64_t seed) {
   constexpr double study_deflection = 0.012;  // of the study's tests [m]
-  const Case c{excitation, system, input, grid, folder};
+  const Case c{excitation, system, input, grid, folder, seed};
   ExcitationHistory result;
   switch (excitation.kind) {
     case Kind::release: {
@@ -174,6 +208,9 @@ ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSyst
     case Kind::harmonic:
       set_input(c, input, sine(c, result.notes), result);
       break;
+    case Kind::random:
+      set_input(c, input, random_force(c), result);
+      break;
     case Kind::table:
       set_input(c, input, from_file(c, result.notes), result);
       break;
@@ -183,6 +220,15 @@ ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSyst
       break;
   }
   return result;
+}
+
+void add(const ExcitationHistory& further, ExcitationHistory& to) {
+  if (to.loading.inputs.size() == 0)
+    to.loading.inputs = further.loading.inputs;
+  else if (further.loading.inputs.size() > 0)
+    to.loading.inputs += further.loading.inputs;
+  if (further.base_acceleration.size() > 0) to.base_acceleration = further.base_acceleration;
+  to.notes.insert(to.notes.end(), further.notes.begin(), further.notes.end());
 }
 
 }  // namespace beamid::experiments

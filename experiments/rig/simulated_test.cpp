@@ -43,11 +43,22 @@ std::string force_name(const Excitation& excitation, const fem::Structure& struc
   return structure.has_positions() ? name_of_place(*excitation.position, structure.extent()) : excitation.at;
 }
 
-void require_base_that_moves(const Excitation& excitation, const fem::StructuralSystem& system) {
-  if (excitation.kind == Excitation::Kind::base &&
-      Eigen::MatrixXd(system.inputs.col(system.inputs.cols() - 1)).isZero(0.0))
-    throw InputError(excitation.place,
-                     "the base moves, which does not move the structure; expected base_motion in [system]");
+bool is_base(const Excitation& excitation) {
+  return excitation.kind == Excitation::Kind::base;
+}
+
+void require_inputs_of_their_own(const std::vector<Excitation>& excitations, const std::vector<Index>& inputs,
+                                 const fem::StructuralSystem& system) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (is_base(excitations[i]) && !system.is_moved_by_base())
+      throw InputError(excitations[i].place,
+                       "the base moves, which does not move the structure; expected base_motion in [system]");
+    for (std::size_t k = 0; k < i; ++k)
+      if (is_base(excitations[k]) == is_base(excitations[i]) &&
+          (is_base(excitations[i]) || inputs[k] == inputs[i]))
+        throw InputError(excitations[i].place,
+                         "acts where another one of [[excitations]] does; expected one");
+  }
 }
 
 // An output row for every strain gauge, -c w'' at its node, behind those of the points.
@@ -163,27 +174,45 @@ VectorXd readings_at(const SampleClock& clock, const VectorXd& step_time, const 
   return readings;
 }
 
-/// The force, or the acceleration of the base, at the samples as one more channel of the record: a measured
-/// test has it, too. Without it a forced motion would be taken for a free decay.
-void add_input(SimulatedTest& test, const SampleClock& clock, const VectorXd& force, Index steps,
-               const Channel& channel) {
+// What the straight line between the samples (every `steps`-th value) misses, as a sentence.
+std::string missed_between_samples(const VectorXd& force, Index steps, const char* what) {
   constexpr double visible = 1e-3;  // of its root mean square
-  const Index samples = clock.time.size() - clock.before;
-  const VectorXd sampled = force(Eigen::seqN(Index{0}, samples, steps));
   VectorXd missed = VectorXd::Zero(force.size());
   for (Index k = 0; steps > 1 && k + 1 < force.size(); ++k) {
-    const double part = static_cast<double>(k % steps) / static_cast<double>(steps);
-    missed[k] = force[k] - (1.0 - part) * sampled[k / steps] - part * sampled[k / steps + 1];
+    const Index before = k / steps * steps;
+    const double part = static_cast<double>(k - before) / static_cast<double>(steps);
+    missed[k] = force[k] - (1.0 - part) * force[before] - part * force[before + steps];
   }
-  if (const double loss = missed.norm(); loss > visible * force.norm())
-    test.notes.push_back(
-        fmt::format("Between the samples the {} moves off the straight line by {:.2g} % of its size: an "
-                    "identification that takes the record of it for straight is wrong by as much. A higher "
-                    "sampling_rate_hz helps.",
-                    channel.quantity == Quantity::force ? "force" : "base", 100.0 * loss / force.norm()));
+  const double loss = missed.norm();
+  if (!(loss > visible * force.norm())) return {};
+  return fmt::format(
+      "Between the samples the {} moves off the straight line by {:.2g} % of its size: an "
+      "identification that takes the record of it for straight is wrong by as much. A higher "
+      "sampling_rate_hz helps.",
+      what, 100.0 * loss / force.norm());
+}
+
+/// A force, or the acceleration of the base, at the samples as one more channel of the record: a measured
+/// test has it, too. Without it a forced motion would be taken for a free decay.
+void add_input(SimulatedTest& test, const SampleClock& clock, const Excitation& excitation, Index input,
+               const ExcitationHistory& history, Index steps, std::uint64_t seed,
+               const fem::Structure& structure) {
+  if (!has_force_history(excitation)) return;
+  const bool base = is_base(excitation);
+  const VectorXd force = base ? history.base_acceleration : VectorXd(history.loading.inputs.row(input));
+  if (const std::string missed = missed_between_samples(force, steps, base ? "base" : "force");
+      !missed.empty())
+    test.notes.push_back(missed);
+  const Channel channel = base ? Channel{Quantity::base_acceleration, "base_acceleration", {}, 0.0}
+                               : Channel{Quantity::force, force_name(excitation, structure),
+                                         excitation.position, 0.0, excitation.at};
+  VectorXd readings = readings_at(clock, test.response.time, force, steps, channel.quantity);
+  constexpr std::uint64_t input_stream = 2000;
+  if (const double noise = base ? test.acquisition.base_noise : test.acquisition.force_noise; noise > 0.0)
+    readings +=
+        noise * standard_normal(readings.size(), seed, input_stream + static_cast<std::uint64_t>(input));
   test.record.samples.conservativeResize(test.record.samples.rows() + 1, Eigen::NoChange);
-  test.record.samples.bottomRows(1) =
-      readings_at(clock, test.response.time, force, steps, channel.quantity).transpose();
+  test.record.samples.bottomRows(1) = readings.transpose();
   test.record.channels.push_back(channel);
   test.record.input_path = InputPath::linear;
 }
@@ -195,7 +224,8 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   const Simulation& settings = experiment.simulation;
   SimulatedTest test;
   test.sensors = experiment.sensors.empty() ? default_sensors() : experiment.sensors;
-  test.excitation = experiment.excitation;
+  test.excitations = experiment.further_excitations;
+  test.excitations.insert(test.excitations.begin(), experiment.excitation);
   test.acquisition = acquisition;
   const fem::Structure& structure = experiment.structure;
   StructurePoints points(structure);
@@ -212,21 +242,32 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
     if (structure.has_positions()) sensor.position = points[outputs.back()].position;
     if (sensor.name.empty()) sensor.name = points[outputs.back()].name;
   }
-  const Index input = points.add(test.excitation.position, test.excitation.at);
-  if (structure.has_positions()) test.excitation.position = points[input].position;
+  std::vector<Index> inputs;
+  for (Excitation& excitation : test.excitations) {
+    inputs.push_back(points.add(excitation.position, excitation.at));
+    if (structure.has_positions()) excitation.position = points[inputs.back()].position;
+  }
   progress("assembling");
   test.system =
       fem::assemble(gauges.empty() ? structure : fem::Structure(fem::with_nodes(structure.beam(), gauges)),
                     experiment.elements, points.all());
   if (!gauges.empty()) add_gauges(structure.beam(), test, outputs);
-  require_base_that_moves(experiment.excitation, test.system);
+  require_inputs_of_their_own(test.excitations, inputs, test.system);
 
   constexpr int fewest_between_stamps = 8;
   const int steps = acquisition.jitter > 0 ? std::max(settings.steps_per_sample, fewest_between_stamps)
                                            : settings.steps_per_sample;
   const auto samples = static_cast<Index>(std::llround(settings.duration * settings.sampling_rate)) + 1;
   fem::TimeGrid grid{1.0 / (settings.sampling_rate * steps), (samples - 1) * steps + 1, {}};
-  ExcitationHistory history = excite(test.excitation, test.system, input, grid, folder);
+  ExcitationHistory history;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const ExcitationHistory one =
+        excite(test.excitations[i], test.system, inputs[i], grid, folder, settings.seed);
+    if (i == 0)
+      history = one;
+    else
+      add(one, history);
+  }
   test.notes = std::move(history.notes);
   for (const Index sample : evenly_spread(affordable_frames(frames, test.system.size(), test.notes), samples))
     grid.frames.push_back(sample * steps);
@@ -259,14 +300,8 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
     test.record.warnings.emplace_back(
         "The base moves, which the record does not hold: an identification takes this motion for a free "
         "decay.");
-  else if (acquisition.force && test.excitation.kind != Excitation::Kind::release &&
-           history.loading.inputs.size() > 0) {
-    const Channel force{Quantity::force, force_name(test.excitation, structure), test.excitation.position,
-                        0.0, test.excitation.at};
-    const Channel base{Quantity::base_acceleration, "base_acceleration", {}, 0.0};
-    add_input(test, clock, of_base ? history.base_acceleration : VectorXd(history.loading.inputs.row(input)),
-              steps, of_base ? base : force);
-  }
+  for (std::size_t i = 0; acquisition.force && i < inputs.size(); ++i)
+    add_input(test, clock, test.excitations[i], inputs[i], history, steps, settings.seed, structure);
   lose_samples(acquisition, test.record, settings.seed);
   return test;
 }

@@ -20,11 +20,11 @@ struct SimulatedTest {
   std::vector<Sensor> sensors;  ///< names and positions filled in
   Record record;                ///< what the sensors show, noise and defects included; behind them the force
   Acquisition acquisition;      ///< what was done to them
-  Excitation excitation;        ///< position and deflection filled in
-  fem::ResponseMethod method;   ///< its number of modes filled in
-  double step = 0.0;            ///< of the integration [s]
-  double event = 0.0;           ///< when the excitation begins, on the record's clock [s]
-  std::vector<std::string> notes;  ///< what a reader should know, a sentence each
+  std::vector<Excitation> excitations;  ///< positions filled in; the first one says how the motion starts
+  fem::ResponseMethod method;           ///< its number of modes filled in
+  double step = 0.0;                    ///< of the integration [s]
+  double event = 0.0;                   ///< when the excitation begins, on the record's clock [s]
+  std::vector<std::string> notes;       ///< what a reader should know, a sentence each
 };
 
 /// @param folder in which the excitation's file is looked for.

@@ -35,6 +35,7 @@ void add_files(const ExperimentText& text, const SweepPlan& plan, Json& files) {
     if (!name.empty()) files[name] = hash_of_file(text.file.parent_path() / name);
   };
   add(experiment.excitation.file.value_or(""));
+  for (const Excitation& further : experiment.further_excitations) add(further.file.value_or(""));
   add(experiment.reduction.shape_file);
   for (const Choice& reduction : experiment.reductions) add(reduction.shape_file);
   for (const VariedKey& one : plan.varied)

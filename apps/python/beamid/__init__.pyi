@@ -77,9 +77,10 @@ class Record:
         force_n: npt.ArrayLike = ..., force_kn: npt.ArrayLike = ..., strain_m_per_m: npt.ArrayLike = ...,
         strain_um_per_m: npt.ArrayLike = ..., base_acceleration_m_per_s2: npt.ArrayLike = ...,
         base_acceleration_mm_per_s2: npt.ArrayLike = ..., base_acceleration_g: npt.ArrayLike = ...,
-        reader: str = ..., separator: str = ..., decimal: str = ..., header_lines: int = ..., malformed: str = ...,
-        stamps: str = ..., input: str = ..., sampling_rate_hz: _Number = ..., window_s: Sequence[_Number] = ...,
-        prepare: _Tables = ...) -> None: ...
+        support_acceleration_m_per_s2: npt.ArrayLike = ..., support_acceleration_mm_per_s2: npt.ArrayLike = ...,
+        support_acceleration_g: npt.ArrayLike = ..., reader: str = ..., separator: str = ..., decimal: str = ...,
+        header_lines: int = ..., malformed: str = ..., stamps: str = ..., input: str = ...,
+        sampling_rate_hz: _Number = ..., window_s: Sequence[_Number] = ..., prepare: _Tables = ...) -> None: ...
     @property
     def numbers(self) -> int: ...
     @property
@@ -126,11 +127,12 @@ class Experiment(_Structure):
     def __init__(self, *, title: str | None = ..., beam: _Table | _Structure | None = ...,
         chain: _Table | _Structure | None = ..., system: _Table | _Structure | None = ...,
         damping: _Table | _Structure | None = ..., excitation: _Table | _Structure | None = ...,
-        sensors: _Tables | None = ..., acquisition: _Table | _Structure | None = ...,
-        simulation: _Table | _Structure | None = ..., frequency_response: _Table | _Structure | None = ...,
-        record: _Table | _Structure | None = ..., reduction: _Table | _Structure | None = ...,
-        reductions: _Tables | None = ..., model: _Table | _Structure | None = ..., parameters: _Tables | None = ...,
-        filter: _Table | _Structure | None = ..., filters: _Tables | None = ...,
+        excitations: _Tables | None = ..., sensors: _Tables | None = ...,
+        acquisition: _Table | _Structure | None = ..., simulation: _Table | _Structure | None = ...,
+        frequency_response: _Table | _Structure | None = ..., record: _Table | _Structure | None = ...,
+        reduction: _Table | _Structure | None = ..., reductions: _Tables | None = ...,
+        model: _Table | _Structure | None = ..., parameters: _Tables | None = ...,
+        substructures: _Tables | None = ..., filter: _Table | _Structure | None = ..., filters: _Tables | None = ...,
         compare: _Table | _Structure | None = ..., identifiability: _Table | _Structure | None = ...,
         prior: _Table | _Structure | None = ..., noise: _Table | _Structure | None = ...,
         frame: _Table | _Structure | None = ..., sweep: _Table | _Structure | None = ...) -> None: ...
@@ -209,6 +211,9 @@ def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     steps: int | None = ..., believed_xi: _Number | None = ..., scheme: str | None = ...,
     interval: _Number | None = ..., frequency: _Number | None = ..., out: _Path | None = ...,
     force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+def substructures(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., no_whole: bool | None = ...,
+    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
+    **keys: Any) -> Results: ...
 def update(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
     shape_error: _Number | None = ..., starts: int | None = ..., out: _Path | None = ..., force: bool | None = ...,
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...

@@ -86,22 +86,6 @@ ForceHistory force_history(const Experiment& experiment, const std::filesystem::
 
 }  // namespace
 
-bool has_force_history(const Excitation& excitation) {
-  switch (excitation.kind) {
-    case Kind::step:
-    case Kind::harmonic:
-    case Kind::table:
-    case Kind::base:
-      return true;
-    case Kind::impulse:
-      return excitation.duration > 0.0;
-    case Kind::release:
-    case Kind::free:
-      break;
-  }
-  return false;
-}
-
 DescribedMotion described_motion(const Experiment& experiment, const std::filesystem::path& folder,
                                  const TestView& view, const Progress& progress) {
   const double rate = experiment.simulation.sampling_rate;

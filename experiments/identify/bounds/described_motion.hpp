@@ -35,7 +35,4 @@ struct DescribedMotion {
 DescribedMotion described_motion(const Experiment& experiment, const std::filesystem::path& folder,
                                  const TestView& view, const Progress& progress);
 
-/// Whether the excitation goes on while the record runs: a force, or a motion of the base.
-bool has_force_history(const Excitation& excitation);
-
 }  // namespace beamid::experiments

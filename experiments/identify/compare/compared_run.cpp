@@ -53,6 +53,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
     bool whole = passes.filter();
     if (whole && context.experiment.noise_method.name == "likelihood")
       whole = passes.filter_with_likeliest_noise();
+    if (whole) passes.fit_inputs_noise();
     if (whole) passes.finish();
   } catch (const std::invalid_argument& error) {  // a scheme or a filter that such a model cannot have
     run.refused_at = settings.filter.place;

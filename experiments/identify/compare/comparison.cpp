@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "experiments/config/read_reduction.hpp"
@@ -97,10 +98,14 @@ bool noise_is_stated_well(const RunContext& context) {
 
 const StartedModel& start_from_record(const RunContext& context, ReducedBeam& made) {
   const RecordAnalysis& analysis = context.analysis;
-  if (!made.started)
-    made.started = started_model(
-        *made.model, context.experiment.model, *made.setting, measurements(analysis.even.record),
-        analysis.mode && !analysis.aliased ? analysis.mode->frequency_hz : analysis.beam_frequency_hz);
+  if (!made.started) {
+    const double frequency_hz = !made.setting->supports.empty()
+                                    ? made.model->mode_frequencies[0] / (2.0 * std::numbers::pi)
+                                : analysis.mode && !analysis.aliased ? analysis.mode->frequency_hz
+                                                                     : analysis.beam_frequency_hz;
+    made.started = started_model(*made.model, context.experiment.model, *made.setting,
+                                 measurements(analysis.even.record), frequency_hz);
+  }
   return *made.started;
 }
 

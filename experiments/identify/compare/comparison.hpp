@@ -67,7 +67,7 @@ struct ComparedRun {
   double observed_per_freedom = 0;  ///< p / r, the paper's O/F ratio
   std::vector<ComparedParameter> parameters;
   double response_error_percent = 0.0;
-  double misfit_percent = 0.0;  ///< of it what noise does not explain (reproduction.hpp)
+  double misfit_percent = 0.0;        ///< of it what noise does not explain (reproduction.hpp)
   Eigen::VectorXd noise;              ///< standard deviation assumed in the last pass (p)
   Eigen::VectorXd noise_left;         ///< root mean square of what the best motion leaves of the readings (p)
   std::vector<bool> noise_is_stated;  ///< in the experiment file, rather than taken from the record (p)

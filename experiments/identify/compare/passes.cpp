@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/identify/compare/known_prior.hpp"
+#include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/compare/run_bound.hpp"
 #include "experiments/identify/compare/run_mode.hpp"
 #include "experiments/identify/compare/true_value.hpp"
@@ -55,6 +56,7 @@ Passes::Passes(const RunContext& context, const ModelSetting& setting, const Sta
   run_.settings.filter_options = settings.filter.options;
   run_.settings.discretisation = settings.discretisation;
   run_.settings.on_failure = context.experiment.on_failure;
+  run_.settings.input_noise = input_noise(context.experiment, context.analysis.record);
 }
 
 bool Passes::filter() {
@@ -69,6 +71,30 @@ bool Passes::filter_with_likeliest_noise() {
   known_.configured = found.deviation;
   run_.noise_relative_deviation = found.relative_deviation;
   return filter();
+}
+
+// A filter of motion and unknowns together is biased by the noise of its inputs (innovation_likelihood.hpp).
+void Passes::fit_inputs_noise() {
+  if (!has_noise(run_.settings.input_noise)) return;
+  const SteadyClock::time_point start = SteadyClock::now();
+  const JointModel& model = *run_.model;
+  filters::Gaussian known = start_belief(model, with_guess(directions_, model, started_.guess));
+  known.mean(model.unknown_places) = started_.guess.mean(started_.model.unknown_places);
+  const NoisyInputFit fit = fit_noisy_inputs(model, run_.settings, known, run_.run.last.mean, record_);
+  run_.seconds += seconds_since(start);
+  if (!fit.failure.empty())
+    run_.remarks.push_back(
+        "The noise of the inputs counts in the filter alone, which it biases: " + fit.failure + ".");
+  if (!fit.failure.empty()) return;
+  filters::Gaussian& last = run_.run.last;
+  last.mean(model.unknown_places) = fit.unknowns.mean;
+  last.covariance(model.unknown_places, Eigen::all).setZero();
+  last.covariance(Eigen::all, model.unknown_places).setZero();
+  last.covariance(model.unknown_places, model.unknown_places) = fit.unknowns.covariance;
+  run_.unknown_state = of_unknowns(model, last);
+  input_bounds_ = fit.bounds;
+  last_move_ = 0.0;
+  begin_at(next_start(model, run_.settings.initial, last).mean);
 }
 
 void Passes::begin() {
@@ -88,13 +114,18 @@ void Passes::finish() {
       noise_of_bound(context_.compared, known_, run_.noise_left, run_.noise).cwiseAbs2().asDiagonal();
   const auto discrete = finest(*run_.model, dt_, noise);
   if (nearest_with_own_scheme()) motion_ = reproduce(*discrete, motion_.initial_state, directions_, record_);
-  score(run_bounds(*discrete, *run_.model, motion_.initial_state, directions_, record_));
-  if (!nearest_with_own_scheme() || !context_.analysis.modal) weigh_noise();
+  score(input_bounds_.size() > 0
+            ? input_bounds_
+            : run_bounds(*discrete, *run_.model, motion_.initial_state, directions_, record_));
+  const bool drifts = has_noise(run_.settings.input_noise);  // what one motion leaves is not the noise then
+  if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
   run_.response_seconds += seconds_since(start);
   if (settings_.keep == filters::Keep::last_belief) return;
   if (first_start_.size() > 0)
     run_.batch = identify_batch(*run_.model, run_.settings, first_start_, directions_.all(), record_);
-  if (!context_.experiment.smoother.empty()) {
+  if (!context_.experiment.smoother.empty() && has_noise(run_.settings.input_noise))
+    run_.remarks.emplace_back("No smoothed history: it is worked out for inputs without noise only.");
+  else if (!context_.experiment.smoother.empty()) {
     const auto filtered = filters::discretise(run_.model->motion, dt_, run_.settings.discretisation,
                                               {{}, run_.settings.output_noise});
     run_.smoothed = filters::smooth(run_.run, *filtered, record_, context_.experiment.smoother).beliefs;

@@ -24,6 +24,8 @@ class Passes {
   bool filter();
   /// Noise levels by the filter's likelihood, and all passes again with them.
   bool filter_with_likeliest_noise();
+  /// Of noisy inputs, the unknowns once more by the likelihood of the innovations.
+  void fit_inputs_noise();
   /// Estimates, the motion that they make of the record, their bounds; what else was asked for.
   void finish();
   /// Whether that motion is the record's: else the run diverged.
@@ -51,6 +53,7 @@ class Passes {
   filters::Gaussian next_;       // initial estimate of the pass to come
   Eigen::VectorXd first_start_;  // of the first pass, where a batch estimate is asked for
   double last_move_ = 0.0;
+  Eigen::VectorXd input_bounds_;  // of noisy inputs; empty: those of exact ones (q)
 };
 
 }  // namespace beamid::experiments

@@ -14,11 +14,13 @@ namespace {
 std::optional<FoundMode> slowest(const filters::LinearMotion& motion, const VectorXd& state) {
   MatrixXd rates;
   motion.motion_matrix(state, rates);
+  constexpr double at_rest = 1e-6;  // of the fastest rate: what rounding makes of a motion without stiffness
   std::optional<FoundMode> lowest;
   const Eigen::VectorXcd eigenvalues = Eigen::EigenSolver<MatrixXd>(rates, false).eigenvalues();
+  const double fastest = eigenvalues.cwiseAbs().maxCoeff();
   for (const std::complex<double>& lambda : eigenvalues) {
     const double frequency = std::abs(lambda) / (2.0 * std::numbers::pi);
-    if (!(lambda.imag() > 0.0) || (lowest && frequency >= lowest->frequency_hz)) continue;
+    if (!(lambda.imag() > at_rest * fastest) || (lowest && frequency >= lowest->frequency_hz)) continue;
     lowest = FoundMode{frequency, -lambda.real() / std::abs(lambda)};
   }
   return lowest;

@@ -19,15 +19,28 @@ KnownNoise known_noise(const Experiment& experiment, const RecordAnalysis& analy
   for (Index i = 0; i < outputs.rows(); ++i) {
     const Channel& channel = analysis.record.channels[static_cast<std::size_t>(channels[i])];
     const auto given = experiment.noise.find(channel.quantity);
-    known.is_stated.push_back(given != experiment.noise.end());
+    known.is_stated.push_back(given != experiment.noise.end() || channel.noise > 0.0);
     if (compared.quiet_noise.size() > 0)
       known.configured[i] =
           std::max(compared.quiet_noise[i], smallest_relative_noise * largest_measured(outputs.row(i)));
-    if (known.is_stated.back()) known.configured[i] = given->second;
+    if (known.is_stated.back()) known.configured[i] = channel.noise > 0.0 ? channel.noise : given->second;
     if (compared.sensor_noise.size() > 0)
       known.least[i] = std::max(known.least[i], compared.sensor_noise[channels[i]]);
   }
   return known;
+}
+
+VectorXd input_noise(const Experiment& experiment, const Record& record) {
+  const std::vector<Index> inputs = input_channels(record);
+  VectorXd noise = VectorXd::Zero(static_cast<Index>(inputs.size()));
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Channel& channel = record.channels[static_cast<std::size_t>(inputs[i])];
+    const auto given = experiment.noise.find(channel.quantity);
+    noise[static_cast<Index>(i)] = channel.noise > 0.0               ? channel.noise
+                                   : given != experiment.noise.end() ? given->second
+                                                                     : 0.0;
+  }
+  return noise;
 }
 
 VectorXd assumed_noise(const KnownNoise& known, const VectorXd& left) {

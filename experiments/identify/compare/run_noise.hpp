@@ -19,6 +19,9 @@ struct KnownNoise {
 KnownNoise known_noise(const Experiment& experiment, const RecordAnalysis& analysis,
                        const ComparedRecord& compared);
 
+/// Standard deviations of the inputs, as stated of their channels or in [noise]; 0: exact (m).
+Eigen::VectorXd input_noise(const Experiment& experiment, const Record& record);
+
 /// What is configured, else what a motion leaves of the record (p).
 Eigen::VectorXd assumed_noise(const KnownNoise& known, const Eigen::VectorXd& left);
 

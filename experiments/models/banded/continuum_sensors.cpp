@@ -131,7 +131,7 @@ void ContinuumSensors::output(const BandedEquations& equations, const VectorXd& 
     }
     output[i] = receptance_.col(k).dot(force) + by_rate_.col(k).dot(rate);
     if (description_.base >= 0 && input.size() > 0)
-      output[i] += description_.base_shares[i] * input[description_.base];
+      output[i] += description_.carried(i, description_.base) * input[description_.base];
     if (layout_.biases[i] >= 0) output[i] += state[layout_.biases[i]];
     ++k;
   }

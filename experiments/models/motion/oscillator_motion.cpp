@@ -204,6 +204,7 @@ std::unique_ptr<JointModel> make_oscillator(const std::string& name, const Model
                                             std::shared_ptr<const OscillatorLaw> law,
                                             const std::vector<OscillatorTerm>& law_terms, bool sensor_bias) {
   constexpr double mass_doubt = 0.1;
+  require_no_supports(name, setting);
   const MotionDescription sensors =
       describe_sensors(name, setting, {{"sensor_bias", sensor_bias}, {"sensor_drift", false}});
   const ExpectedOscillator expected = expected_oscillator(name, setting);
@@ -212,7 +213,7 @@ std::unique_ptr<JointModel> make_oscillator(const std::string& name, const Model
   Parts parts;
   parts.law = std::move(law);
   parts.base = sensors.base;
-  parts.base_shares = sensors.base_shares;
+  if (parts.base >= 0) parts.base_shares = sensors.carried.col(parts.base);
   parts.forces.resize(static_cast<Index>(setting.forces.size()));
   bool pushed = false;
   for (Index i = 0; i < parts.forces.size(); ++i) {

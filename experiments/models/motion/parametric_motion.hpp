@@ -67,7 +67,7 @@ struct MotionDescription {
   std::vector<Eigen::Index> forces;       ///< columns of E that are measured (m)
   /// Which of them is the acceleration of the base, -1: none. Sensors of acceleration show it too.
   Eigen::Index base = -1;
-  Eigen::VectorXd base_shares;  ///< of its acceleration that each observation shows (p)
+  Eigen::MatrixXd carried;  ///< share of each input that a sensor of acceleration shows by itself (p x m)
 
   bool sensor_bias = false;   ///< every sensor of acceleration has an unknown bias b [m/s2]
   bool sensor_drift = false;  ///< and a drift d, b' = d [m/s3]

@@ -89,8 +89,8 @@ void SecondOrderMotion::read(const VectorXd& state, const VectorXd& input, const
           if (input.size() > 0) accelerations += form.inputs * input.head(form.inputs.cols());
         }
         output[i] = rows.row(i).dot(accelerations);
-        if (description_.base >= 0 && input.size() > 0)
-          output[i] += description_.base_shares[i] * input[description_.base];
+        if (description_.carried.size() > 0 && input.size() > 0)
+          output[i] += description_.carried.row(i).dot(input.head(input_size()));
         if (const Index bias = layout_.biases[static_cast<std::size_t>(i)]; bias >= 0)
           output[i] += state[bias];
         break;

@@ -37,6 +37,8 @@ class SecondOrderMotion : public filters::LinearMotion {
   /// Whether W and D are diagonal for all values of the unknowns: then every coordinate is an oscillator of
   /// its own.
   virtual bool decoupled() const = 0;
+  /// Whether its motion without inputs is one in modes; not where points move as they are told.
+  virtual bool has_modes_of_its_own() const { return true; }
   /// Typical omega (r) [rad/s], by which coordinates and rates are brought to one size; positive.
   virtual Eigen::VectorXd frequencies() const = 0;
 

@@ -50,7 +50,8 @@ MotionDescription describe_sensors(const std::string& model, const ModelSetting&
         names[static_cast<std::size_t>(input)] == "base_acceleration")
       description.base = static_cast<Eigen::Index>(i);
   }
-  description.base_shares = base_shares(setting.system);
+  description.carried.setZero(rows, static_cast<Eigen::Index>(setting.forces.size()));
+  if (description.base >= 0) description.carried.col(description.base) = base_shares(setting.system);
   description.sensor_bias = options.flag("sensor_bias");
   description.sensor_drift = options.flag("sensor_drift");
   if (description.sensor_drift && !description.sensor_bias)

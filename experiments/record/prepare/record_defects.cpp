@@ -89,7 +89,7 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
   constexpr const char* left_out = "; they are left out.";
   // Under a moving base broadband noise that comes and goes with the motion is the base's.
   const bool shaken = std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& one) {
-    return one.quantity == Quantity::base_acceleration;
+    return is_input(one.quantity) && one.quantity != Quantity::force;
   });
   for (Index row = 0; row < record.samples.rows(); ++row) {
     const ChannelDefects channel{&record, row, &all};

@@ -6,8 +6,8 @@
 #include "experiments/config/key_json.hpp"
 #include "experiments/config/read_identifiability.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/studies/update/report.hpp"
 #include "experiments/results/file.hpp"
+#include "experiments/studies/update/report.hpp"
 #include "fem/assembly.hpp"
 
 namespace beamid::experiments {
@@ -23,6 +23,8 @@ const char* words_of(Excitation::Kind kind) {
       return "after an impulse";
     case Excitation::Kind::harmonic:
       return "under a harmonic force";
+    case Excitation::Kind::random:
+      return "under a random force";
     case Excitation::Kind::base:
       return "under a motion of the base";
     case Excitation::Kind::table:

@@ -65,9 +65,8 @@ Table sensor_table(const SimulatedTest& test) {
   return table;
 }
 
-std::string excitation_text(const SimulatedTest& test) {
+std::string excitation_text(const Excitation& e) {
   using Kind = Excitation::Kind;
-  const Excitation& e = test.excitation;
   const std::string where = at_place_text(e.position, e.at);
   switch (e.kind) {
     case Kind::release:
@@ -86,6 +85,9 @@ std::string excitation_text(const SimulatedTest& test) {
           e.duration > 0.0 ? fmt::format("half a sine of {:g} s", e.duration) : "in an instant");
     case Kind::harmonic:
       return fmt::format("A force of {:g} N at {:g} Hz{}.", e.amplitude, e.frequency_hz, where);
+    case Kind::random:
+      return fmt::format("A random force of {:g} N root mean square, up to {:g} Hz{}.", e.amplitude,
+                         e.frequency_hz, where);
     case Kind::table:
       return fmt::format("The force of {}{}.", *e.file, where);
     case Kind::base:
@@ -93,6 +95,12 @@ std::string excitation_text(const SimulatedTest& test) {
   }
   return e.file ? fmt::format("The base accelerated as in {}.", *e.file)
                 : fmt::format("The base accelerated by {:g} m/s2 at {:g} Hz.", e.amplitude, e.frequency_hz);
+}
+
+std::string excitations_text(const std::vector<Excitation>& all) {
+  std::string text;
+  for (const Excitation& one : all) text += (text.empty() ? "" : " ") + excitation_text(one);
+  return text;
 }
 
 Json describe_excitation(const Excitation& e) {
@@ -110,7 +118,7 @@ Json describe_excitation(const Excitation& e) {
   if (e.kind == Kind::step) json["force_n"] = e.force;
   if (e.kind == Kind::impulse) json.update({{"momentum_n_s", e.momentum}, {"duration_s", e.duration}});
   if (e.file) json["file"] = *e.file;
-  if (!e.file && (e.kind == Kind::harmonic || e.kind == Kind::base)) {
+  if (!e.file && (e.kind == Kind::harmonic || e.kind == Kind::random || e.kind == Kind::base)) {
     json[e.kind == Kind::base ? "amplitude_m_per_s2" : "amplitude_n"] = e.amplitude;
     json["frequency_hz"] = e.frequency_hz;
   }
@@ -176,7 +184,9 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   results.command = "simulate";
   results.seed = settings.seed;
   results.configuration = describe(experiment);
-  results.configuration["excitation"] = describe_excitation(test->excitation);
+  results.configuration["excitation"] = describe_excitation(test->excitations.front());
+  for (std::size_t i = 1; i < test->excitations.size(); ++i)
+    results.configuration["further_excitations"].push_back(describe_excitation(test->excitations[i]));
   results.configuration["simulation"] = {{"method", settings.method.name},
                                          {"duration_s", settings.duration},
                                          {"sampling_rate_hz", settings.sampling_rate},
@@ -189,9 +199,9 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   results.paragraph(structure_text(experiment, static_cast<Eigen::Index>(test->system.mesh.elements.size()),
                                    test->system.size()));
   results.paragraph(fmt::format("{} Damping: {}. Method {}: {} steps of {:g} s; {} samples at {:g} Hz.",
-                                excitation_text(*test), fem::name(experiment.damping), settings.method.name,
-                                test->response.time.size() - 1, test->step, test->record.size(),
-                                settings.sampling_rate));
+                                excitations_text(test->excitations), fem::name(experiment.damping),
+                                settings.method.name, test->response.time.size() - 1, test->step,
+                                test->record.size(), settings.sampling_rate));
   results.table(sensor_table(*test));
   if (const std::string text = acquisition_text(*test); !text.empty()) results.paragraph(text);
   if (test->record.channels.size() > test->sensors.size())

@@ -69,7 +69,8 @@ Case make(const std::string& name, const fem::Beam& beam, int elements,
   system.outputs = observed.sparseView();
   description.forces = {1, 2};  // at the tip, and the acceleration of the base
   description.base = 1;
-  description.base_shares = VectorXd::Ones(static_cast<Index>(description.observations.size()));
+  description.carried.setZero(static_cast<Index>(description.observations.size()), 2);
+  description.carried.col(1).setOnes();
   description.sensor_bias = true;
   description.sensor_drift = drift;
   return result;

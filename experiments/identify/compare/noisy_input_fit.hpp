@@ -1,0 +1,24 @@
+// The unknowns of a run whose inputs are noisy.
+#pragma once
+
+#include <string>
+
+#include "experiments/models/identification.hpp"
+#include "experiments/models/joint_model.hpp"
+
+namespace beamid::experiments {
+
+struct NoisyInputFit {
+  filters::Gaussian unknowns;  ///< of what the state carries for them (q)
+  Eigen::VectorXd bounds;      ///< Cramer-Rao, in their units; infinite: not determined (q)
+  std::string failure;         ///< why there is none; the filter's own estimate stays
+};
+
+/// Maximum likelihood of the innovations at fixed unknowns (filters/innovation_likelihood.hpp), from where a
+/// filter ended.
+/// @param settings its noises; @param start of the whole state, the unknowns as known beforehand
+NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSettings& settings,
+                               const filters::Gaussian& start, const Eigen::VectorXd& found,
+                               const filters::Measurements& record);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,176 @@
+#include "experiments/identify/parts/part_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/models/motion/beam_equations.hpp"
+#include "experiments/models/motion/supported_motion.hpp"
+#include "experiments/models/structure_points.hpp"
+#include "reduction/reduction.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index;
+
+enum class Where { inside, section, outside };
+
+// By position, between the sections.
+Where where_along(const fem::Structure& structure, const PartOfStructure& part, double position) {
+  const double slack = 1e-9 * structure.extent();
+  for (const auto& section : {part.from, part.to})
+    if (section && std::abs(position - *section) < slack) return Where::section;
+  const bool above = !part.from || position > *part.from, below = !part.to || position < *part.to;
+  return above && below ? Where::inside : Where::outside;
+}
+
+// By name: connected to the part's own place without passing its supports.
+std::vector<Where> where_by_name(const Experiment& experiment, const Record& record,
+                                 const PartOfStructure& part) {
+  StructurePoints points(experiment.structure);
+  const Index own = points.add({}, part.inside);
+  std::vector<Index> supports, places;
+  for (const std::string& place : part.supports) supports.push_back(points.add({}, place));
+  for (const Channel& channel : record.channels)
+    places.push_back(channel.quantity == Quantity::base_acceleration ? -1 : points.add({}, channel.place));
+  const fem::StructuralSystem system = fem::assemble(experiment.structure, experiment.elements, points.all());
+  const std::vector<bool> inside = connected_inside(system, {own}, supports);
+  std::vector<Where> where;
+  for (const Index place : places) {
+    const bool section = std::find(supports.begin(), supports.end(), place) != supports.end();
+    where.push_back(section ? Where::section
+                    : place >= 0 && inside[static_cast<std::size_t>(coordinate_of(system, place))]
+                        ? Where::inside
+                        : Where::outside);
+  }
+  return where;
+}
+
+std::vector<Where> where_are(const Experiment& experiment, const Record& record,
+                             const PartOfStructure& part) {
+  if (!experiment.structure.has_positions()) return where_by_name(experiment, record, part);
+  std::vector<Where> where;
+  for (const Channel& channel : record.channels)
+    where.push_back(channel.position ? where_along(experiment.structure, part, *channel.position)
+                                     : Where::outside);
+  return where;
+}
+
+// Whether the base holds a part itself, and not through its sections.
+bool stands_on_base(const PartOfStructure& part) {
+  return part.supports.empty() && !part.from;
+}
+
+bool is_accelerometer(const Channel& channel) {
+  return channel.quantity == Quantity::acceleration;
+}
+
+double stated_noise(const Experiment& experiment, const Channel& channel) {
+  const auto given = experiment.noise.find(channel.quantity);
+  return channel.noise > 0.0 ? channel.noise : given != experiment.noise.end() ? given->second : 0.0;
+}
+
+void require_sections(const PartOfStructure& part, Index found) {
+  const Index wanted = part.supports.empty() ? (part.from ? 1 : 0) + (part.to ? 1 : 0)
+                                             : static_cast<Index>(part.supports.size());
+  if (found < wanted)
+    throw InputError(part.place,
+                     fmt::format("substructure '{}': {} of its {} sections {} an accelerometer; expected one "
+                                 "channel of acceleration at each",
+                                 part.name, found, wanted, found == 1 ? "has" : "have"));
+}
+
+}  // namespace
+
+ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord& record,
+                              const PartOfStructure& part, Sections sections) {
+  const std::vector<Where> where = where_are(experiment, record.record, part);
+  ComparedRecord result = record;
+  result.record.channels.clear();
+  std::vector<Index> kept;
+  Index found = 0, inside = 0;
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    Channel channel = record.record.channels[i];
+    if (channel.quantity == Quantity::base_acceleration) {
+      if (!stands_on_base(part)) continue;
+      if (sections == Sections::exact) channel.noise = 0.0;
+    } else if (where[i] == Where::section) {
+      if (!is_accelerometer(channel)) continue;
+      channel.noise = stated_noise(experiment, channel);
+      if (sections == Sections::noisy && !(channel.noise > 0.0))
+        throw InputError(
+            part.place,
+            fmt::format("substructure '{}': the noise of '{}', which is measured at its section, is "
+                        "not stated; expected noise in [[record.channels]] or [noise]",
+                        part.name, channel.name));
+      if (sections == Sections::exact) channel.noise = 0.0;
+      channel.quantity = Quantity::support_acceleration;
+      ++found;
+    } else if (where[i] == Where::outside) {
+      continue;
+    } else if (is_input(channel.quantity)) {
+      if (sections == Sections::exact) channel.noise = 0.0;
+    } else {
+      ++inside;
+    }
+    kept.push_back(static_cast<Index>(i));
+    result.record.channels.push_back(channel);
+  }
+  require_sections(part, found);
+  if (inside == 0)
+    throw InputError(
+        part.place,
+        fmt::format("substructure '{}': no sensor sits inside it; expected at least one", part.name));
+  result.record.samples = record.record.samples(kept, Eigen::all);
+  if (record.sensor_noise.size() > 0) result.sensor_noise = record.sensor_noise(kept);
+  if (record.quiet_noise.size() > 0) result.quiet_noise = {};
+  return result;
+}
+
+Experiment experiment_of_part(const Experiment& experiment, const ComparedRecord& part_record,
+                              const PartOfStructure& part) {
+  Experiment own = experiment;
+  own.parts.clear();
+  own.model = {"beam", model_registry().completed("beam", {{"sensor_bias", false}}), {}};
+  own.reduction = {"none", reduction::reduction_registry().completed("none", {}), {}};
+  own.reductions = {own.reduction};
+  own.filters = {experiment.filter};
+  own.discretisations = {experiment.discretisation};
+  for (const Quantity input : {Quantity::force, Quantity::base_acceleration, Quantity::support_acceleration})
+    if (const auto given = own.noise.find(input); given != own.noise.end()) {
+      const bool counts =
+          std::any_of(part_record.record.channels.begin(), part_record.record.channels.end(),
+                      [&](const Channel& one) { return is_input(one.quantity) && one.noise > 0; });
+      if (!counts) own.noise.erase(given);
+    }
+  const ModelSetting setting = model_setting(own, part_record.record, own.reduction);
+  own.parameters.clear();
+  for (const ParameterChoice& choice : experiment.parameters) {
+    if (choice.quantity == "damping_ratio")
+      refuse(
+          choice,
+          "a damping_ratio is of the whole structure's modes, which a substructure does not have; expected "
+          "stiffness_damping or dashpots");
+    if (const auto quantity = beam_quantity(choice.quantity)) {
+      const std::vector<ParameterDefault> defaults = beam_defaults(experiment.structure, {choice});
+      const fem::ParametricSystem equations = beam_equations(setting, {unknown_of(choice, defaults.front())});
+      std::vector<Index> supports;
+      for (const Index support : setting.supports) supports.push_back(support);
+      const SupportedEquations cut = supported_equations(equations, setting.forces, supports, -1);
+      const auto& slope = cut.derivatives.front();
+      if (slope.mass.isZero(0.0) && slope.damping.isZero(0.0) && slope.stiffness.isZero(0.0)) continue;
+    }
+    own.parameters.push_back(choice);
+  }
+  if (own.parameters.empty())
+    throw InputError(part.place,
+                     fmt::format("substructure '{}' has none of the [[parameters]]; expected one that "
+                                 "belongs to it",
+                                 part.name));
+  return own;
+}
+
+}  // namespace beamid::experiments

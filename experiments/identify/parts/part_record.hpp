@@ -1,0 +1,29 @@
+// What of a record belongs to a part of the structure.
+#pragma once
+
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/compare/comparison.hpp"
+
+namespace beamid::experiments {
+
+/// Whether the noise of the motion at the sections counts.
+enum class Sections {
+  exact,  ///< as if what was measured there were the motion itself [koh1991]
+  noisy   ///< its noise is part of the state (filters/noisy_inputs.hpp)
+};
+
+/// The channels of a part: accelerations at its sections become support_acceleration, those inside stay as
+/// they are, and so do forces inside and, where the part stands on the base, the base's acceleration. All
+/// else is left out: it acts through the sections alone.
+/// @param record every channel knows its place
+/// @throws InputError at the part's place where no accelerometer sits at one of its sections or none inside,
+/// or, of noisy sections, where their noise is not stated.
+ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord& record,
+                              const PartOfStructure& part, Sections sections);
+
+/// The experiment as asked about the part: in its own coordinates, of the parameters those that it has.
+/// @throws InputError where none of them is its own, or one is of modes, which are those of the whole.
+Experiment experiment_of_part(const Experiment& experiment, const ComparedRecord& part_record,
+                              const PartOfStructure& part);
+
+}  // namespace beamid::experiments

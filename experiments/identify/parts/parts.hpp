@@ -1,0 +1,49 @@
+// A structure identified part by part.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/identify/parts/part_record.hpp"
+
+namespace beamid::experiments {
+
+struct IdentifiedPart {
+  PartOfStructure part;
+  Comparison exact, noisy;  ///< one run each: sections taken for exact, and with their noise
+
+  const ComparedRun& run(Sections sections) const {
+    return (sections == Sections::exact ? exact : noisy).runs.front();
+  }
+};
+
+/// A parameter as all parts that have it say together, weighed by their variances.
+struct JoinedParameter {
+  std::string name, unit;
+  double value = 0.0, deviation = 0.0;  ///< [unit]
+  int parts = 0;
+  double disagreement = 0.0;  ///< of the parts, the largest difference over its own deviation
+  std::optional<double> truth;
+};
+
+struct PartedIdentification {
+  std::vector<IdentifiedPart> parts;
+  std::optional<Comparison> whole;  ///< of one run; absent where it was not asked for
+  std::vector<JoinedParameter> joined;
+  std::string no_whole;  ///< why not
+};
+
+/// Every part of the experiment on its share of the record, two at a time, and the whole beside them where it
+/// has no more than 30 coordinates.
+///
+/// Neighbours share the noise of the sensors between them, which is counted as if it were of two sensors:
+/// their estimates of a common parameter are a little less independent than the joined deviation says.
+/// @param whole also identify the whole structure with all channels
+/// @throws InputError as record_of_part() and compare()
+PartedIdentification identify_parts(const Experiment& experiment, const ComparedRecord& record,
+                                    const std::filesystem::path& folder, bool whole,
+                                    const Progress& progress);
+
+}  // namespace beamid::experiments
