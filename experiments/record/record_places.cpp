@@ -34,6 +34,7 @@ void take_places(const std::filesystem::path& file, const std::vector<std::strin
       channel.position = one.find_number("position_m", Sign::not_negative);
       channel.place = one.find_text("at").value_or("");
       channel.distance = one.find_number("distance_m").value_or(channel.distance);
+      channel.noise = one.find_number("noise").value_or(channel.noise);
     }
   }
   if (record.input_path) return;
@@ -58,6 +59,7 @@ std::string places_text(const Record& record, const std::string& file_name) {
                         columns[i + 1], to_string(channel.quantity), units(channel.quantity).front().symbol);
     if (channel.position) text += fmt::format("position_m = {}\n", *channel.position);
     if (!channel.place.empty()) text += fmt::format("at = \"{}\"\n", channel.place);
+    if (channel.noise > 0.0) text += fmt::format("noise = {}\n", channel.noise);
     if (channel.quantity == Quantity::strain) text += fmt::format("distance_m = {}\n", channel.distance);
   }
   return text;

@@ -203,14 +203,15 @@ void add_input(SimulatedTest& test, const SampleClock& clock, const Excitation& 
   if (const std::string missed = missed_between_samples(force, steps, base ? "base" : "force");
       !missed.empty())
     test.notes.push_back(missed);
-  const Channel channel = base ? Channel{Quantity::base_acceleration, "base_acceleration", {}, 0.0}
-                               : Channel{Quantity::force, force_name(excitation, structure),
-                                         excitation.position, 0.0, excitation.at};
+  Channel channel = base ? Channel{Quantity::base_acceleration, "base_acceleration", {}, 0.0}
+                         : Channel{Quantity::force, force_name(excitation, structure), excitation.position,
+                                   0.0, excitation.at};
   VectorXd readings = readings_at(clock, test.response.time, force, steps, channel.quantity);
   constexpr std::uint64_t input_stream = 2000;
-  if (const double noise = base ? test.acquisition.base_noise : test.acquisition.force_noise; noise > 0.0)
-    readings +=
-        noise * standard_normal(readings.size(), seed, input_stream + static_cast<std::uint64_t>(input));
+  channel.noise = base ? test.acquisition.base_noise : test.acquisition.force_noise;
+  if (channel.noise > 0.0)
+    readings += channel.noise *
+                standard_normal(readings.size(), seed, input_stream + static_cast<std::uint64_t>(input));
   test.record.samples.conservativeResize(test.record.samples.rows() + 1, Eigen::NoChange);
   test.record.samples.bottomRows(1) = readings.transpose();
   test.record.channels.push_back(channel);

@@ -18,28 +18,29 @@ KnownNoise known_noise(const Experiment& experiment, const RecordAnalysis& analy
   KnownNoise known{VectorXd::Zero(outputs.rows()), smallest_relative_noise * root_mean_squares(outputs), {}};
   for (Index i = 0; i < outputs.rows(); ++i) {
     const Channel& channel = analysis.record.channels[static_cast<std::size_t>(channels[i])];
-    const auto given = experiment.noise.find(channel.quantity);
-    known.is_stated.push_back(given != experiment.noise.end() || channel.noise > 0.0);
+    const double stated = stated_noise(experiment, channel);
+    known.is_stated.push_back(stated > 0.0);
     if (compared.quiet_noise.size() > 0)
       known.configured[i] =
           std::max(compared.quiet_noise[i], smallest_relative_noise * largest_measured(outputs.row(i)));
-    if (known.is_stated.back()) known.configured[i] = channel.noise > 0.0 ? channel.noise : given->second;
+    if (known.is_stated.back()) known.configured[i] = stated;
     if (compared.sensor_noise.size() > 0)
       known.least[i] = std::max(known.least[i], compared.sensor_noise[channels[i]]);
   }
   return known;
 }
 
+double stated_noise(const Experiment& experiment, const Channel& channel) {
+  if (channel.noise > 0.0) return channel.noise;
+  const auto given = experiment.noise.find(channel.quantity);
+  return given != experiment.noise.end() ? given->second : 0.0;
+}
+
 VectorXd input_noise(const Experiment& experiment, const Record& record) {
   const std::vector<Index> inputs = input_channels(record);
-  VectorXd noise = VectorXd::Zero(static_cast<Index>(inputs.size()));
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const Channel& channel = record.channels[static_cast<std::size_t>(inputs[i])];
-    const auto given = experiment.noise.find(channel.quantity);
-    noise[static_cast<Index>(i)] = channel.noise > 0.0               ? channel.noise
-                                   : given != experiment.noise.end() ? given->second
-                                                                     : 0.0;
-  }
+  VectorXd noise(static_cast<Index>(inputs.size()));
+  for (Index i = 0; i < noise.size(); ++i)
+    noise[i] = stated_noise(experiment, record.channels[static_cast<std::size_t>(inputs[i])]);
   return noise;
 }
 

@@ -19,6 +19,9 @@ struct KnownNoise {
 KnownNoise known_noise(const Experiment& experiment, const RecordAnalysis& analysis,
                        const ComparedRecord& compared);
 
+/// Of a channel, as stated of it or in [noise] of its quantity; 0: not stated.
+double stated_noise(const Experiment& experiment, const Channel& channel);
+
 /// Standard deviations of the inputs, as stated of their channels or in [noise]; 0: exact (m).
 Eigen::VectorXd input_noise(const Experiment& experiment, const Record& record);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/compare/run_noise.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/models/motion/supported_motion.hpp"
@@ -66,11 +67,6 @@ bool stands_on_base(const PartOfStructure& part) {
 
 bool is_accelerometer(const Channel& channel) {
   return channel.quantity == Quantity::acceleration;
-}
-
-double stated_noise(const Experiment& experiment, const Channel& channel) {
-  const auto given = experiment.noise.find(channel.quantity);
-  return channel.noise > 0.0 ? channel.noise : given != experiment.noise.end() ? given->second : 0.0;
 }
 
 void require_sections(const PartOfStructure& part, Index found) {

@@ -53,7 +53,7 @@ std::vector<JoinedParameter> joined(const Experiment& experiment, const std::vec
     std::vector<const ComparedParameter*> found;
     for (const IdentifiedPart& part : parts) {
       const ComparedRun& run = part.run(Sections::noisy);
-      if (!run.has_estimate()) continue;
+      if (run.status != ComparedRun::Status::converged) continue;
       for (const ComparedParameter& parameter : run.parameters)
         if (parameter.estimate.name == choice.name) found.push_back(&parameter);
     }

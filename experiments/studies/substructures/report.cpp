@@ -70,12 +70,16 @@ bool is_simulated(const PartedIdentification& found) {
 }
 
 void add_verdict(const PartedIdentification& found, Results& results) {
-  int lost = 0;
+  std::size_t good = 0;
   for (const IdentifiedPart& part : found.parts) {
     const ComparedRun& run = part.run(Sections::noisy);
-    if (run.has_estimate()) continue;
-    ++lost;
-    results.warning(fmt::format("{}: {}, {}", part.part.name, to_string(run.status), run.reason), true);
+    if (run.status == ComparedRun::Status::converged)
+      ++good;
+    else
+      results.warning(fmt::format("{}: {}, {}.", part.part.name, to_string(run.status), run.reason), true);
+    if (run.status != ComparedRun::Status::contradicted)  // which says the same
+      for (const std::string& warning : run.warnings)
+        results.warning(fmt::format("{}: {}", part.part.name, warning));
   }
   const auto worst =
       std::max_element(found.joined.begin(), found.joined.end(),
@@ -85,13 +89,13 @@ void add_verdict(const PartedIdentification& found, Results& results) {
         fmt::format("The parts disagree about {}: by {:.2g} of the deviations of their difference. "
                     "Something between them, or a sensor they share, is not as described.",
                     worst->name, worst->disagreement));
-  if (lost == 0)
+  if (good > 0)
     results.paragraph(
-        fmt::format("{} of {} parts identified, the noise at their sections counted; parameters "
-                    "that several have are joined below.",
-                    found.parts.size(), found.parts.size()));
+        fmt::format("{} of {} parts identified, the noise at their sections counted; parameters that "
+                    "several have are joined below.",
+                    good, found.parts.size()));
   const ExactSections exact = exact_sections(found);
-  if (exact.count == 0) return;
+  if (good == 0 || exact.count == 0) return;
   results.paragraph(
       fmt::format("Were the motion at the sections taken for exact, {} would be {:.3g} of its own deviations "
                   "{}; mean square "
@@ -192,9 +196,6 @@ Results substructures_report(const Experiment& experiment, const PartedIdentific
   if (!found.joined.empty()) results.table(joined_table(found));
   results.table(part_table(found));
   if (!found.no_whole.empty()) results.paragraph(found.no_whole);
-  for (const IdentifiedPart& part : found.parts)
-    for (const std::string& warning : part.run(Sections::noisy).warnings)
-      results.warning(fmt::format("{}: {}", part.part.name, warning));
   results.values["joined"] = Json::array();
   for (const JoinedParameter& one : found.joined)
     results.values["joined"].push_back({{"name", one.name},

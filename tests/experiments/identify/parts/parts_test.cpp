@@ -152,6 +152,46 @@ TEST(Substructures, JoinWhatTheyShare) {
   }
 }
 
+TEST(Substructure, OfSensorsExchangedIsNotConverged) {
+  // Oracle: the floors' accelerations 4 and 5, one a section and one inside, in each other's channel.
+  const Experiment experiment =
+      read(building(6, five_percent(6, 4.0), 4.0, 1.0) + "[[substructures]]\nname = \"lower\"\nto_m = 5\n");
+  ComparedRecord record = recorded(experiment);
+  record.record.samples.row(3).swap(record.record.samples.row(4));
+  const PartedIdentification found = identify_parts(experiment, record, {}, false, unwatched);
+  EXPECT_NE(found.parts.front().run(Sections::noisy).status, ComparedRun::Status::converged);
+  EXPECT_TRUE(found.joined.empty());
+}
+
+TEST(Substructure, OfASystemIsBoundedByPlacesByName) {
+  // Oracle: what lies inside, by hand: of a chain of five unknowns the three between the first and the last.
+  Experiment experiment;
+  fem::MatrixSystem chain;
+  MatrixXd k = MatrixXd::Zero(5, 5);
+  for (Index i = 0; i < 5; ++i) {
+    k(i, i) = i < 4 ? 2.0 : 1.0;
+    if (i > 0) k(i, i - 1) = k(i - 1, i) = -1.0;
+  }
+  chain.stiffness = (1e6 * k).sparseView();
+  chain.mass = MatrixXd(1000.0 * MatrixXd::Identity(5, 5)).sparseView();
+  chain.labels = {"u1", "u2", "u3", "u4", "u5"};
+  experiment.structure = chain;
+  ComparedRecord record;
+  record.record.time = VectorXd::LinSpaced(20, 0.0, 0.19);
+  record.record.samples = MatrixXd::Random(5, 20);
+  for (const char* const place : {"u1", "u2", "u3", "u4", "u5"}) {
+    Channel channel{Quantity::acceleration, place, {}, 0.0, place, 0.01};
+    record.record.channels.push_back(channel);
+  }
+  record.sensor_noise = VectorXd::Zero(5);
+  const PartOfStructure part{"middle", {}, {}, {"u1", "u4"}, "u2", {}};
+  const ComparedRecord own = record_of_part(experiment, record, part, Sections::noisy);
+  std::string found;
+  for (const Channel& channel : own.record.channels)
+    found += fmt::format("{} {}, ", channel.name, to_string(channel.quantity));
+  EXPECT_EQ(found, "u1 support_acceleration, u2 acceleration, u3 acceleration, u4 support_acceleration, ");
+}
+
 void expect_refused(const std::string& more, const std::string& words) {
   const Experiment experiment = read(building(6, five_percent(6, 1.0), 1.0, 1.0) + more);
   try {
