@@ -19,6 +19,14 @@ int run_modes(const Values& values) {
             described, experiments::frame_modes(described, values.whole("modes"), show_progress(values)));
       });
     }
+    if (source.experiment.structure.space_frame())
+      return blame_config(source, [&] {
+        const experiments::Experiment& experiment = source.experiment;
+        return experiments::report(experiment,
+                                   experiments::frame_modes(experiment.structure, experiment.elements,
+                                                            values.whole("modes"), show_progress(values)),
+                                   values.has("surface"));
+      });
     return blame_config(source, [&] {
       const auto summary =
           experiments::summarise_modes(source.experiment, values.whole("modes"), show_progress(values));

@@ -1,5 +1,8 @@
 #include "apps/starters.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace beamid::apps {
 namespace {
 
@@ -166,6 +169,64 @@ method = "modal_truncation"
 modes = 4
 )toml";
 
+constexpr const char* space_frame_starter = R"toml(title = "a table of steel"
+
+[space_frame]
+elements_per_member = 6
+base_direction = [1, 0, 0]          # in which a moving base goes: x, y, z
+joints = [                          # numbered from 1 in this order; z is upwards in pictures
+  { x_m = 0, y_m = 0, z_m = 0 }, { x_m = 4, y_m = 0, z_m = 0 }, { x_m = 4, y_m = 3, z_m = 0 }, { x_m = 0, y_m = 3, z_m = 0 },
+  { name = "a", x_m = 0, y_m = 0, z_m = 3 }, { name = "b", x_m = 4, y_m = 0, z_m = 3 },
+  { name = "c", x_m = 4, y_m = 3, z_m = 3 }, { name = "d", x_m = 0, y_m = 3, z_m = 3 },
+]
+members = [                         # a section's height is along z, of a column's along x; or section_z, roll_deg
+  { first = 1, second = 5, section = "column", group = "columns" }, { first = 2, second = 6, section = "column", group = "columns" },
+  { first = 3, second = 7, section = "column", group = "columns" }, { first = 4, second = 8, section = "column", group = "columns" },
+  { first = 5, second = 6, section = "girder", group = "girders" }, { first = 6, second = 7, section = "girder", group = "girders" },
+  { first = 7, second = 8, section = "girder", group = "girders" }, { first = 8, second = 5, section = "girder", group = "girders" },
+]
+supports = [                        # or holds = ["x", "z", "ry"], whichever motions are held
+  { joint = 1, kind = "clamped" }, { joint = 2, kind = "clamped" }, { joint = 3, kind = "clamped" }, { joint = 4, kind = "pinned" },
+]
+bodies = [{ joint = 7, mass_kg = 600 }]
+
+[[space_frame.sections]]
+name = "column"
+shape = "tube"                      # rectangle, circle, tube, i, or constants
+diameter_m = 0.1143
+wall_m = 0.006
+youngs_modulus_pa = 2.1e11
+poissons_ratio = 0.3
+density_kg_per_m3 = 7850
+[[space_frame.sections]]
+name = "girder"
+shape = "i"
+width_m = 0.1
+height_m = 0.2
+web_m = 0.0056
+flange_m = 0.0085
+youngs_modulus_pa = 2.1e11
+poissons_ratio = 0.3
+density_kg_per_m3 = 7850
+
+[[sensors]]                         # a place is a joint and a direction
+at = "a.x"
+noise_m_per_s2 = 0.01
+[[sensors]]
+at = "c.y"
+noise_m_per_s2 = 0.01
+
+[[parameters]]                      # what is asked: the factors of groups
+quantity = "factor"
+name = "columns"
+[[parameters]]
+quantity = "damping_ratio"
+
+[reduction]
+method = "modal_truncation"
+modes = 6
+)toml";
+
 constexpr const char* system_starter = R"toml(title = "matrices of one's own"
 
 # Matrix Market files beside this one; from Python:
@@ -223,15 +284,22 @@ std::string with(std::string text, const std::string& value) {
 }  // namespace
 
 const std::vector<std::string>& starter_structures() {
-  static const std::vector<std::string> kinds{"beam", "chain", "frame", "system"};
+  static const std::vector<std::string> kinds{"beam", "chain", "frame", "space_frame", "system"};
   return kinds;
 }
 
 std::string starter_file(const std::string& structure) {
   if (structure == "beam") return beam_starter;
-  const bool chain = structure == "chain", frame = structure == "frame";
-  const std::string place = chain ? "position_m = 9" : frame ? "at = \"left.x\"" : "at = \"2\"";
-  const std::string described = chain ? chain_starter : frame ? frame_starter : system_starter;
+  struct Kind {
+    const char *name, *text, *place;
+  };
+  static constexpr Kind kinds[] = {{"chain", chain_starter, "position_m = 9"},
+                                   {"frame", frame_starter, "at = \"left.x\""},
+                                   {"space_frame", space_frame_starter, "at = \"a.x\""},
+                                   {"system", system_starter, "at = \"2\""}};
+  const Kind& kind = *std::find_if(std::begin(kinds), std::end(kinds),
+                                   [&](const Kind& one) { return structure == one.name; });
+  const std::string place = kind.place, described = kind.text;
   return head + described + with(with(with(tail, "release"), place + "\ndeflection_m = 0.01\n"), place);
 }
 

@@ -6,7 +6,7 @@
 
 namespace beamid::apps {
 
-/// "beam", "chain", "frame", "system".
+/// "beam", "chain", "frame", "space_frame", "system".
 const std::vector<std::string>& starter_structures();
 
 /// The whole file for one of these.

@@ -249,17 +249,6 @@ class Assembly {
   }
 };
 
-Eigen::VectorXd nodal(const StructuralSystem& system, const Eigen::VectorXd& q, Kind kind) {
-  if (q.size() != system.size())
-    throw std::invalid_argument("motion has " + std::to_string(q.size()) + " entries; expected " +
-                                std::to_string(system.size()));
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(system.nodes());
-  for (Eigen::Index i = 0; i < system.size(); ++i)
-    if (system.coordinates[i].kind == kind)
-      values[system.coordinates[i].node] = q[i] / system.coordinates[i].scale;
-  return values;
-}
-
 }  // namespace
 
 StructuralSystem assemble(const Beam& beam, int elements, const std::vector<Point>& points) {
@@ -317,6 +306,17 @@ Point natural_point(const Beam& beam) {
   for (std::size_t i = 1; i < held.size(); ++i)
     if (held[i] - held[i - 1] > (held[longest] - held[longest - 1]) * (1 + 1e-9)) longest = i;
   return {"midspan", 0.5 * (held[longest - 1] + held[longest])};
+}
+
+Eigen::VectorXd nodal(const StructuralSystem& system, const Eigen::VectorXd& q, Coordinate::Kind kind) {
+  if (q.size() != system.size())
+    throw std::invalid_argument("motion has " + std::to_string(q.size()) + " entries; expected " +
+                                std::to_string(system.size()));
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(system.nodes());
+  for (Eigen::Index i = 0; i < system.size(); ++i)
+    if (system.coordinates[i].kind == kind)
+      values[system.coordinates[i].node] = q[i] / system.coordinates[i].scale;
+  return values;
 }
 
 Eigen::VectorXd nodal_deflection(const StructuralSystem& system, const Eigen::VectorXd& q) {

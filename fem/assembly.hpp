@@ -45,4 +45,7 @@ Eigen::VectorXd nodal_rotation(const StructuralSystem& system, const Eigen::Vect
 /// Displacement along x [m] at every node, likewise; zero but for frames.
 Eigen::VectorXd nodal_axial(const StructuralSystem& system, const Eigen::VectorXd& q);
 
+/// Of one kind of coordinate [m] or [rad] at every node, likewise.
+Eigen::VectorXd nodal(const StructuralSystem& system, const Eigen::VectorXd& q, Coordinate::Kind kind);
+
 }  // namespace beamid::fem

@@ -51,9 +51,6 @@ struct Frame {
   double length(std::size_t member) const;  ///< [m]
 };
 
-/// The first joint that no chain of members connects with joint 0; -1: the frame is in one piece.
-int first_joint_apart(const Frame& frame);
-
 /// @throws std::invalid_argument naming the first joint, member or quantity that is impossible.
 void validate(const Frame& frame);
 

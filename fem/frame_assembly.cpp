@@ -4,8 +4,8 @@
 
 #include "fem/elements/element.hpp"
 #include "fem/elements/frame_element.hpp"
-#include "fem/elements/frame_walk.hpp"
 #include "fem/frame.hpp"
+#include "fem/frame_graph.hpp"
 #include "fem/triplets.hpp"
 
 namespace beamid::fem {
@@ -53,7 +53,10 @@ class FrameAssembly {
   }
 
   StructuralSystem finish(const std::vector<FramePoint>& points) {
-    for (const FrameStep& step : walk(frame_)) add_member(step);
+    std::vector<int> held;
+    for (const Frame::Support& of_joint : held_)
+      held.push_back(int{of_joint.x} + int{of_joint.y} + int{of_joint.rotation});
+    for (const FrameStep& step : walk(held, member_ends(frame_))) add_member(step);
     const auto n = static_cast<Eigen::Index>(system_.coordinates.size());
     if (n == 0) throw std::invalid_argument("the supports hold every joint; expected some freedom");
     for (const Frame::Body& body : frame_.bodies) {

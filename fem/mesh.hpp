@@ -8,10 +8,10 @@
 
 namespace beamid::fem {
 
-/// A line in the plane, cut into elements. A straight beam lies on y = 0.
+/// Lines cut into elements: in the plane, a straight beam on y = 0; or in space.
 struct Mesh {
   struct Node {
-    double x = 0.0, y = 0.0;  ///< [m]
+    double x = 0.0, y = 0.0, z = 0.0;  ///< [m]
   };
   struct Element {
     int first = 0, second = 0;    ///< nodes
@@ -22,6 +22,7 @@ struct Mesh {
   };
   std::vector<Node> nodes;
   std::vector<Element> elements;
+  bool spatial = false;  ///< a space frame's, which moves out of the plane of x and y
 
   Eigen::VectorXd positions() const;  ///< x of the nodes [m]
 

@@ -7,6 +7,7 @@
 
 #include "fem/solvers/chain_solver.hpp"
 #include "fem/solvers/mixed_solver.hpp"
+#include "fem/solvers/refined_solver.hpp"
 
 namespace beamid::fem {
 namespace {
@@ -17,7 +18,8 @@ constexpr double balanced = 1e-8;  // work of a load in a rigid motion, relative
 
 // Beyond this many gauges the strains are those of no chain, and LU is left to find out whether they hold it.
 constexpr std::size_t most_gauges = 40;
-constexpr double no_strain = 1e-13;  // of a solution, relative to the terms that cancel in it
+constexpr Index worth_refining = 2000;  // coordinates; of fewer the mixed solver is as fast
+constexpr double no_strain = 1e-13;     // of a solution, relative to the terms that cancel in it
 
 VectorXd response(const StructuralSystem& system, Index input) {
   const StiffnessSolver solver(system.stiffness);
@@ -34,6 +36,7 @@ struct StiffnessSolver::Method {
   Index coordinates, strains;
   RigidMotions rigid;
   std::optional<ChainSolver> chain;
+  std::optional<RefinedSolver> refined;
   std::optional<MixedSolver> mixed;
 
   explicit Method(const StrainFactors& stiffness)
@@ -47,16 +50,25 @@ struct StiffnessSolver::Method {
     if (ChainSolver::suits(sweeps))
       chain.emplace(stiffness, std::move(sweeps), rigid);
     else
-      mixed.emplace(stiffness, rigid.held);
+      factor(stiffness);
     if (sweeps_left_open) refuse_motion_without_strain(stiffness);
   }
 
-  // LU meets a rigid-body motion as a pivot that rounding has left: its solutions are then nearly all that
-  // motion.
+  void factor(const StrainFactors& stiffness) {
+    if (coordinates >= worth_refining && stiffness.rigidity.diagonal().minCoeff() > 0.0) {
+      refined.emplace(stiffness, rigid.held);
+      if (refined->serves()) return;
+      refined.reset();
+    }
+    mixed.emplace(stiffness, rigid.held);
+  }
+
+  // Factors meet a rigid-body motion as a pivot that rounding has left: its solutions are then nearly all
+  // that motion.
   void refuse_motion_without_strain(const StrainFactors& stiffness) const {
     const VectorXd load = VectorXd::LinSpaced(coordinates, 1.0, 2.0);
     VectorXd motion(coordinates), forces(strains);
-    mixed->solve(load, motion, forces);
+    solve(load, motion, forces);
     const VectorXd strain = stiffness.strain * motion,
                    terms = stiffness.strain.cwiseAbs() * motion.cwiseAbs();
     if (!(strain.cwiseAbs().maxCoeff() > no_strain * terms.maxCoeff()))
@@ -74,12 +86,21 @@ struct StiffnessSolver::Method {
       throw std::invalid_argument("the load does work in a rigid-body motion; expected one in balance");
   }
 
+  void solve(const Eigen::Ref<const VectorXd>& f, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> forces) const {
+    if (chain)
+      chain->solve(f, q, forces);
+    else if (refined)
+      refined->solve(f, q, forces);
+    else
+      mixed->solve(f, q, forces);
+  }
+
   void solve_carefully(const Eigen::Ref<const VectorXd>& f, Eigen::Ref<VectorXd> q,
                        Eigen::Ref<VectorXd> forces) const {
     if (chain)
       chain->solve_carefully(f, q, forces);
     else
-      mixed->solve(f, q, forces);
+      solve(f, q, forces);
   }
 };
 
@@ -98,10 +119,7 @@ bool StiffnessSolver::is_chain() const {
 
 void StiffnessSolver::solve_into(Eigen::Ref<const VectorXd> f, Eigen::Ref<VectorXd> coordinates,
                                  Eigen::Ref<VectorXd> natural_forces) const {
-  if (method_->chain)
-    method_->chain->solve(f, coordinates, natural_forces);
-  else
-    method_->mixed->solve(f, coordinates, natural_forces);
+  method_->solve(f, coordinates, natural_forces);
 }
 
 StiffnessSolver::Solution StiffnessSolver::solve_with_forces(const VectorXd& f) const {

@@ -16,7 +16,8 @@ namespace beamid::fem {
 /// Nothing is ever subtracted that the assembled K would have cancelled. Where the structure is a chain, two
 /// sweeps along it solve both, with a small dense system for a handful of redundant constraints
 /// (solvers/chain_solver.hpp); anything else, as a beam under axial load or a reduced model, is solved as one
-/// mixed system (solvers/mixed_solver.hpp).
+/// mixed system (solvers/mixed_solver.hpp), or where it is large, as a building in space, by the assembled K
+/// and corrections (solvers/refined_solver.hpp).
 ///
 /// A structure that can move without strain is solved too, for loads that balance on its rigid-body motions;
 /// of the many solutions it gives one that holds some coordinates at rest.

@@ -32,9 +32,10 @@ struct StrainFactors {
   }
 };
 
-/// What one coordinate of a system measures.
+/// What one coordinate of a system measures: displacements along x (axial), y (deflection) and z (lateral),
+/// rotations about z (rotation), x and y. A plane structure has no lateral and no rotation but that about z.
 struct Coordinate {
-  enum class Kind { axial, deflection, rotation, generalised };
+  enum class Kind { axial, deflection, rotation, generalised, lateral, rotation_x, rotation_y };
   Kind kind = Kind::generalised;
   double position = 0.0;  ///< along the beam [m]; meaningless when generalised
   double scale = 1.0;     ///< coordinate = scale x (displacement [m] or rotation [rad])

@@ -1,4 +1,4 @@
-// Whatever can be described and assembled: a beam, a plane frame, matrices of a user's own.
+// Whatever can be described and assembled: a beam, a plane frame, a space frame, matrices of a user's own.
 #pragma once
 
 #include <string>
@@ -9,6 +9,7 @@
 #include "fem/frame.hpp"
 #include "fem/matrix_system.hpp"
 #include "fem/parametric_system.hpp"
+#include "fem/space_frame.hpp"
 
 namespace beamid::fem {
 
@@ -19,10 +20,12 @@ class Structure {
   Structure() = default;
   Structure(Beam beam) : kind_(std::move(beam)) {}                  // NOLINT(google-explicit-constructor)
   Structure(Frame frame) : kind_(std::move(frame)) {}               // NOLINT(google-explicit-constructor)
+  Structure(SpaceFrame frame) : kind_(std::move(frame)) {}          // NOLINT(google-explicit-constructor)
   Structure(MatrixSystem matrices) : kind_(std::move(matrices)) {}  // NOLINT(google-explicit-constructor)
 
   bool is_beam() const { return std::holds_alternative<Beam>(kind_); }
   const Frame* frame() const { return std::get_if<Frame>(&kind_); }
+  const SpaceFrame* space_frame() const { return std::get_if<SpaceFrame>(&kind_); }
   const MatrixSystem* matrices() const { return std::get_if<MatrixSystem>(&kind_); }
 
   /// @throws std::invalid_argument "this needs a beam; found a frame" where it is none.
@@ -35,14 +38,14 @@ class Structure {
   /// Whether it is a chain of storeys.
   bool is_chain() const { return is_beam() && beam().shear_building; }
 
-  /// "beam", "chain", "frame", "system": the table of an experiment file that describes it.
+  /// "beam", "chain", "frame", "space_frame", "system": the table of an experiment file that describes it.
   const char* kind() const;
 
-  /// Of a beam its length, of a frame the diagonal of the rectangle around it, of matrices 1 [m].
+  /// Of a beam its length, of a frame the diagonal of the rectangle or box around it, of matrices 1 [m].
   double extent() const;
 
  private:
-  std::variant<Beam, Frame, MatrixSystem> kind_;
+  std::variant<Beam, Frame, SpaceFrame, MatrixSystem> kind_;
 };
 
 /// Names of all places that can move, in their order: "ridge.x" of a frame, labels of a system; none where

@@ -59,7 +59,7 @@ std::vector<int> observed_coordinates(const fem::StructuralSystem& system, const
     }
     if (entries != 1) continue;
     const Kind kind = system.coordinates[column].kind;
-    if ((kind == Kind::deflection || kind == Kind::axial) &&
+    if ((kind == Kind::deflection || kind == Kind::axial || kind == Kind::lateral) &&
         std::find(observed.begin(), observed.end(), column) == observed.end())
       observed.push_back(column);
   }

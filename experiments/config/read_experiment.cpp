@@ -16,6 +16,7 @@
 #include "experiments/config/read_prior.hpp"
 #include "experiments/config/read_record_format.hpp"
 #include "experiments/config/read_simulation.hpp"
+#include "experiments/config/read_space_frame.hpp"
 #include "experiments/config/read_system.hpp"
 
 namespace beamid::experiments {
@@ -34,7 +35,7 @@ const Schema<Experiment>& root_keys() {
           .tables({"parameters", "substructures"}, tables)
           .tables({"filter"}, table)
           .tables({"filters"}, tables)
-          .tables({"compare", "identifiability", "prior", "noise", "frame", "sweep"}, table);
+          .tables({"compare", "identifiability", "prior", "noise", "frame", "space_frame", "sweep"}, table);
   return keys;
 }
 
@@ -43,7 +44,7 @@ const bool root_keys_registered = register_keys([]() -> const KeyTable& { return
 /// The one structure that the file describes.
 void read_structure(const TomlTable& root, Experiment& experiment) {
   const char* found = nullptr;
-  for (const char* const kind : {"beam", "chain", "frame", "system"})
+  for (const char* const kind : {"beam", "chain", "frame", "space_frame", "system"})
     if (root.contains(kind)) {
       if (found)
         throw InputError(root.key_place(kind),
@@ -52,6 +53,10 @@ void read_structure(const TomlTable& root, Experiment& experiment) {
     }
   if (const auto frame = root.find_table("frame")) {
     const FrameExperiment described = read_frame_table(*frame);
+    experiment.structure = described.frame;
+    experiment.elements = described.elements_per_member;
+  } else if (const auto space = root.find_table("space_frame")) {
+    const SpaceFrameExperiment described = read_space_frame(*space);
     experiment.structure = described.frame;
     experiment.elements = described.elements_per_member;
   } else if (const auto system = root.find_table("system")) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/config/joint_keys.hpp"
 #include "experiments/config/key_json.hpp"
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_experiment.hpp"
@@ -18,8 +19,6 @@ namespace {
 
 using fem::Frame;
 using Type = Key::Type;
-
-constexpr const char* joint_values = "whole number, 1 to the number of joints";
 
 const Schema<FrameExperiment>& frame_keys() {
   using F = FrameExperiment;
@@ -144,28 +143,8 @@ const bool frame_keys_registered[] = {register_keys([]() -> const KeyTable& { re
                                       register_keys([]() -> const KeyTable& { return frame_body_keys(); }),
                                       register_keys([]() -> const KeyTable& { return frame_spring_keys(); })};
 
-/// A joint by its number from 1, as its number from 0.
 int joint(const TomlTable& table, const std::string& key, const Frame& frame) {
-  const auto count = static_cast<int>(frame.joints.size());
-  const auto number = table.find_whole_number(key, 1, count);
-  if (!number) table.miss(key, fmt::format("the number of a joint, from 1 to {}", count));
-  return *number - 1;
-}
-
-std::vector<TomlTable> some(const TomlTable& table, const std::string& key) {
-  std::vector<TomlTable> tables = table.find_tables(key);
-  if (tables.empty()) table.miss(key, "an array of at least one table");
-  return tables;
-}
-
-void read_joints(const TomlTable& table, FrameExperiment& experiment) {
-  for (const TomlTable& one : some(table, "joints")) {
-    const Frame::Joint joint = joint_keys().read(one);
-    for (const Frame::Joint& other : experiment.frame.joints)
-      if (!joint.name.empty() && joint.name == other.name)
-        one.refuse("name", "a name that no other joint has");
-    experiment.frame.joints.push_back(joint);
-  }
+  return read_joint(table, key, frame.joints.size());
 }
 
 Frame::Member read_member(const TomlTable& table, Frame& frame) {
@@ -195,20 +174,8 @@ Frame::Member read_member(const TomlTable& table, Frame& frame) {
 }
 
 void read_members(const TomlTable& table, Frame& frame) {
-  std::vector<bool> used(frame.joints.size(), false);
-  for (const TomlTable& one : some(table, "members")) {
-    const Frame::Member member = read_member(one, frame);
-    used[member.first] = used[member.second] = true;
-    frame.members.push_back(member);
-  }
-  const std::vector<TomlTable> joints = table.find_tables("joints");
-  for (std::size_t i = 0; i < joints.size(); ++i)
-    if (!used[i])
-      throw InputError(joints[i].place(), joints[i].name() + " ends no member; expected one at least");
-  if (const int apart = fem::first_joint_apart(frame); apart >= 0)
-    throw InputError(joints[static_cast<std::size_t>(apart)].place(),
-                     joints[static_cast<std::size_t>(apart)].name() +
-                         " is not connected with the first; expected members between all parts of the frame");
+  for (const TomlTable& one : some_tables(table, "members")) frame.members.push_back(read_member(one, frame));
+  check_joints_connected(table, frame.joints.size(), fem::member_ends(frame));
 }
 
 void read_frame_attachments(const TomlTable& table, Frame& frame) {
@@ -259,7 +226,8 @@ FrameExperiment read_frame(const TomlTable& root) {
 FrameExperiment read_frame_table(const TomlTable& table) {
   FrameExperiment experiment = frame_keys().read(table);
   Frame& frame = experiment.frame;
-  read_joints(table, experiment);
+  for (const TomlTable& one : some_tables(table, "joints"))
+    add_joint(one, joint_keys().read(one), frame.joints);
   read_members(table, frame);
   const int most = std::max(1, most_elements / static_cast<int>(frame.members.size()));
   table.find_whole_number("elements_per_member", 1, most);

@@ -5,6 +5,7 @@
 #include "experiments/config/beam_description.hpp"
 #include "experiments/config/description.hpp"
 #include "experiments/config/frame_description.hpp"
+#include "experiments/config/space_frame_description.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
@@ -36,6 +37,8 @@ std::string structure_text(const Experiment& experiment, Eigen::Index elements, 
   if (const fem::Frame* const frame = structure.frame())
     return frame_text(as_frame_experiment(*frame, experiment.elements, ""), coordinates) +
            factors_text(structure);
+  if (const fem::SpaceFrame* const frame = structure.space_frame())
+    return space_frame_text(*frame, experiment.elements, coordinates) + factors_text(structure);
   if (const fem::MatrixSystem* const matrices = structure.matrices())
     return fmt::format("System of {} unknowns, {} to {}, from matrices of its own{}.", coordinates,
                        matrices->labels.front(), matrices->labels.back(),
@@ -47,6 +50,8 @@ std::string structure_text(const Experiment& experiment, Eigen::Index elements, 
 Json describe(const fem::Structure& structure, int elements) {
   if (const fem::Frame* const frame = structure.frame())
     return {{"frame", describe(as_frame_experiment(*frame, elements, ""))["frame"]}};
+  if (const fem::SpaceFrame* const frame = structure.space_frame())
+    return {{"space_frame", describe(*frame, elements)}};
   if (const fem::MatrixSystem* const matrices = structure.matrices())
     return {{"system", describe(*matrices)}};
   return {{"beam", describe(structure.beam(), elements)}};
@@ -54,6 +59,7 @@ Json describe(const fem::Structure& structure, int elements) {
 
 double total_mass(const fem::Structure& structure) {
   if (const fem::Frame* const frame = structure.frame()) return total_mass(*frame);
+  if (const fem::SpaceFrame* const frame = structure.space_frame()) return total_mass(*frame);
   if (const fem::MatrixSystem* const matrices = structure.matrices()) {
     const Eigen::VectorXd& base = matrices->base_motion;
     return base.size() > 0 ? base.dot(matrices->mass * base) : 0.0;

@@ -11,7 +11,7 @@ namespace beamid::experiments {
 /// What it is, its masses, what holds it, mesh. @param elements of a beam's mesh
 std::string structure_text(const Experiment& experiment, Eigen::Index elements, Eigen::Index coordinates);
 
-/// Under "beam", "frame" or "system" all that describes it.
+/// Under "beam", "frame", "space_frame" or "system" all that describes it.
 nlohmann::ordered_json describe(const fem::Structure& structure, int elements);
 
 /// All of the mass that moves [kg]; of matrices r^T M r under a motion of the base, 0 where that is not

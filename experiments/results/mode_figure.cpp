@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +14,7 @@
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Vector2d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 struct ModeLine {
   std::vector<double> x, y;
@@ -33,39 +34,51 @@ struct ModeLine {
   }
 };
 
+// What a picture shows of space: of a plane structure x and z, of a spatial one the view from its front, left
+// and above.
+Eigen::Matrix<double, 2, 3> view_of(const fem::StructuralSystem& system) {
+  Eigen::Matrix<double, 2, 3> view;
+  if (!system.mesh.spatial)
+    view << 1, 0, 0, 0, 0, 1;
+  else  // azimuth -60 degrees, elevation 25
+    view << 0.8660254, 0.5, 0, -0.2113091, 0.3659981, 0.9063078;
+  return view;
+}
+
 // Where the axis of an element goes, from 0 at its first node to 1 at its second: linear along it, Hermite's
-// cubic across it. In the plane (x, z) of NodalMotion.
+// cubic across it.
 class ElementPath {
  public:
   ElementPath(const fem::Mesh::Element& element, const Eigen::Matrix3Xd& places, const NodalMotion& motion) {
+    const int nodes[2] = {element.first, element.second};
+    const Vector3d along = (places.col(nodes[1]) - places.col(nodes[0])).normalized();
     for (const int end : {0, 1}) {
-      const int node = end == 0 ? element.first : element.second;
-      place_[end] = {places(0, node), places(2, node)};
-      moved_[end] = {motion.translation(0, node), motion.translation(2, node)};
-      slope_[end] = -motion.rotation(1, node) * element.length;
+      place_[end] = places.col(nodes[end]);
+      moved_[end] = motion.translation.col(nodes[end]);
+      slope_[end] = element.length * motion.rotation.col(nodes[end]).cross(along);
     }
-    const Vector2d along = (place_[1] - place_[0]).normalized();
-    across_ = {-along[1], along[0]};
+    const Vector3d drift = moved_[1] - moved_[0], chord = drift - along * along.dot(drift);
+    for (Vector3d& slope : slope_) slope -= chord;
   }
 
-  Vector2d place(double s) const { return (1 - s) * place_[0] + s * place_[1]; }
-  Vector2d displacement(double s) const {
-    const double chord = (moved_[1] - moved_[0]).dot(across_);
-    const double start = slope_[0] - chord, end = slope_[1] - chord, t = 1 - s;
-    return t * moved_[0] + s * moved_[1] + (start * s * t * t - end * s * s * t) * across_;
+  Vector3d place(double s) const { return (1 - s) * place_[0] + s * place_[1]; }
+  Vector3d displacement(double s) const {
+    const double t = 1 - s;
+    return t * moved_[0] + s * moved_[1] + s * t * t * slope_[0] - s * s * t * slope_[1];
   }
 
  private:
-  Vector2d place_[2], moved_[2], across_;
-  double slope_[2];
+  Vector3d place_[2], moved_[2], slope_[2];
 };
 
 struct Shape {
   ModeLine undeformed, deformed;
 };
 
-Shape shape_of(const fem::Mesh& mesh, const Eigen::Matrix3Xd& places, const NodalMotion& motion,
+Shape shape_of(const fem::StructuralSystem& system, const Eigen::Matrix3Xd& places, const NodalMotion& motion,
                double amplitude) {
+  const fem::Mesh& mesh = system.mesh;
+  const Eigen::Matrix<double, 2, 3> view = view_of(system);
   const auto elements = static_cast<int>(mesh.elements.size());
   const int steps = std::max(1, 400 / elements);
   Shape shape;
@@ -75,8 +88,8 @@ Shape shape_of(const fem::Mesh& mesh, const Eigen::Matrix3Xd& places, const Noda
     if (begins && e > 0) shape.undeformed.gap(), shape.deformed.gap();
     for (int step = begins ? 0 : 1; step <= steps; ++step) {
       const double s = static_cast<double>(step) / steps;
-      if (step == 0 || step == steps) shape.undeformed.add(path.place(s));
-      shape.deformed.add(path.place(s) + amplitude * path.displacement(s));
+      if (step == 0 || step == steps) shape.undeformed.add(view * path.place(s));
+      shape.deformed.add(view * (path.place(s) + amplitude * path.displacement(s)));
     }
   }
   return shape;
@@ -104,16 +117,20 @@ std::string mode_figure_title(Eigen::Index mode, double frequency_hz) {
 
 // Axes of a frame: the same scale along both in a plot of the size [px] that is left of a panel, with room
 // for what moves out of it.
-std::pair<Axis, Axis> frame_axes(const Eigen::Matrix3Xd& places, double size, double width, double height) {
-  const double x_middle = 0.5 * (places.row(0).maxCoeff() + places.row(0).minCoeff());
-  const double z_middle = 0.5 * (places.row(2).maxCoeff() + places.row(2).minCoeff());
-  const double x_span = places.row(0).maxCoeff() - places.row(0).minCoeff() + 0.3 * size;
-  const double z_span = places.row(2).maxCoeff() - places.row(2).minCoeff() + 0.3 * size;
+std::pair<Axis, Axis> frame_axes(const fem::StructuralSystem& system, const Eigen::Matrix3Xd& places,
+                                 double size, double width, double height) {
+  const Eigen::Matrix2Xd seen = view_of(system) * places;
+  const double x_middle = 0.5 * (seen.row(0).maxCoeff() + seen.row(0).minCoeff());
+  const double z_middle = 0.5 * (seen.row(1).maxCoeff() + seen.row(1).minCoeff());
+  const double x_span = seen.row(0).maxCoeff() - seen.row(0).minCoeff() + 0.3 * size;
+  const double z_span = seen.row(1).maxCoeff() - seen.row(1).minCoeff() + 0.3 * size;
   const double scale = std::max(x_span / width, z_span / height);  // [m/px]
   const auto range = [&](double middle, double pixels) {
     return std::pair{middle - 0.5 * scale * pixels, middle + 0.5 * scale * pixels};
   };
-  return {{"x [m]", false, range(x_middle, width)}, {"y [m]", false, range(z_middle, height)}};
+  const bool oblique = system.mesh.spatial;
+  return {{oblique ? "across the view [m]" : "x [m]", false, range(x_middle, width)},
+          {oblique ? "up [m]" : "y [m]", false, range(z_middle, height)}};
 }
 
 // Nodes without a deflection of their own: a filled mark where the rotation is held too, else an open one.
@@ -161,10 +178,10 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
   std::pair<Axis, Axis> axes{{"x [m]", false, std::pair{places.row(0).minCoeff(), places.row(0).maxCoeff()}},
                              {"deflection (largest 1)", false, std::pair{-1.15, 1.15}}};
   const int panel_width = figure.width / figure.columns;
-  if (frame) axes = frame_axes(places, size, panel_width - 101.0, row_height - 98.0);
+  if (frame) axes = frame_axes(system, places, size, panel_width - 101.0, row_height - 98.0);
   for (int mode = 0; mode < modes; ++mode) {
     const NodalMotion motion = scaled_mode(system, shapes.col(mode));
-    Shape shape = shape_of(system.mesh, places, motion, frame ? size / 8 : 1.0);
+    Shape shape = shape_of(system, places, motion, frame ? size / 8 : 1.0);
     if (!frame) scale(shape.deformed.y);
     figure.panels.push_back({mode_figure_title(mode, frequencies_hz[mode]),
                              axes.first,
@@ -180,7 +197,7 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
 }
 
 Curve mode_curve(const fem::StructuralSystem& system, const Eigen::VectorXd& shape) {
-  const Shape drawn = shape_of(system.mesh, nodal_places(system), scaled_mode(system, shape), 1.0);
+  const Shape drawn = shape_of(system, nodal_places(system), scaled_mode(system, shape), 1.0);
   ModeLine line = drawn.deformed;
   scale(line.y);
   return line.curve(Colour::automatic);

@@ -124,7 +124,8 @@ void check_key(const VariedKey& varied) {
   const std::size_t dot = path.rfind('.');
   const std::string table = path.substr(0, dot), name = path.substr(dot + 1);
   const KeyTable* const section = find_key_table(table);
-  if (section == nullptr || table.empty() || table.starts_with("frame") || table == "sweep")
+  if (section == nullptr || table.empty() || table.starts_with("frame") || table.starts_with("space_frame") ||
+      table == "sweep")
     throw std::invalid_argument(fmt::format("'{}' is in no table of an experiment file", varied.key));
   const Key* const key = section->find(name);
   if (key == nullptr && section->has_options()) return;  // its method knows them

@@ -1,54 +1,20 @@
 #include "fem/elements/frame_element.hpp"
 
-#include <cmath>
-
 #include "fem/elements/element.hpp"
-#include "fem/elements/element_shapes.hpp"
+#include "fem/elements/rod_element.hpp"
 
 namespace beamid::fem {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd;
 
-struct AxialMatrices {
-  double rigidity, flexibility;
-  Eigen::Matrix2d mass;
-};
-
-AxialMatrices axial_matrices(const Section& section, const Mesh::Element& element, MassModel mass_model) {
-  const ElementSection p{section, element};
-  const double h = element.length;
-  const auto mean = [&](const auto& f) {
-    return p.integral<Eigen::Vector<double, 1>>([&](double s) { return Eigen::Vector<double, 1>(f(s)); })[0];
-  };
-  const Variation& stiffness = *section.axial_stiffness;
-  AxialMatrices result;
-  if (p.along(stiffness, 0.0) > 0.0 && p.along(stiffness, 1.0) > 0.0) {
-    result.flexibility = h * mean([&](double s) { return 1.0 / p.along(stiffness, s); });
-    result.rigidity = 1.0 / result.flexibility;
-  } else {  // a sharp end stretches without bound; a linear displacement does not
-    result.rigidity = mean([&](double s) { return p.along(stiffness, s); }) / h;
-    result.flexibility = 1.0 / result.rigidity;
-  }
-  const auto mass = [&](int power_first, int power_second) {
-    return h * mean([&](double s) {
-             return p.along(section.mass_per_length, s) * std::pow(1.0 - s, power_first) *
-                    std::pow(s, power_second);
-           });
-  };
-  if (mass_model == MassModel::lumped)
-    result.mass << mass(1, 0), 0.0, 0.0, mass(0, 1);
-  else
-    result.mass << mass(2, 0), mass(1, 1), mass(1, 1), mass(0, 2);
-  return result;
-}
-
 }  // namespace
 
 FrameElementMatrices frame_element_matrices(const Section& section, const Mesh::Element& element,
                                             const Eigen::Vector2d& direction, MassModel mass_model) {
   const ElementMatrices bending = element_matrices(section, element, 0.0, 0.0, mass_model);
-  const AxialMatrices axial = axial_matrices(section, element, mass_model);
+  const RodMatrices axial =
+      rod_matrices(section, element, *section.axial_stiffness, section.mass_per_length, mass_model);
   const Index inside = bending.interior ? 2 : 0, strains = 3 + inside, coordinates = 6 + inside;
   const Eigen::Vector2d& t = direction;
   const Eigen::Vector2d n(-t[1], t[0]);

@@ -143,7 +143,7 @@ TEST(Validate, SaysWhatIsMissing) {
 
 // What a structure's file describes is simulated and identified as it stands. Oracle: its own values.
 TEST(New, WritesAFileForEveryStructureThatRuns) {
-  for (const std::string structure : {"chain", "frame", "system"}) {
+  for (const std::string structure : {"chain", "frame", "space_frame", "system"}) {
     Workplace place;
     const std::string header = "%%MatrixMarket matrix coordinate real symmetric\n2 2 ";
     place.write("M.mtx", header + "2\n1 1 1000\n2 2 800\n");
@@ -171,7 +171,7 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
     const Outcome outcome = Workplace().run("validate '" + entry.path().string() + "'");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
-  EXPECT_EQ(found, 30);
+  EXPECT_EQ(found, 31);
 }
 
 // Oracle: the rows that the reader has. A line behind # is a key, too.

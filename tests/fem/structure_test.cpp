@@ -59,6 +59,25 @@ Frame portal() {
   return frame;
 }
 
+// A bent mast with a stay that is hinged: all its motions are coupled.
+SpaceFrame mast() {
+  SpaceSection section;
+  section.axial_stiffness = 8e8, section.bending_stiffness_y = 6e5, section.bending_stiffness_z = 3e5;
+  section.torsional_stiffness = 2.5e5, section.mass_per_length = 30.0, section.torsional_inertia = 0.04;
+  SpaceFrame frame;
+  frame.joints = {{{0, 0, 0}, ""}, {{0, 0, 4}, "knee"}, {{1.5, 0.5, 5}, "head"}, {{2, 2, 0}, ""}};
+  frame.members = {{0, 1, section}, {1, 2, section}, {3, 1, section}};
+  frame.members[1].section.shear_stiffness_y = frame.members[1].section.shear_stiffness_z = 1e8;
+  frame.members[0].group = frame.members[1].group = "mast";
+  frame.members[2].group = "stay";
+  frame.members[2].at_second.y = frame.members[2].at_second.z = true;
+  frame.supports = {{0}, {3}};
+  frame.bodies = {{2, 900.0, Eigen::Vector3d(20, 20, 10), Eigen::Vector3d(0.2, 0, 0.1)}};
+  frame.springs = {{2, Eigen::Vector3d(1e4, 0, 0), Eigen::Vector3d::Zero()}};
+  frame.base_direction = {3, 4, 0};
+  return frame;
+}
+
 struct Case {
   const char* name;
   Structure structure;
@@ -107,7 +126,8 @@ TEST_P(AnyStructure, FollowsItsBase) {
   const VectorXd pull = found.inputs.col(found.inputs.cols() - 1);
   const VectorXd follows = -MatrixXd(found.mass).ldlt().solve(pull);
   const VectorXd seen = found.outputs * follows;
-  const double shared = tested().structure.frame() ? 1e-3 : 1e-9;
+  const bool framed = tested().structure.frame() || tested().structure.space_frame();
+  const double shared = framed ? 1e-3 : 1e-9;
   for (Index i = 0; i < seen.size(); ++i)
     EXPECT_NEAR(seen[i], found.base_shares.size() > 0 ? found.base_shares[i] : 1.0, shared) << i;
   EXPECT_EQ(found.input_names.back(), "base_acceleration");
@@ -141,22 +161,26 @@ TEST_P(AnyStructure, RefusesPlacesThatItDoesNotHave) {
   EXPECT_THROW(assemble(tested().structure, elements, {{"nowhere", 1e6, "nowhere"}}), std::invalid_argument);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, AnyStructure,
-                         testing::Values(Case{"chain",
-                                              chain(),
-                                              {{"first", 1.0}, {"roof", 3.0}},
-                                              {{Quantity::storey_stiffness, std::pair{0.0, 1.0}},
-                                               {Quantity::storey_stiffness, std::pair{1.0, 3.0}}}},
-                                         Case{"system",
-                                              floors(),
-                                              {{"first", 0.0, "first"}, {"roof", 0.0, "roof"}},
-                                              {{Quantity::factor, {}, "k1"}, {Quantity::factor, {}, "k3"}}},
-                                         Case{"frame",
-                                              portal(),
-                                              {{"a", 0.0, "left.x"}, {"b", 0.0, "right.y"}},
-                                              {{Quantity::factor, {}, "columns"},
-                                               {Quantity::factor, {}, "girder"}}}),
-                         [](const auto& tested) { return std::string(tested.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, AnyStructure,
+    testing::Values(Case{"chain",
+                         chain(),
+                         {{"first", 1.0}, {"roof", 3.0}},
+                         {{Quantity::storey_stiffness, std::pair{0.0, 1.0}},
+                          {Quantity::storey_stiffness, std::pair{1.0, 3.0}}}},
+                    Case{"system",
+                         floors(),
+                         {{"first", 0.0, "first"}, {"roof", 0.0, "roof"}},
+                         {{Quantity::factor, {}, "k1"}, {Quantity::factor, {}, "k3"}}},
+                    Case{"frame",
+                         portal(),
+                         {{"a", 0.0, "left.x"}, {"b", 0.0, "right.y"}},
+                         {{Quantity::factor, {}, "columns"}, {Quantity::factor, {}, "girder"}}},
+                    Case{"space_frame",
+                         mast(),
+                         {{"a", 0.0, "knee.x"}, {"b", 0.0, "head.y"}, {"c", 0.0, "head.z"}},
+                         {{Quantity::factor, {}, "mast"}, {Quantity::factor, {}, "stay"}}}),
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(MatrixSystem, HasTheModesOfTheSameChain) {
   const Modes by_matrices = modes(assemble(floors(), std::vector<Point>{}), 3),
@@ -192,6 +216,20 @@ TEST(Frame, NamesThePlacesThatCanMove) {
   EXPECT_THAT(place_names(portal()), testing::ElementsAre("left.x", "left.y", "right.x", "right.y"));
   EXPECT_THAT(factor_names(portal()), testing::ElementsAre("columns", "girder"));
   EXPECT_THROW(assemble(Structure(portal()), 2, {{"foot", 0.0, "left_foot.x"}}), std::invalid_argument);
+}
+
+TEST(SpaceFrame, NamesThePlacesThatCanMove) {
+  EXPECT_THAT(place_names(mast()),
+              testing::ElementsAre("knee.x", "knee.y", "knee.z", "head.x", "head.y", "head.z"));
+  EXPECT_THAT(factor_names(mast()), testing::ElementsAre("mast", "stay"));
+  EXPECT_STREQ(Structure(mast()).kind(), "space_frame");
+  EXPECT_DOUBLE_EQ(Structure(mast()).extent(), std::sqrt(4.0 + 4.0 + 25.0));
+}
+
+// The share of a direction is its cosine.
+TEST(SpaceFrame, MovesWithItsBaseAlongADirection) {
+  const std::vector<Point> points{{"a", 0.0, "head.x"}, {"b", 0.0, "head.y"}, {"c", 0.0, "head.z"}};
+  EXPECT_TRUE(assemble(Structure(mast()), 2, points).base_shares.isApprox(Eigen::Vector3d(0.6, 0.8, 0)));
 }
 
 // A sensor across the base's motion does not see it.

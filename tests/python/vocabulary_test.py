@@ -35,7 +35,7 @@ class Vocabulary(unittest.TestCase):
 
     def test_the_keywords_of_structures_are_the_keys_of_their_tables(self):
         page = (SOURCE / "docs/configuration.md").read_text()
-        for one in (beamid.Beam, beamid.Chain, beamid.Frame, beamid.System):
+        for one in (beamid.Beam, beamid.Chain, beamid.Frame, beamid.SpaceFrame, beamid.System):
             table = one.__name__.lower()
             section = re.search(rf"\n#+ `\[{table}\]`.*?\n(.*?)\n#", page, re.S).group(1)
             documented = set(re.findall(r"^\| `(\w+)` \|", section, re.M))

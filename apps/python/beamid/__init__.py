@@ -17,10 +17,10 @@ from . import _commands, _specification
 from ._errors import InputError
 from ._record import Record, RecordFile, read
 from ._results import Estimate, Results
-from ._structures import Beam, Chain, Experiment, Frame, System
+from ._structures import Beam, Chain, Experiment, Frame, SpaceFrame, System
 
 __version__ = _specification.specification()["version"]
-__all__ = ["Beam", "Chain", "Estimate", "Experiment", "Frame", "InputError", "Record", "RecordFile", "Results", "System",
+__all__ = ["Beam", "Chain", "Estimate", "Experiment", "Frame", "InputError", "Record", "RecordFile", "Results", "SpaceFrame", "System",
            "read",
            *(name for name in _commands.names() if name != "list")]  # `from beamid import *` leaves Python's list alone
 

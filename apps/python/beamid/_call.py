@@ -60,7 +60,7 @@ class _Call:
                 self.words.append(os.fspath(argument))
         else:
             raise InputError(f"{self.name} takes no {type(argument).__name__}; expected records, structures "
-                             "(Beam, Chain, Frame, System, Experiment) or names of files")
+                             "(Beam, Chain, Frame, SpaceFrame, System, Experiment) or names of files")
 
     def merge(self, root):
         for table, value in checked("", root, self.name).items():
@@ -172,7 +172,7 @@ class _Call:
                 self.merge(given)
             configs = [self.add_experiment("experiment.toml", self.root)]
         if not configs and self.options.get("config", {}).get("required"):
-            raise InputError(f"{self.name} needs a structure; expected a Beam, Chain, Frame, System or Experiment, or "
+            raise InputError(f"{self.name} needs a structure; expected a Beam, Chain, Frame, SpaceFrame, System or Experiment, or "
                              "an experiment file, config=FILE")
         if self.name == "validate" and not self.words:
             return [*configs, *records, *self.option_words]

@@ -41,7 +41,7 @@ def keyword_of(option):
     return name + "_" if keyword.iskeyword(name) else name
 
 
-STRUCTURES = ("beam", "chain", "frame", "system")  # tables that a class of their own describes
+STRUCTURES = ("beam", "chain", "frame", "space_frame", "system")  # tables that a class of their own describes
 
 
 @functools.lru_cache(maxsize=None)

@@ -99,6 +99,22 @@ class Frame(Table):
     _table = "frame"
 
 
+class SpaceFrame(Table):
+    """A frame in three dimensions, as [space_frame] describes it: joints, sections, members, supports, bodies, springs.
+
+    >>> import beamid
+    >>> pipe = {"name": "pipe", "shape": "tube", "diameter_m": 0.1683, "wall_m": 0.008, "youngs_modulus_pa": 2.1e11,
+    ...         "poissons_ratio": 0.3, "density_kg_per_m3": 7850}
+    >>> mast = beamid.SpaceFrame(sections=[pipe], members=[{"first": 1, "second": 2, "section": "pipe"}],
+    ...                          joints=[{"x_m": 0, "y_m": 0, "z_m": 0}, {"x_m": 0, "y_m": 0, "z_m": 6}],
+    ...                          supports=[{"joint": 1, "kind": "clamped"}])
+    >>> beamid.modes(mast, modes=2).tables["modes"]["frequency_hz"].round(4)
+    array([4.5622, 4.5622])
+    """
+
+    _table = "space_frame"
+
+
 class System(Table):
     """Mass, stiffness and damping matrices of one's own, as [system] describes them: K = K_0 + sum theta_j K_j, likewise
     M and C. A matrix is a numpy array, a sparse matrix of scipy, or the name of a Matrix Market file.
@@ -165,8 +181,8 @@ def keys_text(name):
     return "\n".join(lines)
 
 
-for _class in (Beam, Chain, Frame, System):
+for _class in (Beam, Chain, Frame, SpaceFrame, System):
     _class.__doc__ += f"\n    Keywords\n\n{keys_text(_class._table)}\n    "
-assert {_class._table for _class in (Beam, Chain, Frame, System)} == set(STRUCTURES)
-for _class in (Beam, Chain, Frame, System, Experiment):
+assert {_class._table for _class in (Beam, Chain, Frame, SpaceFrame, System)} == set(STRUCTURES)
+for _class in (Beam, Chain, Frame, SpaceFrame, System, Experiment):
     _class.__module__ = "beamid"

@@ -3,7 +3,7 @@
 ./bootstrap python apps/python/stub/write_stub.py > stub.pyi && mv stub.pyi apps/python/beamid/__init__.pyi
 (straight into the package it would be empty while it is read)"""
 from beamid import _commands, _specification
-from beamid._structures import Beam, Chain, Experiment, Frame, System
+from beamid._structures import Beam, Chain, Experiment, Frame, SpaceFrame, System
 
 HEAD = '''# Written by apps/python/stub/write_stub.py: do not edit.
 import os
@@ -123,7 +123,7 @@ def main():
                     "None", "    "))
     print("    @property\n    def numbers(self) -> int: ...\n    @property\n    def path(self) -> None: ...\n    @property\n    def file_name(self) -> str: ...")
     print("    def save(self, path: _Path) -> None: ...\n")
-    for one in (Beam, Chain, Frame, System, Experiment):
+    for one in (Beam, Chain, Frame, SpaceFrame, System, Experiment):
         print(f"class {one.__name__}(_Structure):")
         print(signature("__init__", "self", ["*", *keywords_of_table(one._table)], "None", "    "))
         print("    @classmethod\n    def read(cls, path: _Path) -> Experiment: ...\n" if one is Experiment else "")

@@ -15,9 +15,12 @@ constexpr std::size_t most_sensor_places = 10;
 // Coordinates that are deflections, and what multiplies a displacement there.
 std::vector<std::pair<Index, double>> deflections_in(const ModalModel& model) {
   std::vector<std::pair<Index, double>> found;
+  using Kind = fem::Coordinate::Kind;
   const auto& coordinates = model.described().system.coordinates;
+  const bool spatial = model.structure().space_frame() != nullptr;
   for (std::size_t i = 0; i < coordinates.size(); ++i)
-    if (coordinates[i].kind == fem::Coordinate::Kind::deflection)
+    if (const Kind kind = coordinates[i].kind;
+        kind == Kind::deflection || (spatial && (kind == Kind::axial || kind == Kind::lateral)))
       found.emplace_back(static_cast<Index>(i), coordinates[i].scale);
   return found;
 }
@@ -34,6 +37,16 @@ std::string place_text(const ModalModel& model, Index coordinate) {
       return (frame->joints[node].name.empty() ? fmt::format("{}", node + 1) : frame->joints[node].name) +
              ".y";
     return fmt::format("({:.3g} m, {:.3g} m).y", system.mesh.nodes[node].x, system.mesh.nodes[node].y);
+  }
+  if (const fem::SpaceFrame* const frame = model.structure().space_frame()) {
+    using Kind = fem::Coordinate::Kind;
+    const char axis = there.kind == Kind::axial ? 'x' : there.kind == Kind::deflection ? 'y' : 'z';
+    const auto node = static_cast<std::size_t>(there.node);
+    const fem::Mesh::Node& at = system.mesh.nodes[node];
+    if (node >= frame->joints.size())
+      return fmt::format("({:.3g} m, {:.3g} m, {:.3g} m).{}", at.x, at.y, at.z, axis);
+    const std::string& name = frame->joints[node].name;
+    return fmt::format("{}.{}", name.empty() ? fmt::format("{}", node + 1) : name, axis);
   }
   return fmt::format("{:.4g} m", there.position);
 }

@@ -21,7 +21,7 @@ fem::BeamParameter parameter_of(const auto& asked) {
 
 bool same_mesh(const fem::StructuralSystem& a, const fem::StructuralSystem& b) {
   if (a.size() != b.size()) return false;
-  const double slack = 1e-9 * (b.mesh.nodes.empty() ? 1.0 : b.mesh.nodes.back().x);
+  const double slack = 1e-9 * (b.mesh.nodes.empty() ? 1.0 : std::abs(b.mesh.nodes.back().x));
   for (std::size_t i = 0; i < a.coordinates.size(); ++i)
     if (a.coordinates[i].kind != b.coordinates[i].kind ||
         std::abs(a.coordinates[i].position - b.coordinates[i].position) > slack)

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "experiments/results/vtk/swept_sections.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -12,7 +13,6 @@ using fem::Mesh;
 
 constexpr std::size_t most_grid_elements = 20'000;
 constexpr double steel_density = 7850.0;  // [kg/m3]
-constexpr int sides = 24;                 // of an ellipse
 
 // Elements from `first` to `last`, drawn as one.
 struct Stretch {
@@ -49,7 +49,11 @@ class Drawing {
     else
       draw_lines();
     if (picture_.beam != nullptr)
-      for (const fem::Body& body : picture_.beam->bodies) draw_body(body);
+      for (const fem::Body& body : picture_.beam->bodies)
+        draw_body(mesh_.node_at(body.position), {body.eccentricity, 0.0, 0.0}, body.mass);
+    if (picture_.space_frame != nullptr)
+      for (const fem::SpaceFrame::Body& body : picture_.space_frame->bodies)
+        draw_body(body.joint, body.offset, body.mass);
     return std::move(grid_);
   }
 
@@ -80,6 +84,9 @@ class Drawing {
       const double middle = 0.5 * (first.from + mesh_.elements[stretch.last].to);
       cell.bending_stiffness =
           first.remaining * picture_.beam->segments[first.segment].section.bending_stiffness(middle);
+    } else if (picture_.space_frame != nullptr) {
+      const fem::SpaceFrame::Member& member = picture_.space_frame->members[first.segment];
+      cell.bending_stiffness = member.stiffness_factor * member.section.bending_stiffness_y;
     }
     return cell;
   }
@@ -92,24 +99,10 @@ class Drawing {
                {mesh_.elements[stretch.first].first, mesh_.elements[stretch.last].second});
   }
 
-  // Corners of a segment's section at s, counterclockwise seen from the tip; those of a sharp end coincide.
-  std::vector<int> ring(int node, const fem::Section& section, double s) {
-    const fem::Outline& outline = section.outline;
-    const double length = picture_.beam->length();
-    const bool drawn = outline.shape != fem::Outline::Shape::none;
-    const double width = drawn ? outline.width(s) : length / 20,
-                 height = drawn ? outline.height(s) : length / 100;
+  std::vector<int> ring(const Mesh::Element& element, bool at_second) {
     std::vector<int> points;
-    if (outline.shape == fem::Outline::Shape::ellipse) {
-      for (int side = 0; side < sides; ++side) {
-        const double angle = 2.0 * std::numbers::pi * side / sides;
-        points.push_back(
-            add_point(node, {0.0, 0.5 * width * std::cos(angle), 0.5 * height * std::sin(angle)}));
-      }
-      return points;
-    }
-    const double corners[4][2] = {{0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}, {0.5, -0.5}};
-    for (const auto& [y, z] : corners) points.push_back(add_point(node, {0.0, y * width, z * height}));
+    for (const Vector3d& corner : section_corners(picture_, element, at_second))
+      points.push_back(add_point(at_second ? element.second : element.first, corner));
     return points;
   }
 
@@ -120,13 +113,12 @@ class Drawing {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Mesh::Element& first = mesh_.elements[all[i].first];
       const Mesh::Element& last = mesh_.elements[all[i].last];
-      const fem::Section& section = picture_.beam->segments[first.segment].section;
       const BeamGrid::Cell cell = properties(all[i]);
       if (previous.empty()) {
-        previous = ring(first.first, section, first.from);
+        previous = ring(first, false);
         add_cell(cell, {previous.rbegin(), previous.rend()});
       }
-      const std::vector<int> next = ring(last.second, section, last.to);
+      const std::vector<int> next = ring(last, true);
       for (std::size_t k = 0; k < next.size(); ++k) {
         const std::size_t beside = (k + 1) % next.size();
         add_cell(cell, {previous[k], previous[beside], next[beside], next[k]});
@@ -139,17 +131,15 @@ class Drawing {
     }
   }
 
-  void draw_body(const fem::Body& body) {
-    const int node = mesh_.node_at(body.position);
-    const Vector3d centre(body.eccentricity, 0.0, 0.0);
+  void draw_body(int node, const Vector3d& centre, double mass) {
     BeamGrid::Cell cell;
-    cell.mass = body.mass;
+    cell.mass = mass;
     if (!picture_.surface) {
       add_cell(cell, {add_point(node, centre)});
       return;
     }
-    if (body.mass == 0.0) return;
-    const double half = 0.5 * std::cbrt(body.mass / steel_density);
+    if (mass == 0.0) return;
+    const double half = 0.5 * std::cbrt(mass / steel_density);
     int corner[2][2][2];
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)

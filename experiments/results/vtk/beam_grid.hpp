@@ -12,28 +12,34 @@ namespace beamid::experiments {
 
 /// What to draw, and how. It refers to what it is given, which must outlive it.
 struct Picture {
-  /// The line that the mesh is: a beam along x, or a frame in the plane of x and z.
+  /// The line that the mesh is: a beam along x, a frame in the plane of x and z, or one in space.
   Picture(const fem::StructuralSystem& of_system) : system(of_system) {}
 
-  /// With the beam that the system was assembled from also its stiffness and its bodies; with `draws_surface`
-  /// its real sections.
+  /// With the beam or space frame that the system was assembled from also its stiffness and its bodies; with
+  /// `draws_surface` its real sections.
   Picture(const fem::Structure& structure, const fem::StructuralSystem& of_system, bool draws_surface = false)
-      : system(of_system), beam(structure.is_beam() ? &structure.beam() : nullptr), surface(draws_surface) {}
+      : system(of_system),
+        beam(structure.is_beam() ? &structure.beam() : nullptr),
+        space_frame(structure.space_frame()),
+        surface(draws_surface && (beam != nullptr || space_frame != nullptr)) {}
   Picture(const fem::Beam& of_beam, const fem::StructuralSystem& of_system, bool draws_surface = false)
       : system(of_system), beam(&of_beam), surface(draws_surface) {}
 
   const fem::StructuralSystem& system;
   const fem::Beam* beam = nullptr;
+  const fem::SpaceFrame* space_frame = nullptr;
   bool surface = false;
 };
 
-/// Points and cells in space [m]: x along the beam, z its direction of bending. A frame's y becomes z.
+/// Points and cells in space [m]: x along the beam, z its direction of bending. A plane frame's y becomes z;
+/// a space frame keeps its axes.
 ///
 /// As lines: one for each element, and a vertex at the centre of mass of each body. As a surface: the outline
 /// of the section (fem::Outline) extruded through every segment, of quadrilaterals, closed at both ends, an
 /// ellipse having 24 sides; and each body as a cube of steel, 7850 kg/m3, of its mass, about its centre of
-/// mass. A segment without an outline is drawn as a ribbon, 1/20 of the beam's length wide and 1/100 high; a
-/// body without mass is not drawn.
+/// mass. A segment without an outline is drawn as a ribbon, 1/20 of the beam's length wide and 1/100 high, a
+/// member of a space frame as the rectangle that has its E A and E I; a body without mass is not drawn. Of
+/// plane frames there are lines alone.
 ///
 /// Of more than 20,000 elements neighbours in the same segment and the same damage are drawn as one.
 struct BeamGrid {

@@ -17,6 +17,14 @@ Eigen::Index first_largest(const Eigen::VectorXd& lengths) {
   return i;
 }
 
+// Of components as large as one another the last.
+double largest_component(const Eigen::Vector3d& vector) {
+  double largest = 0.0;
+  for (const double component : vector)
+    if (std::abs(component) >= std::abs(largest)) largest = component;
+  return largest;
+}
+
 }  // namespace
 
 Eigen::Matrix3Xd nodal_places(const fem::StructuralSystem& system) {
@@ -24,13 +32,26 @@ Eigen::Matrix3Xd nodal_places(const fem::StructuralSystem& system) {
     throw std::invalid_argument("the system has no mesh; expected one of fem::assemble, not a reduced one");
   Eigen::Matrix3Xd places(3, static_cast<Eigen::Index>(system.mesh.nodes.size()));
   for (Eigen::Index i = 0; i < places.cols(); ++i)
-    places.col(i) << system.mesh.nodes[i].x, 0.0, system.mesh.nodes[i].y;
+    if (const fem::Mesh::Node& node = system.mesh.nodes[i]; system.mesh.spatial)
+      places.col(i) << node.x, node.y, node.z;
+    else
+      places.col(i) << node.x, 0.0, node.y;
   return places;
 }
 
 NodalMotion nodal_motion(const fem::StructuralSystem& system, const Eigen::VectorXd& q) {
   const auto nodes = static_cast<Eigen::Index>(system.mesh.nodes.size());
   NodalMotion motion{Eigen::Matrix3Xd::Zero(3, nodes), Eigen::Matrix3Xd::Zero(3, nodes)};
+  if (system.mesh.spatial) {
+    using Kind = fem::Coordinate::Kind;
+    Eigen::Index row = 0;
+    for (const Kind kind : {Kind::axial, Kind::deflection, Kind::lateral})
+      motion.translation.row(row++) = fem::nodal(system, q, kind).transpose();
+    row = 0;
+    for (const Kind kind : {Kind::rotation_x, Kind::rotation_y, Kind::rotation})
+      motion.rotation.row(row++) = fem::nodal(system, q, kind).transpose();
+    return motion;
+  }
   motion.translation.row(0) = fem::nodal_axial(system, q).transpose();
   motion.translation.row(2) = fem::nodal_deflection(system, q).transpose();
   motion.rotation.row(1).noalias() -= fem::nodal_rotation(system, q).transpose();
@@ -43,11 +64,9 @@ NodalMotion scaled_mode(const fem::StructuralSystem& system, const Eigen::Vector
                         turned = motion.rotation.colwise().norm();
   const bool moves = moved.maxCoeff() > 0.0;
   const Eigen::Index node = first_largest(moves ? moved : turned);
-  double size = turned[node] * (motion.rotation(1, node) > 0.0 ? -1.0 : 1.0);
-  if (moves) {
-    const double u = motion.translation(0, node), w = motion.translation(2, node);
-    size = u == 0.0 ? w : std::copysign(moved[node], std::abs(u) > std::abs(w) ? u : w);
-  }
+  const double sense = largest_component(moves ? motion.translation.col(node) : motion.rotation.col(node));
+  const bool against = !moves && !system.mesh.spatial;  // theta is - rotation_y
+  const double size = std::copysign(moves ? moved[node] : turned[node], against ? -sense : sense);
   if (size != 0.0) motion = {motion.translation / size, motion.rotation / size};
   return motion;
 }

@@ -9,6 +9,7 @@
 
 #include "experiments/config/description.hpp"
 #include "experiments/config/read_beam.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/results/mode_figure.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
 #include "experiments/studies/continuum/mode_trust.hpp"
@@ -19,14 +20,24 @@ namespace {
 using Eigen::Index, Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
 
-VectorXd coarser_mesh_error(const FrameExperiment& experiment, const fem::Modes& fine) {
-  const int half = experiment.elements_per_member / 2;
+// With accelerations of the base along all axes as its last inputs.
+fem::StructuralSystem assemble_frame(const fem::Structure& structure, int elements_per_member) {
+  if (const fem::Frame* const frame = structure.frame()) return fem::assemble(*frame, elements_per_member);
+  return fem::assemble(*structure.space_frame(), elements_per_member);
+}
+
+std::size_t members_of(const fem::Structure& structure) {
+  return structure.frame() ? structure.frame()->members.size() : structure.space_frame()->members.size();
+}
+
+VectorXd coarser_mesh_error(const fem::Structure& frame, int elements_per_member, const fem::Modes& fine) {
+  const int half = elements_per_member / 2;
   if (half < 1) return VectorXd::Constant(fine.size(), std::nan(""));
-  const auto coarse = fem::assemble(experiment.frame, half);
+  const auto coarse = assemble_frame(frame, half);
   const auto with_mass = std::min(fine.size(), coarse.size());
-  constexpr double order = 2.0;  // of stretching, and of lumped mass
+  constexpr double order = 2.0;  // of stretching, of torsion, and of lumped mass
   return discretisation_error(fine, fem::modes(coarse, with_mass),
-                              static_cast<double>(experiment.elements_per_member) / half, order);
+                              static_cast<double>(elements_per_member) / half, order);
 }
 
 Table mode_table(const FrameModes& found) {
@@ -34,27 +45,39 @@ Table mode_table(const FrameModes& found) {
   table.column({"mode", "mode"})
       .column({"f [Hz]", "frequency_hz", "{:.9g}"})
       .column({"mesh error", "discretisation_error_estimate", "{:.0e}"})
-      .column({"digits", "digits", "{:.0f}"})
-      .column({"effect. mass x [kg]", "effective_mass_x_kg", "{:.4g}"})
-      .column({"x [%]", "effective_mass_x_percent", "{:.2f}"})
-      .column({"effect. mass y [kg]", "effective_mass_y_kg", "{:.4g}"})
-      .column({"y [%]", "effective_mass_y_percent", "{:.2f}"});
+      .column({"digits", "digits", "{:.0f}"});
+  const bool spatial = found.axes.size() > 2;  // then percentages alone, or the page would be too narrow
+  for (const char axis : found.axes) {
+    if (!spatial)
+      table.column(
+          {fmt::format("effect. mass {} [kg]", axis), fmt::format("effective_mass_{}_kg", axis), "{:.4g}"});
+    table.column({fmt::format("{} [%]", axis), fmt::format("effective_mass_{}_percent", axis), "{:.2f}"});
+  }
   const VectorXd frequency = found.modes.frequency_hz();
   for (Index i = 0; i < found.modes.size(); ++i) {
     const bool rigid = i < found.modes.rigid;
-    const double x = rounded(found.effective_mass_x[i], found.total_mass),
-                 y = rounded(found.effective_mass_y[i], found.total_mass);
-    table.row({fmt::format("{}{}", i + 1, rigid ? " rigid" : ""), frequency[i], found.discretisation_error[i],
-               rigid ? std::nan("") : found.modes.digits(i), x, 100.0 * x / found.total_mass, y,
-               100.0 * y / found.total_mass});
+    std::vector<Cell> cells{fmt::format("{}{}", i + 1, rigid ? " rigid" : ""), frequency[i],
+                            found.discretisation_error[i], rigid ? std::nan("") : found.modes.digits(i)};
+    for (Index axis = 0; axis < found.effective_mass.cols(); ++axis) {
+      const double mass = rounded(found.effective_mass(i, axis), found.total_mass);
+      if (!spatial) cells.emplace_back(mass);
+      cells.emplace_back(100.0 * mass / found.total_mass);
+    }
+    table.row(std::move(cells));
   }
+  std::string shares;
+  for (Index axis = 0; axis < found.effective_mass.cols(); ++axis)
+    shares += fmt::format("{}{:.1f}",
+                          axis == 0                                 ? ""
+                          : axis + 1 == found.effective_mass.cols() ? " and "
+                                                                    : ", ",
+                          100.0 * found.effective_mass.col(axis).sum() / found.total_mass);
   table.note = fmt::format(
       "mesh error: relative, estimated from half the elements assuming convergence with h^2; for modes of "
       "pure bending a fifth of it. digits: significant digits on which solver and Rayleigh quotient agree. "
-      "effect. mass: participating when all supports and springs move along x or y, {:.1f} and {:.1f} % of "
+      "effect. mass: participating when all supports and springs move along {}, {} % of "
       "{:.6g} kg in these modes.",
-      100.0 * found.effective_mass_x.sum() / found.total_mass,
-      100.0 * found.effective_mass_y.sum() / found.total_mass, found.total_mass);
+      spatial ? "x, y or z" : "x or y", shares, found.total_mass);
   return table;
 }
 
@@ -66,56 +89,93 @@ Json frame_modes_values(const FrameModes& found) {
   const VectorXd frequency = found.modes.frequency_hz();
   for (Index i = 0; i < found.modes.size(); ++i) {
     const bool rigid = i < found.modes.rigid;
-    json["modes"].push_back({{"frequency_hz", frequency[i]},
-                             {"rayleigh_quotient_frequency_hz",
-                              found.modes.rayleigh_angular_frequency[i] / (2.0 * std::numbers::pi)},
-                             {"residual", found.modes.residual[i]},
-                             {"digits", rigid ? Json(nullptr) : Json(found.modes.digits(i))},
-                             {"rigid", rigid},
-                             {"discretisation_error_estimate", number_or_null(found.discretisation_error[i])},
-                             {"effective_mass_x_kg", found.effective_mass_x[i]},
-                             {"effective_mass_y_kg", found.effective_mass_y[i]}});
+    Json mode{{"frequency_hz", frequency[i]},
+              {"rayleigh_quotient_frequency_hz",
+               found.modes.rayleigh_angular_frequency[i] / (2.0 * std::numbers::pi)},
+              {"residual", found.modes.residual[i]},
+              {"digits", rigid ? Json(nullptr) : Json(found.modes.digits(i))},
+              {"rigid", rigid},
+              {"discretisation_error_estimate", number_or_null(found.discretisation_error[i])}};
+    for (std::size_t axis = 0; axis < found.axes.size(); ++axis)
+      mode[fmt::format("effective_mass_{}_kg", found.axes[axis])] =
+          found.effective_mass(i, static_cast<Index>(axis));
+    json["modes"].push_back(std::move(mode));
   }
   return json;
 }
 
 /// What the pictures show; it outlives the report.
 struct FrameDrawing {
+  fem::Structure structure;
   fem::StructuralSystem system;
   Eigen::MatrixXd shapes;
   VectorXd frequencies_hz;
 };
 
 // A picture of a million elements shows no more than one of two thousand, and takes a minute.
-std::shared_ptr<const FrameDrawing> drawing(const FrameExperiment& experiment, const FrameModes& found) {
-  const auto members = static_cast<int>(experiment.frame.members.size());
-  const int drawn = std::max(1, most_drawn_elements / members);
-  if (experiment.elements_per_member <= drawn)
+std::shared_ptr<const FrameDrawing> drawing(const fem::Structure& frame, int elements_per_member,
+                                            const FrameModes& found) {
+  const int drawn = std::max(1, most_drawn_elements / static_cast<int>(members_of(frame)));
+  if (elements_per_member <= drawn)
     return std::make_shared<FrameDrawing>(
-        FrameDrawing{found.system, found.modes.shape, found.modes.frequency_hz()});
-  fem::StructuralSystem system = fem::assemble(experiment.frame, drawn);
+        FrameDrawing{frame, found.system, found.modes.shape, found.modes.frequency_hz()});
+  fem::StructuralSystem system = assemble_frame(frame, drawn);
   const Eigen::MatrixXd shapes = fem::modes(system, std::min(found.modes.size(), system.size())).shape;
   const VectorXd frequencies = found.modes.frequency_hz().head(shapes.cols());
-  return std::make_shared<FrameDrawing>(FrameDrawing{std::move(system), shapes, frequencies});
+  return std::make_shared<FrameDrawing>(FrameDrawing{frame, std::move(system), shapes, frequencies});
+}
+
+struct DescribedFrame {
+  const char* command;
+  std::string title, text;
+  Json configuration;
+};
+
+Results report_frame(const DescribedFrame& described, const fem::Structure& frame, int elements_per_member,
+                     const FrameModes& found, bool surface) {
+  Results results;
+  results.command = described.command;
+  results.configuration = described.configuration;
+  results.configuration["modes"] = found.modes.size();
+  results.values = frame_modes_values(found);
+  results.heading(described.title.empty() ? "Natural frequencies" : described.title);
+  results.paragraph(described.text);
+  results.table(mode_table(found));
+  std::vector<std::string> notes = found.notes;
+  const std::shared_ptr<const FrameDrawing> drawn = drawing(frame, elements_per_member, found);
+  if (drawn->system.size() != found.system.size())
+    notes.push_back(
+        fmt::format("Pictures show the same frame with {} elements.", drawn->system.mesh.elements.size()));
+  add_notes(results, notes);
+  results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
+  results.attachments.push_back(
+      {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {
+         write_mode_shapes(folder, Picture(drawn->structure, drawn->system, surface), drawn->shapes,
+                           drawn->frequencies_hz);
+       }});
+  return results;
 }
 
 }  // namespace
 
-FrameModes frame_modes(const FrameExperiment& experiment, Index count, const Progress& progress) {
-  const auto members = static_cast<double>(experiment.frame.members.size());
-  require_mesh_memory(members * experiment.elements_per_member, static_cast<double>(count));
+FrameModes frame_modes(const fem::Structure& frame, int elements_per_member, Index count,
+                       const Progress& progress) {
+  const bool spatial = frame.space_frame() != nullptr;
+  const double times_as_large = spatial ? 2.0 : 1.0;  // as an element in the plane
+  require_mesh_memory(times_as_large * static_cast<double>(members_of(frame)) * elements_per_member,
+                      static_cast<double>(count));
   FrameModes found;
   progress("assembling");
-  found.system = fem::assemble(experiment.frame, experiment.elements_per_member);
-  found.total_mass = total_mass(experiment.frame);
+  found.system = assemble_frame(frame, elements_per_member);
+  found.total_mass = total_mass(frame);
   progress("modes");
   found.modes = fem::modes(found.system, std::min(count, found.system.size()));
-  const Eigen::MatrixXd base =
-      found.modes.shape.transpose() * found.system.inputs.rightCols(2);  // accelerations along x and y
-  found.effective_mass_x = base.col(0).cwiseAbs2();
-  found.effective_mass_y = base.col(1).cwiseAbs2();
+  found.axes = spatial ? "xyz" : "xy";
+  found.effective_mass =
+      (found.modes.shape.transpose() * found.system.inputs.rightCols(static_cast<Index>(found.axes.size())))
+          .cwiseAbs2();
   progress("modes of half the elements");
-  found.discretisation_error = coarser_mesh_error(experiment, found.modes);
+  found.discretisation_error = coarser_mesh_error(frame, elements_per_member, found.modes);
   found.notes = doubts(found.modes);
   if (found.modes.rigid > 0)
     found.notes.push_back(fmt::format("{} rigid-body mode{}: the frame can move without strain.",
@@ -123,27 +183,22 @@ FrameModes frame_modes(const FrameExperiment& experiment, Index count, const Pro
   return found;
 }
 
+FrameModes frame_modes(const FrameExperiment& experiment, Index count, const Progress& progress) {
+  return frame_modes(experiment.frame, experiment.elements_per_member, count, progress);
+}
+
 Results report(const FrameExperiment& experiment, const FrameModes& found) {
-  Results results;
-  results.command = "frame";
-  results.configuration = describe(experiment);
-  results.configuration["modes"] = found.modes.size();
-  results.values = frame_modes_values(found);
-  results.heading(experiment.title.empty() ? "Natural frequencies" : experiment.title);
-  results.paragraph(frame_text(experiment, found.system.size()));
-  results.table(mode_table(found));
-  std::vector<std::string> notes = found.notes;
-  const std::shared_ptr<const FrameDrawing> drawn = drawing(experiment, found);
-  if (drawn->system.size() != found.system.size())
-    notes.push_back(
-        fmt::format("Pictures show the same frame with {} elements.", drawn->system.mesh.elements.size()));
-  add_notes(results, notes);
-  results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
-  results.attachments.push_back(
-      {mode_shape_files(drawn->shapes.cols()), [drawn](const std::filesystem::path& folder) {
-         write_mode_shapes(folder, Picture(drawn->system), drawn->shapes, drawn->frequencies_hz);
-       }});
-  return results;
+  return report_frame(
+      {"frame", experiment.title, frame_text(experiment, found.system.size()), describe(experiment)},
+      experiment.frame, experiment.elements_per_member, found, false);
+}
+
+Results report(const Experiment& experiment, const FrameModes& found, bool surface) {
+  return report_frame(
+      {"modes", experiment.title,
+       structure_text(experiment, static_cast<Index>(found.system.mesh.elements.size()), found.system.size()),
+       describe(experiment)},
+      experiment.structure, experiment.elements, found, surface);
 }
 
 }  // namespace beamid::experiments

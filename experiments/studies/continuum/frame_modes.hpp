@@ -1,10 +1,12 @@
-// The modes of a plane frame, how far to trust them, and what `beamid frame` prints and writes.
+// The modes of a plane frame or a space frame, how far to trust them, and what `beamid frame` and `beamid
+// modes` print and write.
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/frame_description.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/progress.hpp"
@@ -19,18 +21,24 @@ struct FrameModes {
   /// Relative, |f_h - f_2h| / 3 / f, NaN where not known. The error of stretching falls with h^2, that of
   /// bending with h^4: a mode that only bends errs a fifth of this.
   Eigen::VectorXd discretisation_error;
-  /// (phi^T M r)^2 under a motion of the base along x or y, phi^T M phi = 1 [kg]
-  Eigen::VectorXd effective_mass_x, effective_mass_y;
-  double total_mass = 0.0;         ///< [kg]
+  std::string axes;  ///< along which it moves, "xy" or "xyz"
+  Eigen::MatrixXd
+      effective_mass;       ///< (k x axes) (phi^T M r)^2 under a motion of the base, phi^T M phi = 1 [kg]
+  double total_mass = 0.0;  ///< [kg]
   std::vector<std::string> notes;  ///< what a reader should doubt, a sentence each
 };
 
 /// @param count of modes, cut to what the mesh has.
 /// @throws std::invalid_argument when the frame is impossible; std::runtime_error when its modes are not
 /// found.
+FrameModes frame_modes(const fem::Structure& frame, int elements_per_member, Eigen::Index count,
+                       const Progress& progress);
 FrameModes frame_modes(const FrameExperiment& experiment, Eigen::Index count, const Progress& progress);
 
 /// Table modes, results.json with modes[], the figure mode_shapes, and meshes for ParaView.
 Results report(const FrameExperiment& experiment, const FrameModes& found);
+
+/// The same of a space frame. @param surface draw the real sections instead of lines
+Results report(const Experiment& experiment, const FrameModes& found, bool surface);
 
 }  // namespace beamid::experiments

@@ -86,7 +86,7 @@ std::vector<std::string> examples() {
 }
 
 TEST(ConfigurationPage, HoldsExamplesThatAreValid) {
-  ASSERT_EQ(examples().size(), 5u);
+  ASSERT_EQ(examples().size(), 6u);
   const TemporaryFile record("record.toml", examples()[0]), beam("beam.toml", examples()[1]);
   const Experiment with_record = read_experiment(record.path()),
                    with_everything = read_experiment(beam.path());
@@ -96,7 +96,9 @@ TEST(ConfigurationPage, HoldsExamplesThatAreValid) {
   EXPECT_EQ(with_everything.sensors.size(), 2u);
   const Experiment frame = read_experiment(TomlTable::parse(examples()[3], "frame.toml"));
   EXPECT_EQ(frame.structure.frame()->members.size(), 4u);
-  EXPECT_NO_THROW(check_values(TomlTable::parse(examples()[4], "system.toml")));  // its matrices are not here
+  const Experiment in_space = read_experiment(TomlTable::parse(examples()[4], "space_frame.toml"));
+  EXPECT_EQ(in_space.structure.space_frame()->members.size(), 9u);
+  EXPECT_NO_THROW(check_values(TomlTable::parse(examples()[5], "system.toml")));  // its matrices are not here
   const TemporaryFile chain("chain.toml", examples()[2]);
   EXPECT_EQ(read_experiment(chain.path()).structure.beam().segments.size(), 3u);
 }

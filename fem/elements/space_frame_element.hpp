@@ -1,0 +1,33 @@
+// One element of a space frame: two beam elements across each other, a rod and a shaft.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "fem/mesh.hpp"
+#include "fem/space_frame.hpp"
+
+namespace beamid::fem {
+
+/// Matrices of one element between nodes 1 and 2 in the frame's axes.
+///
+/// Coordinates: (d_1, h theta_1, d_2, h theta_2), each a vector along x, y and z, and two interior ones (see
+/// element.hpp) for bending in the plane of the member's x and y where it has shear deformation there, and
+/// for bending in that of x and z. The natural strains are, t being the direction of the element,
+///
+///     h theta_2 - h theta_1   and   d_2 - d_1 - h theta_1 x t   [m],
+///
+/// both zero in rigid motions, and the interior coordinates. Along the member's own axes they are the twist
+/// h (theta_2 - theta_1)_x of rigidity GJ/h^3, the elongation, and the strains of element.hpp of deflections
+/// along y, (-[d]_y, [theta]_z), and along z, (-[d]_z, -[theta]_y).
+struct SpaceFrameElementMatrices {
+  Eigen::MatrixXd strain;                 ///< (6 x 12), with interior coordinates up to (10 x 16)
+  Eigen::MatrixXd rigidity, flexibility;  ///< [N/m], [m/N], of the strains
+  Eigen::MatrixXd mass;                   ///< [kg], of the coordinates
+};
+
+/// @param axes of the member, as columns: x along it, y, z (SpaceFrame::axes)
+SpaceFrameElementMatrices space_frame_element_matrices(const SpaceSection& section,
+                                                       const Mesh::Element& element,
+                                                       const Eigen::Matrix3d& axes, MassModel mass_model);
+
+}  // namespace beamid::fem
