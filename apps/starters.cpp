@@ -186,9 +186,9 @@ members = [                         # a section's height is along z, of a column
   { first = 7, second = 8, section = "girder", group = "girders" }, { first = 8, second = 5, section = "girder", group = "girders" },
 ]
 supports = [                        # or holds = ["x", "z", "ry"], whichever motions are held
-  { joint = 1, kind = "clamped" }, { joint = 2, kind = "clamped" }, { joint = 3, kind = "clamped" }, { joint = 4, kind = "pinned" },
+  { joint = 1, kind = "clamped" }, { joint = 2, kind = "clamped" }, { joint = 3, kind = "clamped" }, { joint = 4, kind = "clamped" },
 ]
-bodies = [{ joint = 7, mass_kg = 600 }]
+bodies = [{ joint = 5, mass_kg = 600 }, { joint = 6, mass_kg = 600 }, { joint = 7, mass_kg = 600 }, { joint = 8, mass_kg = 600 }]
 
 [[space_frame.sections]]
 name = "column"
@@ -213,7 +213,7 @@ density_kg_per_m3 = 7850
 at = "a.x"
 noise_m_per_s2 = 0.01
 [[sensors]]
-at = "c.y"
+at = "d.x"
 noise_m_per_s2 = 0.01
 
 [[parameters]]                      # what is asked: the factors of groups

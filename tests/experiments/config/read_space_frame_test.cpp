@@ -141,35 +141,38 @@ TEST(ReadSpaceFrame, RefusesWhatCannotBe) {
        "at "
        "different places"},
       {replaced(good, "section = \"pipe\"", "section = \"pope\""),
-       "tower.toml:10:11: space_frame.members[2].section is 'pope'; expected one of the sections bar, pipe"},
+       "tower.toml:10:11: space_frame.members[2].section is the text \"pope\"; expected one of the sections "
+       "bar, pipe"},
       {replaced(good, "section = \"bar\"\n", "section = \"bar\"\nsection_z = [0, 0, 1]\n"),
        "tower.toml:7:13: space_frame.members[1]: the direction of its section's z is along the member; "
        "expected one "
        "across it"},
       {replaced(good, "section = \"bar\"\n", "section = \"bar\"\nsection_z = [0, 1]\n"),
-       "tower.toml:7:13: space_frame.members[1].section_z is [0, 1]; expected three numbers, along x, y and "
+       "tower.toml:7:13: space_frame.members[1].section_z is an array of 2; expected three numbers, along x, "
+       "y and "
        "z"},
       {replaced(good, "section = \"bar\"\n", "section = \"bar\"\nreleased_at_first = [\"w\"]\n"),
-       "tower.toml:7:21: space_frame.members[1].released_at_first is [\"w\"]; expected texts from x, y, z"},
+       "tower.toml:7:21: space_frame.members[1].released_at_first is an array of 1; expected texts from x, "
+       "y, z"},
       {replaced(good, "wall_m = 0.01", "wall_m = 0.05"),
        "tower.toml:23:10: space_frame.sections[2].wall_m is 0.05; expected a number below 0.05, half the "
        "diameter"},
       {replaced(good, "shape = \"tube\"", "shape = \"circle\""),
-       "tower.toml:23:1: space_frame.sections[2].wall_m has no use with shape = \"circle\"; expected one "
-       "of "},
+       "tower.toml:23:1: space_frame.sections[2].wall_m has no use with shape = \"circle\"; of use there: "},
       {replaced(good, "name = \"pipe\"", "name = \"bar\""),
-       "tower.toml:20:8: space_frame.sections[2].name is 'bar'; expected a name that no other section has"},
+       "tower.toml:20:8: space_frame.sections[2].name is the text \"bar\"; expected a name that no other "
+       "section has"},
       {good + "[[space_frame.supports]]\njoint = 1\n",
        "tower.toml:28:1: what the support holds is given by nothing; expected exactly one of kind, holds"},
       {replaced(good, "second = 3", "second = 1"),
-       "tower.toml:2:84: space_frame.joints[3] ends no member; expected one at least"},
+       "tower.toml:2:88: space_frame.joints[3] ends no member; expected one at least"},
       {replaced(good, "}]\n", "}, { x_m = 9, y_m = 0, z_m = 0 }, { x_m = 9, y_m = 2, z_m = 0 }]\n") +
            "[[space_frame.members]]\nfirst = 4\nsecond = 5\nsection = \"bar\"\n",
-       "tower.toml:2:115: space_frame.joints[4] is not connected with the first; expected members between "
+       "tower.toml:2:119: space_frame.joints[4] is not connected with the first; expected members between "
        "all parts "
        "of the frame"},
       {replaced(good, "[space_frame]\n", "[space_frame]\nbase_direction = [0, 0, 0]\n"),
-       "tower.toml:2:18: space_frame.base_direction is [0, 0, 0]; expected three numbers, not all zero"}};
+       "tower.toml:2:18: space_frame.base_direction is an array of 3; expected three numbers, not all zero"}};
   for (const auto& [text, message] : cases) EXPECT_THAT(error_of(text), testing::StartsWith(message));
 }
 
