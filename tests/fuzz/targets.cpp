@@ -219,6 +219,7 @@ const std::vector<Target>& targets() {
   static const std::vector<Target> all{
       {"text", [](const std::string& bytes) { read_unnamed("delimited_text", bytes); }},
       {"lvm", [](const std::string& bytes) { read_unnamed("lvm", bytes); }},
+      {"nied", [](const std::string& bytes) { read_unnamed("nied", bytes); }},
       {"uff58", [](const std::string& bytes) { read_both_ways("uff58", bytes); }},
       {"mat", [](const std::string& bytes) { read_unnamed("mat", bytes); }},
       {"hdf5", [](const std::string& bytes) { read_unnamed("hdf5", bytes); }},

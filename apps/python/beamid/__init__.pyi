@@ -118,6 +118,12 @@ class Frame(_Structure):
         base_motion: str | None = ..., joints: _Tables | None = ..., members: _Tables | None = ...,
         supports: _Tables | None = ..., bodies: _Tables | None = ..., springs: _Tables | None = ...) -> None: ...
 
+class SpaceFrame(_Structure):
+    def __init__(self, *, elements_per_member: int | None = ..., mass_model: str | None = ...,
+        base_direction: npt.ArrayLike | None = ..., joints: _Tables | None = ..., sections: _Tables | None = ...,
+        members: _Tables | None = ..., supports: _Tables | None = ..., bodies: _Tables | None = ...,
+        springs: _Tables | None = ...) -> None: ...
+
 class System(_Structure):
     def __init__(self, *, mass: Any | None = ..., stiffness: Any | None = ..., damping: Any | None = ...,
         labels: Sequence[str] | None = ..., base_motion: npt.ArrayLike | None = ...,
@@ -135,7 +141,8 @@ class Experiment(_Structure):
         substructures: _Tables | None = ..., filter: _Table | _Structure | None = ..., filters: _Tables | None = ...,
         compare: _Table | _Structure | None = ..., identifiability: _Table | _Structure | None = ...,
         prior: _Table | _Structure | None = ..., noise: _Table | _Structure | None = ...,
-        frame: _Table | _Structure | None = ..., sweep: _Table | _Structure | None = ...) -> None: ...
+        frame: _Table | _Structure | None = ..., space_frame: _Table | _Structure | None = ...,
+        sweep: _Table | _Structure | None = ...) -> None: ...
     @classmethod
     def read(cls, path: _Path) -> Experiment: ...
 
