@@ -38,7 +38,7 @@ struct UnknownKey {
 
 // Of a long table only the way to its keys is worth a line.
 std::string expected_keys(const std::string& key, const std::string& name, const KeyTable& section) {
-  constexpr std::size_t most_listed = 25;
+  constexpr std::size_t most_listed = 40;
   const std::vector<std::string> names = section.names();
   if (names.size() <= most_listed || nearest(key, names)) return known_names(key, names);
   return fmt::format("'beamid list keys {}' shows the {} that there are", name, names.size());

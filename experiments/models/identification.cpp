@@ -80,7 +80,6 @@ filters::FilterRun filter_record(const JointModel& model, const filters::Measure
   std::unique_ptr<filters::DiscreteModel> discrete =
       filters::discretise(model.motion, record.interval(), settings.discretisation,
                           {settings.process_noise, settings.output_noise});
-  require_sample_memory(settings, settings.initial.mean.size());
   const filters::NoisyInputs* noisy = nullptr;
   if (has_noise(settings.input_noise)) {
     auto with_errors = std::make_unique<filters::NoisyInputs>(std::move(discrete), settings.input_noise);
@@ -89,6 +88,7 @@ filters::FilterRun filter_record(const JointModel& model, const filters::Measure
   }
   const auto filter =
       filters::filter_registry().make(settings.filter, settings.filter_options, std::move(discrete));
+  require_sample_memory(settings, settings.initial.mean.size());
   return filter_passes(*filter, model, record, settings, keep, noisy);
 }
 

@@ -8,6 +8,7 @@
 
 namespace beamid::experiments {
 
+/// What a channel measures.
 enum class Quantity {
   displacement,
   velocity,

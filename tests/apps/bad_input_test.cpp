@@ -107,7 +107,10 @@ INSTANTIATE_TEST_SUITE_P(
             "tip_acceleration.csv:1: unknown column 'acceleration_tip_ft_per_s2'; expected names with units "
             "(time_s, time_ms, time_us, displacement_m, displacement_mm, displacement_um, velocity_m_per_s, "
             "velocity_mm_per_s, acceleration_m_per_s2, acceleration_mm_per_s2, acceleration_g, force_n, "
-            "force_kn, strain_m_per_m, strain_um_per_m, base_acceleration_m_per_s2, base_acceleration_mm_per_s2, base_acceleration_g), or record.channels in the configuration"}),
+            "force_kn, strain_m_per_m, strain_um_per_m, base_acceleration_m_per_s2, "
+            "base_acceleration_mm_per_s2, base_acceleration_g, support_acceleration_m_per_s2, "
+            "support_acceleration_mm_per_s2, support_acceleration_g), or record.channels in the "
+            "configuration"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(

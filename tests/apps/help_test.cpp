@@ -58,12 +58,13 @@ TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   const Outcome outcome = Workplace().run("quaternion");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_EQ(outcome.first_error_line(),
-            "beamid: unknown command 'quaternion'; known: modes, simulate, identify, modal, compare, report, "
-            "inspect, prepare, track, stream, check, steps, update, twins, frf, frame, reduce, "
-            "identifiability, sweep, "
-            "efficiency, "
-            "atlas, budget, noise, paper, new, validate, list, completion, help");
+  EXPECT_EQ(
+      outcome.first_error_line(),
+      "beamid: unknown command 'quaternion'; known: modes, simulate, identify, modal, compare, report, "
+      "inspect, prepare, track, stream, check, steps, substructures, update, twins, frf, frame, reduce, "
+      "identifiability, sweep, "
+      "efficiency, "
+      "atlas, budget, noise, paper, new, validate, list, completion, help");
 }
 
 struct Kind {

@@ -36,7 +36,7 @@ class Vocabulary(unittest.TestCase):
     def test_the_keywords_of_structures_are_the_keys_of_their_tables(self):
         page = (SOURCE / "docs/configuration.md").read_text()
         for one in (beamid.Beam, beamid.Chain, beamid.Frame, beamid.SpaceFrame, beamid.System):
-            table = one.__name__.lower()
+            table = re.sub(r"(?<!^)([A-Z])", r"_\1", one.__name__).lower()
             section = re.search(rf"\n#+ `\[{table}\]`.*?\n(.*?)\n#", page, re.S).group(1)
             documented = set(re.findall(r"^\| `(\w+)` \|", section, re.M))
             known = {key for key, about in _specification.tables()[table].items()

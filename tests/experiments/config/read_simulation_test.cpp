@@ -132,7 +132,7 @@ TEST(ReadExperiment, RefusesBadTablesOfTheContinuum) {
        "more are for law = \"caughey\""},
       {"[excitation]\nkind = \"hammer\"\n",
        "bad.toml:3:8: excitation.kind is the text \"hammer\"; expected one of release, static, impulse, "
-       "harmonic, base, table, none"},
+       "harmonic, random, base, table, none"},
       {"[excitation]\nkind = \"static\"\n", "bad.toml:2:1: excitation.force_n is missing; expected a number"},
       {"[excitation]\nforce_n = 3\n",
        "bad.toml:3:1: excitation.force_n has no use with kind = \"release\"; of use there: kind, "
