@@ -2,8 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <stdexcept>
 
 namespace beamid::filters {
@@ -11,121 +9,25 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// x+ = A x + G u, y = H x + D u at some constants, of the n entries x of the state that are not held.
-struct LinearForm {
-  MatrixXd a, g, h, d;
-};
-
-// Innovations of every sample, side by side.
-struct Innovations {
-  MatrixXd values;       // (p x N)
-  MatrixXd covariances;  // S_k (p x p N)
-  double cost = std::numeric_limits<double>::infinity();
-};
-
 class Likelihood {
  public:
   explicit Likelihood(const InnovationProblem& problem) : problem_(problem) {
-    const Measurements& record = problem.record;
-    if (!record.outputs.allFinite())
-      throw std::invalid_argument("a sample was not read; expected a record without gaps");
-    const double dt = problem.model.interval(), slack = 1e-6 * dt + 2.0 * record.time_resolution;
-    for (Index k = 0; k + 1 < record.size(); ++k)
-      if (std::abs(record.time[k + 1] - record.time[k] - dt) > slack)
-        throw std::invalid_argument("stamps are uneven; expected even ones");
-    std::vector<bool> held(static_cast<std::size_t>(problem.start.mean.size()), false);
-    for (const Index place : problem.constants) held[static_cast<std::size_t>(place)] = true;
-    for (std::size_t i = 0; i < held.size(); ++i)
-      if (!held[i]) moving_.push_back(static_cast<Index>(i));
-    const MatrixXd prior = problem.start.covariance(problem.constants, problem.constants);
-    prior_ = prior.llt().solve(MatrixXd::Identity(prior.rows(), prior.cols()));
-    first_ = problem.start.mean(problem.constants);
+    const MatrixXd& known = problem.prior.covariance;
+    prior_ = known.llt().solve(MatrixXd::Identity(known.rows(), known.cols()));
   }
 
   const MatrixXd& prior() const { return prior_; }
-  const VectorXd& first() const { return first_; }
-
+  const VectorXd& first() const { return problem_.prior.mean; }
   double prior_cost(const VectorXd& theta) const {
-    return 0.5 * (theta - first_).dot(prior_ * (theta - first_));
+    return 0.5 * (theta - first()).dot(prior_ * (theta - first()));
   }
-
-  Innovations at(const VectorXd& theta) const {
-    const LinearForm form = linear_form(theta);
-    const Measurements& record = problem_.record;
-    const Index p = record.outputs.rows(), n = form.a.rows(), samples = record.size();
-    VectorXd x = problem_.start.mean(moving_);
-    MatrixXd covariance = problem_.start.covariance(moving_, moving_);
-    const MatrixXd& r = problem_.model.output_noise();
-    const MatrixXd& process = problem_.model.process_noise();
-    const MatrixXd q = process.size() > 0 ? MatrixXd(process(moving_, moving_)) : MatrixXd::Zero(n, n);
-    Innovations found{MatrixXd(p, samples), MatrixXd(p, p * samples), 0.0};
-    MatrixXd seen(p, n), gain(n, p), kept(n, n), work(n, n), s(p, p);
-    VectorXd residual(p);
-    for (Index k = 0; k < samples; ++k) {
-      residual = record.outputs.col(k) - form.h * x;
-      if (form.d.cols() > 0) residual.noalias() -= form.d * record.inputs.col(k);
-      seen.noalias() = form.h * covariance;
-      s = r;
-      s.noalias() += seen * form.h.transpose();
-      const Eigen::LLT<MatrixXd> factor(s);
-      if (factor.info() != Eigen::Success)
-        throw std::runtime_error("the covariance of an innovation is not positive definite");
-      found.values.col(k) = residual;
-      found.covariances.middleCols(k * p, p) = s;
-      found.cost += 0.5 * residual.dot(factor.solve(residual)) +
-                    MatrixXd(factor.matrixL()).diagonal().array().log().sum();
-      gain = factor.solve(seen).transpose();
-      x.noalias() += gain * residual;
-      kept.setIdentity();
-      kept.noalias() -= gain * form.h;
-      work.noalias() = kept * covariance;
-      covariance.noalias() = work * kept.transpose();
-      work.leftCols(p).noalias() = gain * r;
-      covariance.noalias() += work.leftCols(p) * gain.transpose();
-      if (k + 1 == samples) break;
-      x = (form.a * x).eval();
-      if (form.g.cols() > 0) x.noalias() += form.g * record.inputs.col(k);
-      work.noalias() = form.a * covariance;
-      covariance.noalias() = work * form.a.transpose();
-      covariance = (0.5 * (covariance + covariance.transpose())).eval() + q;
-    }
-    if (!std::isfinite(found.cost)) throw std::runtime_error("the likelihood is not finite");
-    return found;
-  }
-
-  // The form at theta, by one linearisation and a step for each number that describes the inputs.
-  LinearForm linear_form(const VectorXd& theta) const {
-    DiscreteModel& model = problem_.model;
-    VectorXd rest = VectorXd::Zero(problem_.start.mean.size()), next, output, moved;
-    rest(problem_.constants) = theta;
-    const Index inputs = problem_.record.inputs.rows();
-    VectorXd none = VectorXd::Zero(inputs);
-    MatrixXd jacobian;
-    LinearForm form;
-    model.linearised_transition(rest, none, next, jacobian);
-    form.a = jacobian(moving_, moving_);
-    model.output_jacobian(rest, none, jacobian);
-    form.h = jacobian(Eigen::all, moving_);
-    model.output(rest, none, output);
-    form.g.resize(static_cast<Index>(moving_.size()), inputs);
-    form.d.resize(output.size(), inputs);
-    for (Index i = 0; i < inputs; ++i) {
-      VectorXd one = none;
-      one[i] = 1.0;
-      model.transition(rest, one, moved);
-      form.g.col(i) = (moved - next)(moving_);
-      VectorXd shown;
-      model.output(rest, one, shown);
-      form.d.col(i) = shown - output;
-    }
-    return form;
+  KalmanPass at(const VectorXd& theta) const {
+    return kalman_pass(problem_.model(theta), problem_.record, problem_.interval);
   }
 
  private:
   const InnovationProblem& problem_;
-  std::vector<Index> moving_;
   MatrixXd prior_;
-  VectorXd first_;
 };
 
 // Information at theta, and the gradient of J, from differences by these steps.
@@ -135,27 +37,31 @@ struct Slope {
 };
 
 Slope slope_at(const Likelihood& likelihood, const VectorXd& theta, const VectorXd& steps) {
-  const Innovations here = likelihood.at(theta);
-  const Index p = here.values.rows(), samples = here.values.cols(), q = theta.size();
-  std::vector<MatrixXd> by_values, by_covariances;
+  const KalmanPass here = likelihood.at(theta);
+  const Index samples = here.innovations.cols(), q = theta.size();
+  std::vector<KalmanPass> above, below;
   Slope slope{MatrixXd::Zero(q, q), likelihood.prior() * (theta - likelihood.first())};
   for (Index j = 0; j < q; ++j) {
     VectorXd there = theta;
     there[j] = theta[j] + steps[j];
-    const Innovations above = likelihood.at(there);
+    above.push_back(likelihood.at(there));
     there[j] = theta[j] - steps[j];
-    const Innovations below = likelihood.at(there);
-    by_values.push_back((above.values - below.values) / (2.0 * steps[j]));
-    by_covariances.push_back((above.covariances - below.covariances) / (2.0 * steps[j]));
-    slope.gradient[j] += (above.cost - below.cost) / (2.0 * steps[j]);
+    below.push_back(likelihood.at(there));
+    slope.gradient[j] += (above.back().cost - below.back().cost) / (2.0 * steps[j]);
   }
-  MatrixXd white(p, q), squares(p * p, q), turned(p, p);
   for (Index k = 0; k < samples; ++k) {
-    const Eigen::LLT<MatrixXd> factor(MatrixXd(here.covariances.middleCols(k * p, p)));
+    const std::vector<Index>& seen = here.step(k).seen;
+    const auto p = static_cast<Index>(seen.size());
+    if (p == 0) continue;
+    MatrixXd white(p, q), squares(p * p, q), turned(p, p);
+    const Eigen::LLT<MatrixXd> factor(here.step(k).innovation_covariance);
     for (Index j = 0; j < q; ++j) {
-      const auto i = static_cast<std::size_t>(j);
-      white.col(j) = factor.matrixL().solve(by_values[i].col(k));
-      turned = factor.matrixL().solve(by_covariances[i].middleCols(k * p, p));
+      const KalmanPass &up = above[static_cast<std::size_t>(j)], &down = below[static_cast<std::size_t>(j)];
+      const double width = 2.0 * steps[j];
+      white.col(j) = factor.matrixL().solve(
+          VectorXd(up.innovations.col(k)(seen) - down.innovations.col(k)(seen)) / width);
+      turned = factor.matrixL().solve(
+          (up.step(k).innovation_covariance - down.step(k).innovation_covariance) / width);
       turned = factor.matrixL().solve(turned.transpose().eval()).eval();
       squares.col(j) = std::sqrt(0.5) * turned.reshaped();
     }
@@ -171,6 +77,17 @@ VectorXd difference_steps(const Likelihood& likelihood) {
 }
 
 }  // namespace
+
+InnovationProblem held_problem(DiscreteModel& model, const Measurements& record,
+                               const std::vector<Index>& held, const Gaussian& start) {
+  const Index inputs = record.inputs.rows();
+  return {[&model, held, start, inputs](const VectorXd& theta) {
+            return linear_gaussian(model, held, theta, start, inputs);
+          },
+          record,
+          model.interval(),
+          {start.mean(held), start.covariance(held, held), {}}};
+}
 
 InnovationFit fit_innovations(const InnovationProblem& problem, const VectorXd& begin) {
   constexpr int most_iterations = 15, most_halvings = 6;

@@ -39,7 +39,8 @@ NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSett
   filters::NoisyInputs noisy(filters::discretise(model.motion, record.interval(), settings.discretisation,
                                                  {{}, settings.output_noise}),
                              settings.input_noise);
-  const filters::InnovationProblem problem{noisy, record, model.unknown_places, noisy.with_errors(start)};
+  const filters::InnovationProblem problem =
+      filters::held_problem(noisy, record, model.unknown_places, noisy.with_errors(start));
   try {
     const filters::InnovationFit fit = filters::fit_innovations(problem, found(model.unknown_places));
     const MatrixXd prior = start.covariance(model.unknown_places, model.unknown_places);

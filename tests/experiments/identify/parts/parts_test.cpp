@@ -104,7 +104,8 @@ VectorXd bounds_percent(const Experiment& experiment, const PartOfStructure& par
       *model,
       start_directions(*model, setting.observations,
                        start_scale(*model, setting.observations, record.outputs, record.time.maxCoeff())));
-  const filters::InnovationProblem problem{noisy, record, model->unknown_places, noisy.with_errors(start)};
+  const filters::InnovationProblem problem =
+      filters::held_problem(noisy, record, model->unknown_places, noisy.with_errors(start));
   const VectorXd truth = start.mean(model->unknown_places);  // the guesses are the truth here
   const MatrixXd inverse = filters::innovation_information(problem, truth).inverse();
   return 100.0 * inverse.diagonal().cwiseSqrt();  // of logarithms: relative
