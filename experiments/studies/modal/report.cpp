@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/modal/ambient_mode.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -44,6 +46,18 @@ std::string introduction(const ModalStudySettings& settings, const RecordModes& 
   return text;
 }
 
+// Of random vibration: what no unbiased estimate falls below, in a band as wide as the neighbours leave it.
+AmbientLaw bound_of_mode(const RecordModes& found, std::size_t m) {
+  const Pole& pole = found.modes[m].pole;
+  double kappa = 10.0;
+  for (std::size_t other = 0; other < found.modes.size(); ++other)
+    if (other != m)
+      kappa = std::min(kappa, 0.5 * std::abs(found.modes[other].pole.frequency_hz() - pole.frequency_hz()) /
+                                  (pole.damping_ratio() * pole.frequency_hz()));
+  const double duration = found.record.interval() * static_cast<double>(found.record.size());
+  return ambient_law(pole.damping_ratio(), pole.frequency_hz() * duration, std::max(kappa, 1.0));
+}
+
 Table mode_table(const RecordModes& found, const std::string& suffix) {
   const auto& channels = found.record.channels;
   const Index shown = std::min<Index>(static_cast<Index>(channels.size()), 6);
@@ -53,6 +67,9 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
       .column({"standard deviation", "frequency_standard_deviation_hz"})
       .column({"damping ratio [%]", "damping_ratio_percent"})
       .column({"standard deviation", "damping_ratio_standard_deviation_percent"});
+  if (!found.free_decay)
+    table.column({"f: over bound", "frequency_deviation_over_bound", "{:.2f}"})
+        .column({"damping: over bound", "damping_ratio_deviation_over_bound", "{:.2f}"});
   if (!found.mode_by_mode) table.column({"stable at orders", "stable_orders"});
   for (Index i = 0; i < shown; ++i)
     table.column(
@@ -68,6 +85,11 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
                           deviation_text(pole.frequency_deviation_hz),
                           with_scaled_deviation(pole.damping_ratio(), pole.damping_ratio_deviation, 100),
                           deviation_text(pole.damping_ratio_deviation, 100)};
+    if (!found.free_decay) {
+      const AmbientLaw bound = bound_of_mode(found, m);
+      row.emplace_back(pole.frequency_deviation_hz / (bound.frequency * pole.frequency_hz()));
+      row.emplace_back(pole.damping_ratio_deviation / (bound.damping * pole.damping_ratio()));
+    }
     if (!found.mode_by_mode)
       row.emplace_back(fmt::format("{} of {}", mode.orders.size(), found.search.orders.size()));
     for (Index i = 0; i < shown; ++i) row.emplace_back(mode.amplitude(i));
@@ -78,7 +100,11 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
       found.free_decay
           ? "Amplitudes are those at the beginning. Standard deviations include the noise near each mode, "
             "not damping that depends on amplitude."
-          : "Standard deviations from the scatter of the correlations between parts of the record.";
+          : fmt::format(
+                "Standard deviations {}. Over bound: divided by what no unbiased estimate of so long a "
+                "record falls below, however little noise it has.",
+                found.mode_by_mode ? "from the likelihood of each mode's band"
+                                   : "from the scatter of the correlations between parts of the record");
   return table;
 }
 

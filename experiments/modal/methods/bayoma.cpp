@@ -1,0 +1,115 @@
+// Bayes' fast Fourier method, mode by mode, for random vibration [au2011].
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "experiments/modal/ambient_mode.hpp"
+#include "experiments/modal/modal_method.hpp"
+#include "experiments/modal/spectral_peaks.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXd;
+
+// Autocorrelations of every channel (p x L), whose spectrum is smooth where that of the record is not.
+MatrixXd autocorrelations(const MatrixXd& outputs, Index lags) {
+  const Index count = outputs.cols() - lags;
+  MatrixXd found(outputs.rows(), lags);
+  for (Index i = 0; i < outputs.rows(); ++i) {
+    const Eigen::VectorXd y = (outputs.row(i).array() - outputs.row(i).mean()).matrix();
+    for (Index l = 0; l < lags; ++l)
+      found(i, l) = y.head(count).dot(y.segment(l + 1, count)) / static_cast<double>(count);
+  }
+  return found;
+}
+
+class BayesMethod final : public ModalMethod {
+ public:
+  BayesMethod(ResponseKind kind, double kappa, double first_ratio)
+      : kind_(kind), kappa_(kappa), first_ratio_(first_ratio) {}
+
+  PoleSearch search(const MatrixXd& outputs, double interval, int) const override {
+    if (outputs.cols() < 400)
+      throw std::invalid_argument(
+          fmt::format("bayoma: {} samples; expected at least 400 of random vibration", outputs.cols()));
+    PoleSearch found;
+    found.orders.push_back({0, {}});
+    found.decays = autocorrelations(outputs, std::clamp<Index>(outputs.cols() / 50, 50, 4000));
+    const BandCoefficients all = fourier_coefficients(outputs, interval);
+    const std::vector<double> peaks = spectral_peaks(found.decays, interval);
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+      const double below = i > 0 ? 0.5 * (peaks[i - 1] + peaks[i]) : 0.0,
+                   above = i + 1 < peaks.size() ? 0.5 * (peaks[i] + peaks[i + 1]) : 1e300;
+      add_mode(all, peaks[i], {below, above}, found);
+    }
+    return found;
+  }
+
+ private:
+  // The band is as wide as the damping ratio asks for, which is known only then: twice.
+  void add_mode(const BandCoefficients& all, double peak, const std::pair<double, double>& room,
+                PoleSearch& found) const {
+    Pole pole{Complex(0.0, 2.0 * std::numbers::pi * peak), Eigen::VectorXcd::Ones(all.coefficients.rows())};
+    try {
+      AmbientMode mode;
+      mode.frequency_hz = peak, mode.damping_ratio = first_ratio_;
+      for (int pass = 0; pass < 3; ++pass) {
+        const double half = kappa_ * mode.damping_ratio * mode.frequency_hz;
+        mode = ambient_mode(within(all, {std::max(room.first, mode.frequency_hz - half),
+                                         std::min(room.second, mode.frequency_hz + half)}),
+                            mode.frequency_hz, mode.damping_ratio, kind_);
+        if (!mode.converged || !(mode.damping_ratio < 0.5) || mode.frequency_hz < mode.band_hz.first ||
+            mode.frequency_hz > mode.band_hz.second)
+          throw std::invalid_argument("the band has no likeliest mode");
+      }
+      const double w = 2.0 * std::numbers::pi * mode.frequency_hz, zeta = mode.damping_ratio;
+      pole.rate = {-zeta * w, w * std::sqrt(1.0 - zeta * zeta)};
+      pole.shape = mode.shape.cast<Complex>();
+      pole.frequency_deviation_hz = mode.frequency_deviation_hz;
+      pole.damping_ratio_deviation = mode.damping_ratio_deviation;
+      if (!(mode.damping_ratio_deviation < mode.damping_ratio))
+        throw std::invalid_argument(fmt::format("too uncertain, damping ratio {:.2g} %", 100.0 * zeta));
+      found.orders.back().poles.push_back(pole);
+    } catch (const std::invalid_argument& error) {
+      found.refused.push_back({pole, error.what()});
+    }
+  }
+
+  ResponseKind kind_;
+  double kappa_, first_ratio_;
+};
+
+ResponseKind response_kind(const std::string& name) {
+  if (name == "displacement") return ResponseKind::displacement;
+  if (name == "velocity") return ResponseKind::velocity;
+  if (name == "acceleration") return ResponseKind::acceleration;
+  throw std::invalid_argument("bayoma: response is '" + name +
+                              "'; expected displacement, velocity or acceleration");
+}
+
+const bool bayoma_registered = modal_method_registry().add(
+    {"bayoma",
+     "Bayes' fast Fourier method, one mode in each band, for random vibration, with standard deviations",
+     "[au2011], [au2014]",
+     {{"response", std::string("acceleration"), "",
+       "what was measured: displacement, velocity, acceleration"},
+      {"kappa", 10.0, "", "half width of a mode's band over damping ratio times frequency"},
+      {"damping_ratio", 0.01, "", "to begin with"}},
+     {contract::mode_by_mode},
+     [](const filters::Options& options) {
+       const double kappa = options.number("kappa"), ratio = options.number("damping_ratio");
+       if (!(kappa >= 2.0 && kappa <= 100.0))
+         throw std::invalid_argument(fmt::format("bayoma: kappa is {:g}; expected 2 to 100", kappa));
+       if (!(ratio > 0.0 && ratio < 0.3))
+         throw std::invalid_argument(
+             fmt::format("bayoma: damping_ratio is {:g}; expected between 0 and 0.3", ratio));
+       return std::make_unique<BayesMethod>(response_kind(options.text("response")), kappa, ratio);
+     }});
+
+}  // namespace
+}  // namespace beamid::experiments
