@@ -11,16 +11,55 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
+// How far the measured inputs reach every eigenvalue of the motion, and the sensors see it, as a share of the
+// largest: |C v| |w^T B| of its right and left eigenvectors v, w; of a free motion |C v|. Eigenvalues that
+// are the same share theirs.
+VectorXd shares_of_record(const filters::LinearMotion& motion, const VectorXd& state, const MatrixXd& rates,
+                          const Eigen::EigenSolver<MatrixXd>& solver) {
+  constexpr double same = 1e-6;
+  const Index n = rates.rows();
+  MatrixXd seen, through;
+  motion.output_jacobian(state, VectorXd::Zero(motion.input_size()), seen);
+  motion.input_matrix(state, through);
+  const Eigen::VectorXcd& lambda = solver.eigenvalues();
+  const VectorXd sight = (seen.leftCols(n) * solver.eigenvectors()).colwise().norm();
+  VectorXd reach = VectorXd::Ones(n);
+  if (through.size() > 0 && !through.isZero(0.0)) {
+    const Eigen::EigenSolver<MatrixXd> left(rates.transpose());
+    const VectorXd pushed = (through.transpose() * left.eigenvectors()).colwise().norm();
+    for (Index i = 0; i < n; ++i) {
+      reach[i] = 0.0;
+      for (Index k = 0; k < n; ++k)
+        if (std::abs(left.eigenvalues()[k] - lambda[i]) <= same * std::abs(lambda[i])) reach[i] += pushed[k];
+    }
+  }
+  VectorXd share(n);
+  for (Index i = 0; i < n; ++i) {
+    double sum = 0.0;
+    for (Index k = 0; k < n; ++k)
+      if (std::abs(lambda[k] - lambda[i]) <= same * std::abs(lambda[i])) sum += sight[k];
+    share[i] = sum * reach[i];
+  }
+  const double largest = share.maxCoeff();
+  return largest > 0.0 ? VectorXd(share / largest) : VectorXd::Ones(n);
+}
+
 std::optional<FoundMode> slowest(const filters::LinearMotion& motion, const VectorXd& state) {
+  constexpr double at_rest = 1e-6;  // of the fastest rate: what rounding makes of a motion without stiffness
+  constexpr double in_record = 1e-8;
   MatrixXd rates;
   motion.motion_matrix(state, rates);
-  constexpr double at_rest = 1e-6;  // of the fastest rate: what rounding makes of a motion without stiffness
   std::optional<FoundMode> lowest;
-  const Eigen::VectorXcd eigenvalues = Eigen::EigenSolver<MatrixXd>(rates, false).eigenvalues();
+  const Eigen::EigenSolver<MatrixXd> solver(rates);
+  const Eigen::VectorXcd& eigenvalues = solver.eigenvalues();
   const double fastest = eigenvalues.cwiseAbs().maxCoeff();
-  for (const std::complex<double>& lambda : eigenvalues) {
+  const VectorXd share = shares_of_record(motion, state, rates, solver);
+  for (Index i = 0; i < eigenvalues.size(); ++i) {
+    const std::complex<double> lambda = eigenvalues[i];
     const double frequency = std::abs(lambda) / (2.0 * std::numbers::pi);
-    if (!(lambda.imag() > at_rest * fastest) || (lowest && frequency >= lowest->frequency_hz)) continue;
+    if (!(lambda.imag() > at_rest * fastest) || !(share[i] > in_record) ||
+        (lowest && frequency >= lowest->frequency_hz))
+      continue;
     lowest = FoundMode{frequency, -lambda.real() / std::abs(lambda)};
   }
   return lowest;
