@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "apps/python/figures.hpp"
+#include "apps/python/filters.hpp"
 #include "apps/python/records.hpp"
 #include "apps/python/run.hpp"
 #include "apps/python/specification.hpp"
@@ -31,4 +32,5 @@ PYBIND11_MODULE(_beamid, module) {
   module.def("known_names", &beamid::experiments::known_names);
   module.def("write_columns", &beamid::python::write_columns);
   module.def("read_record", &beamid::python::read_record);
+  beamid::python::add_filters(module);
 }

@@ -15,13 +15,14 @@ All numbers are in SI units, and names carry the unit. Documentation: docs/pytho
 """
 from . import _commands, _specification
 from ._errors import InputError
+from ._filters import FilterRun, register_filter, run_filter, run_oscillator
 from ._record import Record, RecordFile, read
 from ._results import Estimate, Results
 from ._structures import Beam, Chain, Experiment, Frame, SpaceFrame, System
 
 __version__ = _specification.specification()["version"]
-__all__ = ["Beam", "Chain", "Estimate", "Experiment", "Frame", "InputError", "Record", "RecordFile", "Results", "SpaceFrame", "System",
-           "read",
+__all__ = ["Beam", "Chain", "Estimate", "Experiment", "FilterRun", "Frame", "InputError", "Record", "RecordFile", "Results", "SpaceFrame", "System",
+           "read", "register_filter", "run_filter", "run_oscillator",
            *(name for name in _commands.names() if name != "list")]  # `from beamid import *` leaves Python's list alone
 
 globals().update({name: _commands.function(name) for name in _commands.names()})

@@ -52,7 +52,9 @@ class _Call:
             for one in argument:
                 self.take_argument(one)
         elif isinstance(argument, (str, os.PathLike)):
-            if os.fspath(argument).endswith(".toml") and "config" in self.options and self.config is None:
+            if "modes" in self.takes and not self.words:  # the first file is that of the modes, whatever its ending
+                self.words.append(os.fspath(argument))
+            elif os.fspath(argument).endswith(".toml") and "config" in self.options and self.config is None:
                 self.config = argument
             elif "record" in self.takes:
                 self.records.append(RecordFile(argument, {}))

@@ -1,4 +1,6 @@
 """Matrices of one's own, kept as their entries, and as the text of a Matrix Market file."""
+import types
+
 import numpy as np
 
 from ._errors import InputError
@@ -36,6 +38,38 @@ def as_matrices(value, owner):
     return {key: [as_matrices(part, f"{owner}.{key}") for part in one] if key == "parameters"
             else Matrix(one, f"{owner}.{key}") if key in ("mass", "stiffness", "damping") and hasattr(one, "shape")
             else one for key, one in value.items()}
+
+
+def affine_matrices(function, values):
+    """Keywords of [system] from `function(p)` -> M, C, K: the matrices without parameters, and what each adds for 1 of it."""
+    names = ("mass", "damping", "stiffness")
+
+    def at(numbers):
+        found = function(types.SimpleNamespace(**numbers))
+        if not isinstance(found, tuple) or len(found) != 3:
+            raise InputError("the function of a system returned no M, C, K")
+        dense = [one.toarray() if hasattr(one, "toarray") else one for one in found]
+        size = np.shape(dense[0])
+        return [np.zeros(size) if one is None else np.asarray(one, dtype=float) for one in dense]
+
+    values = {name: float(value) for name, value in values.items()}
+    base, slopes = at(values), {}
+    for name, value in values.items():
+        step = value if value != 0 else 1.0
+        slopes[name] = [(there - here) / step for there, here in zip(at({**values, name: value + step}), base)]
+    further = {name: 0.6 * value + 0.1 * (index + 1) * (value or 1.0) for index, (name, value) in enumerate(values.items())}
+    for which, (found, here) in enumerate(zip(at(further), base)):
+        expected = here + sum((further[name] - values[name]) * slopes[name][which] for name in values)
+        if not np.allclose(found, expected, rtol=1e-9, atol=1e-9 * max(np.abs(found).max(), 1e-300)):
+            raise InputError(f"{names[which]} is not affine in {', '.join(values)}; expected M, C, K = A_0 + sum p_j A_j")
+    keywords = {name: here - sum(values[one] * slopes[one][which] for one in values)
+                for which, (name, here) in enumerate(zip(names, base))}
+    if not keywords["damping"].any():
+        del keywords["damping"]
+    keywords["parameters"] = [
+        {"name": name, "value": value,
+         **{names[which]: slope for which, slope in enumerate(slopes[name]) if slope.any()}} for name, value in values.items()]
+    return keywords
 
 
 def matrix_files(system, name="system"):

@@ -3,7 +3,7 @@ import os
 import tomllib
 
 from ._errors import InputError, unknown
-from ._matrices import as_matrices
+from ._matrices import affine_matrices, as_matrices
 from ._specification import STRUCTURES, tables, takes_options
 
 
@@ -131,6 +131,22 @@ class System(Table):
 
     def __init__(self, **keywords):
         super().__init__(**as_matrices(keywords, "System"))
+
+    @classmethod
+    def of(cls, function, values, **keywords):
+        """The system of a function `function(p)` -> M, C, K of parameters p.name, each matrix (n, n) and affine in them; C may be
+        None. `values` are the parameters' own by name; each can be asked for as a factor of its name.
+
+        >>> import beamid, numpy as np
+        >>> def system(p):
+        ...     return np.diag([p.m, 800.0]), None, p.k * np.array([[2.0, -1.0], [-1.0, 1.0]])
+        >>> building = beamid.System.of(system, {"m": 1000.0, "k": 1.5e6}, labels=["floor", "roof"])
+        >>> beamid.modes(building, modes=2).tables["modes"]["frequency_hz"].round(3)
+        array([ 4.115, 10.322])
+
+        :raises InputError: where a matrix is not affine in the parameters, or has no value other than numbers
+        """
+        return cls(**affine_matrices(function, values), **keywords)
 
 
 class Experiment(Table):

@@ -56,6 +56,24 @@ class Results:
     def write(self, folder: _Path, force: bool = ...) -> None: ...
     def write_inputs(self, folder: _Path = ...) -> list[str]: ...
 
+class FilterRun:
+    mean: npt.NDArray[np.float64]
+    covariance: npt.NDArray[np.float64]
+    innovations: npt.NDArray[np.float64]
+    whitened_innovations: npt.NDArray[np.float64]
+    means: npt.NDArray[np.float64]
+    deviations: npt.NDArray[np.float64]
+    log_likelihood: float
+    failure: str | None
+    remarks: list[str]
+
+def run_filter(filter: str, model: Any, outputs: npt.ArrayLike, mean: npt.ArrayLike, covariance: npt.ArrayLike, *,
+               inputs: npt.ArrayLike | None = ..., keep: Literal["last", "all"] = ..., **options: Any) -> FilterRun: ...
+def run_oscillator(outputs: npt.ArrayLike, interval_s: float, *, mass_kg: float, mean: npt.ArrayLike, covariance: npt.ArrayLike,
+                   noise: npt.ArrayLike, observed: str | Sequence[str] = ...,
+                   discretisation: Literal["exponential", "forward_euler"] = ...) -> FilterRun: ...
+def register_filter(name: str, make: Any, summary: str = ..., options: Mapping[str, Any] | None = ...) -> None: ...
+
 class RecordFile:
     path: str
     keys: dict[str, Any]
@@ -126,7 +144,9 @@ def main():
     for one in (Beam, Chain, Frame, SpaceFrame, System, Experiment):
         print(f"class {one.__name__}(_Structure):")
         print(signature("__init__", "self", ["*", *keywords_of_table(one._table)], "None", "    "))
-        print("    @classmethod\n    def read(cls, path: _Path) -> Experiment: ...\n" if one is Experiment else "")
+        print("    @classmethod\n    def read(cls, path: _Path) -> Experiment: ...\n" if one is Experiment
+              else "    @classmethod\n    def of(cls, function: Any, values: Mapping[str, float], **keywords: Any) -> System: ...\n"
+              if one is System else "")
     read = [f"{key}: {TYPES[about['type']]} = ..." for key, about in _specification.tables()["record"].items()
             if key != "file"]
     print(signature("read", "path: _Path", ["*", *read], "RecordFile"))
