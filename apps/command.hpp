@@ -50,6 +50,7 @@ const std::vector<CommandGroup>& command_groups();
 /// @throws UsageError "unknown command 'mods'; did you mean 'modes'?"
 const Command& find_command(const std::string& name);
 
+Command backbone_command();
 Command check_command();
 Command compare_command();
 Command completion_command();
@@ -65,9 +66,11 @@ Command man_command();
 Command modal_command();
 Command modes_command();
 Command new_command();
+Command posterior_command();
 Command prepare_command();
 Command reduce_command();
 Command report_command();
+Command sense_command();
 Command simulate_command();
 Command steps_command();
 Command stream_command();

@@ -80,6 +80,8 @@ inline constexpr const char* identifies = "identifies";
 inline constexpr const char* robust = "robust";
 /// Refuses models that are not linear, with std::invalid_argument.
 inline constexpr const char* linear_models_only = "linear_models_only";
+/// Refuses models whose motion is not linear with their constants held, with std::invalid_argument.
+inline constexpr const char* linear_motion_only = "linear_motion_only";
 }  // namespace contract
 
 using FilterRegistry = Registry<Filter, std::unique_ptr<DiscreteModel>>;

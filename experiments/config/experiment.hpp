@@ -9,6 +9,7 @@
 
 #include "experiments/config/acquisition_settings.hpp"
 #include "experiments/config/identifiability_settings.hpp"
+#include "experiments/config/sensing_settings.hpp"
 #include "experiments/config/settings.hpp"
 #include "experiments/models/parameter_choice.hpp"
 #include "experiments/models/prior.hpp"
@@ -36,6 +37,7 @@ struct Experiment {
   std::optional<std::string> record_file;  ///< relative to the TOML file's folder
   RecordFormat format;
   Choice reduction{"rayleigh", {}};
+  bool reduction_is_stated = false;  ///< by [reduction] of the file
   std::vector<Choice>
       reductions;  ///< to be compared, in the order of the file; none: a choice of the command
   Choice model{"sdof", {}};
@@ -49,6 +51,9 @@ struct Experiment {
   int passes = 3;                            ///< over the record, of every run of a comparison
   IdentifiabilitySettings identifiability;
   std::vector<PartOfStructure> parts;  ///< to be identified one by one
+  std::vector<UnknownForce> unknown_forces;
+  std::vector<VirtualSensor> virtual_sensors;
+  std::optional<FatigueLaw> fatigue;
   PriorBelief prior;
   std::map<Quantity, double> noise;     ///< standard deviation per quantity [SI]; absent: from the record
   Choice noise_method{"residual", {}};  ///< how absent ones are found: residual, likelihood, before_event

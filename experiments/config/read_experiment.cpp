@@ -15,6 +15,7 @@
 #include "experiments/config/read_parts.hpp"
 #include "experiments/config/read_prior.hpp"
 #include "experiments/config/read_record_format.hpp"
+#include "experiments/config/read_sensing.hpp"
 #include "experiments/config/read_simulation.hpp"
 #include "experiments/config/read_space_frame.hpp"
 #include "experiments/config/read_system.hpp"
@@ -32,10 +33,12 @@ const Schema<Experiment>& root_keys() {
           .tables({"acquisition", "simulation", "frequency_response", "record", "reduction"}, table)
           .tables({"reductions"}, tables)
           .tables({"model"}, table)
-          .tables({"parameters", "substructures"}, tables)
+          .tables({"parameters", "substructures", "unknown_forces", "virtual_sensors"}, tables)
           .tables({"filter"}, table)
           .tables({"filters"}, tables)
-          .tables({"compare", "identifiability", "prior", "noise", "frame", "space_frame", "sweep"}, table);
+          .tables(
+              {"fatigue", "compare", "identifiability", "prior", "noise", "frame", "space_frame", "sweep"},
+              table);
   return keys;
 }
 
@@ -87,6 +90,9 @@ void read_continuum(const TomlTable& root, Experiment& experiment) {
   experiment.acquisition = read_acquisition(root);
   experiment.parameters = read_parameters(root, structure);
   experiment.parts = read_parts(root, structure);
+  experiment.unknown_forces = read_unknown_forces(root, structure);
+  experiment.virtual_sensors = read_virtual_sensors(root, structure);
+  experiment.fatigue = read_fatigue(root);
   if (const auto simulation = root.find_table("simulation"))
     experiment.simulation = read_simulation(*simulation);
   if (const auto response = root.find_table("frequency_response"))

@@ -118,6 +118,7 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
       choice = {choice.name, registry.completed(choice.name, choice.options), root.value_place(name)};
   };
   choose("reduction", "method", experiment.reduction, reduction::reduction_registry());
+  experiment.reduction_is_stated = root.contains("reduction");
   if (const auto table = root.find_table("reduction")) read_shape_file(*table, experiment.reduction);
   choose("model", "name", experiment.model, model_registry());
   // Static shapes are K and M of one coordinate; of a model of modes they would be an error of its own.

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "experiments/config/key_tables.hpp"
+#include "experiments/record/files/mat_matrix.hpp"
 #include "experiments/text/matrix_market.hpp"
 #include "experiments/text/method_choice.hpp"
 
@@ -30,7 +31,10 @@ const Schema<GivenSystem>& system_keys() {
   using S = GivenSystem;
   static const Schema<S> keys =
       Schema<S>("system")
-          .key("mass", &S::mass, "Matrix Market file of M [kg], beside the experiment file", "\"M.mtx\"")
+          .key("mass", &S::mass,
+               "M [kg]: a Matrix Market file beside the experiment file, or a matrix of a MATLAB file, "
+               "`\"model.mat:M\"`",
+               "\"M.mtx\"")
           .required()
           .key("stiffness", &S::stiffness, "of K [N/m], or of K_0 where parameters add theirs", "\"K.mtx\"")
           .required()
@@ -69,18 +73,28 @@ const bool system_keys_registered[] = {
     register_keys([]() -> const KeyTable& { return system_keys(); }),
     register_keys([]() -> const KeyTable& { return system_parameter_keys(); })};
 
+// "model.mat:K" is the matrix K of model.mat.
+std::pair<std::string, std::string> matrix_source(const std::string& file) {
+  const std::size_t colon = file.rfind(".mat:");
+  if (colon == std::string::npos) return {file, ""};
+  return {file.substr(0, colon + 4), file.substr(colon + 5)};
+}
+
 /// @param size rows and columns it must have; 0: any number of both, the same
 fem::SparseMatrix matrix_of(const TomlTable& table, const char* key, const std::string& file,
                             Eigen::Index size) {
   if (file.empty()) {
-    if (table.contains(key)) table.refuse(key, "the name of a Matrix Market file");
+    if (table.contains(key)) table.refuse(key, "the name of a Matrix Market or MATLAB file");
     return {};
   }
-  const auto path = std::filesystem::path(table.place().file).parent_path() / file;
+  const auto [name, variable] = matrix_source(file);
+  const auto path = std::filesystem::path(table.place().file).parent_path() / name;
   if (!std::filesystem::is_regular_file(path))
-    throw InputError(table.value_place(key),
-                     fmt::format("'{}' is no file; expected a Matrix Market file", path.string()));
-  fem::SparseMatrix matrix = read_matrix_market(path);
+    throw InputError(
+        table.value_place(key),
+        fmt::format("'{}' is no file; expected a Matrix Market or a MATLAB file", path.string()));
+  fem::SparseMatrix matrix =
+      path.extension() == ".mat" ? read_mat_matrix(path, variable) : read_matrix_market(path);
   const Eigen::Index expected = size > 0 ? size : matrix.rows();
   if (matrix.rows() != expected || matrix.cols() != expected)
     throw InputError(table.value_place(key), fmt::format("'{}' is {} x {}; expected {} x {}", file,

@@ -47,10 +47,11 @@ TEST_P(EveryCommand, RefusesAnUnknownOption) {
 
 INSTANTIATE_TEST_SUITE_P(All, EveryCommand,
                          testing::Values("budget", "noise", "paper", "inspect", "prepare", "modal",
-                                         "identify", "check", "update", "twins", "steps", "track", "stream",
-                                         "compare", "identifiability", "efficiency", "sweep", "modes",
-                                         "frame", "simulate", "frf", "reduce", "new", "validate", "list",
-                                         "report", "help", "completion"),
+                                         "identify", "check", "update", "twins", "posterior", "steps",
+                                         "track", "backbone", "sense", "substructures", "stream", "compare",
+                                         "identifiability", "efficiency", "sweep", "modes", "frame",
+                                         "simulate", "frf", "reduce", "new", "validate", "list", "report",
+                                         "help", "completion"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 // The everyday ones stand first.
@@ -58,13 +59,13 @@ TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   const Outcome outcome = Workplace().run("quaternion");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_EQ(
-      outcome.first_error_line(),
-      "beamid: unknown command 'quaternion'; known: modes, simulate, identify, modal, compare, report, "
-      "inspect, prepare, track, stream, check, steps, substructures, update, twins, frf, frame, reduce, "
-      "identifiability, sweep, "
-      "efficiency, "
-      "atlas, budget, noise, paper, new, validate, list, completion, help");
+  EXPECT_EQ(outcome.first_error_line(),
+            "beamid: unknown command 'quaternion'; known: modes, simulate, identify, modal, compare, report, "
+            "inspect, prepare, track, backbone, stream, check, steps, sense, substructures, update, twins, "
+            "posterior, frf, frame, reduce, "
+            "identifiability, sweep, "
+            "efficiency, "
+            "atlas, budget, noise, paper, new, validate, list, completion, help");
 }
 
 struct Kind {
@@ -166,7 +167,7 @@ TEST(List, RefusesUnknownKindsAndNames) {
   EXPECT_EQ(Workplace().run("list filters quaternion").first_error_line(),
             "beamid: unknown filter 'quaternion'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, iekf, kf, "
             "low_rank_ekf, "
-            "low_rank_ukf, particle, robust_ekf, srckf, srukf, ukf");
+            "low_rank_ukf, particle, rao_blackwellised, robust_ekf, srckf, srukf, ukf");
   EXPECT_EQ(Workplace().run("list filters ufk").code, 2);
 }
 

@@ -49,6 +49,24 @@ class Results:
     def write(self, folder: _Path, force: bool = ...) -> None: ...
     def write_inputs(self, folder: _Path = ...) -> list[str]: ...
 
+class FilterRun:
+    mean: npt.NDArray[np.float64]
+    covariance: npt.NDArray[np.float64]
+    innovations: npt.NDArray[np.float64]
+    whitened_innovations: npt.NDArray[np.float64]
+    means: npt.NDArray[np.float64]
+    deviations: npt.NDArray[np.float64]
+    log_likelihood: float
+    failure: str | None
+    remarks: list[str]
+
+def run_filter(filter: str, model: Any, outputs: npt.ArrayLike, mean: npt.ArrayLike, covariance: npt.ArrayLike, *,
+               inputs: npt.ArrayLike | None = ..., keep: Literal["last", "all"] = ..., **options: Any) -> FilterRun: ...
+def run_oscillator(outputs: npt.ArrayLike, interval_s: float, *, mass_kg: float, mean: npt.ArrayLike, covariance: npt.ArrayLike,
+                   noise: npt.ArrayLike, observed: str | Sequence[str] = ...,
+                   discretisation: Literal["exponential", "forward_euler"] = ...) -> FilterRun: ...
+def register_filter(name: str, make: Any, summary: str = ..., options: Mapping[str, Any] | None = ...) -> None: ...
+
 class RecordFile:
     path: str
     keys: dict[str, Any]
@@ -128,6 +146,8 @@ class System(_Structure):
     def __init__(self, *, mass: Any | None = ..., stiffness: Any | None = ..., damping: Any | None = ...,
         labels: Sequence[str] | None = ..., base_motion: npt.ArrayLike | None = ...,
         parameters: _Tables | None = ...) -> None: ...
+    @classmethod
+    def of(cls, function: Any, values: Mapping[str, float], **keywords: Any) -> System: ...
 
 class Experiment(_Structure):
     def __init__(self, *, title: str | None = ..., beam: _Table | _Structure | None = ...,
@@ -138,7 +158,9 @@ class Experiment(_Structure):
         frequency_response: _Table | _Structure | None = ..., record: _Table | _Structure | None = ...,
         reduction: _Table | _Structure | None = ..., reductions: _Tables | None = ...,
         model: _Table | _Structure | None = ..., parameters: _Tables | None = ...,
-        substructures: _Tables | None = ..., filter: _Table | _Structure | None = ..., filters: _Tables | None = ...,
+        substructures: _Tables | None = ..., unknown_forces: _Tables | None = ...,
+        virtual_sensors: _Tables | None = ..., filter: _Table | _Structure | None = ...,
+        filters: _Tables | None = ..., fatigue: _Table | _Structure | None = ...,
         compare: _Table | _Structure | None = ..., identifiability: _Table | _Structure | None = ...,
         prior: _Table | _Structure | None = ..., noise: _Table | _Structure | None = ...,
         frame: _Table | _Structure | None = ..., space_frame: _Table | _Structure | None = ...,
@@ -206,6 +228,13 @@ def track(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., b
     window: Sequence[_Number] | None = ..., stamps: str | None = ..., skip_malformed: bool | None = ...,
     reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
     no_progress: bool | None = ..., **keys: Any) -> Results: ...
+def backbone(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
+    band: Sequence[_Number] | None = ..., mass: _Number | None = ..., amplitude_ratio: _Number | None = ...,
+    fewest_cycles: _Number | None = ..., linear: _Number | None = ..., column: str | Sequence[str] | None = ...,
+    quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ..., time: str | None = ...,
+    rate: _Number | None = ..., window: Sequence[_Number] | None = ..., stamps: str | None = ...,
+    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
+    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def stream(record: Record | RecordFile | _Path, *arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     like: _Path | None = ..., on_failure: str | None = ..., resume: _Path | None = ...,
     save_state: _Path | None = ..., **keys: Any) -> dict[str, npt.NDArray[Any]]: ...
@@ -218,6 +247,9 @@ def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     steps: int | None = ..., believed_xi: _Number | None = ..., scheme: str | None = ...,
     interval: _Number | None = ..., frequency: _Number | None = ..., out: _Path | None = ...,
     force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+def sense(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., at: str | Sequence[str] | None = ...,
+    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
+    **keys: Any) -> Results: ...
 def substructures(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., no_whole: bool | None = ...,
     out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
     **keys: Any) -> Results: ...
@@ -226,6 +258,10 @@ def update(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., 
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def twins(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
     shape_error: _Number | None = ..., starts: int | None = ..., out: _Path | None = ..., force: bool | None = ...,
+    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+def posterior(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
+    shape_error: _Number | None = ..., starts: int | None = ..., draws: int | None = ...,
+    particles: int | None = ..., seed: int | None = ..., out: _Path | None = ..., force: bool | None = ...,
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def frf(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., from_: _Number | None = ...,
     to: _Number | None = ..., kind: str | None = ..., length: _Number | None = ..., width: _Number | None = ...,

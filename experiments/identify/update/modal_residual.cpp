@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -96,6 +97,11 @@ void ModalResidual::add_priors(const VectorXd& values, Index row, const VectorXd
       value.jacobian(row, j) = (log ? 1.0 / values[j] : 1.0) * slopes[j] / deviation;
     ++row;
   }
+}
+
+Index ModalResidual::measured() const {
+  const std::vector<bool>& prior = model_.asked().has_prior;
+  return size_ - std::count(prior.begin(), prior.end(), true);
 }
 
 Index ModalResidual::independent(const Value& value) const {

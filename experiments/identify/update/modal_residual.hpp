@@ -39,6 +39,7 @@ class ModalResidual {
   Value at(const Eigen::VectorXd& x, bool jacobian) const;
 
   Eigen::Index size() const { return size_; }  ///< r
+  Eigen::Index measured() const;               ///< the first of them, without priors
   /// Numbers that are independent: a shape has as many as its components less those of the space.
   Eigen::Index independent(const Value& value) const;
   double frequency_deviation(std::size_t mode) const { return frequency_deviation_[mode]; }  ///< [Hz]

@@ -81,7 +81,9 @@ TEST_P(VanDerPolBy, IsIdentifiedWithHonestDeviations) {
 std::vector<std::string> nonlinear_filters() {
   std::vector<std::string> names;
   for (const auto& [name, entry] : filter_registry().entries())
-    if (!entry.contracts.contains(filters::contract::linear_models_only)) names.push_back(name);
+    if (!entry.contracts.contains(filters::contract::linear_models_only) &&
+        !entry.contracts.contains(filters::contract::linear_motion_only))
+      names.push_back(name);
   return names;
 }
 INSTANTIATE_TEST_SUITE_P(Registered, VanDerPolBy, testing::ValuesIn(nonlinear_filters()),

@@ -1,0 +1,97 @@
+// beamid sense: motion, strain and force where no sensor was.
+#include <algorithm>
+#include <filesystem>
+
+#include "apps/deliver.hpp"
+#include "apps/record_options.hpp"
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/config/read_sensing.hpp"
+#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/models/structure_points.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
+#include "experiments/studies/sensing/report.hpp"
+
+namespace beamid::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace experiments;
+
+// Of a beam whatever can be asked of a section; of other structures the displacement of the place.
+void add_place(const std::string& text, Experiment& experiment) {
+  const fem::Structure& structure = experiment.structure;
+  if (!structure.has_positions()) {
+    const std::vector<std::string> known = fem::place_names(structure);
+    if (std::find(known.begin(), known.end(), text) == known.end())
+      throw UsageError("--at " + text + ": no such place of the structure");
+    experiment.virtual_sensors.push_back(
+        {"displacement_" + text, Quantity::displacement, false, {}, 0.0, text});
+    return;
+  }
+  double position = 0.0;
+  try {
+    std::size_t read = 0;
+    position = std::stod(text, &read);
+    if (read != text.size() || !(position >= 0.0 && position <= structure.extent())) throw std::exception();
+  } catch (const std::exception&) {
+    throw UsageError("--at " + text + ": expected a position on the structure [m]");
+  }
+  const std::string place = name_of_place(position, structure.extent());
+  experiment.virtual_sensors.push_back({"displacement_" + place, Quantity::displacement, false, position});
+  if (!structure.is_chain())
+    experiment.virtual_sensors.push_back(bending_moment_at(structure.beam(), position));
+}
+
+int run_sense(const Values& values) {
+  const fs::path config = values.text("config");
+  if (config.empty()) throw UsageError("--config FILE is missing");
+  Experiment experiment = read_experiment(config);
+  for (const std::string& place : values.texts("at")) add_place(place, experiment);
+  const std::vector<fs::path> file = record_files(values, config, experiment.record_file);
+  deliver(values, [&] {
+    const Progress progress = show_progress(values);
+    const fs::path folder = config.parent_path();
+    const Place place{config.string()};
+    PreparedRecord prepared;
+    SensingRecord record;
+    if (file.empty()) {
+      record = simulated_sensing(experiment, folder, place, progress);
+    } else {
+      prepared = read_and_prepare(file[0], experiment.format);
+      record = sensing_record(experiment, prepared.record, place);
+    }
+    Results results = [&] {
+      try {
+        const Choice reduction = sensing_reduction(experiment, record.record.interval());
+        return sensing_report(experiment, study_sensing(experiment, record, reduction, folder, progress),
+                              file.empty() ? "Simulated" : file[0].filename().string());
+      } catch (const std::invalid_argument& error) {
+        throw InputError(place, error.what());
+      }
+    }();
+    if (!file.empty()) tell_preparation(results, prepared, experiment.format);
+    return results;
+  });
+  return 0;
+}
+
+}  // namespace
+
+Command sense_command() {
+  return {"sense",
+          "[RECORD] --config FILE [--at POSITION...] [--out DIR]",
+          "displacement, strain, moment and force where no sensor was, under forces nobody measured",
+          {record_argument()},
+          {{"Options",
+            {config_option("experiment file with [[unknown_forces]] (docs/configuration.md)"),
+             text("at", "POSITION",
+                  "a place of interest [m], or its name: displacement, and of a beam "
+                  "bending moment; more by [[virtual_sensors]]")
+                 .several()}},
+           output_options()},
+          "  beamid sense record.csv --config mast.toml --at 0 --out sensed\n"
+          "  beamid sense --config mast.toml\n",
+          run_sense};
+}
+
+}  // namespace beamid::apps

@@ -1,0 +1,162 @@
+#include "experiments/identify/posterior/tempering.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+
+#include "filters/random.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double kept_share = 0.5;
+constexpr int most_stages = 200;
+
+struct Particle {
+  VectorXd u;
+  LikelihoodValue value;
+};
+
+/// N(mean, spread^2 G^-1) around a particle, G = b J^T J + 1.
+struct LocalProposal {
+  Eigen::LLT<MatrixXd> root;
+  VectorXd mean;
+  double spread;
+
+  LocalProposal(const Particle& from, double power, bool drift, double step) : spread(step) {
+    const Index q = from.u.size();
+    root.compute(power * from.value.information + MatrixXd::Identity(q, q));
+    mean = from.u;
+    if (drift)  // leaves a normal density alone: mean of an autoregression with the correlation sqrt(1 -
+                // step^2)
+      mean += (1.0 - std::sqrt(1.0 - step * step)) * root.solve(power * from.value.gradient - from.u);
+  }
+  VectorXd draw(const VectorXd& normal) const { return mean + spread * root.matrixU().solve(normal); }
+  double log_density(const VectorXd& u) const {
+    return -0.5 * (root.matrixU() * (u - mean)).squaredNorm() / (spread * spread) +
+           MatrixXd(root.matrixLLT()).diagonal().array().log().sum();
+  }
+};
+
+bool move_particle(const Likelihood& likelihood, Particle& particle, double power, double step,
+                   filters::RandomStream& random) {
+  const bool drift = random.uniform() < 0.5;
+  const LocalProposal there(particle, power, drift, step);
+  Particle proposed;
+  proposed.u = there.draw(random.normal(particle.u.size(), 1));
+  const double threshold = std::log(random.uniform());
+  proposed.value = likelihood.at(proposed.u, true);
+  if (!proposed.value.possible()) return false;
+  const LocalProposal back(proposed, power, drift, step);
+  const double gain = power * (proposed.value.log - particle.value.log) -
+                      0.5 * (proposed.u.squaredNorm() - particle.u.squaredNorm()) +
+                      back.log_density(particle.u) - there.log_density(proposed.u);
+  if (!(threshold < gain)) return false;
+  particle = std::move(proposed);
+  return true;
+}
+
+/// Weights L^step, and how many of them count.
+struct TemperingWeights {
+  VectorXd weight;
+  double log_mean = 0.0, effective = 0.0;
+
+  TemperingWeights(const std::vector<Particle>& particles, double step)
+      : weight(static_cast<Index>(particles.size())) {
+    double largest = -std::numeric_limits<double>::infinity();
+    for (const Particle& one : particles) largest = std::max(largest, one.value.log);
+    for (Index i = 0; i < weight.size(); ++i) {
+      const double log = particles[static_cast<std::size_t>(i)].value.log;
+      weight[i] = log == -std::numeric_limits<double>::infinity() ? 0.0 : std::exp(step * (log - largest));
+    }
+    log_mean = step * largest + std::log(weight.mean());
+    effective = std::pow(weight.sum(), 2) / weight.squaredNorm();
+  }
+};
+
+double next_step(const std::vector<Particle>& particles, double power) {
+  const double wanted = kept_share * static_cast<double>(particles.size());
+  if (TemperingWeights(particles, 1.0 - power).effective >= wanted) return 1.0 - power;
+  double low = 0.0, high = 1.0 - power;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (TemperingWeights(particles, middle).effective < wanted ? high : low) = middle;
+  }
+  return low > 0.0 ? low : high;  // impossible particles alone may be more than the half
+}
+
+std::vector<Particle> drawn_again(const std::vector<Particle>& particles, const VectorXd& weight,
+                                  double offset) {
+  std::vector<Particle> drawn;
+  const double part = weight.sum() / static_cast<double>(particles.size());
+  double place = offset * part, sum = 0.0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    sum += weight[static_cast<Index>(i)];
+    for (; place < sum && drawn.size() < particles.size(); place += part) drawn.push_back(particles[i]);
+  }
+  while (drawn.size() < particles.size()) drawn.push_back(particles.back());
+  return drawn;
+}
+
+}  // namespace
+
+TemperedDraws tempered_draws(const Likelihood& likelihood, std::size_t count, std::uint64_t seed,
+                             const Progress& progress) {
+  const Index q = likelihood.size();
+  std::vector<Particle> particles(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    particles[i].u = filters::RandomStream(seed, i).normal(q, 1);
+    particles[i].value = likelihood.at(particles[i].u, true);
+  });
+  TemperedDraws result;
+  result.evaluations = count;
+  if (std::none_of(particles.begin(), particles.end(),
+                   [](const Particle& one) { return one.value.possible(); }))
+    throw std::invalid_argument(
+        "no draw of the prior can have produced what was measured; expected another prior");
+  double power = 0.0, step = 0.9;
+  int moves = 4;
+  while (power < 1.0 && result.stages < most_stages) {
+    const double rise = next_step(particles, power);
+    const TemperingWeights weights(particles, rise);
+    result.log_evidence += weights.log_mean;
+    power = std::min(1.0, power + rise);
+    if (1.0 - power < 1e-12) power = 1.0;
+    ++result.stages;
+    progress(fmt::format("stage {}: {:.2g} of the likelihood", result.stages, power));
+    const std::uint64_t stream = static_cast<std::uint64_t>(result.stages) << 32;
+    particles = drawn_again(particles, weights.weight, filters::RandomStream(seed, stream + count).uniform());
+    std::atomic<std::size_t> accepted = 0;
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      filters::RandomStream random(seed, stream + i);
+      std::size_t taken = 0;
+      for (int move = 0; move < moves; ++move)
+        taken += move_particle(likelihood, particles[i], power, step, random);
+      accepted += taken;
+    });
+    result.evaluations += count * static_cast<std::size_t>(moves);
+    result.acceptance =
+        static_cast<double>(accepted) / static_cast<double>(count * static_cast<std::size_t>(moves));
+    if (result.acceptance < 0.3) step = std::max(0.05, 0.7 * step);
+    if (result.acceptance > 0.6) step = std::min(0.95, 1.2 * step);
+    moves = std::clamp(static_cast<int>(std::ceil(2.0 / std::max(0.05, result.acceptance))), 3, 12);
+  }
+  if (power < 1.0)
+    throw std::invalid_argument("the likelihood is so narrow that no stages of tempering reach it");
+  result.draws.resize(q, static_cast<Index>(count));
+  result.log_likelihood.resize(static_cast<Index>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    result.draws.col(static_cast<Index>(i)) = particles[i].u;
+    result.log_likelihood[static_cast<Index>(i)] = particles[i].value.log;
+  }
+  return result;
+}
+
+}  // namespace beamid::experiments

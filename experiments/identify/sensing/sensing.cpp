@@ -1,0 +1,242 @@
+#include "experiments/identify/sensing/sensing.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "experiments/config/read_reduction.hpp"
+#include "experiments/identify/compare/run_noise.hpp"
+#include "experiments/identify/sensing/sensing_draws.hpp"
+#include "experiments/text/countdown.hpp"
+#include "experiments/text/memory_need.hpp"
+#include "fem/modes.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double normal_95 = 1.959963984540054;
+
+double rms(const VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+// Root mean square over the samples where both are numbers.
+double rms_read(const VectorXd& values) {
+  double sum = 0.0, count = 0.0;
+  for (const double one : values)
+    if (std::isfinite(one)) sum += one * one, ++count;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+// Without the mean of what was read.
+VectorXd centred(VectorXd values) {
+  double sum = 0.0, count = 0.0;
+  for (const double one : values)
+    if (std::isfinite(one)) sum += one, ++count;
+  if (count > 0.0) values.array() -= sum / count;
+  return values;
+}
+
+/// The constants: theta, and its covariance.
+struct Found {
+  VectorXd theta;
+  MatrixXd covariance;
+};
+
+// An unknown force makes up for a wrong structure, so that the likelihood has maxima beside the largest:
+// searched from the guess and from a deviation to either side of every parameter of the structure.
+filters::InnovationFit likeliest(const SensingModel& model, const filters::InnovationProblem& problem) {
+  const filters::Gaussian& prior = problem.prior;
+  filters::InnovationFit best = filters::fit_innovations(problem, prior.mean);
+  for (std::size_t j = 0; j < model.constants().size(); ++j)
+    for (const double side : {-1.0, 1.0}) {
+      if (model.constants()[j].kind != SensingConstant::Kind::parameter) continue;
+      const auto place = static_cast<Index>(j);
+      VectorXd begin = prior.mean;
+      begin[place] += side * std::sqrt(prior.covariance(place, place));
+      try {
+        const filters::InnovationFit fit = filters::fit_innovations(problem, begin);
+        if (fit.cost < best.cost) best = fit;
+      } catch (const std::runtime_error&) {  // no such structure
+      } catch (const std::invalid_argument&) {
+      }
+    }
+  return best;
+}
+
+Found find_constants(const SensingModel& model, SensingStudy& study) {
+  const filters::Gaussian prior = model.prior();
+  Found found{prior.mean, prior.covariance};
+  if (prior.mean.size() == 0) return found;
+  const filters::InnovationProblem problem = model.problem(model.record());
+  try {
+    const filters::InnovationFit fit = likeliest(model, problem);
+    const Index q = prior.mean.size();
+    const MatrixXd one = MatrixXd::Identity(q, q);
+    found.theta = fit.constants;
+    found.covariance = (fit.information + prior.covariance.llt().solve(one)).ldlt().solve(one);
+    study.converged = fit.converged;
+    if (!fit.converged) study.failure = "the likelihood of the record has no maximum near the guess";
+  } catch (const std::runtime_error& error) {
+    study.converged = false;
+    study.failure = error.what();
+  }
+  for (std::size_t j = 0; j < model.constants().size(); ++j) {
+    const auto place = static_cast<Index>(j);
+    const double eta = found.theta[place], deviation = std::sqrt(found.covariance(place, place));
+    const auto [lower, upper] = std::minmax(
+        {model.value(j, eta - normal_95 * deviation), model.value(j, eta + normal_95 * deviation)});
+    study.constants.push_back({model.constants()[j].name, model.constants()[j].unit,
+                               model.constants()[j].kind, model.value(j, eta), lower, upper,
+                               deviation / std::sqrt(prior.covariance(place, place))});
+  }
+  return found;
+}
+
+filters::InnovationConsistency consistency_of(const filters::KalmanPass& pass, Index measured) {
+  filters::FilterRun run;
+  run.innovations = pass.innovations.topRows(measured);
+  run.whitened_innovations = MatrixXd::Constant(measured, pass.innovations.cols(), std::nan(""));
+  run.normalised_squares = VectorXd::Zero(pass.innovations.cols());
+  for (Index k = 0; k < pass.innovations.cols(); ++k) {
+    const filters::KalmanStep& step = pass.step(k);
+    if (step.seen.empty()) continue;
+    const Eigen::LLT<MatrixXd> factor(step.innovation_covariance);
+    const VectorXd white = factor.matrixL().solve(VectorXd(pass.innovations.col(k)(step.seen)));
+    run.whitened_innovations.col(k)(step.seen) = white;
+    run.normalised_squares[k] = white.squaredNorm();
+  }
+  return filters::innovation_consistency(run);
+}
+
+// At the constants that all sensors together say: what is checked is the structure, not their estimate. A
+// constant offset of the sensor is its own, and no error of the prediction.
+LeftOutSensor left_out(const SensingModel& model, const filters::LinearGaussian& form, const Channel& channel,
+                       double noise, Index i) {
+  filters::Measurements rest = model.record();
+  const VectorXd read = rest.outputs.row(i);
+  rest.outputs.row(i).setConstant(std::nan(""));
+  const filters::KalmanPass pass = filters::kalman_pass(form, rest, model.interval());
+  const filters::SmoothedRows found =
+      filters::smoothed_rows(form, rest, pass, model.row_without_offset(form, i), form.d.row(i));
+  const VectorXd error = read - found.means.row(0).transpose();
+  LeftOutSensor result{channel.name, si_unit(channel.quantity)};
+  result.root_mean_square = rms_read(model.has_offset(i) ? centred(read) : read);
+  result.error = rms_read(model.has_offset(i) ? centred(error) : error);
+  result.expected = std::sqrt(std::pow(rms(found.deviations.row(0)), 2) + noise * noise);
+  return result;
+}
+
+void add_histories(const Experiment& experiment, const SensingRecord& record,
+                   const filters::LinearGaussian& form, const filters::SmoothedRows& found,
+                   const MatrixXd& rows, SensingStudy& study) {
+  const VectorXd unread = stationary_deviations(form, rows);
+  const std::size_t sensors = experiment.virtual_sensors.size();
+  for (std::size_t j = 0; j < sensors + experiment.unknown_forces.size(); ++j) {
+    const auto row = static_cast<Index>(j);
+    SensedHistory history;
+    history.force = j >= sensors;
+    const VectorXd& truth = history.force ? record.forces[j - sensors] : record.sensors[j];
+    if (history.force) {
+      const UnknownForce& force = experiment.unknown_forces[j - sensors];
+      history.name = force.name, history.unit = si_unit(force.quantity);
+    } else {
+      const VirtualSensor& sensor = experiment.virtual_sensors[j];
+      history.name = sensor.name;
+      history.unit = sensor.bending_moment ? "N m" : si_unit(sensor.quantity);
+    }
+    history.mean = found.means.row(row);
+    history.deviation = found.deviations.row(row);
+    history.unread_deviation = unread[row];
+    if (truth.size() > 0) history.truth = truth;
+    study.histories.push_back(std::move(history));
+  }
+}
+
+}  // namespace
+
+double SensedHistory::root_mean_square() const {
+  return rms(mean);
+}
+double SensedHistory::reported_error() const {
+  return rms(deviation);
+}
+double SensedHistory::error() const {
+  return rms_read(mean - *truth);
+}
+
+bool SensingStudy::contradicted() const {
+  return innovations.mean_normalised_square > largest_square ||
+         std::any_of(left_out.begin(), left_out.end(), [](const auto& one) { return one.contradicts(); }) ||
+         std::any_of(noise.begin(), noise.end(), [](const auto& one) { return one.explains_too_much(); });
+}
+
+Choice sensing_reduction(const Experiment& experiment, double interval) {
+  constexpr Index most = 12;
+  if (experiment.reduction_is_stated) return experiment.reduction;
+  const fem::StructuralSystem system = fem::assemble(experiment.structure, experiment.elements);
+  Choice choice{"none", {}};
+  if (experiment.structure.is_chain() && system.size() <= most) return choice;
+  const fem::Modes modes = fem::modes(system, std::min(most, system.size()));
+  const double highest = 0.8 * std::numbers::pi / interval;
+  const Index kept = std::max<Index>(1, (modes.angular_frequency.array() < highest).count());
+  choice.name = "modal_truncation";
+  choice.options = reduction::reduction_registry().completed(
+      choice.name, {{"modes", static_cast<double>(kept)}, {"static_correction", true}});
+  return choice;
+}
+
+SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
+                           const std::filesystem::path& folder, const Progress& progress) {
+  for (const VirtualSensor& sensor : experiment.virtual_sensors)
+    for (const ParameterChoice& parameter : experiment.parameters)
+      if (sensor.bending_moment && parameter.quantity == "bending_stiffness")
+        throw std::invalid_argument(
+            "the bending moment is E I w'' with E I as described, which [[parameters]] asks for; expected "
+            "quantity = \"strain\", or no bending_stiffness among the unknowns");
+  const SensingModel model(experiment, record, reduction, folder);
+  SensingStudy study;
+  study.coordinates = model.coordinates();
+  study.reduction = to_text(reduction);
+  study.time = record.record.time;
+  require_memory(static_cast<double>(record.record.size()), "samples",
+                 8.0 * static_cast<double>(4 * record.record.channels.size() + 8 * study.coordinates));
+  Countdown countdown(progress, static_cast<std::size_t>(model.measured()) + 2, "passes");
+  countdown.begin("likelihood");
+  const Found found = find_constants(model, study);
+  study.forces = model.forces_at(found.theta);
+  study.unseen_constants = model.unseen_constant_forces(found.theta);
+
+  countdown.begin("smoother");
+  const filters::LinearGaussian form = model.at(found.theta);
+  const filters::KalmanPass pass = filters::kalman_pass(form, model.record(), model.interval());
+  study.innovations = consistency_of(pass, model.measured());
+  const Index virtuals = model.outputs() - model.measured(), forces = static_cast<Index>(model.forces());
+  MatrixXd rows(virtuals + forces, form.a.rows()), feed = MatrixXd::Zero(virtuals + forces, form.d.cols());
+  rows << form.h.bottomRows(virtuals), model.force_rows();
+  feed.topRows(virtuals) = form.d.bottomRows(virtuals);
+  add_histories(experiment, record, form, filters::smoothed_rows(form, model.record(), pass, rows, feed),
+                rows, study);
+  if (experiment.fatigue) add_damages(experiment, model, form, rows.topRows(virtuals), feed, study);
+
+  const VectorXd noise = model.noise_at(found.theta);
+  for (Index i = 0; i < model.measured(); ++i) {
+    const Channel& channel = record.record.channels[static_cast<std::size_t>(i)];
+    VectorXd read = record.record.samples.row(i);
+    if (model.has_offset(i)) read = centred(read);
+    study.noise.push_back({channel.name, si_unit(channel.quantity), noise[i], rms_read(read),
+                           stated_noise(experiment, channel) > 0.0});
+  }
+  for (Index i = 0; i < model.measured() && model.measured() > 1; ++i) {
+    const Channel& channel = record.record.channels[static_cast<std::size_t>(i)];
+    countdown.begin(channel.name);
+    study.left_out.push_back(left_out(model, form, channel, noise[i], i));
+  }
+  return study;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,92 @@
+// Forces that nobody measured, and motion where no sensor was.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/identify/sensing/fatigue_damage.hpp"
+#include "experiments/identify/sensing/sensing_model.hpp"
+#include "filters/innovation_consistency.hpp"
+
+namespace beamid::experiments {
+
+/// A constant that the record was asked for.
+struct SensedConstant {
+  std::string name, unit;
+  SensingConstant::Kind kind;
+  double value = 0.0, lower_95 = 0.0, upper_95 = 0.0;  ///< [unit]
+  double learnt = 0.0;  ///< deviation afterwards over beforehand: near 1, the record says nothing of it
+};
+
+/// A history that no sensor read, with the deviation of its error.
+struct SensedHistory {
+  std::string name, unit;
+  bool force = false;
+  Eigen::VectorXd mean, deviation;       ///< (N)
+  double unread_deviation = 0.0;         ///< that it would have without any sensor
+  std::optional<Eigen::VectorXd> truth;  ///< (N)
+
+  double root_mean_square() const;
+  double reported_error() const;  ///< root mean square of the deviation
+  double error() const;           ///< of mean - truth, which must be there
+  /// Whether the sensors say less of it than what was assumed of the forces.
+  bool undetermined() const { return reported_error() > 0.5 * unread_deviation; }
+};
+
+/// A sensor as the others predict it.
+struct LeftOutSensor {
+  std::string name, unit;
+  double root_mean_square = 0.0;  ///< of what it read
+  double error = 0.0;             ///< of the prediction
+  double expected = 0.0;          ///< error by the prediction's deviation and the sensor's noise
+  bool contradicts() const { return error > 2.0 * expected; }
+  /// Whether the others say nothing of it, so that nothing is checked.
+  bool free() const { return expected > 0.9 * root_mean_square; }
+};
+
+/// What of a sensor's reading is left to noise.
+struct SensorNoise {
+  std::string name, unit;
+  double deviation = 0.0, root_mean_square = 0.0;
+  bool stated = false;  ///< in the file; else found by the likelihood
+  /// Whether noise that nobody stated explains what the structure should: it is not as described.
+  bool explains_too_much() const { return !stated && deviation > 0.3 * root_mean_square; }
+};
+
+struct SensingStudy {
+  Eigen::Index coordinates = 0;
+  std::string reduction;
+  std::vector<SensedConstant> constants;
+  bool converged = true;
+  std::string failure;  ///< why the likelihood has no maximum
+  std::vector<filters::LatentInput> forces;
+  Eigen::VectorXd time;
+  std::vector<SensedHistory> histories;  ///< virtual sensors, then forces
+  std::vector<LeftOutSensor> left_out;   ///< none of a single sensor
+  std::vector<SensorNoise> noise;        ///< of every sensor that was read
+  filters::InnovationConsistency innovations;
+  int unseen_constants = 0;  ///< SensingModel::unseen_constant_forces
+  struct SensorDamage {
+    std::string name;
+    FatigueDamage damage;
+    double lower_95 = 0.0, upper_95 = 0.0;  ///< of the damage of histories drawn with the error
+  };
+  std::vector<SensorDamage> damages;
+
+  /// Of the innovations over what they should be; 1 of a right model.
+  static constexpr double largest_square = 1.5;
+  bool contradicted() const;
+};
+
+/// Constants by the likelihood of the innovations, then all histories by the smoother at them; every sensor
+/// that was read left out in turn.
+/// @throws std::invalid_argument, std::runtime_error as the parts do.
+SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
+                           const std::filesystem::path& folder, const Progress& progress);
+
+/// What the file says; else none of a chain of up to 12 floors, and of other structures the modes below 0.8
+/// of the Nyquist frequency, 12 at most, with the static deflection under every force.
+Choice sensing_reduction(const Experiment& experiment, double interval);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,83 @@
+// A structure under forces that nobody measured, as a family of linear models.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/identify/sensing/sensing_record.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "filters/innovation_likelihood.hpp"
+#include "filters/latent_inputs.hpp"
+
+namespace beamid::experiments {
+
+/// One entry of theta: a parameter of the structure, or ln of a number of the forces or of the sensors.
+struct SensingConstant {
+  enum class Kind { parameter, force_deviation, correlation_time, sensor_noise };
+  Kind kind = Kind::parameter;
+  std::string name, unit;
+  std::size_t index = 0;                    ///< of the unknown, the force, the quantity
+  std::vector<Eigen::Index> channels = {};  ///< that share the noise
+};
+
+class SensingModel {
+ public:
+  /// @throws std::invalid_argument where the structure cannot be identified as described.
+  SensingModel(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
+               const std::filesystem::path& folder);
+
+  const std::vector<SensingConstant>& constants() const { return constants_; }  ///< theta (q)
+  const filters::Measurements& record() const { return record_; }
+  double interval() const { return record_.interval(); }
+  Eigen::Index measured() const { return measured_; }  ///< outputs that were read, the first ones
+  Eigen::Index outputs() const { return record_.outputs.rows(); }
+  std::size_t forces() const { return forces_.size(); }
+  Eigen::Index coordinates() const { return model_.motion_size(); }
+
+  /// The model at theta; its outputs: measured, then virtual ones.
+  filters::LinearGaussian at(const Eigen::VectorXd& theta) const;
+  /// What output i reads of its state, but for the sensor's own offset (1 x n).
+  Eigen::MatrixXd row_without_offset(const filters::LinearGaussian& model, Eigen::Index i) const;
+  bool has_offset(Eigen::Index i) const;
+  /// Rows that read the unknown forces of its state (f x n).
+  Eigen::MatrixXd force_rows() const;
+  /// theta of [[parameters]] as known beforehand, of the rest within a factor of about 20 of the guess.
+  filters::Gaussian prior() const { return prior_; }
+  filters::InnovationProblem problem(const filters::Measurements& record) const;
+
+  /// What theta stands for, in physical units, and by how much it changes with theta.
+  double value(std::size_t constant, double theta) const;
+  double slope(std::size_t constant, double theta) const;
+  /// Standard deviations that forces and noise are taken to have at theta.
+  std::vector<filters::LatentInput> forces_at(const Eigen::VectorXd& theta) const;
+  Eigen::VectorXd noise_at(const Eigen::VectorXd& theta) const;  ///< (p)
+
+  /// Combinations of constant forces that no sensor which was read can tell from rest.
+  int unseen_constant_forces(const Eigen::VectorXd& theta) const;
+
+ private:
+  void add_constants(const Experiment& experiment);
+  void make_start();
+  void guess_forces();
+  Eigen::VectorXd parameters_at(const Eigen::VectorXd& theta) const;
+
+  JointModel model_;
+  std::shared_ptr<const filters::LinearMotion> motion_;
+  std::vector<Observation> observations_;
+  filters::Measurements record_;
+  Eigen::Index measured_ = 0;
+  std::vector<filters::LatentInput> forces_;  // as stated; deviations and times guessed where not
+  Eigen::VectorXd noise_;                     // likewise (p)
+  std::vector<SensingConstant> constants_;
+  filters::Gaussian start_;                                     // of the motion's own state
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> offsets_;  // output, and place of its offset in x
+  filters::Gaussian prior_;
+};
+
+/// Standard deviations that the outputs of a model have for ever under its noise (p).
+Eigen::VectorXd stationary_deviations(const filters::LinearGaussian& model, const Eigen::MatrixXd& rows);
+
+}  // namespace beamid::experiments

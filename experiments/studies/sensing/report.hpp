@@ -1,0 +1,14 @@
+// Virtual sensing, as a user sees it.
+#pragma once
+
+#include "experiments/identify/sensing/sensing.hpp"
+#include "experiments/results/results.hpp"
+
+namespace beamid::experiments {
+
+/// First whether the result may be trusted: sensors that the others contradict, what no sensor determines;
+/// then histories with their errors, the sensors left out, constants, damage. Writes sensed.csv.
+/// @param record its name
+Results sensing_report(const Experiment& experiment, const SensingStudy& study, const std::string& record);
+
+}  // namespace beamid::experiments

@@ -1,0 +1,61 @@
+// beamid posterior, end to end: what a user gets.
+#include <gmock/gmock.h>
+
+#include "tests/apps/run_command.hpp"
+
+namespace beamid::apps::posterior_test {
+namespace {
+
+using nlohmann::json, testing::HasSubstr;
+
+class PosteriorCommand : public testing::Test {
+ protected:
+  PosteriorCommand() {
+    const fs::path tutorial = source("docs/tutorials/22_posterior");
+    for (const char* file : {"frame.toml", "bounded.toml", "modes.toml"})
+      fs::copy(tutorial / file, place_.folder() / file);
+  }
+  Workplace place_;
+};
+
+// Oracle: the published posterior of the building (SCIENCE.md, section 9).
+TEST_F(PosteriorCommand, GivesThePublishedBuildingUnderItsAuthorsPrior) {
+  const json found = json_of(place_.run("posterior modes.toml --config bounded.toml --model-error 0 --json"));
+  EXPECT_EQ(found["converged"], true);
+  EXPECT_NEAR(found["humps"][0]["parameters"][0]["mean"].get<double>(), 52508, 300);
+  EXPECT_NEAR(found["humps"][0]["parameters"][2]["standard_deviation"].get<double>(), 2501, 200);
+  EXPECT_EQ(found["parameters"][0]["prior_assumed"], false);
+}
+
+TEST_F(PosteriorCommand, SaysInItsFirstLineThatThereAreTwoHumps) {
+  const Outcome outcome = place_.run("posterior modes.toml --config frame.toml --model-error 0 --out drawn");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Converged: 4000 draws"));
+  EXPECT_THAT(outcome.out, HasSubstr("2 separate humps"));
+  EXPECT_THAT(outcome.out, HasSubstr("assumed"));
+  for (const char* file :
+       {"results.json", "report.html", "posterior.csv", "humps.csv", "modes.csv", "corner.png"})
+    EXPECT_TRUE(fs::exists(place_.folder() / "drawn" / file)) << file;
+  EXPECT_EQ(contents(place_.folder() / "drawn" / "draws.h5").substr(1, 3), "HDF");
+}
+
+TEST_F(PosteriorCommand, RepeatsItselfToTheBit) {
+  for (const char* out : {"one", "two"})
+    ASSERT_EQ(place_
+                  .run(std::string(
+                           "posterior modes.toml --config bounded.toml --draws 200 --particles 200 --out ") +
+                       out)
+                  .code,
+              0);
+  EXPECT_EQ(contents(place_.folder() / "one" / "draws.h5"), contents(place_.folder() / "two" / "draws.h5"));
+}
+
+TEST_F(PosteriorCommand, RefusesAFrequencyWithoutAnyStandardDeviation) {
+  place_.write("bare.toml", "[[modes]]\nfrequency_hz = 7.2\n");
+  const Outcome outcome = place_.run("posterior bare.toml --config frame.toml --model-error 0");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--model-error is 0"));
+}
+
+}  // namespace
+}  // namespace beamid::apps::posterior_test
