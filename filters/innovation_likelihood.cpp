@@ -22,7 +22,7 @@ class Likelihood {
     return 0.5 * (theta - first()).dot(prior_ * (theta - first()));
   }
   KalmanPass at(const VectorXd& theta) const {
-    return kalman_pass(problem_.model(theta), problem_.record, problem_.interval);
+    return kalman_pass(problem_.model(theta), problem_.record, problem_.interval, KeptSteps::innovations);
   }
 
  private:

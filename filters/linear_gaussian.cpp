@@ -92,7 +92,8 @@ LinearGaussian linear_gaussian(DiscreteModel& model, const std::vector<Index>& h
   return form;
 }
 
-KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, double interval) {
+KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, double interval,
+                       KeptSteps kept) {
   require_even_stamps(record, interval);
   const Index p = record.outputs.rows(), n = model.a.rows(), samples = record.size();
   KalmanPass pass{MatrixXd(n, samples), MatrixXd::Constant(p, samples, std::nan("")), {}, {}, 0.0};
@@ -104,8 +105,12 @@ KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, 
   for (Index k = 0; k < samples; ++k) {
     std::vector<Index> seen = outputs_read(record, k);
     if (!steady || seen != pass.steps.back().seen) {
-      if (steady) covariance = next_covariance(model, pass.steps.back());
+      if (steady) covariance = next_covariance(model, pass.steps.back());  // a gap ends the steady state
       steady = false;
+      if (kept == KeptSteps::innovations && !pass.steps.empty()) {  // of the step before
+        pass.steps.back().covariance.resize(0, 0);
+        pass.steps.back().gain.resize(0, 0);
+      }
       pass.steps.push_back(step_at(model, covariance, std::move(seen)));
       const KalmanStep& step = pass.steps.back();
       h = model.h(step.seen, Eigen::all);

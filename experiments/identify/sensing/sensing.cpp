@@ -1,5 +1,7 @@
 #include "experiments/identify/sensing/sensing.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -66,6 +68,14 @@ filters::InnovationFit likeliest(const SensingModel& model, const filters::Innov
       }
     }
   return best;
+}
+
+// Of the smoother's pass: covariance and gain of every sample, where a constant in the state never settles.
+void require_memory_of(const SensingModel& model) {
+  const auto n = static_cast<double>(model.at(model.prior().mean).a.rows()),
+             p = static_cast<double>(model.outputs());
+  require_memory(static_cast<double>(model.record().size()), fmt::format("samples of {} states", n),
+                 sizeof(double) * (n * n + n * p + p * p + 8.0 * (n + p)));
 }
 
 Found find_constants(const SensingModel& model, SensingStudy& study) {
@@ -203,8 +213,7 @@ SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& re
   study.coordinates = model.coordinates();
   study.reduction = to_text(reduction);
   study.time = record.record.time;
-  require_memory(static_cast<double>(record.record.size()), "samples",
-                 8.0 * static_cast<double>(4 * record.record.channels.size() + 8 * study.coordinates));
+  require_memory_of(model);
   Countdown countdown(progress, static_cast<std::size_t>(model.measured()) + 2, "passes");
   countdown.begin("likelihood");
   const Found found = find_constants(model, study);
