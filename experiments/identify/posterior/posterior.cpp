@@ -109,7 +109,7 @@ std::vector<std::string> Posterior::complaints() const {
   if (divergences() * 200 > draws())
     list.push_back(fmt::format("{} of {} trajectories diverged", divergences(), draws()));
   if (importance.poor())
-    list.push_back(
+    list.emplace_back(
         "the humps are no humps a mixture would resemble: evidence and weights are those of the samplers");
   else if (std::abs(importance.log_evidence - tempered.log_evidence) > 1.0)
     list.push_back(fmt::format("the evidence by importance sampling and by tempering differ by {:.1f} nat",
@@ -117,7 +117,7 @@ std::vector<std::string> Posterior::complaints() const {
   for (std::size_t h = 0; h < share.size(); ++h)
     if (const double spread = std::sqrt(std::max(share[h] * (1.0 - share[h]), 1e-6) / fewest_effective());
         std::abs(share[h] - chain_share[h]) > 5.0 * spread + 0.01) {
-      list.push_back("the chains' shares of the humps differ from their weights");
+      list.emplace_back("the chains' shares of the humps differ from their weights");
       break;
     }
   return list;
