@@ -9,6 +9,7 @@
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/studies/modal/amplitude_report.hpp"
+#include "experiments/studies/modal/event_report.hpp"
 #include "experiments/studies/modal/hammer_report.hpp"
 #include "experiments/studies/modal/mass_report.hpp"
 #include "experiments/studies/modal/report.hpp"
@@ -33,6 +34,10 @@ OptionGroup modal_options() {
        whole("order", "N", 4, 80, "largest model order").by_default("30"),
        whole("modes", "N", 1, 1000, "the N strongest modes only"),
        flag("amplitude", "frequency and damping ratio of every mode against its amplitude along the decay"),
+       flag("events",
+            "of earthquakes: f1 and damping of every record's response to its base, over its peak "
+            "acceleration; needs "
+            "base_acceleration (the borehole) and acceleration (the surface)"),
        flag("polish",
             "refine a free decay's modes by least squares, all together (without the option for era only)"),
        flag("no-polish", "take them as the method finds them")}};
@@ -110,6 +115,9 @@ int run_modal(const Values& values) {
       modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response);
   if (hammer && values.has("amplitude"))
     throw UsageError("--amplitude follows a free decay; take --method era for it");
+  if (values.has("events"))
+    for (const char* const other : {"amplitude", "modes", "polish", "no-polish"})
+      if (values.has(other)) throw UsageError(std::string("--events takes no --") + other);
   deliver(values, [&] {
     std::vector<PreparedRecord> prepared;
     std::vector<Record> records;
@@ -119,11 +127,12 @@ int run_modal(const Values& values) {
       records.push_back(made_analysable(prepared.back().record));
       names.push_back(request.file.filename().string());
     }
-    check_same_channels(records, requests);
+    if (!values.has("events")) check_same_channels(records, requests);
     Results results;
     try {
-      results = hammer ? hammer_results(names, records, settings)
-                       : decay_results(requests, names, records, settings, values.has("amplitude"));
+      results = values.has("events") ? event_report(names, records, settings.band_hz)
+                : hammer             ? hammer_results(names, records, settings)
+                         : decay_results(requests, names, records, settings, values.has("amplitude"));
     } catch (const std::invalid_argument& error) {
       throw InputError({requests[0].file.string()}, error.what());
     }
@@ -148,6 +157,7 @@ Command modal_command() {
           "  beamid modal wind.csv --method ssi_cov --order 40 --out results\n"
           "  beamid modal tip_acceleration.csv --amplitude --out results\n"
           "  beamid modal --config cantilever.toml --method half_power --out results\n"
+          "  beamid modal event1.NS1 event2.NS1 event3.NS1 --events --out column\n"
           "  beamid modal hits.csv more_hits.csv --method frf_lscf --band 5 200 --out results\n",
           run_modal};
 }

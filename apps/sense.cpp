@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_sensing.hpp"
@@ -10,6 +11,8 @@
 #include "experiments/models/structure_points.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/sensing/report.hpp"
+#include "experiments/text/choice_text.hpp"
+#include "filters/filter.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -47,6 +50,12 @@ int run_sense(const Values& values) {
   if (config.empty()) throw UsageError("--config FILE is missing");
   Experiment experiment = read_experiment(config);
   for (const std::string& place : values.texts("at")) add_place(place, experiment);
+  if (experiment.unknown_forces.empty())
+    throw InputError({config.string()},
+                     "no [[unknown_forces]]; expected where the forces act that were not measured");
+  std::optional<Choice> filter;
+  if (!values.text("filter").empty())
+    filter = parse_choice(values.text("filter"), "--filter", filters::filter_registry());
   const std::vector<fs::path> file = record_files(values, config, experiment.record_file);
   deliver(values, [&] {
     const Progress progress = show_progress(values);
@@ -63,7 +72,8 @@ int run_sense(const Values& values) {
     Results results = [&] {
       try {
         const Choice reduction = sensing_reduction(experiment, record.record.interval());
-        return sensing_report(experiment, study_sensing(experiment, record, reduction, folder, progress),
+        return sensing_report(experiment,
+                              study_sensing(experiment, record, reduction, folder, progress, filter),
                               file.empty() ? "Simulated" : file[0].filename().string());
       } catch (const std::invalid_argument& error) {
         throw InputError(place, error.what());
@@ -79,7 +89,7 @@ int run_sense(const Values& values) {
 
 Command sense_command() {
   return {"sense",
-          "[RECORD] --config FILE [--at POSITION...] [--out DIR]",
+          "[RECORD] --config FILE [--at POSITION...] [--filter NAME] [--out DIR]",
           "displacement, strain, moment and force where no sensor was, under forces nobody measured",
           {record_argument()},
           {{"Options",
@@ -87,10 +97,13 @@ Command sense_command() {
              text("at", "POSITION",
                   "a place of interest [m], or its name: displacement, and of a beam "
                   "bending moment; more by [[virtual_sensors]]")
-                 .several()}},
+                 .several(),
+             filter_option("histories sample after sample by this filter, in place of the smoother: "
+                           "gillijns_de_moor and dual_kf take nothing for known of the forces")}},
            output_options()},
           "  beamid sense record.csv --config mast.toml --at 0 --out sensed\n"
-          "  beamid sense --config mast.toml\n",
+          "  beamid sense --config mast.toml\n"
+          "  beamid sense --config mast.toml --filter gillijns_de_moor\n",
           run_sense};
 }
 

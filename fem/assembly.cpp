@@ -255,29 +255,6 @@ StructuralSystem assemble(const Beam& beam, int elements, const std::vector<Poin
   return assemble_refined(beam, elements, 1, points);
 }
 
-Mesh refined(const Mesh& mesh, int parts) {
-  if (parts < 1)
-    throw std::invalid_argument("parts of an element are " + std::to_string(parts) + "; expected at least 1");
-  Mesh fine;
-  fine.nodes.push_back(mesh.nodes.front());
-  for (const Mesh::Element& whole : mesh.elements) {
-    const Mesh::Node &a = mesh.nodes[static_cast<std::size_t>(whole.first)],
-                     &b = mesh.nodes[static_cast<std::size_t>(whole.second)];
-    for (int i = 1; i <= parts; ++i) {
-      const double begin = static_cast<double>(i - 1) / parts, end = static_cast<double>(i) / parts;
-      Mesh::Element part = whole;
-      part.first = static_cast<int>(fine.nodes.size()) - 1;
-      part.second = part.first + 1;
-      part.length = whole.length / parts;
-      part.from = whole.from + begin * (whole.to - whole.from);
-      part.to = i == parts ? whole.to : whole.from + end * (whole.to - whole.from);
-      fine.elements.push_back(part);
-      fine.nodes.push_back(i == parts ? b : Mesh::Node{a.x + end * (b.x - a.x), a.y + end * (b.y - a.y)});
-    }
-  }
-  return fine;
-}
-
 StructuralSystem assemble_refined(const Beam& beam, int elements, int parts,
                                   const std::vector<Point>& points) {
   std::vector<double> places;
@@ -306,29 +283,6 @@ Point natural_point(const Beam& beam) {
   for (std::size_t i = 1; i < held.size(); ++i)
     if (held[i] - held[i - 1] > (held[longest] - held[longest - 1]) * (1 + 1e-9)) longest = i;
   return {"midspan", 0.5 * (held[longest - 1] + held[longest])};
-}
-
-Eigen::VectorXd nodal(const StructuralSystem& system, const Eigen::VectorXd& q, Coordinate::Kind kind) {
-  if (q.size() != system.size())
-    throw std::invalid_argument("motion has " + std::to_string(q.size()) + " entries; expected " +
-                                std::to_string(system.size()));
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(system.nodes());
-  for (Eigen::Index i = 0; i < system.size(); ++i)
-    if (system.coordinates[i].kind == kind)
-      values[system.coordinates[i].node] = q[i] / system.coordinates[i].scale;
-  return values;
-}
-
-Eigen::VectorXd nodal_deflection(const StructuralSystem& system, const Eigen::VectorXd& q) {
-  return nodal(system, q, Kind::deflection);
-}
-
-Eigen::VectorXd nodal_rotation(const StructuralSystem& system, const Eigen::VectorXd& q) {
-  return nodal(system, q, Kind::rotation);
-}
-
-Eigen::VectorXd nodal_axial(const StructuralSystem& system, const Eigen::VectorXd& q) {
-  return nodal(system, q, Kind::axial);
 }
 
 }  // namespace beamid::fem

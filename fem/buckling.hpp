@@ -1,9 +1,10 @@
-// The axial load that a beam bears.
+// The axial loads that a beam or a frame bears.
 #pragma once
 
 #include <optional>
 
 #include "fem/beam.hpp"
+#include "fem/frame.hpp"
 
 namespace beamid::fem {
 
@@ -12,5 +13,9 @@ namespace beamid::fem {
 /// a mesh of `elements`. Nothing where the beam can move without strain.
 /// @throws std::invalid_argument when the beam is impossible
 std::optional<double> buckling_load(const Beam& beam, int elements = 40);
+
+/// By how much all axial loads of a frame's members may grow together before it has lost its stiffness,
+/// likewise. Nothing where it can move without strain, or no growth does that, as under tension alone.
+std::optional<double> buckling_factor(const Frame& frame, int elements_per_member = 4);
 
 }  // namespace beamid::fem

@@ -18,6 +18,7 @@ void check_member(const Frame& frame, std::size_t i) {
     throw std::invalid_argument(name + " has no axial stiffness; expected E A [N], which a frame needs");
   if (!(member.stiffness_factor > 0.0 && std::isfinite(member.stiffness_factor)))
     refuse_in_frame("stiffness factor of " + name, member.stiffness_factor, "a positive number");
+  check_in_frame("axial load of " + name, member.axial_load, false, "N");
   Beam beam;
   beam.segments = {{frame.length(i), member.section}};
   try {
@@ -58,6 +59,12 @@ void validate(const Frame& frame) {
     check_in_frame("spring stiffness along x", spring.x, true, "N/m");
     check_in_frame("spring stiffness along y", spring.y, true, "N/m");
     check_in_frame("rotational spring stiffness", spring.rotational, true, "N m/rad");
+  }
+  for (const Frame::Dashpot& dashpot : frame.dashpots) {
+    check_joint_in_frame("a dashpot", dashpot.joint, count);
+    check_in_frame("damping along x", dashpot.x, true, "N s/m");
+    check_in_frame("damping along y", dashpot.y, true, "N s/m");
+    check_in_frame("rotational damping", dashpot.rotational, true, "N m s/rad");
   }
 }
 

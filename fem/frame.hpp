@@ -23,6 +23,7 @@ struct Frame {
     bool hinged_at_first = false, hinged_at_second = false;
     double stiffness_factor = 1.0;  ///< of E I, E A and kappa G A: damage, or what a group is found to have
     std::string group = {};         ///< whose members share an unknown factor; empty: none
+    double axial_load = 0.0;        ///< P [N], positive in compression, along the member as it stands at rest
   };
   /// What is held at zero: clamped as it stands, pinned without the rotation, rolling without x or y too.
   struct Support {
@@ -40,11 +41,18 @@ struct Frame {
     double x = 0.0, y = 0.0;  ///< [N/m]
     double rotational = 0.0;  ///< [N m/rad]
   };
+  /// Likewise, of the velocities.
+  struct Dashpot {
+    int joint = 0;
+    double x = 0.0, y = 0.0;  ///< [N s/m]
+    double rotational = 0.0;  ///< [N m s/rad]
+  };
   std::vector<Joint> joints;
   std::vector<Member> members;
   std::vector<Support> supports;
   std::vector<Body> bodies;
   std::vector<Spring> springs;
+  std::vector<Dashpot> dashpots = {};
   MassModel mass_model = MassModel::consistent;
   char base_axis = 'x';  ///< along which the base moves, 'x' or 'y'
 

@@ -66,9 +66,15 @@ class FrameAssembly {
       add_mass(node.turn.coordinate, node.turn.coordinate,
                body.rotary_inertia / (node.turn.scale * node.turn.scale), 2);
     }
+    for (const Frame::Dashpot& dashpot : frame_.dashpots) {
+      const NodeCoordinates& node = nodes_[dashpot.joint];
+      add_damping(node.u, dashpot.x);
+      add_damping(node.v, dashpot.y);
+      add_damping(node.turn.coordinate, dashpot.rotational / (node.turn.scale * node.turn.scale));
+    }
     add_points(points, n);
     system_.mass = sparse(n, n, mass_);
-    system_.damping = SparseMatrix(n, n);
+    system_.damping = sparse(n, n, damping_);
     system_.stiffness = {sparse(strains_, n, strain_), sparse(strains_, strains_, rigid_),
                          sparse(strains_, strains_, flexible_)};
     return std::move(system_);
@@ -81,7 +87,7 @@ class FrameAssembly {
   std::vector<NodeCoordinates> nodes_;
   std::vector<Frame::Support> held_;
   std::vector<int> rigid_joints_;  // those whose rotation some member shares
-  Triplets mass_, strain_, rigid_, flexible_, base_;
+  Triplets mass_, damping_, strain_, rigid_, flexible_, base_;
   int strains_ = 0;
 
   int add_coordinate(Kind kind, int node, double scale) {
@@ -136,8 +142,9 @@ class FrameAssembly {
       element.second =
           e + 1 == elements_ ? step.to : add_node(begin, end, static_cast<double>(e + 1) / elements_);
       if (e == 0 || !member.section.is_uniform())
-        matrices = frame_element_matrices(stiffened(member), element, direction, frame_.mass_model);
-      const int inside = matrices.strain.rows() > 3 ? add_coordinate(Kind::generalised, node, 1.0) : -1;
+        matrices = frame_element_matrices(stiffened(member), element, direction, member.axial_load,
+                                          frame_.mass_model);
+      const int inside = matrices.strain.cols() > 6 ? add_coordinate(Kind::generalised, node, 1.0) : -1;
       if (inside >= 0) add_coordinate(Kind::generalised, node, 1.0);
       const bool reaches = !nodes_[element.second].known;
       if (reaches) know(element.second, element.length, e + 1 == elements_ ? held_[step.to] : free());
@@ -192,6 +199,10 @@ class FrameAssembly {
     if (row < 0 || value == 0.0) return;
     if (column >= 0) mass_.emplace_back(row, column, value);
     if (direction < 2) base_.emplace_back(row, direction, -value);
+  }
+
+  void add_damping(int coordinate, double value) {
+    if (coordinate >= 0 && value != 0.0) damping_.emplace_back(coordinate, coordinate, value);
   }
 
   void add_springs(int joint) {

@@ -26,11 +26,36 @@ std::vector<Eigen::Vector3d> places_of(const SpaceFrame& frame) {
   return places;
 }
 
+/// f of the structure's kind: the one place that asks which it is.
+template <class Function>
+auto with_kind(const Structure& structure, const Function& f) {
+  if (const Frame* const frame = structure.frame()) return f(*frame);
+  if (const SpaceFrame* const frame = structure.space_frame()) return f(*frame);
+  if (const MatrixSystem* const matrices = structure.matrices()) return f(*matrices);
+  return f(structure.beam());
+}
+
+/// One function for each kind; the last of them generic, for both frames.
+template <class... Functions>
+struct OfKind : Functions... {
+  using Functions::operator()...;
+};
+template <class... Functions>
+OfKind(Functions...) -> OfKind<Functions...>;
+
 template <class AnyFrame>
-void add_groups(const AnyFrame& frame, std::vector<std::string>& names) {
+std::vector<std::string> member_groups(const AnyFrame& frame) {
+  std::vector<std::string> names;
   for (const auto& member : frame.members)
     if (!member.group.empty() && std::find(names.begin(), names.end(), member.group) == names.end())
       names.push_back(member.group);
+  return names;
+}
+
+std::vector<std::string> parameter_names(const MatrixSystem& matrices) {
+  std::vector<std::string> names;
+  for (const MatrixSystem::Parameter& parameter : matrices.parameters) names.push_back(parameter.name);
+  return names;
 }
 
 }  // namespace
@@ -51,25 +76,21 @@ const char* Structure::kind() const {
 }
 
 double Structure::extent() const {
-  if (frame()) return diagonal(places_of(*frame()));
-  if (space_frame()) return diagonal(places_of(*space_frame()));
-  return matrices() ? 1.0 : beam().length();
+  return with_kind(
+      *this, OfKind{[](const Beam& beam) { return beam.length(); }, [](const MatrixSystem&) { return 1.0; },
+                    [](const auto& frame) { return diagonal(places_of(frame)); }});
 }
 
 std::vector<std::string> place_names(const Structure& structure) {
-  if (const Frame* const frame = structure.frame()) return frame_places(*frame);
-  if (const SpaceFrame* const frame = structure.space_frame()) return frame_places(*frame);
-  if (const MatrixSystem* const matrices = structure.matrices()) return matrices->labels;
-  return {};
+  return with_kind(structure, OfKind{[](const Beam&) { return std::vector<std::string>(); },
+                                     [](const MatrixSystem& matrices) { return matrices.labels; },
+                                     [](const auto& frame) { return frame_places(frame); }});
 }
 
 std::vector<std::string> factor_names(const Structure& structure) {
-  std::vector<std::string> names;
-  if (const Frame* const frame = structure.frame()) add_groups(*frame, names);
-  if (const SpaceFrame* const frame = structure.space_frame()) add_groups(*frame, names);
-  if (const MatrixSystem* const matrices = structure.matrices())
-    for (const MatrixSystem::Parameter& parameter : matrices->parameters) names.push_back(parameter.name);
-  return names;
+  return with_kind(structure, OfKind{[](const Beam&) { return std::vector<std::string>(); },
+                                     [](const MatrixSystem& matrices) { return parameter_names(matrices); },
+                                     [](const auto& frame) { return member_groups(frame); }});
 }
 
 Point natural_point(const Structure& structure) {
@@ -80,11 +101,10 @@ Point natural_point(const Structure& structure) {
 }
 
 StructuralSystem assemble(const Structure& structure, int elements, const std::vector<Point>& points) {
-  if (const Frame* const frame = structure.frame()) return assemble_at_places(*frame, elements, points);
-  if (const SpaceFrame* const frame = structure.space_frame())
-    return assemble_at_places(*frame, elements, points);
-  if (const MatrixSystem* const matrices = structure.matrices()) return assemble(*matrices, points);
-  return assemble(structure.beam(), elements, points);
+  return with_kind(structure,
+                   OfKind{[&](const Beam& beam) { return assemble(beam, elements, points); },
+                          [&](const MatrixSystem& matrices) { return assemble(matrices, points); },
+                          [&](const auto& frame) { return assemble_at_places(frame, elements, points); }});
 }
 
 StructuralSystem assemble(const Structure& structure, int elements) {
@@ -93,30 +113,21 @@ StructuralSystem assemble(const Structure& structure, int elements) {
 }
 
 double value_of(const Structure& structure, const BeamParameter& parameter) {
-  if (const Frame* const frame = structure.frame()) return value_of(*frame, parameter);
-  if (const SpaceFrame* const frame = structure.space_frame()) return value_of(*frame, parameter);
-  if (const MatrixSystem* const matrices = structure.matrices()) return value_of(*matrices, parameter);
-  return value_of(structure.beam(), parameter);
+  return with_kind(structure, [&](const auto& kind) { return value_of(kind, parameter); });
 }
 
 Structure with_value(const Structure& structure, const BeamParameter& parameter, double value) {
-  if (const Frame* const frame = structure.frame()) return with_value(*frame, parameter, value);
-  if (const SpaceFrame* const frame = structure.space_frame()) return with_value(*frame, parameter, value);
-  if (const MatrixSystem* const matrices = structure.matrices())
-    return with_value(*matrices, parameter, value);
-  return with_value(structure.beam(), parameter, value);
+  return with_kind(structure,
+                   [&](const auto& kind) -> Structure { return with_value(kind, parameter, value); });
 }
 
 ParametricSystem assemble_parametric(const Structure& structure, int elements,
                                      const std::vector<Point>& points,
                                      const std::vector<BeamParameter>& parameters) {
-  if (const Frame* const frame = structure.frame())
-    return assemble_parametric(*frame, elements, points, parameters);
-  if (const SpaceFrame* const frame = structure.space_frame())
-    return assemble_parametric(*frame, elements, points, parameters);
-  if (const MatrixSystem* const matrices = structure.matrices())
-    return assemble_parametric(*matrices, points, parameters);
-  return assemble_parametric(structure.beam(), elements, points, parameters);
+  return with_kind(
+      structure,
+      OfKind{[&](const MatrixSystem& matrices) { return assemble_parametric(matrices, points, parameters); },
+             [&](const auto& kind) { return assemble_parametric(kind, elements, points, parameters); }});
 }
 
 }  // namespace beamid::fem

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "filters/levenberg_marquardt.hpp"
 #include "filters/output_error.hpp"
 
 namespace beamid::filters {
@@ -38,9 +39,27 @@ VectorXd damped_solution(const MatrixXd& a, const VectorXd& q, double damping) {
   return decomposition.compute(rows).solve(right);
 }
 
-// Levenberg-Marquardt over the first `samples` from c.
+// What the sensitivities say at one point: |a x - q|^2 of the steps x, in units of the columns' lengths.
+struct ScaledPass {
+  MatrixXd a;
+  VectorXd q, unit;
+};
+
+// @param scale lengths of the columns of R, the largest met [marquardt1963]
+ScaledPass scaled_pass(const OutputErrorPass& pass, VectorXd& scale) {
+  const Index r = scale.size();
+  const MatrixXd root = pass.information.root();
+  const VectorXd lengths = root.topLeftCorner(r, r).colwise().norm();
+  scale = scale.cwiseMax(lengths);
+  ScaledPass at;
+  at.unit = (scale.array() > 0.0).select(scale.cwiseInverse(), 1.0);
+  at.a = root.topLeftCorner(r, r) * at.unit.asDiagonal();
+  at.q = root.col(r).head(r);
+  return at;
+}
+
+// From c over the first `samples`.
 Descent descend(OutputError& error, const VectorXd& start, Index samples, double tolerance, int most) {
-  const Index r = start.size();
   Descent result;
   result.coefficients = start;
   result.last = error.pass(start, samples);
@@ -50,45 +69,38 @@ Descent descend(OutputError& error, const VectorXd& start, Index samples, double
     return result;
   }
   result.costs.push_back(result.last.cost);
-  VectorXd scale = VectorXd::Zero(r);  // lengths of the columns of R, the largest met [marquardt1963]
-  double damping = 1e-3;
-  const auto accept = [&](VectorXd coefficients, OutputErrorPass pass) {
-    result.coefficients = std::move(coefficients);
-    result.last = std::move(pass);
-    result.costs.push_back(result.last.cost);
+  VectorXd scale = VectorXd::Zero(start.size());
+  ScaledPass at;
+  bool converged = false;
+  const auto step = [&](double damping) {
+    at = scaled_pass(result.last, scale);
+    const VectorXd whole = damped_solution(at.a, at.q, 0.0);
+    converged = (at.a * whole).norm() <= std::max(tolerance, rounding * result.last.size);
+    return converged ? whole : damped_solution(at.a, at.q, damping);
   };
-  while (result.passes < most) {
-    const MatrixXd root = result.last.information.root();
-    const VectorXd lengths = root.topLeftCorner(r, r).colwise().norm();
-    scale = scale.cwiseMax(lengths);
-    const VectorXd unit = (scale.array() > 0.0).select(scale.cwiseInverse(), 1.0);
-    const MatrixXd a = root.topLeftCorner(r, r) * unit.asDiagonal();
-    const VectorXd q = root.col(r).head(r);
-
-    const VectorXd whole = damped_solution(a, q, 0.0);
-    const bool converged = (a * whole).norm() <= std::max(tolerance, rounding * result.last.size);
-    const VectorXd x = converged ? whole : damped_solution(a, q, damping);
-    const double predicted = 0.5 * (q.squaredNorm() - (q - a * x).squaredNorm());
-    const VectorXd trial = result.coefficients + unit.cwiseProduct(x);
+  const auto take = [&](const VectorXd& x) {
+    const double predicted = 0.5 * (at.q.squaredNorm() - (at.q - at.a * x).squaredNorm());
+    const VectorXd trial = result.coefficients + at.unit.cwiseProduct(x);
     OutputErrorPass pass = error.pass(trial, samples);
     ++result.passes;
     const double fall = pass.finite ? result.last.cost - pass.cost : -1.0;
-    if (fall > 0.0) accept(trial, std::move(pass));
-    if (converged) {
+    if (!(fall > 0.0)) return TriedStep{0.0, converged};
+    result.coefficients = trial;
+    result.last = std::move(pass);
+    result.costs.push_back(result.last.cost);
+    return TriedStep{predicted > 0.0 ? fall / predicted : 1.0, converged};
+  };
+  MarquardtDamping rule;
+  rule.first = 1e-3, rule.least_raised = 1e-6, rule.negligible = 1e-10, rule.most_steps = most - 1;
+  switch (levenberg_marquardt(rule, step, take)) {
+    case DescentEnd::settled:
       result.status = BatchStatus::converged;
       break;
-    }
-    if (fall <= 0.0) {
-      damping = std::max(10.0 * damping, 1e-6);
-      if (damping > 1e12) {
-        result.status = BatchStatus::stalled;
-        break;
-      }
-    } else if (fall > 0.75 * predicted) {
-      damping = damping > 1e-9 ? 0.1 * damping : 0.0;
-    } else if (fall < 0.25 * predicted) {
-      damping = std::max(4.0 * damping, 1e-6);
-    }
+    case DescentEnd::stuck:
+      result.status = BatchStatus::stalled;
+      break;
+    case DescentEnd::exhausted:
+      break;
   }
   return result;
 }

@@ -21,26 +21,43 @@ class Likelihood {
   double prior_cost(const VectorXd& theta) const {
     return 0.5 * (theta - first()).dot(prior_ * (theta - first()));
   }
+  bool free_inputs() const { return problem_.free_inputs; }
   KalmanPass at(const VectorXd& theta) const {
-    return kalman_pass(problem_.model(theta), problem_.record, problem_.interval, KeptSteps::innovations);
+    KalmanPass pass =
+        kalman_pass(problem_.model(theta), problem_.record, problem_.interval, KeptSteps::innovations);
+    if (problem_.free_inputs) pass.cost -= log_determinants(pass);
+    return pass;
   }
 
  private:
   const InnovationProblem& problem_;
   MatrixXd prior_;
+
+  // 1/2 sum_k ln det S_k
+  static double log_determinants(const KalmanPass& pass) {
+    VectorXd of_step(static_cast<Index>(pass.steps.size()));
+    for (std::size_t i = 0; i < pass.steps.size(); ++i) {
+      const Eigen::LLT<MatrixXd> factor(pass.steps[i].innovation_covariance);
+      of_step[static_cast<Index>(i)] = factor.matrixLLT().diagonal().array().log().sum();
+    }
+    double sum = 0.0;
+    for (const std::size_t step : pass.step_of) sum += of_step[static_cast<Index>(step)];
+    return sum;
+  }
 };
 
 // Information at theta, and the gradient of J, from differences by these steps.
 struct Slope {
   MatrixXd information;
   VectorXd gradient;
+  double cost = 0.0;  // without the prior's part, as the information
 };
 
 Slope slope_at(const Likelihood& likelihood, const VectorXd& theta, const VectorXd& steps) {
   const KalmanPass here = likelihood.at(theta);
   const Index samples = here.innovations.cols(), q = theta.size();
   std::vector<KalmanPass> above, below;
-  Slope slope{MatrixXd::Zero(q, q), likelihood.prior() * (theta - likelihood.first())};
+  Slope slope{MatrixXd::Zero(q, q), likelihood.prior() * (theta - likelihood.first()), here.cost};
   for (Index j = 0; j < q; ++j) {
     VectorXd there = theta;
     there[j] = theta[j] + steps[j];
@@ -60,13 +77,14 @@ Slope slope_at(const Likelihood& likelihood, const VectorXd& theta, const Vector
       const double width = 2.0 * steps[j];
       white.col(j) = factor.matrixL().solve(
           VectorXd(up.innovations.col(k)(seen) - down.innovations.col(k)(seen)) / width);
+      if (likelihood.free_inputs()) continue;
       turned = factor.matrixL().solve(
           (up.step(k).innovation_covariance - down.step(k).innovation_covariance) / width);
       turned = factor.matrixL().solve(turned.transpose().eval()).eval();
       squares.col(j) = std::sqrt(0.5) * turned.reshaped();
     }
     slope.information.noalias() += white.transpose() * white;
-    slope.information.noalias() += squares.transpose() * squares;
+    if (!likelihood.free_inputs()) slope.information.noalias() += squares.transpose() * squares;
   }
   return slope;
 }
@@ -101,6 +119,7 @@ InnovationFit fit_innovations(const InnovationProblem& problem, const VectorXd& 
     const MatrixXd curvature = slope.information + likelihood.prior();
     VectorXd step = -curvature.ldlt().solve(slope.gradient);
     const double length = std::sqrt(std::max(0.0, step.dot(curvature * step)));
+    // Halved, not damped: as it ends at 0.02 deviations, levenberg_marquardt() would end at other digits.
     bool lower = false;
     for (int halving = 0; halving < most_halvings && !lower; ++halving, step *= 0.5) {
       try {
@@ -114,6 +133,16 @@ InnovationFit fit_innovations(const InnovationProblem& problem, const VectorXd& 
     if (!lower) break;
   }
   return fit;
+}
+
+double innovation_log_likelihood(const InnovationProblem& problem, const VectorXd& theta) {
+  return -Likelihood(problem).at(theta).cost;
+}
+
+InnovationSlope innovation_slope(const InnovationProblem& problem, const VectorXd& theta) {
+  const Likelihood likelihood(problem);
+  const Slope slope = slope_at(likelihood, theta, difference_steps(likelihood));
+  return {-slope.cost, likelihood.prior() * (theta - likelihood.first()) - slope.gradient, slope.information};
 }
 
 MatrixXd innovation_information(const InnovationProblem& problem, const VectorXd& constants) {

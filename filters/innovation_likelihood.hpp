@@ -26,12 +26,28 @@ struct InnovationProblem {
   const Measurements& record;  ///< at even stamps
   double interval = 0.0;       ///< [s]
   Gaussian prior;              ///< theta_0, P_0 (its covariance) (q)
+  /// Whether inputs that are not exact are of no law at all: S_k then holds what is not known of them, and
+  /// how theta passes it on. ln det S_k would pull theta to where this is little; without it, and without the
+  /// trace in I, E[d J] is 0 at the truth for whatever the inputs were (errors in variables).
+  bool free_inputs = false;
 };
 
 /// A model whose motion is linear where some entries of its state are held: theta are those entries.
 /// @param model outlives the problem; @param start of the whole state; of theta: theta_0, P_0
 InnovationProblem held_problem(DiscreteModel& model, const Measurements& record,
                                const std::vector<Eigen::Index>& held, const Gaussian& start);
+
+/// ln p(record | theta) but for a constant, its gradient, and I; without the prior.
+struct InnovationSlope {
+  double log_likelihood = 0.0;
+  Eigen::VectorXd gradient;     ///< (q)
+  Eigen::MatrixXd information;  ///< I (q x q)
+};
+
+/// @throws std::runtime_error where a covariance is not positive.
+double innovation_log_likelihood(const InnovationProblem& problem, const Eigen::VectorXd& theta);
+/// Derivatives are central differences of steps of a thousandth of the deviations known beforehand.
+InnovationSlope innovation_slope(const InnovationProblem& problem, const Eigen::VectorXd& theta);
 
 struct InnovationFit {
   Eigen::VectorXd constants;    ///< theta (q)

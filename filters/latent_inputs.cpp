@@ -10,9 +10,24 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+using Process = LatentInput::Process;
+
+// l, or 1 / tau, by which a process forgets itself [1/s].
 double rate_of(const LatentInput& one) {
-  return one.process == LatentInput::Process::matern ? std::sqrt(3.0) / one.correlation_time
-                                                     : 1.0 / one.correlation_time;
+  if (one.process == Process::random_walk) return 0.0;
+  return (one.process == Process::matern ? std::sqrt(3.0) : 1.0) / one.correlation_time;
+}
+
+// Of the white noise that drives p, or its rate.
+double intensity_of(const LatentInput& one) {
+  const double variance = one.deviation * one.deviation;
+  if (one.process == Process::random_walk) return variance / one.correlation_time;
+  return (one.process == Process::matern ? 4.0 : 2.0) * rate_of(one) * variance;
+}
+
+double start_variance(const LatentInput& one) {
+  constexpr double anywhere = 100.0;  // deviations
+  return std::pow(one.deviation * (one.process == Process::random_walk ? anywhere : 1.0), 2);
 }
 
 void check_latent(const LatentInput& one, Index inputs) {
@@ -53,7 +68,7 @@ Gaussian LatentInputs::with_latent(const Gaussian& belief) const {
   result.covariance.bottomRightCorner(rest, rest) = inner.bottomRightCorner(rest, rest);
   for (std::size_t i = 0; i < latent_.size(); ++i)
     result.covariance.diagonal().segment(places_[i], latent_[i].states()).array() =
-        latent_[i].deviation * latent_[i].deviation;
+        start_variance(latent_[i]);
   return result;
 }
 
@@ -66,11 +81,8 @@ MatrixXd LatentInputs::process_noise(const VectorXd& state, double interval) con
   block.topLeftCorner(n, n) = -a;
   block.bottomRightCorner(n, n) = a.transpose();
   for (std::size_t i = 0; i < latent_.size(); ++i) {
-    const LatentInput& one = latent_[i];
-    const Index driven = places_[i] + one.states() - 1;
-    const double variance = one.deviation * one.deviation;
-    block(driven, n + driven) =
-        (one.process == LatentInput::Process::matern ? 4.0 : 2.0) * rate_of(one) * variance;
+    const Index driven = places_[i] + latent_[i].states() - 1;
+    block(driven, n + driven) = intensity_of(latent_[i]);
   }
   const MatrixXd moved = (block * interval).exp();
   const MatrixXd q = moved.bottomRightCorner(n, n).transpose() * moved.topRightCorner(n, n);

@@ -8,14 +8,18 @@
 
 namespace beamid::filters {
 
-/// One input as a stationary Gaussian process of standard deviation sigma and correlation time tau, from
+/// One input as a Gaussian process, stationary of standard deviation sigma and correlation time tau, from
 /// white noise w of unit intensity [hartikainen2010]:
 ///
 ///     ornstein_uhlenbeck   p' = -p / tau + sigma sqrt(2 / tau) w,   covariance sigma^2 e^(-|t| / tau)
 ///     matern               p' = l r,   r' = -l p - 2 l r + 2 sigma sqrt(l) w,   l = sqrt(3) / tau,
 ///                          covariance sigma^2 (1 + l |t|) e^(-l |t|), so that p has a derivative
+///
+/// or, of no bound, one that moves by sigma within tau and starts anywhere (within 100 sigma):
+///
+///     random_walk          p' = sigma / sqrt(tau) w
 struct LatentInput {
-  enum class Process { ornstein_uhlenbeck, matern };
+  enum class Process { ornstein_uhlenbeck, matern, random_walk };
   Eigen::Index input = 0;  ///< column of B that it acts through
   Process process = Process::matern;
   double deviation = 1.0;         ///< sigma [unit of the input]
@@ -40,7 +44,7 @@ class LatentInputs final : public LinearMotion {
   Eigen::Index place(std::size_t latent) const { return places_[latent]; }  ///< of its p in the state
   /// Where an entry of the motion's own state is found (in z).
   Eigen::Index moved(Eigen::Index place) const { return place < own_ ? place : place + added_; }
-  /// A belief about the motion's own state, and every process as it is at any time.
+  /// A belief about the motion's own state, and every process as it is at any time, or starts.
   Gaussian with_latent(const Gaussian& belief) const;
   /// Q (n x n) of an interval [s], with the constants as in this state [vanloan1978].
   Eigen::MatrixXd process_noise(const Eigen::VectorXd& state, double interval) const;

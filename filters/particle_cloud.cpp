@@ -24,19 +24,23 @@ Index ParticleCloud::distinct() const {
   return result;
 }
 
-void ParticleCloud::resample(RandomStream& random) {
+std::vector<Index> systematic_draws(const VectorXd& weights, double offset) {
   const Index count = weights.size();
-  const double share = 1.0 / static_cast<double>(count), offset = random.uniform();
-  MatrixXd chosen(states.rows(), count);
+  const double share = 1.0 / static_cast<double>(count);
+  std::vector<Index> drawn(static_cast<std::size_t>(count));
   double sum = weights[0];
   Index j = 0;
   for (Index i = 0; i < count; ++i) {
     const double place = (static_cast<double>(i) + offset) * share;
     while (place > sum && j + 1 < count) sum += weights[++j];
-    chosen.col(i) = states.col(j);
+    drawn[static_cast<std::size_t>(i)] = j;
   }
-  states.swap(chosen);
-  weights.setConstant(share);
+  return drawn;
+}
+
+void ParticleCloud::resample(RandomStream& random) {
+  states = states(Eigen::all, systematic_draws(weights, random.uniform())).eval();
+  weights.setConstant(1.0 / static_cast<double>(weights.size()));
 }
 
 void ParticleCloud::regularise(const std::vector<Index>& entries, RandomStream& random) {

@@ -8,6 +8,10 @@
 
 namespace beamid::filters {
 
+/// Which of N come to be drawn, N times in rising order, each as often as its weight says (their sum is one):
+/// from one number in (0, 1), systematic resampling [kitagawa1996].
+std::vector<Eigen::Index> systematic_draws(const Eigen::VectorXd& weights, double offset);
+
 /// N states in the columns of `states` (n x N), their weights summing to one.
 struct ParticleCloud {
   Eigen::MatrixXd states;
@@ -22,8 +26,7 @@ struct ParticleCloud {
   /// How many are not copies of their neighbour, as resampling leaves them.
   Eigen::Index distinct() const;
 
-  /// As many copies of each as its weight says, from one uniform number: systematic resampling
-  /// [kitagawa1996].
+  /// As many copies of each as its weight says (systematic_draws).
   void resample(RandomStream& random);
 
   /// z_i := m + a (z_i - m) + b L xi_i for `entries` of the state (k), a^2 + b^2 = 1, xi_i of exact moments,

@@ -20,6 +20,7 @@ Json describe_member(const fem::Frame& frame, std::size_t i) {
   if (member.hinged_at_second) json["hinged_at_second"] = true;
   if (member.stiffness_factor != 1.0) json["stiffness_factor"] = member.stiffness_factor;
   if (!member.group.empty()) json["group"] = member.group;
+  if (member.axial_load != 0.0) json["axial_load_n"] = member.axial_load;
   return json;
 }
 
@@ -83,6 +84,10 @@ std::string frame_text(const FrameExperiment& experiment, Eigen::Index coordinat
     text += fmt::format("; {}",
                         frame.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", frame.bodies.size()));
   if (!frame.springs.empty()) text += "; " + counted(frame.springs.size(), "spring");
+  if (!frame.dashpots.empty()) text += "; " + counted(frame.dashpots.size(), "dashpot");
+  const auto loaded = std::count_if(frame.members.begin(), frame.members.end(),
+                                    [](const auto& member) { return member.axial_load != 0.0; });
+  if (loaded > 0) text += "; axial load in " + counted(static_cast<std::size_t>(loaded), "member");
   return text + fmt::format(". {} per member{}, {} degrees of freedom.",
                             counted(static_cast<std::size_t>(experiment.elements_per_member), "element"),
                             frame.mass_model == fem::MassModel::lumped ? " with lumped mass" : "",

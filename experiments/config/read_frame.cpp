@@ -13,6 +13,7 @@
 #include "experiments/config/section_keys.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/text/method_choice.hpp"
+#include "fem/buckling.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -35,7 +36,7 @@ const Schema<FrameExperiment>& frame_keys() {
               "base_motion", [](F& f) -> char& { return f.frame.base_axis; },
               {std::pair{"x", 'x'}, {"y", 'y'}},
               "along which axis all supports move together, where the base moves", "\"y\"")
-          .tables({"joints", "members", "supports", "bodies", "springs"});
+          .tables({"joints", "members", "supports", "bodies", "springs", "dashpots"});
   return keys;
 }
 
@@ -59,6 +60,7 @@ struct MemberValues {
   bool hinged_at_first = false, hinged_at_second = false;
   double stiffness_factor = 1.0;
   std::string group;
+  double axial_load = 0.0;
 };
 
 const Schema<MemberValues>& member_keys() {
@@ -83,6 +85,8 @@ const Schema<MemberValues>& member_keys() {
                "\"factor\"` with the group as `name`",
                "\"columns\"")
           .fallback("none")
+          .key("axial_load_n", &M::axial_load,
+               "P, positive in compression: what the member carries at rest, which softens it", "5e4")
           .like(section_keys());
   return keys;
 }
@@ -136,12 +140,29 @@ const Schema<Frame::Spring>& frame_spring_keys() {
   return keys;
 }
 
-const bool frame_keys_registered[] = {register_keys([]() -> const KeyTable& { return frame_keys(); }),
-                                      register_keys([]() -> const KeyTable& { return joint_keys(); }),
-                                      register_keys([]() -> const KeyTable& { return member_keys(); }),
-                                      register_keys([]() -> const KeyTable& { return frame_support_keys(); }),
-                                      register_keys([]() -> const KeyTable& { return frame_body_keys(); }),
-                                      register_keys([]() -> const KeyTable& { return frame_spring_keys(); })};
+const Schema<Frame::Dashpot>& frame_dashpot_keys() {
+  using D = Frame::Dashpot;
+  static const Schema<D> keys =
+      Schema<D>("frame.dashpots")
+          .other("joint", Type::whole, "where, against the ground", "3", {1, most_elements})
+          .values(joint_values)
+          .required()
+          .key("translational_x_n_s_per_m", &D::x, not_negative, "c of a velocity along x", "150")
+          .key("translational_y_n_s_per_m", &D::y, not_negative, "c of a velocity along y", "150")
+          .key("rotational_n_m_s_per_rad", &D::rotational, not_negative, "c of a turning", "20")
+          .at_least_one(
+              {"translational_x_n_s_per_m", "translational_y_n_s_per_m", "rotational_n_m_s_per_rad"});
+  return keys;
+}
+
+const bool frame_keys_registered[] = {
+    register_keys([]() -> const KeyTable& { return frame_keys(); }),
+    register_keys([]() -> const KeyTable& { return joint_keys(); }),
+    register_keys([]() -> const KeyTable& { return member_keys(); }),
+    register_keys([]() -> const KeyTable& { return frame_support_keys(); }),
+    register_keys([]() -> const KeyTable& { return frame_body_keys(); }),
+    register_keys([]() -> const KeyTable& { return frame_spring_keys(); }),
+    register_keys([]() -> const KeyTable& { return frame_dashpot_keys(); })};
 
 int joint(const TomlTable& table, const std::string& key, const Frame& frame) {
   return read_joint(table, key, frame.joints.size());
@@ -167,6 +188,7 @@ Frame::Member read_member(const TomlTable& table, Frame& frame) {
   member.hinged_at_second = given.hinged_at_second;
   member.stiffness_factor = given.stiffness_factor;
   member.group = given.group;
+  member.axial_load = given.axial_load;
   fem::Beam alone;
   alone.segments = {{length, member.section}};
   at_place(table.place(), [&] { fem::validate(alone); });
@@ -193,6 +215,10 @@ void read_frame_attachments(const TomlTable& table, Frame& frame) {
     frame.springs.push_back(frame_spring_keys().read(one));
     frame.springs.back().joint = joint(one, "joint", frame);
   }
+  for (const TomlTable& one : table.find_tables("dashpots")) {
+    frame.dashpots.push_back(frame_dashpot_keys().read(one));
+    frame.dashpots.back().joint = joint(one, "joint", frame);
+  }
 }
 
 }  // namespace
@@ -209,6 +235,8 @@ void describe_frame_attachments(const Frame& frame, nlohmann::ordered_json& json
   for (const auto& body : frame.bodies) add("bodies", body.joint, frame_body_keys().values_of(body));
   for (const auto& spring : frame.springs)
     add("springs", spring.joint, frame_spring_keys().values_of(spring));
+  for (const auto& dashpot : frame.dashpots)
+    add("dashpots", dashpot.joint, frame_dashpot_keys().values_of(dashpot));
 }
 
 FrameExperiment read_frame(const std::filesystem::path& file) {
@@ -223,6 +251,21 @@ FrameExperiment read_frame(const TomlTable& root) {
   return experiment;
 }
 
+// On a mesh that serves for the buckling of members alone, too; where that is large, the modes say it.
+void refuse_buckled_frame(const TomlTable& table, const Frame& frame) {
+  constexpr std::size_t most_members = 150;
+  const bool pressed = std::any_of(frame.members.begin(), frame.members.end(),
+                                   [](const Frame::Member& one) { return one.axial_load > 0.0; });
+  if (!pressed || frame.members.size() > most_members) return;
+  const auto factor = fem::buckling_factor(frame);
+  if (factor && *factor <= 1.0)
+    throw InputError(
+        table.place(),
+        fmt::format("the frame buckles at {:.6g} times the axial_load_n of its members; expected "
+                    "loads that it bears",
+                    *factor));
+}
+
 FrameExperiment read_frame_table(const TomlTable& table) {
   FrameExperiment experiment = frame_keys().read(table);
   Frame& frame = experiment.frame;
@@ -234,6 +277,7 @@ FrameExperiment read_frame_table(const TomlTable& table) {
   read_frame_attachments(table, frame);
   experiment.joint_names = as_frame_experiment(frame, 1, "").joint_names;
   at_place(table.place(), [&] { fem::validate(frame); });
+  refuse_buckled_frame(table, frame);
   return experiment;
 }
 

@@ -9,6 +9,16 @@
 
 namespace beamid::experiments {
 
+SectionPlace section_at(const fem::Beam& beam, double position) {
+  double start = 0.0;
+  for (const fem::Segment& segment : beam.segments) {
+    const double s = (position - start) / segment.length;
+    start += segment.length;
+    if (s <= 1.0 || &segment == &beam.segments.back()) return {&segment.section, std::clamp(s, 0.0, 1.0)};
+  }
+  return {};
+}
+
 void check_gauge_position(const TomlTable& table, const fem::Structure& structure, Quantity quantity) {
   if (quantity != Quantity::strain) return;
   if (!structure.is_beam() || structure.is_chain())
@@ -30,16 +40,9 @@ double gauge_distance(const TomlTable& table, const fem::Structure& structure, Q
   if (given && *given != 0.0) return *given;
   const std::string expected = "a number of metres that is not zero: how far the gauge is from the axis";
   if (given) table.refuse("distance_m", expected);
-  const fem::Beam& beam = structure.beam();
-  double start = 0.0;
-  const double x = position.value_or(0.0);
-  for (const fem::Segment& segment : beam.segments) {
-    const double s = (x - start) / segment.length;
-    start += segment.length;
-    if (s > 1.0 && &segment != &beam.segments.back()) continue;
-    if (segment.section.outline.shape == fem::Outline::Shape::none) break;
-    return 0.5 * segment.section.outline.height(std::min(s, 1.0));
-  }
+  const SectionPlace there = section_at(structure.beam(), position.value_or(0.0));
+  if (there.section && there.section->outline.shape != fem::Outline::Shape::none)
+    return 0.5 * there.section->outline.height(there.along);
   table.miss("distance_m", expected + "; the section there has no height that would tell");
 }
 

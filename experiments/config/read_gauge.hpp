@@ -9,6 +9,13 @@
 
 namespace beamid::experiments {
 
+/// The section of a beam at a position, and how far along its segment that is, 0 to 1; null without segments.
+struct SectionPlace {
+  const fem::Section* section = nullptr;
+  double along = 0.0;
+};
+SectionPlace section_at(const fem::Beam& beam, double position);
+
 /// @throws InputError when a strain gauge has no `position_m`, or sits on no beam with sections.
 void check_gauge_position(const TomlTable& table, const fem::Structure& structure, Quantity quantity);
 

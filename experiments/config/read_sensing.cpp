@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_gauge.hpp"
 #include "experiments/config/read_place.hpp"
@@ -31,12 +29,16 @@ const Schema<UnknownForce>& unknown_force_keys() {
           .key("at", &F::at, "in place of `position_m`, of a frame or a system: a joint and a direction",
                "\"ridge.x\"")
           .choice("process", &F::process,
-                  {std::pair{"matern", Process::matern}, {"ornstein_uhlenbeck", Process::ornstein_uhlenbeck}},
-                  "what it is taken for: a random process with a derivative, or one without", "\"matern\"")
+                  {std::pair{"matern", Process::matern},
+                   {"ornstein_uhlenbeck", Process::ornstein_uhlenbeck},
+                   {"random_walk", Process::random_walk}},
+                  "what it is taken for: a random process with a derivative, one without, or one of no bound",
+                  "\"matern\"")
           .key("deviation", &F::deviation, positive, "its standard deviation [N, m/s2]", "2.5")
           .fallback("from the record")
-          .key("correlation_time_s", &F::correlation_time, positive, "over which it forgets itself", "0.02")
-          .fallback("from the record");
+          .key("correlation_time_s", &F::correlation_time, positive,
+               "over which it forgets itself; of a random walk, over which it moves by `deviation`", "0.02")
+          .fallback("from the record; 1 of a random walk");
   return keys;
 }
 
@@ -49,7 +51,7 @@ const Schema<DescribedVirtual>& virtual_sensor_keys() {
   using V = DescribedVirtual;
   static const Schema<V> keys =
       Schema<V>("virtual_sensors")
-          .key("name", &V::name, "begins the column's name in `sensed.csv`", "\"root_strain\"")
+          .key("name", &V::name, "begins the column's name in `histories.csv`", "\"root_strain\"")
           .values("text, at most 100 letters")
           .fallback("its quantity and place")
           .key("quantity", &V::quantity_name, "what a sensor there would measure", "\"strain\"")
@@ -97,14 +99,9 @@ std::string name_of_virtual_place(const std::optional<double>& position, const s
 }
 
 double bending_stiffness_at(const fem::Beam& beam, double position) {
-  double start = 0.0;
-  for (const fem::Segment& segment : beam.segments) {
-    const double s = (position - start) / segment.length;
-    start += segment.length;
-    if (s <= 1.0 || &segment == &beam.segments.back())
-      return segment.section.bending_stiffness(std::clamp(s, 0.0, 1.0));
-  }
-  throw std::invalid_argument("a beam without segments has no bending moment");
+  const SectionPlace there = section_at(beam, position);
+  if (!there.section) throw std::invalid_argument("a beam without segments has no bending moment");
+  return there.section->bending_stiffness(there.along);
 }
 
 }  // namespace

@@ -9,16 +9,16 @@
 
 namespace beamid::experiments {
 
-/// A force that acted without being measured, as a stationary random process (filters/latent_inputs.hpp).
+/// A force that acted without being measured, as a random process (filters/latent_inputs.hpp).
 struct UnknownForce {
-  enum class Process { ornstein_uhlenbeck, matern };
+  enum class Process { ornstein_uhlenbeck, matern, random_walk };
   std::string name = {};
   Quantity quantity = Quantity::force;  ///< or base_acceleration
   std::optional<double> position = {};  ///< of a force [m]; absent: the natural point
   std::string at = {};                  ///< in its place, of a structure whose places have names
   Process process = Process::matern;
   std::optional<double> deviation = {};         ///< [N or m/s2]; absent: from the record
-  std::optional<double> correlation_time = {};  ///< [s]; absent: from the record
+  std::optional<double> correlation_time = {};  ///< [s]; absent: from the record, 1 of a random walk
   Place place = {};                             ///< of the table, for messages
 };
 

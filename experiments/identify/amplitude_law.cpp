@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "filters/levenberg_marquardt.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -54,13 +56,6 @@ LawStep law_step(const VectorXd& signal, double interval, const AmplitudeShape& 
   return at;
 }
 
-/// Its columns scaled to one: units differ.
-Normal inverse_of(const Normal& normal) {
-  const Parameters scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Normal scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  return scale.asDiagonal() * scaled.ldlt().solve(Normal::Identity()) * scale.asDiagonal();
-}
-
 /// Amplitude and offset best for these rates.
 void fit_amplitude(const VectorXd& signal, double interval, const AmplitudeShape& shape, double log_amplitude,
                    Parameters& p) {
@@ -95,7 +90,6 @@ double AmplitudeShape::at(double log_amplitude) const {
 
 AmplitudeLaw fit_amplitude_law(const VectorXd& signal, double interval, const AmplitudeShape& shape,
                                const AmplitudeLawStart& start, const VectorXd& instants) {
-  constexpr int most_steps = 30;
   constexpr double settled = 1e-8, twice_pi = 2 * std::numbers::pi;
   const double w = twice_pi * start.frequency_hz;
   Parameters p;
@@ -103,19 +97,25 @@ AmplitudeLaw fit_amplitude_law(const VectorXd& signal, double interval, const Am
   double log_amplitude = start.log_amplitude;
   fit_amplitude(signal, interval, shape, log_amplitude, p);
   LawStep at = law_step(signal, interval, shape, p, log_amplitude);
-  for (int step = 1;; ++step) {
-    if (step > most_steps || !std::isfinite(at.squares))
-      throw std::runtime_error("the fit of a decay that follows its amplitude has not converged");
-    p += inverse_of(at.normal) * at.gradient;
+  const auto step = [&](double damping) -> VectorXd {
+    return filters::solve_damped(at.normal, damping, at.gradient);
+  };
+  const auto take = [&](const VectorXd& tried) {  // always: the amplitude is that of the step before
+    p += tried;
     log_amplitude = std::log(std::hypot(p[4], p[5]));
     const double before = at.squares;
     at = law_step(signal, interval, shape, p, log_amplitude);
-    if (std::abs(before - at.squares) <= settled * at.squares) break;
-  }
+    return filters::TriedStep{1.0, std::abs(before - at.squares) <= settled * at.squares};
+  };
+  filters::MarquardtDamping rule;
+  rule.most_steps = 30;
+  if (filters::levenberg_marquardt(rule, step, take) != filters::DescentEnd::settled)
+    throw std::runtime_error("the fit of a decay that follows its amplitude has not converged");
   AmplitudeLaw law;
   law.squares = at.squares;
   law.freedom = static_cast<double>(signal.size() - law_unknowns);
-  const Normal covariance = at.squares / law.freedom * inverse_of(at.normal);
+  const Normal covariance =
+      at.squares / law.freedom * Normal(filters::solve_damped(at.normal, 0, Normal::Identity()));
   law.frequency_hz = law_line(p[0], p[2], covariance(2, 2), covariance(0, 2), twice_pi);
   const double omega = twice_pi * law.frequency_hz.value;
   law.damping_ratio = law_line(p[1], p[3], covariance(3, 3), covariance(1, 3), omega);

@@ -9,6 +9,17 @@ std::vector<Parameter> parameters(const RecordIdentification& found) {
   return parameters(found, found.identification);
 }
 
+Eigen::Matrix4d covariance_of_parameters(const RecordIdentification& found) {
+  const Identification& i = found.identification;
+  const double stiffness = i.found.stiffness, mass = i.found.mass;
+  Eigen::Matrix<double, 4, 2> slopes;  // of f = sqrt(K/M) / 2 pi, C / (2 sqrt(K M)), K and C
+  slopes << 0.5 * i.found.frequency_hz() / stiffness, 0.0,  //
+      -0.5 * i.found.damping_ratio() / stiffness, 0.5 / std::sqrt(stiffness * mass), 1, 0, 0, 1;
+  const double of_frequency = found.frequency_factor(), of_damping = found.damping_factor();
+  slopes = Eigen::Vector4d(of_frequency, of_damping, of_frequency, of_damping).asDiagonal() * slopes;
+  return slopes * i.run.last.marginal(2, 2) * slopes.transpose();
+}
+
 std::vector<Parameter> parameters(const RecordIdentification& found, const Identification& i) {
   const Oscillator modal = Oscillator::from_frequency(
       i.found.mass, 2.0 * std::numbers::pi * found.modal.frequency_hz, found.modal.damping_ratio);

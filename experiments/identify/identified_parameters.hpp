@@ -23,6 +23,9 @@ struct Parameter {
 /// damping_factor().
 std::vector<Parameter> parameters(const RecordIdentification& found);
 
+/// Of these four, in their order and units (4 x 4): those of K and C carried on to first order.
+Eigen::Matrix4d covariance_of_parameters(const RecordIdentification& found);
+
 /// The same of another identification of the same record, such as the batch estimate's.
 std::vector<Parameter> parameters(const RecordIdentification& found, const Identification& identification);
 

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
 
+#include "filters/levenberg_marquardt.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -100,28 +102,27 @@ Curvature curvature_at(const BandLikelihood& cost, const Vector4d& at) {
 
 // Newton's method, damped until the value falls.
 bool descend(const BandLikelihood& cost, Vector4d& at, Curvature& last) {
-  constexpr int most = 60;
-  double value = cost(at), damping = 1e-3;
-  for (int i = 0; i < most; ++i) {
-    last = curvature_at(cost, at);
+  double value = cost(at);
+  bool moved = true;
+  const auto step = [&](double damping) -> VectorXd {
+    if (moved) last = curvature_at(cost, at);
+    moved = false;
     const Vector4d size = last.hessian.diagonal().cwiseAbs().cwiseMax(1e-12);
-    bool lower = false;
-    for (int k = 0; k < 12 && !lower; ++k, damping *= 10.0) {
-      const Eigen::Matrix4d damped = last.hessian + damping * Eigen::Matrix4d(size.asDiagonal());
-      const Eigen::LLT<Eigen::Matrix4d> factor(damped);
-      if (factor.info() != Eigen::Success) continue;
-      const Vector4d step = -factor.solve(last.gradient);
-      if (step.cwiseAbs().maxCoeff() > 2.0) continue;
-      if (step.dot(-last.gradient) < 1e-6) return true;
-      const double there = cost(at + step);
-      if (there < value) {
-        value = there, at += step, lower = true;
-        damping *= 1e-3;
-      }
-    }
-    if (!lower) return false;
-  }
-  return false;
+    const Eigen::LLT<Eigen::Matrix4d> factor(last.hessian + damping * Eigen::Matrix4d(size.asDiagonal()));
+    if (factor.info() != Eigen::Success) return {};
+    return -factor.solve(last.gradient);
+  };
+  const auto take = [&](const VectorXd& tried) {
+    if (tried.size() == 0 || tried.cwiseAbs().maxCoeff() > 2.0) return filters::TriedStep{};
+    if (tried.dot(-last.gradient) < 1e-6) return filters::TriedStep{0.0, true};
+    const double there = cost(at + tried);
+    if (!(there < value)) return filters::TriedStep{};
+    value = there, at += tried, moved = true;
+    return filters::TriedStep{1.0, false};
+  };
+  filters::MarquardtDamping rule;
+  rule.first = 1e-3, rule.lower = 1e-2, rule.most_steps = 200;
+  return filters::levenberg_marquardt(rule, step, take) == filters::DescentEnd::settled;
 }
 
 }  // namespace

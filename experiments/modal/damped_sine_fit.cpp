@@ -1,10 +1,11 @@
 #include "experiments/modal/damped_sine_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+
+#include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -45,14 +46,6 @@ SineLinearisation linearise(const VectorXd& signal, double interval, const Vecto
   return at;
 }
 
-/// (J^T J + damping diag(J^T J))^-1 b, with the columns scaled to one: their units differ.
-MatrixXd solve_scaled(const MatrixXd& normal, double damping, const MatrixXd& right) {
-  const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  scaled.diagonal().array() += damping;
-  return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * right);
-}
-
 /// Amplitudes and offset that are best for the given rates: a linear problem. At zero amplitude the rates
 /// have no influence; a unit on their diagonal keeps them where they are.
 VectorXd with_best_amplitudes(const VectorXd& signal, double interval, const std::vector<Complex>& rates) {
@@ -61,7 +54,7 @@ VectorXd with_best_amplitudes(const VectorXd& signal, double interval, const std
     parameters.segment<2>(i) << rates[i / 4].imag(), -rates[i / 4].real();
   SineLinearisation at = linearise(signal, interval, parameters);
   for (Index i = 0; i + 1 < parameters.size(); i += 4) at.normal.diagonal().segment<2>(i).setOnes();
-  return parameters + solve_scaled(at.normal, 0, at.gradient);
+  return parameters + filters::solve_damped(at.normal, 0, at.gradient);
 }
 
 Index measured(const VectorXd& signal) {
@@ -81,17 +74,15 @@ void check_damped_sine_fit(const VectorXd& signal, const std::vector<Complex>& s
   throw std::invalid_argument(message.str());
 }
 
-DampedSineFit result_of(const VectorXd& parameters, const SineLinearisation& at, Index count,
-                        int iterations) {
+DampedSineFit result_of(const VectorXd& parameters, const SineLinearisation& at, Index count) {
   const Index size = parameters.size();
   DampedSineFit fit;
   for (Index i = 0; i + 1 < size; i += 4)
     fit.sines.push_back({{-parameters[i + 1], parameters[i]}, {parameters[i + 2], parameters[i + 3]}});
   fit.offset = parameters[size - 1];
-  fit.cofactors = solve_scaled(at.normal, 0, MatrixXd::Identity(size, size));
+  fit.cofactors = filters::solve_damped(at.normal, 0, MatrixXd::Identity(size, size));
   fit.residuals = at.residuals;
   fit.residual_standard_deviation = std::sqrt(at.residuals.squaredNorm() / static_cast<double>(count - size));
-  fit.iterations = iterations;
   return fit;
 }
 
@@ -99,28 +90,26 @@ DampedSineFit result_of(const VectorXd& parameters, const SineLinearisation& at,
 
 DampedSineFit fit_damped_sines(const VectorXd& signal, double interval, const std::vector<Complex>& start) {
   check_damped_sine_fit(signal, start);
-  constexpr int most_iterations = 100;
   constexpr double tolerance = 1e-11;  // change of the model, relative to the signal
   const double smallest_change =
       tolerance * tolerance * signal.array().isFinite().select(signal, 0.0).squaredNorm();
   VectorXd parameters = with_best_amplitudes(signal, interval, start);
   SineLinearisation at = linearise(signal, interval, parameters);
-  double damping = 0;
-  for (int iteration = 1; iteration <= most_iterations; ++iteration) {
-    const VectorXd step = solve_scaled(at.normal, damping, at.gradient);
-    const bool converged = step.dot(at.normal * step) <= smallest_change;
-    const SineLinearisation next = linearise(signal, interval, parameters + step);
-    if (next.residuals.squaredNorm() <= at.residuals.squaredNorm()) {
-      parameters += step;
-      at = next;
-      damping = damping > 1e-6 ? 0.1 * damping : 0;
-    } else {
-      damping = std::max(1e-3, 10 * damping);
-    }
-    if (converged) return result_of(parameters, at, measured(signal), iteration);
-  }
+  const auto step = [&](double damping) -> VectorXd {
+    return filters::solve_damped(at.normal, damping, at.gradient);
+  };
+  const auto take = [&](const VectorXd& tried) {
+    const bool settled = tried.dot(at.normal * tried) <= smallest_change;
+    SineLinearisation next = linearise(signal, interval, parameters + tried);
+    const bool lower = next.residuals.squaredNorm() <= at.residuals.squaredNorm();
+    if (lower) parameters += tried, at = std::move(next);
+    return filters::TriedStep{lower ? 1.0 : 0.0, settled};
+  };
+  const filters::MarquardtDamping rule;
+  if (filters::levenberg_marquardt(rule, step, take) != filters::DescentEnd::exhausted)
+    return result_of(parameters, at, measured(signal));
   std::ostringstream message;
-  message << "the fit of " << start.size() << " damped sines has not converged after " << most_iterations
+  message << "the fit of " << start.size() << " damped sines has not converged after " << rule.most_steps
           << " iterations; the first stands at " << parameters[0] << " rad/s with damping rate "
           << parameters[1] << " 1/s";
   throw std::runtime_error(message.str());

@@ -22,7 +22,6 @@ struct DampedSineFit {
   Eigen::MatrixXd cofactors;
   Eigen::VectorXd residuals;  ///< (N); 0 where nothing was measured
   double residual_standard_deviation = 0;
-  int iterations = 0;
 };
 
 /// Least squares over a signal (N) by Gauss-Newton steps with exact derivatives, damped where they do not

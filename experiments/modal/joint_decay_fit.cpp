@@ -8,6 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "filters/levenberg_marquardt.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -35,10 +37,12 @@ struct JointLinearisation {
   MatrixXd residuals;            ///< (N x p)
   std::vector<MatrixXd> slopes;  ///< (N x 2K) of each channel, without what amplitudes can follow
   VectorXd variances;            ///< (p)
+  MatrixXd normal;               ///< J^T J of the rates, every channel in units of its noise (2K x 2K)
+  VectorXd gradient;             ///< J^T r
   double misfit = 0;             ///< minus twice the logarithm of the likelihood, and a constant
 };
 
-JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd& rates, bool with_slopes) {
+JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd& rates) {
   const Index count = y.rows(), modes = rates.size() / 2;
   Eigen::MatrixXcd waves(count, modes);
   MatrixXd basis(count, 2 * modes + 1);
@@ -59,8 +63,9 @@ JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd&
   at.variances =
       at.residuals.colwise().squaredNorm().transpose().cwiseMax(floor) / static_cast<double>(count);
   at.misfit = static_cast<double>(count) * at.variances.array().log().sum();
-  if (!with_slopes) return at;
   const VectorXd time = interval * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
+  at.normal = MatrixXd::Zero(2 * modes, 2 * modes);
+  at.gradient = VectorXd::Zero(2 * modes);
   for (Index c = 0; c < y.cols(); ++c) {
     MatrixXd slope(count, 2 * modes);
     for (Index m = 0; m < modes; ++m) {
@@ -69,6 +74,8 @@ JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd&
       slope.col(2 * m + 1) = -time.cwiseProduct(motion.real());
     }
     slope -= range * (range.transpose() * slope);
+    at.normal += slope.transpose() * slope / at.variances[c];
+    at.gradient += slope.transpose() * at.residuals.col(c) / at.variances[c];
     at.slopes.push_back(std::move(slope));
   }
   return at;
@@ -107,7 +114,7 @@ MatrixXd noise_near_modes(const JointLinearisation& at, double interval, const V
   return variance;
 }
 
-MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& normal, const MatrixXd& noise_variance) {
+MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& noise_variance) {
   const Index modes = noise_variance.cols();
   MatrixXd middle = MatrixXd::Zero(2 * modes, 2 * modes);
   for (Index c = 0; c < at.residuals.cols(); ++c) {
@@ -116,7 +123,7 @@ MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& normal, con
     const MatrixXd scaled = at.slopes[c] * (density / at.variances[c]).asDiagonal();
     middle += scaled.transpose() * scaled;
   }
-  const MatrixXd inverse = normal.ldlt().solve(MatrixXd::Identity(2 * modes, 2 * modes));
+  const MatrixXd inverse = at.normal.ldlt().solve(MatrixXd::Identity(2 * modes, 2 * modes));
   return inverse * middle * inverse;
 }
 
@@ -129,49 +136,37 @@ JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
   const MatrixXd y = outputs.transpose();
   VectorXd rates(2 * modes);
   for (Index m = 0; m < modes; ++m) rates.segment<2>(2 * m) << start[m].imag(), -start[m].real();
-  constexpr int most_iterations = 100;
-  JointLinearisation at = linearise(y, interval, rates, true);
-  double damping = 0;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    MatrixXd normal = MatrixXd::Zero(2 * modes, 2 * modes);
-    VectorXd gradient = VectorXd::Zero(2 * modes);
-    for (Index c = 0; c < y.cols(); ++c) {
-      normal += at.slopes[c].transpose() * at.slopes[c] / at.variances[c];
-      gradient += at.slopes[c].transpose() * at.residuals.col(c) / at.variances[c];
-    }
-    const VectorXd step =
-        (normal + damping * MatrixXd(normal.diagonal().asDiagonal())).ldlt().solve(gradient);
+  JointLinearisation at = linearise(y, interval, rates);
+  const auto step = [&](double damping) -> VectorXd {
+    return filters::solve_damped(at.normal, damping, at.gradient);
+  };
+  const auto take = [&](const VectorXd& tried) {
     // A step that gains less than 1e-9 of a standard deviation, or moves the rates by rounding only, ends it.
-    const bool settled = step.dot(normal * step) < 1e-18 || step.norm() < 1e-13 * rates.norm();
-    const JointLinearisation next = linearise(y, interval, rates + step, true);
-    if (settled || next.misfit < at.misfit) {
-      if (next.misfit <= at.misfit) {
-        rates += step;
-        at = next;
-      }
-      damping = damping < 1e-6 ? 0 : damping / 10;
-    } else {
-      damping = std::max(10 * damping, 1e-4);
-      if (damping < 1e10) continue;
-    }
-    if (!settled && damping < 1e10) continue;
-    JointDecayFit fit;
-    fit.shapes.resize(y.cols(), modes);
-    for (Index m = 0; m < modes; ++m) {
-      fit.rates.emplace_back(-rates[2 * m + 1], rates[2 * m]);
-      fit.shapes.col(m) = at.parts.row(2 * m).transpose().cast<Complex>() +
-                          Complex(0, 1) * at.parts.row(2 * m + 1).transpose().cast<Complex>();
-    }
-    fit.offsets = at.parts.row(2 * modes).transpose();
-    fit.reconstruction = (y - at.residuals).transpose();
-    fit.residual_standard_deviation =
-        at.residuals.colwise().norm().transpose() / std::sqrt(static_cast<double>(y.rows() - 4 * modes - 1));
-    fit.noise_variance = noise_near_modes(at, interval, rates);
-    fit.covariance = covariance_of(at, normal, fit.noise_variance);
-    return fit;
+    const bool settled = tried.dot(at.normal * tried) < 1e-18 || tried.norm() < 1e-13 * rates.norm();
+    JointLinearisation next = linearise(y, interval, rates + tried);
+    const bool lower = next.misfit <= at.misfit;
+    if (lower) rates += tried, at = std::move(next);
+    return filters::TriedStep{lower ? 1.0 : 0.0, settled};
+  };
+  const filters::MarquardtDamping rule;
+  if (filters::levenberg_marquardt(rule, step, take) == filters::DescentEnd::exhausted)
+    throw std::runtime_error("least squares of " + std::to_string(modes) +
+                             " damped sines did not converge in " + std::to_string(rule.most_steps) +
+                             " steps");
+  JointDecayFit fit;
+  fit.shapes.resize(y.cols(), modes);
+  for (Index m = 0; m < modes; ++m) {
+    fit.rates.emplace_back(-rates[2 * m + 1], rates[2 * m]);
+    fit.shapes.col(m) = at.parts.row(2 * m).transpose().cast<Complex>() +
+                        Complex(0, 1) * at.parts.row(2 * m + 1).transpose().cast<Complex>();
   }
-  throw std::runtime_error("least squares of " + std::to_string(modes) +
-                           " damped sines did not converge in " + std::to_string(most_iterations) + " steps");
+  fit.offsets = at.parts.row(2 * modes).transpose();
+  fit.reconstruction = (y - at.residuals).transpose();
+  fit.residual_standard_deviation =
+      at.residuals.colwise().norm().transpose() / std::sqrt(static_cast<double>(y.rows() - 4 * modes - 1));
+  fit.noise_variance = noise_near_modes(at, interval, rates);
+  fit.covariance = covariance_of(at, fit.noise_variance);
+  return fit;
 }
 
 }  // namespace beamid::experiments

@@ -1,11 +1,12 @@
 #include "experiments/modal/residue_fit.hpp"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "experiments/signal/least_squares.hpp"
+#include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -90,6 +91,30 @@ VectorXd residual(const MatrixXcd& responses, const ResidueFit& at) {
   return left;
 }
 
+/// J^T J of all parameters, J^T r, and J itself.
+struct ResidueSlopes {
+  MatrixXd jacobian, normal;
+  VectorXd gradient;
+};
+
+ResidueSlopes slopes(const VectorXcd& s, int power, const ResidueFit& at, const VectorXd& left) {
+  ResidueSlopes found;
+  found.jacobian = jacobian(s, power, at);
+  found.normal = found.jacobian.transpose() * found.jacobian;
+  found.gradient = found.jacobian.transpose() * left;
+  return found;
+}
+
+/// [white1980]
+MatrixXd covariance_of_residues(const ResidueSlopes& at, const VectorXd& left, double correlated) {
+  const Index n = at.normal.cols(), spare = left.size() - n;
+  if (spare < 1) throw std::runtime_error("fewer lines than parameters");
+  const MatrixXd inverse = filters::solve_damped(at.normal, 0, MatrixXd::Identity(n, n));
+  const MatrixXd weighted = at.jacobian.transpose() * left.cwiseAbs2().asDiagonal() * at.jacobian;
+  return correlated * static_cast<double>(left.size()) / static_cast<double>(spare) *
+         (inverse * weighted * inverse.transpose());
+}
+
 }  // namespace
 
 ResidueFit fit_residues(const VectorXd& frequency_hz, const MatrixXcd& responses, double shift, int power,
@@ -102,46 +127,31 @@ ResidueFit refine_poles(const VectorXd& frequency_hz, const MatrixXcd& responses
   const VectorXcd s = points(frequency_hz, shift);
   ResidueFit at = fit(s, responses, power, rates);
   VectorXd left = residual(responses, at);
-  const auto modes = static_cast<Index>(rates.size());
-  double damping = 1e-6;
-  constexpr int most_iterations = 60;
-  for (int iteration = 0;; ++iteration) {
-    const MatrixXd slope = jacobian(s, power, at);
-    const VectorXd scale = slope.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-    const MatrixXd scaled = slope * scale.asDiagonal();
-    MatrixXd normal = scaled.transpose() * scaled;
-    const MatrixXd undamped = normal;
-    normal.diagonal().array() += damping;
-    const VectorXd step = scale.asDiagonal() * normal.ldlt().solve(scaled.transpose() * left);
+  ResidueSlopes slope = slopes(s, power, at, left);
+  const auto step = [&](double damping) -> VectorXd {
+    return filters::solve_damped(slope.normal, damping, slope.gradient);
+  };
+  const auto take = [&](const VectorXd& tried) {
     std::vector<Complex> next = at.rates;
     double moved = 0;
-    for (Index m = 0; m < modes; ++m) {
-      next[m] += Complex(-step[2 * m + 1], step[2 * m]);
+    for (std::size_t m = 0; m < next.size(); ++m) {
+      const auto place = static_cast<Index>(2 * m);
+      next[m] += Complex(-tried[place + 1], tried[place]);
       moved = std::max(moved, std::abs(next[m] - at.rates[m]) / std::abs(next[m]));
     }
-    ResidueFit tried = fit(s, responses, power, next);
-    const VectorXd tried_left = residual(responses, tried);
-    if (moved < 1e-9) {
-      const Index spare = left.size() - scaled.cols();
-      if (spare < 1) throw std::runtime_error("fewer lines than parameters");
-      const MatrixXd inverse =
-          scale.asDiagonal() *
-          MatrixXd(undamped.ldlt().solve(MatrixXd::Identity(undamped.rows(), undamped.cols())));
-      const MatrixXd weighted = scaled.transpose() * left.cwiseAbs2().asDiagonal() * scaled;
-      at.covariance = correlated * static_cast<double>(left.size()) / static_cast<double>(spare) *
-                      (inverse * weighted * inverse.transpose());
-      return at;
-    }
-    if (tried_left.squaredNorm() <= left.squaredNorm() * (1 + 1e-12)) {
-      at = std::move(tried);
-      left = tried_left;
-      damping = std::max(1e-12, 0.1 * damping);
-    } else {
-      damping = std::max(1e-6, 10 * damping);
-    }
-    if (iteration == most_iterations || damping > 1e12)
-      throw std::runtime_error("the fit of frequency responses does not converge");
-  }
+    if (moved < 1e-9) return filters::TriedStep{0.0, true};
+    ResidueFit there = fit(s, responses, power, next);
+    const VectorXd left_there = residual(responses, there);
+    if (!(left_there.squaredNorm() <= left.squaredNorm() * (1 + 1e-12))) return filters::TriedStep{};
+    at = std::move(there);
+    left = left_there;
+    slope = slopes(s, power, at, left);
+    return filters::TriedStep{1.0, false};
+  };
+  if (filters::levenberg_marquardt({}, step, take) != filters::DescentEnd::settled)
+    throw std::runtime_error("the fit of frequency responses does not converge");
+  at.covariance = covariance_of_residues(slope, left, correlated);
+  return at;
 }
 
 }  // namespace beamid::experiments

@@ -127,6 +127,13 @@ void tell_undrawn(Json& json, const std::vector<std::string>& failures, const st
 
 }  // namespace
 
+Json json_rows(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    rows.push_back(std::vector<double>(matrix.row(i).begin(), matrix.row(i).end()));
+  return rows;
+}
+
 Json to_json(const Results& results) {
   Json json;
   json["schema_version"] = schema_version;

@@ -38,6 +38,13 @@ struct Attachment {
   std::function<void(const std::filesystem::path&)> write;  ///< writes them into a folder
 };
 
+/// Numbers of a run for programs that have the results in memory; no file holds them.
+struct Array {
+  std::string run;         ///< as tables name it; empty where there is only one
+  std::string name;        ///< "innovations", "reproduced", "time_s"
+  Eigen::MatrixXd values;  ///< (p x N)
+};
+
 /// All that a command found, for the terminal, the page and the files.
 struct Results {
   std::string command;                ///< "paper", "identify"
@@ -49,6 +56,7 @@ struct Results {
   std::vector<std::variant<Heading, Paragraph, Table>> report;       ///< in the terminal's order
   std::vector<Figure> figures;
   std::vector<Attachment> attachments;
+  std::vector<Array> arrays;
   std::vector<std::pair<std::string, double>>
       timing;  ///< what took how long [s]; "filter" becomes "filter_s"
 
@@ -69,6 +77,9 @@ struct Results {
 /// was, "beams[0].frequency_hz is nan".
 /// @throws std::invalid_argument when a value's key is one of those named here.
 nlohmann::ordered_json to_json(const Results& results);
+
+/// [[a, b], [c, d]] of a matrix.
+nlohmann::ordered_json json_rows(const Eigen::MatrixXd& matrix);
 
 /// Writes results.json, each table as NAME.csv, figures, attachments, report.html (report_page.hpp) and
 /// timing.json, the only file that depends on the clock.

@@ -8,11 +8,24 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd;
 
+// The strain n (u_2 - u_1, v_2 - v_1) of rigidity -load per length, behind the others.
+void add_chord(FrameElementMatrices& element, const Eigen::Vector2d& n, double softening) {
+  const Index last = element.strain.rows();
+  element.strain.conservativeResizeLike(MatrixXd::Zero(last + 1, element.strain.cols()));
+  element.strain.block<1, 2>(last, 0) = -n.transpose();
+  element.strain.block<1, 2>(last, 3) = n.transpose();
+  element.rigidity.conservativeResizeLike(MatrixXd::Zero(last + 1, last + 1));
+  element.flexibility.conservativeResizeLike(MatrixXd::Zero(last + 1, last + 1));
+  element.rigidity(last, last) = -softening;
+  element.flexibility(last, last) = -1.0 / softening;
+}
+
 }  // namespace
 
 FrameElementMatrices frame_element_matrices(const Section& section, const Mesh::Element& element,
-                                            const Eigen::Vector2d& direction, MassModel mass_model) {
-  const ElementMatrices bending = element_matrices(section, element, 0.0, 0.0, mass_model);
+                                            const Eigen::Vector2d& direction, double axial_load,
+                                            MassModel mass_model) {
+  const ElementMatrices bending = element_matrices(section, element, 0.0, axial_load, mass_model);
   const RodMatrices axial =
       rod_matrices(section, element, *section.axial_stiffness, section.mass_per_length, mass_model);
   const Index inside = bending.interior ? 2 : 0, strains = 3 + inside, coordinates = 6 + inside;
@@ -40,6 +53,7 @@ FrameElementMatrices frame_element_matrices(const Section& section, const Mesh::
       inside > 0 ? MatrixXd(bending.interior->flexibility) : MatrixXd(bending.flexibility);
   result.rigidity = turned(axial.rigidity, rigidity);
   result.flexibility = turned(axial.flexibility, flexibility);
+  if (axial_load != 0.0) add_chord(result, n, axial_load / element.length);
 
   MatrixXd across = MatrixXd::Zero(4 + inside, coordinates);  // (w_1, h theta_1, w_2, h theta_2, interior)
   across.block<1, 2>(0, 0) = across.block<1, 2>(2, 3) = n.transpose();

@@ -15,17 +15,19 @@ namespace beamid::fem {
 ///
 ///     (t elongation - n epsilon_1, epsilon_2)   [m],
 ///
-/// and the interior coordinates themselves. The flexibility of the elongation is h times the mean of 1/EA,
-/// exact for any variation. Its mass is that of linear displacements, or half at each node.
+/// the interior coordinates themselves and, under an axial load P, the chord n (u_2 - u_1, v_2 - v_1) of
+/// rigidity -P/h, last (element.hpp). The flexibility of the elongation is h times the mean of 1/EA, exact
+/// for any variation. Its mass is that of linear displacements, or half at each node.
 struct FrameElementMatrices {
-  Eigen::MatrixXd strain;                 ///< (3 x 6), with interior coordinates (5 x 8)
+  Eigen::MatrixXd strain;                 ///< (3 x 6), with interior coordinates (5 x 8), a row more with P
   Eigen::MatrixXd rigidity, flexibility;  ///< [N/m], [m/N], of the strains
   Eigen::MatrixXd mass;                   ///< [kg], of the coordinates
 };
 
 /// @param direction t, of length 1.
-/// @param section with an axial stiffness.
+/// @param section with an axial stiffness; @param axial_load P [N], positive in compression
 FrameElementMatrices frame_element_matrices(const Section& section, const Mesh::Element& element,
-                                            const Eigen::Vector2d& direction, MassModel mass_model);
+                                            const Eigen::Vector2d& direction, double axial_load,
+                                            MassModel mass_model);
 
 }  // namespace beamid::fem

@@ -16,6 +16,7 @@
 
 #include "filters/innovation.hpp"
 #include "filters/linearised_step.hpp"
+#include "filters/state_entries.hpp"
 
 namespace beamid::filters {
 namespace {
@@ -26,23 +27,14 @@ class DualExtendedKalmanFilter final : public Filter {
  public:
   DualExtendedKalmanFilter(std::unique_ptr<DiscreteModel> model, const std::vector<double>& parameters,
                            bool coupled)
-      : Filter(std::move(model)), coupled_(coupled) {
-    const auto n = static_cast<Index>(model_.state_labels().size());
-    for (const double entry : parameters) {
-      const auto index = static_cast<Index>(entry);
-      if (!(entry >= 0.0 && entry < static_cast<double>(n)) || static_cast<double>(index) != entry ||
-          std::find(told_.begin(), told_.end(), index) != told_.end())
-        throw std::invalid_argument("dual_ekf: parameters hold " + std::to_string(entry) +
-                                    "; expected different whole numbers from 0 to " + std::to_string(n - 1));
-      told_.push_back(index);
-    }
-    std::sort(told_.begin(), told_.end());
-  }
+      : Filter(std::move(model)),
+        coupled_(coupled),
+        stated_(state_entries("dual_ekf: parameters", parameters, model_.state_labels().size())) {}
 
   void reset(const Gaussian& belief) override {
     belief_ = as_matrix(belief, model_);
-    parameter_ = told_;
-    split_ = !told_.empty();
+    parameter_ = stated_;
+    split_ = !stated_.empty();
     if (split_) split();
   }
 
@@ -147,7 +139,7 @@ class DualExtendedKalmanFilter final : public Filter {
   }
 
   bool coupled_, split_ = false;
-  std::vector<Index> told_, state_, parameter_;
+  std::vector<Index> stated_, state_, parameter_;
   Gaussian belief_, states_, parameters_;
   LinearisedStep step_;
   VectorXd next_, expected_;

@@ -11,11 +11,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "filters/exact_draws.hpp"
 #include "filters/filter.hpp"
 #include "filters/innovation.hpp"
+#include "filters/methods/conditional_motion.hpp"
+#include "filters/particle_cloud.hpp"
 #include "filters/random.hpp"
 #include "filters/whole_number.hpp"
 
@@ -23,31 +24,6 @@ namespace beamid::filters {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-
-// One step of the record so far, as it was met.
-struct MetStep {
-  bool reading = false;
-  VectorXd output, input;
-  std::vector<Index> observed;
-  MatrixXd noise;  // R of a reading, Q of a step
-  double interval = 0.0;
-};
-
-struct ConstantParticle {
-  VectorXd theta, mean;  // (q), (l)
-  MatrixXd covariance;   // (l x l)
-  // Motion and readings given theta, as long as interval and outputs stay: x+ = A x + c, y = H x + d.
-  double interval = -1.0;
-  MatrixXd a, h;
-  VectorXd c, d;
-  std::vector<Index> seen;
-  double settled = 0.0;  // ln likelihood of the readings before the last move
-  double fresh = 0.0;    // and since
-};
-
-bool differ(const MatrixXd& a, const MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() > 1e-9 * (a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
-}
 
 class RaoBlackwellised final : public Filter {
  public:
@@ -57,7 +33,8 @@ class RaoBlackwellised final : public Filter {
         moves_(whole_number(options.number("moves"), 1, "rao_blackwellised", "moves")),
         seed_(whole_number(options.number("seed"), 0, "rao_blackwellised", "seed")),
         share_(options.number("resample_below")),
-        random_(static_cast<std::uint64_t>(seed_)) {
+        random_(static_cast<std::uint64_t>(seed_)),
+        motion_(model_) {
     if (!(share_ > 0.0 && share_ < 1.0))
       throw std::invalid_argument("rao_blackwellised: resample_below is " + std::to_string(share_) +
                                   "; expected a number between 0 and 1");
@@ -68,27 +45,27 @@ class RaoBlackwellised final : public Filter {
     Gaussian whole = belief;
     if (whole.covariance.size() == 0) whole.covariance = belief.factor * belief.factor.transpose();
     random_ = RandomStream(static_cast<std::uint64_t>(seed_));
-    sort_entries(whole);
+    motion_.reset(whole);
     record_.clear();
     settled_steps_ = 0;
-    start_ = whole;
-    particles_.assign(static_cast<std::size_t>(held_.empty() ? 1 : wanted_), {});
-    if (!held_.empty()) root_ = square_root(whole.covariance(held_, held_), factor_);
-    const auto q = static_cast<Index>(held_.size());
+    particles_.assign(static_cast<std::size_t>(motion_.held().empty() ? 1 : wanted_), {});
+    if (!motion_.held().empty())
+      root_ = square_root(whole.covariance(motion_.held(), motion_.held()), factor_);
+    const auto q = static_cast<Index>(motion_.held().size());
     const auto count = static_cast<Index>(particles_.size());
     const MatrixXd draws = exact_draws(random_, q, count, MatrixXd(0, count)).values;
     for (Index i = 0; i < count; ++i) {
       ConstantParticle& one = particles_[static_cast<std::size_t>(i)];
-      one.theta = whole.mean(held_);
+      one.theta = whole.mean(motion_.held());
       if (q > 0) one.theta += root_ * draws.col(i);
-      begin(one);
+      motion_.begin(one);
     }
     formed_ = false;
   }
 
   void predict(const VectorXd& input) override {
     record_.push_back({false, {}, input, {}, model_.process_noise(), model_.interval()});
-    for (ConstantParticle& one : particles_) move(one, record_.back());
+    for (ConstantParticle& one : particles_) motion_.move(one, record_.back());
     formed_ = false;
   }
 
@@ -108,7 +85,7 @@ class RaoBlackwellised final : public Filter {
     for (std::size_t i = 0; i < particles_.size(); ++i) {
       VectorXd shown;
       MatrixXd s;
-      const double log = correct(particles_[i], record_.back(), shown, s);
+      const double log = motion_.correct(particles_[i], record_.back(), shown, s);
       particles_[i].fresh += log;
       logs.push_back(log);
       const double w = weights[static_cast<Index>(i)];
@@ -123,144 +100,11 @@ class RaoBlackwellised final : public Filter {
     for (std::size_t i = 0; i < logs.size(); ++i)
       sum += weights[static_cast<Index>(i)] * std::exp(logs[i] - largest);
     correction_.log_likelihood = largest + std::log(sum);
-    if (!held_.empty()) keep_apart();
+    if (!motion_.held().empty()) keep_apart();
     formed_ = false;
   }
 
  private:
-  // Constants are entries that stay as they are, without noise. Those that the motion of the others depends
-  // on are held by particles.
-  void sort_entries(const Gaussian& belief) {
-    const Index n = belief.mean.size();
-    const VectorXd none, deviation = belief.deviations();
-    VectorXd next;
-    MatrixXd moved, shown, other;
-    model_.linearised_transition(belief.mean, none, next, moved);
-    model_.output_jacobian(belief.mean, none, shown);
-    const MatrixXd& q = model_.process_noise();
-    std::vector<Index> constants, moving;
-    for (Index i = 0; i < n; ++i) {
-      VectorXd row = moved.row(i);
-      row[i] -= 1.0;
-      const bool stays = row.cwiseAbs().maxCoeff() < 1e-12 && (q.size() == 0 || q(i, i) == 0.0);
-      (stays ? constants : moving).push_back(i);
-    }
-    held_.clear();
-    free_ = moving;
-    for (const Index i : constants) {
-      VectorXd there = belief.mean;
-      there[i] += deviation[i] > 0.0 ? deviation[i] : 1e-3 * std::max(1.0, std::abs(there[i]));
-      model_.linearised_transition(there, none, next, other);
-      bool changes = differ(moved(moving, moving), other(moving, moving));
-      model_.output_jacobian(there, none, other);
-      changes = changes || differ(shown(Eigen::all, moving), other(Eigen::all, moving));
-      (changes ? held_ : free_).push_back(i);
-    }
-    std::sort(free_.begin(), free_.end());
-    VectorXd there = belief.mean;
-    there(free_) += deviation(free_);
-    model_.linearised_transition(there, none, next, other);
-    bool linear = !differ(moved(free_, free_), other(free_, free_));
-    model_.output_jacobian(there, none, other);
-    linear = linear && !differ(shown(Eigen::all, free_), other(Eigen::all, free_));
-    if (!linear)
-      throw std::invalid_argument(
-          "rao_blackwellised: the motion is not linear where its constants are held; expected a linear one "
-          "(particle, ukf or ekf take the others)");
-  }
-
-  // The motion's belief at the start, given theta.
-  void begin(ConstantParticle& one) const {
-    one.mean = start_.mean(free_);
-    one.covariance = start_.covariance(free_, free_);
-    one.settled = one.fresh = 0.0;
-    one.interval = -1.0;
-    one.h.resize(0, 0);
-    if (held_.empty()) return;
-    const MatrixXd across = start_.covariance(free_, held_);
-    if (across.isZero(0.0)) return;
-    const Eigen::LDLT<MatrixXd> known(start_.covariance(held_, held_));
-    one.mean += across * known.solve(one.theta - start_.mean(held_));
-    one.covariance -= across * known.solve(across.transpose());
-  }
-
-  VectorXd state_of(const ConstantParticle& one) const {
-    VectorXd state(start_.mean.size());
-    state(free_) = one.mean;
-    state(held_) = one.theta;
-    return state;
-  }
-
-  void move(ConstantParticle& one, const MetStep& step) {
-    if (one.interval != step.interval) {
-      const VectorXd none = VectorXd::Zero(step.input.size());
-      model_.linearised_transition(state_of(one), none, next_, tangent_);
-      one.interval = step.interval;
-      one.a = tangent_(free_, free_);
-      one.c = next_(free_) - one.a * one.mean;
-    }
-    if (step.input.size() > 0) {
-      model_.transition(state_of(one), step.input, next_);
-      one.mean = next_(free_);
-    } else {
-      one.mean = (one.a * one.mean + one.c).eval();
-    }
-    work_.noalias() = one.a * one.covariance;
-    one.covariance.noalias() = work_ * one.a.transpose();
-    if (step.noise.size() > 0) one.covariance += step.noise(free_, free_);
-    symmetrise(one.covariance);
-  }
-
-  /// @returns ln p(y | theta, what was read before)
-  double correct(ConstantParticle& one, const MetStep& step, VectorXd& shown, MatrixXd& s) {
-    if (one.h.size() == 0 || one.seen != step.observed) {
-      const VectorXd none = VectorXd::Zero(step.input.size()), state = state_of(one);
-      model_.output(state, none, shown);
-      model_.output_jacobian(state, none, tangent_);
-      one.seen = step.observed;
-      one.h = tangent_(Eigen::all, free_);
-      one.d = shown - one.h * one.mean;
-    }
-    const MatrixXd& h = one.h;
-    if (step.input.size() > 0)
-      model_.output(state_of(one), step.input, shown);
-    else
-      shown = h * one.mean + one.d;
-    const MatrixXd across = one.covariance * h.transpose();
-    s = h * across + step.noise;
-    const Eigen::LLT<MatrixXd> factor(s);
-    if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
-    const VectorXd rest = step.output - shown;
-    const MatrixXd gain = factor.solve(across.transpose()).transpose();
-    one.mean += gain * rest;
-    MatrixXd kept = -gain * h;
-    kept.diagonal().array() += 1.0;
-    one.covariance = (kept * one.covariance * kept.transpose() + gain * step.noise * gain.transpose()).eval();
-    return -0.5 * (rest.dot(factor.solve(rest)) + std::log(2.0 * std::numbers::pi) * rest.size()) -
-           factor.matrixLLT().diagonal().array().log().sum();
-  }
-
-  // The record so far once more.
-  void replay(ConstantParticle& one) {
-    const double interval = model_.interval();
-    const std::vector<Index> observed = model_.observed();
-    begin(one);
-    VectorXd shown;
-    MatrixXd s;
-    for (std::size_t k = 0; k < record_.size(); ++k) {
-      const MetStep& step = record_[k];
-      if (step.interval != model_.interval()) model_.set_interval(step.interval);
-      if (step.reading) {
-        if (step.observed != model_.observed()) model_.observe(step.observed);
-        (k < settled_steps_ ? one.settled : one.fresh) += correct(one, step, shown, s);
-      } else {
-        move(one, step);
-      }
-    }
-    if (interval != model_.interval()) model_.set_interval(interval);
-    if (observed != model_.observed()) model_.observe(observed);
-  }
-
   // W_i ~ exp(power x fresh).
   VectorXd shares(double power) const {
     VectorXd logs(static_cast<Index>(particles_.size()));
@@ -295,7 +139,7 @@ class RaoBlackwellised final : public Filter {
 
   void resample_and_move(double power, double reached) {
     const VectorXd weights = shares(power);
-    const auto count = static_cast<Index>(particles_.size()), q = static_cast<Index>(held_.size());
+    const auto count = static_cast<Index>(particles_.size()), q = static_cast<Index>(motion_.held().size());
     MatrixXd thetas(q, count);
     for (Index i = 0; i < count; ++i) thetas.col(i) = particles_[static_cast<std::size_t>(i)].theta;
     const VectorXd mean = thetas * weights;
@@ -303,19 +147,17 @@ class RaoBlackwellised final : public Filter {
     MatrixXd spread = off * weights.asDiagonal() * off.transpose();
     spread.diagonal() += 1e-12 * spread.diagonal() + VectorXd::Constant(q, 1e-300);
     std::vector<ConstantParticle> drawn;
-    double sum = 0.0, next = random_.uniform();
-    for (Index i = 0; i < count; ++i) {
-      sum += weights[i] * static_cast<double>(count);
-      for (; next < sum; next += 1.0) drawn.push_back(particles_[static_cast<std::size_t>(i)]);
-    }
-    while (drawn.size() < particles_.size()) drawn.push_back(drawn.back());
+    for (const Index i : systematic_draws(weights, random_.uniform()))
+      drawn.push_back(particles_[static_cast<std::size_t>(i)]);
     particles_ = std::move(drawn);
-    const Eigen::LLT<MatrixXd> known(start_.covariance(held_, held_)), fitted(spread);
+    const Eigen::LLT<MatrixXd> known(motion_.start().covariance(motion_.held(), motion_.held())),
+        fitted(spread);
     const auto log_normal = [](const Eigen::LLT<MatrixXd>& factor, const VectorXd& from) {
       return -0.5 * factor.matrixL().solve(from).squaredNorm();
     };
     const auto target = [&](const ConstantParticle& one) {
-      return log_normal(known, one.theta - start_.mean(held_)) + one.settled + reached * one.fresh;
+      return log_normal(known, one.theta - motion_.start().mean(motion_.held())) + one.settled +
+             reached * one.fresh;
     };
     // Proposals whose sample has the fitted moments exactly: where most are accepted, so has the posterior's.
     for (Index k = 0; k < moves_; ++k) {
@@ -324,7 +166,7 @@ class RaoBlackwellised final : public Filter {
         ConstantParticle& one = particles_[static_cast<std::size_t>(i)];
         ConstantParticle other = one;
         other.theta = mean + fitted.matrixL() * draws.col(i);
-        replay(other);
+        motion_.replay(other, record_, settled_steps_);
         const double gain = target(other) - target(one) - log_normal(fitted, other.theta - mean) +
                             log_normal(fitted, one.theta - mean);
         if (std::log(random_.uniform()) < gain) one = std::move(other);
@@ -333,15 +175,15 @@ class RaoBlackwellised final : public Filter {
   }
 
   void form() const {
-    const Index n = start_.mean.size();
+    const Index n = motion_.start().mean.size();
     const VectorXd weights = shares(1.0);
     belief_ = {VectorXd::Zero(n), MatrixXd::Zero(n, n), {}};
     for (std::size_t i = 0; i < particles_.size(); ++i)
-      belief_.mean += weights[static_cast<Index>(i)] * state_of(particles_[i]);
+      belief_.mean += weights[static_cast<Index>(i)] * motion_.state(particles_[i]);
     for (std::size_t i = 0; i < particles_.size(); ++i) {
-      const VectorXd off = state_of(particles_[i]) - belief_.mean;
+      const VectorXd off = motion_.state(particles_[i]) - belief_.mean;
       MatrixXd own = off * off.transpose();
-      own(free_, free_) += particles_[i].covariance;
+      own(motion_.free(), motion_.free()) += particles_[i].covariance;
       belief_.covariance += weights[static_cast<Index>(i)] * own;
     }
     symmetrise(belief_.covariance);
@@ -351,13 +193,11 @@ class RaoBlackwellised final : public Filter {
   Index wanted_, moves_, seed_;
   double share_;
   RandomStream random_;
-  Gaussian start_;
-  std::vector<Index> held_, free_;  // places of theta, of the rest
+  ConditionalMotion motion_;
   std::vector<ConstantParticle> particles_;
-  std::vector<MetStep> record_;
+  std::vector<RecordStep> record_;
   std::size_t settled_steps_ = 0;  // of the record, whose likelihood the particles have as settled
-  MatrixXd root_, tangent_, work_;
-  VectorXd next_;
+  MatrixXd root_;
   Eigen::LLT<MatrixXd> factor_;
   mutable Gaussian belief_;
   mutable bool formed_ = false;

@@ -165,8 +165,8 @@ TEST(List, RefusesUnknownKindsAndNames) {
             "models, "
             "readers, reductions, responses, smoothers, steps, studies");
   EXPECT_EQ(Workplace().run("list filters quaternion").first_error_line(),
-            "beamid: unknown filter 'quaternion'; known: adaptive_ekf, ckf, dual_ekf, ekf, enkf, iekf, kf, "
-            "low_rank_ekf, "
+            "beamid: unknown filter 'quaternion'; known: adaptive_ekf, ckf, dual_ekf, dual_kf, ekf, enkf, "
+            "gillijns_de_moor, iekf, kf, low_rank_ekf, "
             "low_rank_ukf, particle, rao_blackwellised, robust_ekf, srckf, srukf, ukf");
   EXPECT_EQ(Workplace().run("list filters ufk").code, 2);
 }

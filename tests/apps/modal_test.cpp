@@ -245,5 +245,54 @@ TEST(Modal, ResolvesTwoNearModesOfAMeasuredHammerTest) {
     }
 }
 
+/// A column of one mode on a base that shakes at random, 40 s at 50 Hz, as a CSV file.
+std::string event(double first_hz, double size, std::uint64_t seed) {
+  constexpr int count = 2000, fine = 40;
+  constexpr double step = 0.02 / fine;
+  const Eigen::VectorXd draws = experiments::standard_normal(count + 1, seed, 1);
+  const double w = 2 * std::numbers::pi * first_hz;
+  std::ostringstream text;
+  text << "time_s,base_acceleration_m_per_s2,acceleration_surface_m_per_s2\n";
+  double base = 0, x = 0, v = 0;
+  for (int k = 0; k < count; ++k) {
+    const double next = 0.6 * base + size * draws[k] * std::sin(std::numbers::pi * k / count);
+    text << 0.02 * k << "," << base << "," << base + (-base - 0.1 * w * v - w * w * x) << "\n";
+    for (int i = 0; i < fine; ++i) {
+      const double u = base + (next - base) * i / fine;
+      v += step * (-u - 0.1 * w * v - w * w * x);
+      x += step * v;
+    }
+    base = next;
+  }
+  return text.str();
+}
+
+// Oracle: what the records were made of.
+TEST(Modal, FollowsTheFirstModeOverThePeakAcceleration) {
+  Workplace place;
+  place.write("weak.csv", event(3.0, 0.02, 1));
+  place.write("middle.csv", event(2.8, 0.3, 2));
+  place.write("strong.csv", event(2.5, 2.0, 3));
+  const Outcome outcome = place.run("modal weak.csv middle.csv strong.csv --events --out found");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("the stiffness changed by -3"));
+  EXPECT_TRUE(fs::exists(place.folder() / "found" / "f1_over_pga.png"));
+  const json found = json::parse(contents(place.folder() / "found" / "results.json"))["events"];
+  ASSERT_EQ(found.size(), 3u);
+  const double frequencies[] = {3.0, 2.8, 2.5};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(found[i]["frequency_hz"].get<double>(), frequencies[i], 0.015);
+    EXPECT_NEAR(found[i]["damping_ratio"].get<double>(), 0.05, 0.006);
+  }
+}
+
+TEST(Modal, NeedsTheMotionOfTheBaseForEvents) {
+  Workplace place;
+  place.write("decay.csv", decay(1, 1));
+  const Outcome outcome = place.run("modal decay.csv --events");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no channel of base_acceleration"));
+}
+
 }  // namespace
 }  // namespace beamid::apps::modal_test

@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "fem/assembly.hpp"
+#include "fem/buckling.hpp"
+#include "fem/complex_modes.hpp"
 #include "fem/modes.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/exact_frame.hpp"
@@ -236,6 +238,57 @@ TEST(Frame, StoreysWithABraceConvergeToTheExactFrequencies) {
   const Modes found = modes(system, 8);
   for (int i = 0; i < 8; ++i)
     EXPECT_NEAR(found.frequency_hz()[i] / exact_frequency(frame, i + 1), 1.0, 5e-5) << i;
+}
+
+TEST(Frame, PinnedColumnSoftensUnderItsLoad) {
+  // Oracle: omega^2 = omega_0^2 (1 - P / P_E), P_E = pi^2 E I / L^2, exact for a uniform pinned column.
+  const double bending = 2e5, length = 3.0, mass = 20.0, euler = pi * pi * bending / (length * length);
+  Frame frame;
+  frame.joints = {{0, 0}, {0, length}};
+  frame.members = {{0, 1, section(bending, 1e10, mass)}};
+  frame.supports = {{0, true, true, false}, {1, true, false, false}};
+  const double unloaded = std::pow(pi / length, 2) * std::sqrt(bending / mass);
+  for (const double share : {-0.5, 0.3, 0.9}) {
+    frame.members[0].axial_load = share * euler;
+    const double found = modes(assemble(frame, 40), 1).angular_frequency[0];
+    EXPECT_NEAR(found / (unloaded * std::sqrt(1.0 - share)), 1.0, 1e-6) << share;
+  }
+  frame.members[0].axial_load = 0.5 * euler;
+  EXPECT_NEAR(*buckling_factor(frame, 20), 2.0, 1e-5);
+}
+
+TEST(Frame, PortalUnderLoadBucklesAsItsCharacteristicEquationSays) {
+  // Oracle: a fixed-base portal whose columns bear P each sways out at the least k with
+  // k h / tan(k h) = -6 (I_b / b) / (I_c / h), P = E I_c k^2, where nothing stretches [timoshenko1961].
+  Frame frame = portal(1e12);
+  const double h = 3.0, ratio = 6.0 * (5e5 / 4.0) / (2e5 / 3.0);
+  double low = 0.5 * pi + 1e-9, high = pi - 1e-9;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (middle / std::tan(middle) + ratio > 0.0 ? low : high) = middle;
+  }
+  const double critical = 2e5 * low * low / (h * h);
+  frame.members[0].axial_load = frame.members[2].axial_load = 0.5 * critical;
+  EXPECT_NEAR(*buckling_factor(frame, 16), 2.0, 1e-4);
+}
+
+TEST(Frame, DashpotsDampAsThoseOfABeam) {
+  // Oracle: complex modes of the same cantilever as a beam.
+  Beam beam;
+  beam.segments = {{1.5, section(300, 1e12, 2.0)}};
+  beam.supports = {{0.0, true, true}};
+  Dashpot dashpot;
+  dashpot.position = 1.5;
+  dashpot.translational = 4.0;
+  beam.dashpots = {dashpot};
+  Frame frame;
+  frame.joints = {{0, 0}, {1.5, 0}};
+  frame.members = {{0, 1, section(300, 1e12, 2.0)}};
+  frame.supports = {{0}};
+  frame.dashpots = {{1, 0.0, 4.0, 0.0}};
+  const ComplexModes one = complex_modes(assemble(beam, 10), 2),
+                     other = complex_modes(assemble(frame, 10), 2);
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(std::abs(one.eigenvalue[i] / other.eigenvalue[i] - 1.0), 0.0, 1e-9);
 }
 
 TEST(Frame, MeshKeepsTheJointsAsItsFirstNodes) {

@@ -28,7 +28,7 @@ class Autoregression final : public filters::DiscreteModel {
   void output(const VectorXd& z, const VectorXd&, VectorXd& y) override { y = z.head(1); }
 
  private:
-  MatrixXd q_ = (MatrixXd(2, 2) << 0.3, 0.0, 0.0, 0.0).finished(), r_ = MatrixXd::Constant(1, 1, 0.2);
+  MatrixXd q_{{0.3, 0.0}, {0.0, 0.0}}, r_{{0.2}};
 };
 
 constexpr double truth = 0.8;

@@ -8,6 +8,7 @@
 #include <random>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "beamid/testing/forced_oscillator.hpp"
 #include "filters/linear_gaussian.hpp"
 
 namespace beamid::latent_inputs_test {
@@ -16,34 +17,15 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
 using filters::LatentInput;
 
-constexpr double mass = 2.0, damping = 3.0, stiffness = 800.0;
-
-// m x'' + c x' + k x = f, k unknown; the displacement and the acceleration are read.
-class Oscillator final : public filters::LinearMotion {
- public:
-  Index input_size() const override { return 1; }
-  Index motion_size() const override { return 2; }
-  Index parameter_size() const override { return 1; }
-  std::vector<filters::Label> state_labels() const override { return {{"x", "m"}, {"v", "m/s"}, {"k", ""}}; }
-  std::vector<filters::Label> output_labels() const override { return {{"x", "m"}, {"a", "m/s2"}}; }
-  void motion_matrix(const VectorXd& z, MatrixXd& a) const override {
-    a = (MatrixXd(2, 2) << 0.0, 1.0, -z[2] / mass, -damping / mass).finished();
-  }
-  void motion_matrix_derivative(const VectorXd&, Index, MatrixXd& a) const override {
-    a = (MatrixXd(2, 2) << 0.0, 0.0, -1.0 / mass, 0.0).finished();
-  }
-  void input_matrix(const VectorXd&, MatrixXd& b) const override { b = Vector2d(0.0, 1.0 / mass); }
-  void output(const VectorXd& z, const VectorXd& u, VectorXd& y) const override {
-    y = Vector2d(z[0], (u[0] - damping * z[1] - z[2] * z[0]) / mass);
-  }
-};
+using Oscillator = test::ForcedOscillator;
+constexpr double mass = Oscillator::mass, damping = Oscillator::damping, stiffness = Oscillator::stiffness;
 
 filters::LatentInputs with(LatentInput::Process process) {
   return {std::make_shared<Oscillator>(), {{0, process, 40.0, 0.03}}};
 }
 
-const LatentInput::Process processes[] = {LatentInput::Process::ornstein_uhlenbeck,
-                                          LatentInput::Process::matern};
+const LatentInput::Process processes[] = {  // stationary ones
+    LatentInput::Process::ornstein_uhlenbeck, LatentInput::Process::matern};
 
 VectorXd state_of(const filters::LatentInputs& model) {
   VectorXd state = VectorXd::LinSpaced(model.motion_size() + 1, 0.3, -0.2);
@@ -185,6 +167,18 @@ TEST(LatentInputs, AreEstimatedAsWellAsTheirDeviationSays) {
   }
   EXPECT_NEAR(squares / records, 1.0, 3.0 * std::sqrt(2.0 / records));
   EXPECT_LT(deviation, 0.1 * 40.0);
+}
+
+TEST(LatentInputs, WalkAtRandomByTheirDeviationWithinTheirTime) {
+  // Oracle: white noise of intensity q = sigma^2 / tau, so that the variance of force, velocity and
+  // displacement of a free mass grow by q t, q t^3 / (3 m^2), q t^5 / (20 m^2).
+  const filters::LatentInputs model = with(LatentInput::Process::random_walk);
+  VectorXd state = VectorXd::Zero(4);
+  const double t = 1e-4, q = 1600.0 / 0.03;
+  const MatrixXd noise = model.process_noise(state, t);
+  EXPECT_NEAR(noise(2, 2), q * t, 1e-9 * q * t);
+  EXPECT_NEAR(noise(1, 1), q * t * t * t / (3.0 * mass * mass), 1e-3 * noise(1, 1));
+  EXPECT_NEAR(noise(0, 0), q * std::pow(t, 5) / (20.0 * mass * mass), 1e-3 * noise(0, 0));
 }
 
 TEST(LatentInputs, RefuseAnInputThatDoesNotExist) {

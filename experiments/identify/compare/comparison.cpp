@@ -24,7 +24,7 @@
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::VectorXd;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 // The same filter with its covariance as a factor: a mesh has too many coordinates for another form, its
 // modes are of sizes too different.
@@ -150,6 +150,19 @@ const char* to_string(ComparedRun::Status status) {
       return "refused";
   }
   return "";
+}
+
+MatrixXd covariance_of_parameters(const ComparedRun& run) {
+  const Index q = run.unknown_state.mean.size();
+  if (q == 0 || run.unknown_state.covariance.size() == 0) return {};
+  VectorXd own(q), stated(q);
+  for (Index j = 0; j < q; ++j) {
+    const double slope = run.unknowns[static_cast<std::size_t>(j)].slope(run.unknown_state.mean[j]);
+    own[j] = std::copysign(std::sqrt(run.unknown_state.covariance(j, j)), slope);
+    stated[j] = run.parameters[static_cast<std::size_t>(j)].estimate.deviation;
+  }
+  const VectorXd turned = stated.cwiseQuotient(own);
+  return turned.asDiagonal() * run.unknown_state.covariance * turned.asDiagonal();
 }
 
 std::optional<double> ComparedParameter::error_percent() const {

@@ -108,6 +108,10 @@ struct Comparison {
 
 const char* to_string(ComparedRun::Status status);
 
+/// Of the parameters of a run, in their units: the correlations of what the filter carries with the
+/// deviations that are reported (q x q); empty where there is no estimate.
+Eigen::MatrixXd covariance_of_parameters(const ComparedRun& run);
+
 /// Every reduction x filter x discretisation of the experiment on the record: the one engine, whatever model
 /// is asked.
 ///

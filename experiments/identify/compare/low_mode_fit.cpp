@@ -11,6 +11,7 @@
 #include "experiments/models/current_modes.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "experiments/models/identification.hpp"
+#include "filters/levenberg_marquardt.hpp"
 #include "filters/output_error.hpp"
 
 namespace beamid::experiments {
@@ -20,9 +21,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr Index fewest_fit_samples = 64;  // samples that are worth a fit
 constexpr double first_periods = 3.0;     // of the fastest mode fitted, that are taken up first
-constexpr int iterations = 12;
-constexpr double close_enough = 0.02;  // length of the next step, in deviations of what is sought
-constexpr double largest_damping = 1e6;
+constexpr double close_enough = 0.02;     // length of the next step, in deviations of what is sought
 
 /// J near some c: 1/2 |R d - q|^2 + 1/2 remainder^2 + 1/2 |c + d|^2.
 struct LowModeLinearisation {
@@ -116,24 +115,26 @@ VectorXd step(const LowModeLinearisation& now, const VectorXd& c, double damping
   return rows.colPivHouseholderQr().solve(right);
 }
 
-// Levenberg-Marquardt from c, which it moves; what holds there.
+// From c, which it moves; what holds there.
 LowModeLinearisation descend(const LowModeFit& fit, const filters::Measurements& decimated, VectorXd& c) {
   LowModeLinearisation now = fit.at(c, decimated);
-  double damping = 0.0;
-  for (int i = 0; i < iterations && std::isfinite(now.cost); ++i) {
-    const VectorXd d = step(now, c, damping);
+  if (!std::isfinite(now.cost)) return now;
+  filters::MarquardtDamping rule;
+  rule.negligible = 0.1, rule.most_steps = 12;
+  const auto next_step = [&](double damping) {
+    const double size = now.root.squaredNorm();
+    rule.least_raised = 1e-2 * size, rule.most = 1e6 * std::max(1.0, size);
+    return step(now, c, damping);
+  };
+  const auto take = [&](const VectorXd& d) {
     LowModeLinearisation next = fit.at(c + d, decimated);
-    if (next.cost < now.cost) {
-      const double length = std::hypot((now.root * d).norm(), d.norm());
-      c += d;
-      now = std::move(next);
-      damping = damping > 1.0 ? 0.1 * damping : 0.0;
-      if (length < close_enough) break;
-      continue;
-    }
-    damping = std::max(10.0 * damping, 0.01 * now.root.squaredNorm());
-    if (damping > largest_damping * std::max(1.0, now.root.squaredNorm())) break;
-  }
+    if (!(next.cost < now.cost)) return filters::TriedStep{};
+    const double length = std::hypot((now.root * d).norm(), d.norm());
+    c += d;
+    now = std::move(next);
+    return filters::TriedStep{1.0, length < close_enough};
+  };
+  filters::levenberg_marquardt(rule, next_step, take);
   return now;
 }
 

@@ -9,13 +9,11 @@
 #include "filters/noisy_inputs.hpp"
 
 namespace beamid::experiments {
-namespace {
-
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 // In units of the deviations known beforehand, which bring all unknowns to one size.
-VectorXd bounds_of(const MatrixXd& information, const VectorXd& known, const JointModel& model,
-                   const VectorXd& values) {
+VectorXd bounds_of_unknowns(const MatrixXd& information, const VectorXd& known, const JointModel& model,
+                            const VectorXd& values) {
   const MatrixXd scaled = known.asDiagonal() * information * known.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
   filters::InformationFactor factor(known.size());
@@ -29,8 +27,6 @@ VectorXd bounds_of(const MatrixXd& information, const VectorXd& known, const Joi
   return bounds;
 }
 
-}  // namespace
-
 NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSettings& settings,
                                const filters::Gaussian& start, const VectorXd& found,
                                const filters::Measurements& record) {
@@ -39,16 +35,18 @@ NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSett
   filters::NoisyInputs noisy(filters::discretise(model.motion, record.interval(), settings.discretisation,
                                                  {{}, settings.output_noise}),
                              settings.input_noise);
-  const filters::InnovationProblem problem =
+  filters::InnovationProblem problem =
       filters::held_problem(noisy, record, model.unknown_places, noisy.with_errors(start));
+  problem.free_inputs = true;
   try {
     const filters::InnovationFit fit = filters::fit_innovations(problem, found(model.unknown_places));
     const MatrixXd prior = start.covariance(model.unknown_places, model.unknown_places);
     const MatrixXd one = MatrixXd::Identity(prior.rows(), prior.cols());
     const MatrixXd whole = fit.information + prior.llt().solve(one);
-    NoisyInputFit result{{fit.constants, whole.ldlt().solve(one), {}},
-                         bounds_of(fit.information, prior.diagonal().cwiseSqrt(), model, fit.constants),
-                         {}};
+    NoisyInputFit result{
+        {fit.constants, whole.ldlt().solve(one), {}},
+        bounds_of_unknowns(fit.information, prior.diagonal().cwiseSqrt(), model, fit.constants),
+        {}};
     if (!fit.converged) result.failure = "its likelihood has no maximum near the filter's estimate";
     return result;
   } catch (const std::invalid_argument& error) {

@@ -21,4 +21,10 @@ NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSett
                                const filters::Gaussian& start, const Eigen::VectorXd& found,
                                const filters::Measurements& record);
 
+/// Cramer-Rao bounds by an information about what the state carries, in units of the unknowns; infinite: not
+/// determined (q). @param known deviations beforehand, which bring all unknowns to one size; @param values of
+/// the state (q)
+Eigen::VectorXd bounds_of_unknowns(const Eigen::MatrixXd& information, const Eigen::VectorXd& known,
+                                   const JointModel& model, const Eigen::VectorXd& values);
+
 }  // namespace beamid::experiments

@@ -59,7 +59,8 @@ StartedModel started_model(JointModel first, const Choice& model, const ModelSet
   // fitted first.
   const bool follows = setting.reduction && setting.reduction->spans_lowest_modes() &&
                        dynamic_cast<const FollowingMotion*>(first.motion.get());
-  if ((!mesh && !follows && first.motion_size() <= most_started_coordinates) ||
+  const bool part = !setting.supports.empty();  // in its own coordinates only
+  if (part || (!mesh && !follows && first.motion_size() <= most_started_coordinates) ||
       modes >= setting.system.size() || first.unknowns.front().quantity.empty()) {
     FirstGuess guess = first_guess(first, setting.observations, record, frequency_hz);
     return {std::move(first), std::move(guess)};

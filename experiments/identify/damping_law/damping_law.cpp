@@ -81,9 +81,9 @@ VectorXd carried_over(const FittedLaw& from, const JointModel& to) {
   return state;
 }
 
-class LawFitter {
+class DampingLawFitter {
  public:
-  LawFitter(const ModelSetting& setting, const SlowRecord& slow, const ModalEstimate& modal)
+  DampingLawFitter(const ModelSetting& setting, const SlowRecord& slow, const ModalEstimate& modal)
       : setting_(setting), slow_(slow), modal_(modal) {}
 
   // @param start another law's, or null: from the modal analysis
@@ -204,7 +204,7 @@ DampingLawStudy study_damping_law(const Experiment& experiment, const Record& wh
   const double omega = 2.0 * pi * study.modal.frequency_hz;
   study.friction_velocity = omega * std::max(smoothing * study.last_amplitude, least * study.first_amplitude);
 
-  const LawFitter fitter(setting, slow, study.modal);
+  const DampingLawFitter fitter(setting, slow, study.modal);
   const VectorXd size = slow.samples.rowwise().norm() / std::sqrt(static_cast<double>(slow.samples.cols()));
   const FittedLaw first = fitter.fit("viscous", study.friction_velocity, 0.05 * size, nullptr);
   if (first.state.size() == 0) throw std::invalid_argument("no motion fits the record: " + first.reason);

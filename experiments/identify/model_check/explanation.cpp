@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "experiments/signal/chi_square_limit.hpp"
 
@@ -41,9 +42,10 @@ VectorXd step_of(const MatrixXd& information, const VectorXd& gradient) {
   return result;
 }
 
-VectorXd solve(const Problem& problem, std::vector<bool>& held) {
+// Gauss-Newton from u with steps that are halved, not damped: bounds hold some unknowns.
+VectorXd descend(const Problem& problem, VectorXd u, std::vector<bool>& held) {
   const Index q = problem.scale.size();
-  VectorXd u = VectorXd::Zero(q), left = problem.left(u);
+  VectorXd left = problem.left(u);
   for (int k = 0; k < most_steps; ++k) {
     MatrixXd slope = problem.slope(u);
     VectorXd gradient = slope.transpose() * problem.weight.cwiseProduct(left);
@@ -65,6 +67,37 @@ VectorXd solve(const Problem& problem, std::vector<bool>& held) {
     if (moved.cwiseAbs().maxCoeff() < smallest_step) break;
   }
   return u;
+}
+
+// Every combination of no change and one half as large either way as is plausible.
+std::vector<VectorXd> starts_of(const Problem& problem) {
+  const Index q = problem.scale.size();
+  std::vector<VectorXd> starts{VectorXd::Zero(q)};
+  if (q == 1) return starts;
+  for (Index i = 0; i < q; ++i) {
+    const Candidate& c = problem.check.candidates[problem.which[static_cast<std::size_t>(i)]];
+    for (std::size_t k = 0, known = starts.size(); k < known; ++k)
+      for (const double limit : {c.plausible_lower, c.plausible_upper}) {
+        if (limit == 0.0) continue;
+        starts.push_back(starts[k]);
+        starts.back()[i] = 0.5 * limit / problem.scale[i];
+      }
+  }
+  return starts;
+}
+
+// Several changes together have several minima: the least of what descents from several places leave.
+VectorXd solve(const Problem& problem, std::vector<bool>& held) {
+  VectorXd best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const VectorXd& start : starts_of(problem)) {
+    std::vector<bool> at_limit(held.size(), false);
+    const VectorXd u = descend(problem, start, at_limit);
+    const double cost = problem.cost(problem.left(u));
+    if (best.size() > 0 && !(cost < (1.0 - 1e-6) * least)) continue;
+    least = cost, best = u, held = at_limit;
+  }
+  return best;
 }
 
 void judge_explanation(const ModelCheck& check, Explanation& e) {

@@ -84,8 +84,12 @@ void require_sections(const PartOfStructure& part, Index found) {
 ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord& record,
                               const PartOfStructure& part, Sections sections) {
   const std::vector<Where> where = where_are(experiment, record.record, part);
-  ComparedRecord result = record;
-  result.record.channels.clear();
+  ComparedRecord result{record.name, {}, {}, record.truth, record.notes};
+  result.record.time = record.record.time;
+  result.record.time_resolution = record.record.time_resolution;
+  result.record.remarks = record.record.remarks;
+  result.record.warnings = record.record.warnings;
+  result.record.input_path = record.record.input_path;
   std::vector<Index> kept;
   Index found = 0, inside = 0;
   for (std::size_t i = 0; i < where.size(); ++i) {
@@ -122,7 +126,6 @@ ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord
         fmt::format("substructure '{}': no sensor sits inside it; expected at least one", part.name));
   result.record.samples = record.record.samples(kept, Eigen::all);
   if (record.sensor_noise.size() > 0) result.sensor_noise = record.sensor_noise(kept);
-  if (record.quiet_noise.size() > 0) result.quiet_noise = {};
   return result;
 }
 

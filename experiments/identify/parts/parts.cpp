@@ -3,15 +3,20 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "experiments/config/channel_places.hpp"
+#include "experiments/identify/parts/cut_chain.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
 namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr Eigen::Index most_whole_coordinates = 30;
 
@@ -30,9 +35,9 @@ void name_parameters(Experiment& experiment) {
 Comparison identify_part(const Experiment& experiment, const ComparedRecord& record,
                          const PartOfStructure& part, Sections sections,
                          const std::filesystem::path& folder) {
-  ComparedRecord own = record_of_part(experiment, record, part, sections);
-  const Experiment asked = experiment_of_part(experiment, own, part);
-  return compare(asked, std::move(own), folder, unwatched);
+  CutChain own = cut_chain(experiment, record_of_part(experiment, record, part, sections), part);
+  const Experiment asked = experiment_of_part(own.experiment, own.record, own.part);
+  return compare(asked, std::move(own.record), folder, unwatched);
 }
 
 Comparison identify_whole(const Experiment& experiment, const ComparedRecord& record,
@@ -46,35 +51,89 @@ Comparison identify_whole(const Experiment& experiment, const ComparedRecord& re
   return compare(whole, record, folder, unwatched);
 }
 
+// What one part says of the parameters it shares with others: places among all, values, information.
+struct PartSays {
+  std::vector<Index> places;
+  VectorXd values;
+  MatrixXd information;
+};
+
+PartSays says(const ComparedRun& run, const std::map<std::string, Index>& place_of) {
+  PartSays part;
+  part.values.resize(static_cast<Index>(run.parameters.size()));
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    part.places.push_back(place_of.at(run.parameters[j].estimate.name));
+    part.values[static_cast<Index>(j)] = run.parameters[j].estimate.value;
+  }
+  const MatrixXd covariance = covariance_of_parameters(run);
+  part.information = covariance.ldlt().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
+  return part;
+}
+
+// theta = I^-1 sum_p E_p^T P_p^-1 theta_p, I = sum_p E_p^T P_p^-1 E_p over the parts p, E_p picking theirs.
+void join_with_covariances(const std::vector<PartSays>& parts, std::vector<JoinedParameter>& all) {
+  const auto q = static_cast<Index>(all.size());
+  VectorXd scale(q), weighed = VectorXd::Zero(q);
+  for (Index j = 0; j < q; ++j) scale[j] = all[static_cast<std::size_t>(j)].deviation;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const PartSays& part : parts) {
+    const VectorXd own = scale(part.places);
+    const MatrixXd information = own.asDiagonal() * part.information * own.asDiagonal();
+    weighed(part.places) += information * part.values.cwiseQuotient(own);
+    for (Index i = 0; i < information.rows(); ++i)
+      for (Index j = 0; j < information.cols(); ++j)
+        entries.emplace_back(static_cast<int>(part.places[static_cast<std::size_t>(i)]),
+                             static_cast<int>(part.places[static_cast<std::size_t>(j)]), information(i, j));
+  }
+  Eigen::SparseMatrix<double> information(q, q);
+  information.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(information);
+  if (factor.info() != Eigen::Success) return;  // as weighed by the variances alone
+  const VectorXd found = factor.solve(weighed);
+  for (Index j = 0; j < q; ++j) {
+    JoinedParameter& one = all[static_cast<std::size_t>(j)];
+    one.value = scale[j] * found[j];
+    one.deviation = scale[j] * std::sqrt(factor.solve(VectorXd::Unit(q, j).eval())[j]);
+  }
+}
+
 std::vector<JoinedParameter> joined(const Experiment& experiment, const std::vector<IdentifiedPart>& parts) {
+  std::map<std::string, std::vector<const ComparedParameter*>> found;
+  for (const IdentifiedPart& part : parts) {
+    const ComparedRun& run = part.run(Sections::noisy);
+    if (run.status != ComparedRun::Status::converged) continue;
+    for (const ComparedParameter& parameter : run.parameters)
+      found[parameter.estimate.name].push_back(&parameter);
+  }
   std::vector<JoinedParameter> all;
+  std::map<std::string, Index> place_of;
   for (const ParameterChoice& choice : experiment.parameters) {
+    const auto same = found.find(choice.name);
+    if (same == found.end()) continue;
     JoinedParameter one{choice.name, {}, 0.0, 0.0, 0, 0.0, {}};
-    std::vector<const ComparedParameter*> found;
-    for (const IdentifiedPart& part : parts) {
-      const ComparedRun& run = part.run(Sections::noisy);
-      if (run.status != ComparedRun::Status::converged) continue;
-      for (const ComparedParameter& parameter : run.parameters)
-        if (parameter.estimate.name == choice.name) found.push_back(&parameter);
-    }
     double weights = 0.0;
-    for (const ComparedParameter* const parameter : found) {
+    for (const ComparedParameter* const parameter : same->second) {
       const double weight = 1.0 / (parameter->estimate.deviation * parameter->estimate.deviation);
       one.value += weight * parameter->estimate.value;
       weights += weight;
       one.unit = parameter->estimate.unit;
       one.truth = parameter->truth;
       ++one.parts;
-      for (const ComparedParameter* const other : found)
+      for (const ComparedParameter* const other : same->second)
         one.disagreement = std::max(one.disagreement,
                                     std::abs(other->estimate.value - parameter->estimate.value) /
                                         std::hypot(other->estimate.deviation, parameter->estimate.deviation));
     }
-    if (one.parts == 0) continue;
     one.value /= weights;
     one.deviation = 1.0 / std::sqrt(weights);
+    place_of[one.name] = static_cast<Index>(all.size());
     all.push_back(one);
   }
+  std::vector<PartSays> say;
+  for (const IdentifiedPart& part : parts)
+    if (part.run(Sections::noisy).status == ComparedRun::Status::converged)
+      say.push_back(says(part.run(Sections::noisy), place_of));
+  if (!all.empty()) join_with_covariances(say, all);
   return all;
 }
 

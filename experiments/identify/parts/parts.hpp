@@ -19,7 +19,7 @@ struct IdentifiedPart {
   }
 };
 
-/// A parameter as all parts that have it say together, weighed by their variances.
+/// A parameter as all parts say together, weighed by their covariances.
 struct JoinedParameter {
   std::string name, unit;
   double value = 0.0, deviation = 0.0;  ///< [unit]

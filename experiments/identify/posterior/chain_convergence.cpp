@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/identify/posterior/normal_law.hpp"
+#include "experiments/signal/median.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -80,9 +81,7 @@ ChainConvergence chain_convergence(const MatrixXd& draws) {
   const MatrixXd halves = halves_of(draws);
   const MatrixXd places = ranked(halves);
   std::vector<double> all(halves.data(), halves.data() + halves.size());
-  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
-  const double middle = all[all.size() / 2];
-  const MatrixXd spreads = ranked((halves.array() - middle).abs());
+  const MatrixXd spreads = ranked((halves.array() - median(all)).abs());
   double effective = effective_draws(places);
   for (const double share : {0.05, 0.95}) {
     const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(all.size() - 1));

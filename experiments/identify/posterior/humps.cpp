@@ -8,38 +8,40 @@
 #include <numbers>
 #include <optional>
 
+#include "filters/levenberg_marquardt.hpp"
+
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double valley_depth = 0.5, smallest_share = 1e-6;
-constexpr int valley_points = 24, most_climbs = 100;
+constexpr int valley_points = 24;
 
-// Levenberg and Marquardt's damping; a step is at most 1 long.
+// The top of the hump that u is on. A step is at most 1 long.
 std::optional<Hump> climbed(const Likelihood& likelihood, VectorXd u) {
   LikelihoodValue value = likelihood.at(u, true);
   if (!value.possible()) return {};
   const Index q = u.size();
-  double damping = 1e-3;
-  for (int i = 0; i < most_climbs; ++i) {
-    MatrixXd second = value.information + MatrixXd::Identity(q, q);
-    const VectorXd slope = value.gradient - u;
-    const MatrixXd damped = second + MatrixXd((damping * second.diagonal()).asDiagonal());
-    VectorXd step = damped.llt().solve(slope);
-    if (step.norm() > 1.0) step /= step.norm();
-    if (step.dot(second * step) < 1e-14) break;
-    LikelihoodValue next = likelihood.at(u + step, true);
-    if (next.possible() && posterior_log(next, u + step) > posterior_log(value, u)) {
-      u += step;
-      value = std::move(next);
-      damping = std::max(1e-12, 0.2 * damping);
-    } else if ((damping *= 5.0) > 1e8) {
-      break;
-    }
-  }
+  const auto second = [&]() -> MatrixXd { return value.information + MatrixXd::Identity(q, q); };
+  const auto step = [&](double damping) -> VectorXd {
+    VectorXd uphill = filters::solve_damped(second(), damping, value.gradient - u);
+    return uphill / std::max(1.0, uphill.norm());
+  };
+  const auto take = [&](const VectorXd& tried) {
+    if (tried.dot(second() * tried) < 1e-14) return filters::TriedStep{0.0, true};
+    LikelihoodValue next = likelihood.at(u + tried, true);
+    if (!next.possible() || !(posterior_log(next, u + tried) > posterior_log(value, u)))
+      return filters::TriedStep{};
+    u += tried;
+    value = std::move(next);
+    return filters::TriedStep{1.0, false};
+  };
+  filters::MarquardtDamping rule;
+  rule.first = 1e-3, rule.most = 1e8;
+  filters::levenberg_marquardt(rule, step, take);
   Hump hump{u, posterior_log(value, u), {}};
-  const Eigen::LLT<MatrixXd> root(value.information + MatrixXd::Identity(q, q));
+  const Eigen::LLT<MatrixXd> root(second());
   hump.covariance = root.solve(MatrixXd::Identity(q, q));
   hump.log_mass = hump.log_density + 0.5 * static_cast<double>(q) * std::log(2.0 * std::numbers::pi) -
                   MatrixXd(root.matrixLLT()).diagonal().array().log().sum();

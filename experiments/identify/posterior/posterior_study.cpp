@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "experiments/identify/update/mode_pairing.hpp"
+#include "experiments/models/estimates.hpp"
 #include "filters/random.hpp"
 
 namespace beamid::experiments {
@@ -15,11 +16,10 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double outer_tail = 1.959963985;  // of u
 constexpr Index most_predictions = 1000;
 
 // Sets that searches found; those that the prior excludes, at its edge: a hump may be cut off there.
-MatrixXd known_sets(const UpdateStudy& update, const ModalLikelihood& likelihood) {
+MatrixXd known_sets(const UpdateStudy& update, const ParameterLikelihood& likelihood) {
   MatrixXd known(likelihood.size(), 0);
   for (const ParameterSet& set : update.updating.sets) {
     known.conservativeResize(Eigen::NoChange, known.cols() + 1);
@@ -42,7 +42,7 @@ PosteriorParameter summary_of(const PosteriorStudy& study, std::size_t j) {
       places.push_back(u);
       all.push_back(prior.value(u));
       of_hump[posterior.hump_of[c][static_cast<std::size_t>(k)]].push_back(all.back());
-      if (std::abs(u) > outer_tail) result.beyond += 1.0 / static_cast<double>(posterior.draws());
+      if (std::abs(u) > quantile_95) result.beyond += 1.0 / static_cast<double>(posterior.draws());
     }
   }
   result.all = draw_summary(std::move(all));
@@ -58,7 +58,7 @@ PosteriorParameter summary_of(const PosteriorStudy& study, std::size_t j) {
 
 std::vector<PredictedFrequency> predicted_frequencies(const PosteriorStudy& study) {
   const Posterior& posterior = study.posterior;
-  const ModalData& data = study.update.data();
+  const ModalData& data = study.update->data();
   const Index each = posterior.chains.front().draws.cols(), all = static_cast<Index>(posterior.draws());
   const Index stride = std::max<Index>(1, all / most_predictions), count = all / stride;
   const auto modes = static_cast<Index>(data.modes.size());
@@ -66,7 +66,7 @@ std::vector<PredictedFrequency> predicted_frequencies(const PosteriorStudy& stud
   tbb::parallel_for(Index{0}, count, [&](Index i) {
     const Index k = i * stride;
     const VectorXd u = posterior.chains[static_cast<std::size_t>(k / each)].draws.col(k % each);
-    const PredictedModes found = study.update.model->at(study.likelihood->physical(u), false);
+    const PredictedModes found = study.update->model->at(study.likelihood->physical(u), false);
     const std::vector<Index> pairs = pair_modes(data, found);
     const MatrixXd assurance = modal_assurances(data, found);
     const VectorXd noise =
@@ -74,7 +74,7 @@ std::vector<PredictedFrequency> predicted_frequencies(const PosteriorStudy& stud
     for (Index m = 0; m < modes; ++m) {
       const Index pair = pairs[static_cast<std::size_t>(m)];
       frequency(m, i) = found.frequency_hz[pair] +
-                        study.update.residual->frequency_deviation(static_cast<std::size_t>(m)) * noise[m];
+                        study.update->residual->frequency_deviation(static_cast<std::size_t>(m)) * noise[m];
       mac(m, i) = assurance(m, pair);
     }
   });
@@ -84,6 +84,15 @@ std::vector<PredictedFrequency> predicted_frequencies(const PosteriorStudy& stud
     predicted.push_back({draw_summary({row.begin(), row.end()}), mac.row(m).mean()});
   }
   return predicted;
+}
+
+void sample(PosteriorStudy& study, const MatrixXd& known, const PosteriorSettings& settings,
+            const Progress& progress) {
+  study.settings = settings;
+  const auto begin = std::chrono::steady_clock::now();
+  study.posterior = sample_posterior(*study.likelihood, known, settings, progress);
+  study.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (std::size_t j = 0; j < study.unknowns().size(); ++j) study.parameters.push_back(summary_of(study, j));
 }
 
 }  // namespace
@@ -124,15 +133,33 @@ std::pair<double, double> PosteriorStudy::laplace_ratio() const {
 PosteriorStudy study_posterior(UpdateStudy update, const PosteriorSettings& settings,
                                const Progress& progress) {
   PosteriorStudy study;
-  study.update = std::move(update);
-  study.settings = settings;
-  study.likelihood = std::make_unique<const ModalLikelihood>(*study.update.residual);
-  const auto begin = std::chrono::steady_clock::now();
-  study.posterior =
-      sample_posterior(*study.likelihood, known_sets(study.update, *study.likelihood), settings, progress);
-  study.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (std::size_t j = 0; j < study.unknowns().size(); ++j) study.parameters.push_back(summary_of(study, j));
+  study.update = std::make_unique<const UpdateStudy>(std::move(update));
+  study.asked = study.update->unknowns();
+  study.likelihood = std::make_unique<const ModalLikelihood>(*study.update->residual);
+  sample(study, known_sets(*study.update, *study.likelihood), settings, progress);
   study.predicted = predicted_frequencies(study);
+  return study;
+}
+
+PosteriorStudy study_posterior(const Experiment& experiment, SensingRecord record,
+                               const PosteriorSettings& settings, const std::filesystem::path& folder,
+                               const Place& place, const Progress& progress) {
+  if (experiment.parameters.empty())
+    throw InputError(place, "no [[parameters]]; expected what of the structure is asked about");
+  auto source = std::make_unique<RecordSource>();
+  source->record = std::move(record);
+  source->reduction = sensing_reduction(experiment, source->record.record.interval());
+  source->sensing = study_sensing(experiment, source->record, source->reduction, folder, progress);
+  source->model = std::make_unique<const SensingModel>(experiment, source->record, source->reduction, folder);
+  PosteriorStudy study;
+  auto likelihood = std::make_unique<const RecordLikelihood>(*source->model, experiment);
+  study.asked = likelihood->unknowns();
+  study.likelihood = std::move(likelihood);
+  VectorXd likeliest(study.likelihood->size());
+  for (Index j = 0; j < likeliest.size(); ++j)
+    likeliest[j] = source->sensing.constants[static_cast<std::size_t>(j)].value;
+  study.source = std::move(source);
+  sample(study, study.likelihood->nearest(likeliest), settings, progress);
   return study;
 }
 

@@ -1,4 +1,4 @@
-// The posterior of a structure's parameters from measured modes, in physical terms.
+// The posterior of a structure's parameters from measured modes or a record, in physical terms.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,8 @@
 
 #include "experiments/identify/posterior/modal_likelihood.hpp"
 #include "experiments/identify/posterior/posterior.hpp"
+#include "experiments/identify/posterior/record_likelihood.hpp"
+#include "experiments/identify/sensing/sensing.hpp"
 #include "experiments/identify/update/update_study.hpp"
 
 namespace beamid::experiments {
@@ -34,22 +36,40 @@ struct PredictedFrequency {
   double mac = 0.0;  ///< mean; NaN without a shape
 };
 
+/// A record as posteriors take it: its likelihood's model, and what the sensors say against that.
+struct RecordSource {
+  SensingRecord record;
+  Choice reduction;
+  std::unique_ptr<const SensingModel> model;
+  SensingStudy sensing;  ///< at the likeliest constants
+};
+
 struct PosteriorStudy {
-  UpdateStudy update;
-  std::unique_ptr<const ModalLikelihood> likelihood;
+  std::unique_ptr<const UpdateStudy> update;   ///< of modes; else null
+  std::unique_ptr<const RecordSource> source;  ///< of a record; else null
+  std::unique_ptr<const ParameterLikelihood> likelihood;
+  std::vector<Unknown> asked;  ///< (q)
   PosteriorSettings settings;
   Posterior posterior;
   std::vector<PosteriorParameter> parameters;  ///< (q)
   std::vector<PredictedFrequency> predicted;   ///< of each measured mode
   double seconds = 0.0;                        ///< for the sampling, by the clock
 
-  const std::vector<Unknown>& unknowns() const { return update.unknowns(); }
+  const std::vector<Unknown>& unknowns() const { return asked; }
+  /// Whether the structure explains what was measured as well as the assumed errors say.
+  bool explains() const { return update ? update->updating.explains() : !source->sensing.contradicted(); }
   /// Of one parameter (draws x chains).
   Eigen::MatrixXd draws(std::size_t parameter) const;
   /// Of the heaviest hump, the smallest and the largest over the parameters: Laplace's width over the sampled
   /// one.
   std::pair<double, double> laplace_ratio() const;
 };
+
+/// The record through SensingModel: forces that were measured are known, [[unknown_forces]] are not.
+/// @param place of the experiment file @throws InputError where nothing is asked about; as the parts do
+PosteriorStudy study_posterior(const Experiment& experiment, SensingRecord record,
+                               const PosteriorSettings& settings, const std::filesystem::path& folder,
+                               const Place& place, const Progress& progress = unwatched);
 
 /// @throws InputError, std::invalid_argument as the parts do.
 PosteriorStudy study_posterior(UpdateStudy update, const PosteriorSettings& settings,

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "filters/particle_cloud.hpp"
 #include "filters/random.hpp"
 
 namespace beamid::experiments {
@@ -95,13 +96,8 @@ double next_step(const std::vector<Particle>& particles, double power) {
 std::vector<Particle> drawn_again(const std::vector<Particle>& particles, const VectorXd& weight,
                                   double offset) {
   std::vector<Particle> drawn;
-  const double part = weight.sum() / static_cast<double>(particles.size());
-  double place = offset * part, sum = 0.0;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    sum += weight[static_cast<Index>(i)];
-    for (; place < sum && drawn.size() < particles.size(); place += part) drawn.push_back(particles[i]);
-  }
-  while (drawn.size() < particles.size()) drawn.push_back(particles.back());
+  for (const Index i : filters::systematic_draws(weight / weight.sum(), offset))
+    drawn.push_back(particles[static_cast<std::size_t>(i)]);
   return drawn;
 }
 

@@ -10,7 +10,10 @@
 
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/identify/compare/run_noise.hpp"
+#include "experiments/identify/sensing/filtered_rows.hpp"
 #include "experiments/identify/sensing/sensing_draws.hpp"
+#include "experiments/models/estimates.hpp"
+#include "experiments/signal/missing_samples.hpp"
 #include "experiments/text/countdown.hpp"
 #include "experiments/text/memory_need.hpp"
 #include "fem/modes.hpp"
@@ -20,18 +23,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double normal_95 = 1.959963984540054;
-
 double rms(const VectorXd& values) {
-  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
-}
-
-// Root mean square over the samples where both are numbers.
-double rms_read(const VectorXd& values) {
-  double sum = 0.0, count = 0.0;
-  for (const double one : values)
-    if (std::isfinite(one)) sum += one * one, ++count;
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  return root_mean_squares(values.transpose())[0];
 }
 
 // Without the mean of what was read.
@@ -99,10 +92,9 @@ Found find_constants(const SensingModel& model, SensingStudy& study) {
     const auto place = static_cast<Index>(j);
     const double eta = found.theta[place], deviation = std::sqrt(found.covariance(place, place));
     const auto [lower, upper] = std::minmax(
-        {model.value(j, eta - normal_95 * deviation), model.value(j, eta + normal_95 * deviation)});
-    study.constants.push_back({model.constants()[j].name, model.constants()[j].unit,
-                               model.constants()[j].kind, model.value(j, eta), lower, upper,
-                               deviation / std::sqrt(prior.covariance(place, place))});
+        {model.value(j, eta - quantile_95 * deviation), model.value(j, eta + quantile_95 * deviation)});
+    study.constants.push_back(
+        {model.constants()[j].name, model.constants()[j].unit, model.value(j, eta), lower, upper});
   }
   return found;
 }
@@ -135,8 +127,8 @@ LeftOutSensor left_out(const SensingModel& model, const filters::LinearGaussian&
       filters::smoothed_rows(form, rest, pass, model.row_without_offset(form, i), form.d.row(i));
   const VectorXd error = read - found.means.row(0).transpose();
   LeftOutSensor result{channel.name, si_unit(channel.quantity)};
-  result.root_mean_square = rms_read(model.has_offset(i) ? centred(read) : read);
-  result.error = rms_read(model.has_offset(i) ? centred(error) : error);
+  result.root_mean_square = rms(model.has_offset(i) ? centred(read) : read);
+  result.error = rms(model.has_offset(i) ? centred(error) : error);
   result.expected = std::sqrt(std::pow(rms(found.deviations.row(0)), 2) + noise * noise);
   return result;
 }
@@ -144,14 +136,14 @@ LeftOutSensor left_out(const SensingModel& model, const filters::LinearGaussian&
 void add_histories(const Experiment& experiment, const SensingRecord& record,
                    const filters::LinearGaussian& form, const filters::SmoothedRows& found,
                    const MatrixXd& rows, SensingStudy& study) {
-  const VectorXd unread = stationary_deviations(form, rows);
+  const VectorXd unread = unread_deviations(form, rows, study.time.size());
   const std::size_t sensors = experiment.virtual_sensors.size();
   for (std::size_t j = 0; j < sensors + experiment.unknown_forces.size(); ++j) {
     const auto row = static_cast<Index>(j);
     SensedHistory history;
-    history.force = j >= sensors;
-    const VectorXd& truth = history.force ? record.forces[j - sensors] : record.sensors[j];
-    if (history.force) {
+    const bool is_force = j >= sensors;
+    const VectorXd& truth = is_force ? record.forces[j - sensors] : record.sensors[j];
+    if (is_force) {
       const UnknownForce& force = experiment.unknown_forces[j - sensors];
       history.name = force.name, history.unit = si_unit(force.quantity);
     } else {
@@ -163,20 +155,44 @@ void add_histories(const Experiment& experiment, const SensingRecord& record,
     history.deviation = found.deviations.row(row);
     history.unread_deviation = unread[row];
     if (truth.size() > 0) history.truth = truth;
+    if (!study.filter.empty()) history.first = study.time.size() / 10;
     study.histories.push_back(std::move(history));
   }
+}
+
+// C and D of what was asked: virtual sensors, then forces.
+MatrixXd wanted_rows(const SensingForm& form, Index virtuals) {
+  const MatrixXd forces = form.force_rows();
+  MatrixXd rows(virtuals + forces.rows(), forces.cols());
+  rows.topRows(virtuals) = form.matrices.h.bottomRows(virtuals);
+  rows.bottomRows(forces.rows()) = forces;
+  return rows;
+}
+MatrixXd wanted_feed(const SensingForm& form, Index virtuals) {
+  const auto forces = static_cast<Index>(form.latent->latent().size());
+  MatrixXd feed = MatrixXd::Zero(virtuals + forces, form.matrices.d.cols());
+  feed.topRows(virtuals) = form.matrices.d.bottomRows(virtuals);
+  return feed;
+}
+
+FilteredRows histories_by(const Choice& filter, const SensingModel& model, const VectorXd& theta) {
+  SensingForm form =
+      estimates_unknown_inputs(filter.name) ? model.form_of_walks(theta) : model.form_at(theta);
+  const Index virtuals = model.outputs() - model.measured();
+  const MatrixXd rows = wanted_rows(form, virtuals), feed = wanted_feed(form, virtuals);
+  return filtered_rows(std::move(form), filter, model.record(), rows, feed);
 }
 
 }  // namespace
 
 double SensedHistory::root_mean_square() const {
-  return rms(mean);
+  return rms(mean.tail(mean.size() - first));
 }
 double SensedHistory::reported_error() const {
-  return rms(deviation);
+  return rms(deviation.tail(deviation.size() - first));
 }
 double SensedHistory::error() const {
-  return rms_read(mean - *truth);
+  return rms((mean - *truth).tail(mean.size() - first));
 }
 
 bool SensingStudy::contradicted() const {
@@ -201,7 +217,8 @@ Choice sensing_reduction(const Experiment& experiment, double interval) {
 }
 
 SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
-                           const std::filesystem::path& folder, const Progress& progress) {
+                           const std::filesystem::path& folder, const Progress& progress,
+                           const std::optional<Choice>& filter) {
   for (const VirtualSensor& sensor : experiment.virtual_sensors)
     for (const ParameterChoice& parameter : experiment.parameters)
       if (sensor.bending_moment && parameter.quantity == "bending_stiffness")
@@ -220,16 +237,27 @@ SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& re
   study.forces = model.forces_at(found.theta);
   study.unseen_constants = model.unseen_constant_forces(found.theta);
 
-  countdown.begin("smoother");
-  const filters::LinearGaussian form = model.at(found.theta);
+  countdown.begin(filter ? filter->name : "smoother");
+  const SensingForm at_found = model.form_at(found.theta);
+  const filters::LinearGaussian& form = at_found.matrices;
   const filters::KalmanPass pass = filters::kalman_pass(form, model.record(), model.interval());
   study.innovations = consistency_of(pass, model.measured());
-  const Index virtuals = model.outputs() - model.measured(), forces = static_cast<Index>(model.forces());
-  MatrixXd rows(virtuals + forces, form.a.rows()), feed = MatrixXd::Zero(virtuals + forces, form.d.cols());
-  rows << form.h.bottomRows(virtuals), model.force_rows();
-  feed.topRows(virtuals) = form.d.bottomRows(virtuals);
-  add_histories(experiment, record, form, filters::smoothed_rows(form, model.record(), pass, rows, feed),
-                rows, study);
+  const Index virtuals = model.outputs() - model.measured();
+  const MatrixXd rows = wanted_rows(at_found, virtuals), feed = wanted_feed(at_found, virtuals);
+  const filters::SmoothedRows smoothed = filters::smoothed_rows(form, model.record(), pass, rows, feed);
+  if (filter) {
+    FilteredRows by_filter = histories_by(*filter, model, found.theta);
+    study.filter = filter->name;
+    study.filter_remarks = by_filter.remarks;
+    add_histories(experiment, record, form, by_filter.rows, rows, study);
+    for (std::size_t j = 0; j < study.histories.size(); ++j) {
+      SensedHistory& one = study.histories[j];
+      const VectorXd apart = one.mean - smoothed.means.row(static_cast<Index>(j)).transpose();
+      one.from_smoother = rms(apart.tail(apart.size() - one.first));
+    }
+  } else {
+    add_histories(experiment, record, form, smoothed, rows, study);
+  }
   if (experiment.fatigue) add_damages(experiment, model, form, rows.topRows(virtuals), feed, study);
 
   const VectorXd noise = model.noise_at(found.theta);
@@ -237,7 +265,7 @@ SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& re
     const Channel& channel = record.record.channels[static_cast<std::size_t>(i)];
     VectorXd read = record.record.samples.row(i);
     if (model.has_offset(i)) read = centred(read);
-    study.noise.push_back({channel.name, si_unit(channel.quantity), noise[i], rms_read(read),
+    study.noise.push_back({channel.name, si_unit(channel.quantity), noise[i], rms(read),
                            stated_noise(experiment, channel) > 0.0});
   }
   for (Index i = 0; i < model.measured() && model.measured() > 1; ++i) {

@@ -14,24 +14,25 @@ namespace beamid::experiments {
 /// A constant that the record was asked for.
 struct SensedConstant {
   std::string name, unit;
-  SensingConstant::Kind kind;
   double value = 0.0, lower_95 = 0.0, upper_95 = 0.0;  ///< [unit]
-  double learnt = 0.0;  ///< deviation afterwards over beforehand: near 1, the record says nothing of it
 };
 
 /// A history that no sensor read, with the deviation of its error.
 struct SensedHistory {
   std::string name, unit;
-  bool force = false;
   Eigen::VectorXd mean, deviation;       ///< (N)
   double unread_deviation = 0.0;         ///< that it would have without any sensor
+  Eigen::Index first = 0;                ///< sample from which errors count: a filter has to find the start
   std::optional<Eigen::VectorXd> truth;  ///< (N)
+  double from_smoother = 0.0;            ///< root mean square of what a filter's differs from the smoother's
 
   double root_mean_square() const;
   double reported_error() const;  ///< root mean square of the deviation
   double error() const;           ///< of mean - truth, which must be there
   /// Whether the sensors say less of it than what was assumed of the forces.
   bool undetermined() const { return reported_error() > 0.5 * unread_deviation; }
+  /// Whether a filter is further from the smoother than its own error allows: it has failed.
+  bool contradicts_smoother() const { return !(from_smoother <= 2.0 * reported_error()); }
 };
 
 /// A sensor as the others predict it.
@@ -62,6 +63,8 @@ struct SensingStudy {
   std::string failure;  ///< why the likelihood has no maximum
   std::vector<filters::LatentInput> forces;
   Eigen::VectorXd time;
+  std::string filter;  ///< of the histories; empty: the smoother, over all readings
+  std::vector<std::string> filter_remarks = {};
   std::vector<SensedHistory> histories;  ///< virtual sensors, then forces
   std::vector<LeftOutSensor> left_out;   ///< none of a single sensor
   std::vector<SensorNoise> noise;        ///< of every sensor that was read
@@ -79,11 +82,13 @@ struct SensingStudy {
   bool contradicted() const;
 };
 
-/// Constants by the likelihood of the innovations, then all histories by the smoother at them; every sensor
-/// that was read left out in turn.
+/// Constants by the likelihood of the innovations, then all histories at them, by the smoother or a filter;
+/// every sensor that was read left out in turn.
+/// @param filter for the histories, in place of the smoother
 /// @throws std::invalid_argument, std::runtime_error as the parts do.
 SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
-                           const std::filesystem::path& folder, const Progress& progress);
+                           const std::filesystem::path& folder, const Progress& progress,
+                           const std::optional<Choice>& filter = {});
 
 /// What the file says; else none of a chain of up to 12 floors, and of other structures the modes below 0.8
 /// of the Nyquist frequency, 12 at most, with the static deflection under every force.

@@ -19,8 +19,6 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using Kind = SensingConstant::Kind;
 
-constexpr double known_within = 3.0;  // of ln: a factor of 20
-
 // White noise shows in second differences, of variance 6 r^2; slow motion does not.
 double noise_floor(const VectorXd& samples) {
   const Index n = samples.size() - 2;
@@ -35,13 +33,39 @@ double noise_floor(const VectorXd& samples) {
   return std::clamp(found, 1e-5 * all, 0.1 * all);
 }
 
+filters::LatentInput::Process process_of(UnknownForce::Process process) {
+  using To = filters::LatentInput::Process;
+  switch (process) {
+    case UnknownForce::Process::matern:
+      return To::matern;
+    case UnknownForce::Process::random_walk:
+      return To::random_walk;
+    case UnknownForce::Process::ornstein_uhlenbeck:
+      break;
+  }
+  return To::ornstein_uhlenbeck;
+}
+
 }  // namespace
 
-// P = A P A^T + Q, by doubling: P_2j = P_j + A^j P_j A^jT.
-VectorXd stationary_deviations(const filters::LinearGaussian& model, const MatrixXd& rows) {
+MatrixXd SensingForm::force_rows() const {
+  const auto forces = static_cast<Index>(latent->latent().size());
+  MatrixXd rows = MatrixXd::Zero(forces, static_cast<Index>(moving.size()));
+  for (Index i = 0; i < forces; ++i) {
+    const Index place = latent->place(static_cast<std::size_t>(i));
+    rows(i, std::lower_bound(moving.begin(), moving.end(), place) - moving.begin()) = 1.0;
+  }
+  return rows;
+}
+
+// P = A P A^T + Q, by doubling: P_2j = P_j + A^j P_j A^jT. A random walk's grows by as much as it is.
+VectorXd unread_deviations(const filters::LinearGaussian& model, const MatrixXd& rows, Index samples) {
   MatrixXd a = model.a, p = model.q;
-  for (int i = 0; i < 40; ++i) {
+  Index after = 1;
+  for (int i = 0; i < 40; ++i, after *= 2) {
     const MatrixXd more = a * p * a.transpose();
+    const bool walks = after >= samples && more.trace() > 0.9 * p.trace();
+    if (walks) break;
     p += more;
     if (!(more.cwiseAbs().maxCoeff() > 1e-9 * p.cwiseAbs().maxCoeff())) break;
     a = (a * a).eval();
@@ -68,9 +92,7 @@ SensingModel::SensingModel(const Experiment& experiment, const SensingRecord& re
     const UnknownForce& force = experiment.unknown_forces[static_cast<std::size_t>(i)];
     filters::LatentInput one;
     one.input = inputs - unknown + i;
-    one.process = force.process == UnknownForce::Process::matern
-                      ? filters::LatentInput::Process::matern
-                      : filters::LatentInput::Process::ornstein_uhlenbeck;
+    one.process = process_of(force.process);
     one.deviation = force.deviation.value_or(1.0);
     one.correlation_time = force.correlation_time.value_or(1.0);
     forces_.push_back(one);
@@ -115,7 +137,7 @@ void SensingModel::add_constants(const Experiment& experiment) {
     const UnknownForce& force = experiment.unknown_forces[i];
     if (!force.deviation)
       before.push_back({Kind::force_deviation, force.name + "_deviation", si_unit(force.quantity), i});
-    if (!force.correlation_time)
+    if (!force.correlation_time && force.process != UnknownForce::Process::random_walk)
       before.push_back({Kind::correlation_time, force.name + "_correlation_time", "s", i});
   }
   constants_.insert(constants_.begin(), before.begin(), before.end());
@@ -150,6 +172,7 @@ void SensingModel::guess_forces() {
     return std::any_of(constants_.begin(), constants_.end(),
                        [&](const auto& one) { return one.kind == kind && one.index == force; });
   };
+  if (stated.empty()) return;
   double best = std::numeric_limits<double>::infinity();
   std::vector<filters::LatentInput> likeliest = stated;
   for (const double share : {0.03, 0.1, 0.3, 1.0, 3.0}) {
@@ -159,7 +182,7 @@ void SensingModel::guess_forces() {
         forces_[i].correlation_time = std::max(share * radian, 0.5 * interval());
     VectorXd theta = prior_.mean;
     const filters::LinearGaussian unit = at(theta);
-    const VectorXd moved = stationary_deviations(unit, unit.h.topRows(measured_));
+    const VectorXd moved = unread_deviations(unit, unit.h.topRows(measured_), record_.size());
     std::vector<double> ratios;
     for (Index i = 0; i < measured_; ++i) {
       const VectorXd row = record_.outputs.row(i);
@@ -207,20 +230,38 @@ VectorXd SensingModel::noise_at(const VectorXd& theta) const {
   return noise;
 }
 
-filters::LinearGaussian SensingModel::at(const VectorXd& theta) const {
-  const auto latent = std::make_shared<filters::LatentInputs>(motion_, forces_at(theta));
-  const filters::Gaussian start = latent->with_latent(start_);
-  std::vector<Index> held;
-  for (const Index place : model_.unknown_places) held.push_back(latent->moved(place));
+SensingForm SensingModel::form(const VectorXd& theta, const std::vector<filters::LatentInput>& forces) const {
+  const auto latent = std::make_shared<filters::LatentInputs>(motion_, forces);
+  SensingForm result{latent, {}, latent->with_latent(start_), {}, {}};
+  std::vector<Index> known;
+  for (const Index place : model_.unknown_places) known.push_back(latent->moved(place));
+  for (Index i = 0; i < result.start.mean.size(); ++i)
+    if (std::find(known.begin(), known.end(), i) == known.end()) result.moving.push_back(i);
   const VectorXd eta = parameters_at(theta);
-  VectorXd state = start.mean;
-  state(held) = eta;
+  result.start.mean(known) = eta;
+  result.start.covariance(known, Eigen::all).setZero();
+  result.start.covariance(Eigen::all, known).setZero();
+
+  const MatrixXd q = latent->process_noise(result.start.mean, interval());
   const MatrixXd r = noise_at(theta).cwiseAbs2().asDiagonal();
-  const auto model =
-      filters::discretise(latent, interval(), "exponential", {latent->process_noise(state, interval()), r});
-  filters::LinearGaussian form = filters::linear_gaussian(*model, held, eta, start, record_.inputs.rows());
-  for (Index i = measured_; i < outputs(); ++i) form.h.row(i) = row_without_offset(form, i);
-  return form;
+  result.model = filters::discretise(latent, interval(), "exponential", {q, r});
+  result.matrices = filters::linear_gaussian(*result.model, known, eta, result.start, record_.inputs.rows());
+  for (Index i = measured_; i < outputs(); ++i)
+    result.matrices.h.row(i) = row_without_offset(result.matrices, i);
+  return result;
+}
+
+// sigma and tau of a walk that changes as much from sample to sample: 2 sigma^2 (1 - rho(dt)).
+SensingForm SensingModel::form_of_walks(const VectorXd& theta) const {
+  std::vector<filters::LatentInput> forces = forces_at(theta);
+  for (filters::LatentInput& one : forces) {
+    const double times = interval() / one.correlation_time, l = std::sqrt(3.0) * times;
+    using Process = filters::LatentInput::Process;
+    const double kept = one.process == Process::matern ? (1.0 + l) * std::exp(-l) : std::exp(-times);
+    if (one.process != Process::random_walk)
+      one = {one.input, Process::random_walk, one.deviation * std::sqrt(2.0 * (1.0 - kept)), interval()};
+  }
+  return form(theta, forces);
 }
 
 MatrixXd SensingModel::row_without_offset(const filters::LinearGaussian& model, Index i) const {
@@ -232,14 +273,6 @@ MatrixXd SensingModel::row_without_offset(const filters::LinearGaussian& model, 
 
 bool SensingModel::has_offset(Index i) const {
   return std::any_of(offsets_.begin(), offsets_.end(), [&](const auto& one) { return one.first == i; });
-}
-
-MatrixXd SensingModel::force_rows() const {
-  const filters::LatentInputs latent(motion_, forces_);
-  const auto n = static_cast<Index>(latent.state_labels().size() - model_.unknown_places.size());
-  MatrixXd rows = MatrixXd::Zero(static_cast<Index>(forces_.size()), n);
-  for (std::size_t i = 0; i < forces_.size(); ++i) rows(static_cast<Index>(i), latent.place(i)) = 1.0;
-  return rows;
 }
 
 filters::InnovationProblem SensingModel::problem(const filters::Measurements& record) const {
@@ -261,6 +294,12 @@ double SensingModel::value(std::size_t constant, double theta) const {
   return noise_[one.channels.front()] * std::exp(theta);
 }
 
+double SensingModel::place(std::size_t constant, double value) const {
+  const SensingConstant& one = constants_[constant];
+  if (one.kind == Kind::parameter) return model_.unknowns[one.index].to_state(value);
+  return std::log(value / this->value(constant, 0.0));
+}
+
 double SensingModel::slope(std::size_t constant, double theta) const {
   const SensingConstant& one = constants_[constant];
   return one.kind == Kind::parameter ? model_.unknowns[one.index].slope(theta) : value(constant, theta);
@@ -270,6 +309,7 @@ double SensingModel::slope(std::size_t constant, double theta) const {
 // are.
 int SensingModel::unseen_constant_forces(const VectorXd& theta) const {
   constexpr double rounding = 1e-8;
+  if (forces_.empty()) return 0;
   VectorXd state = VectorXd::Zero(start_.mean.size());
   state(model_.unknown_places) = parameters_at(theta);
   const Index all = motion_->motion_size(), r = 2 * model_.motion_size();

@@ -23,6 +23,16 @@ struct SensingConstant {
   std::vector<Eigen::Index> channels = {};  ///< that share the noise
 };
 
+/// The model at one theta, for any filter and as matrices.
+struct SensingForm {
+  std::shared_ptr<const filters::LatentInputs> latent;
+  std::unique_ptr<filters::DiscreteModel> model;  ///< of z = [x; p; parameters]
+  filters::Gaussian start;                        ///< of z, the parameters known
+  std::vector<Eigen::Index> moving;               ///< entries of z but the parameters
+  filters::LinearGaussian matrices;               ///< of those
+  Eigen::MatrixXd force_rows() const;             ///< that read the unknown forces of those (f x n)
+};
+
 class SensingModel {
  public:
   /// @throws std::invalid_argument where the structure cannot be identified as described.
@@ -38,18 +48,24 @@ class SensingModel {
   Eigen::Index coordinates() const { return model_.motion_size(); }
 
   /// The model at theta; its outputs: measured, then virtual ones.
-  filters::LinearGaussian at(const Eigen::VectorXd& theta) const;
+  filters::LinearGaussian at(const Eigen::VectorXd& theta) const { return form_at(theta).matrices; }
+  SensingForm form_at(const Eigen::VectorXd& theta) const { return form(theta, forces_at(theta)); }
+  /// With random walks in their place that change by as much from sample to sample: for filters that take
+  /// nothing else for known of the forces.
+  SensingForm form_of_walks(const Eigen::VectorXd& theta) const;
   /// What output i reads of its state, but for the sensor's own offset (1 x n).
   Eigen::MatrixXd row_without_offset(const filters::LinearGaussian& model, Eigen::Index i) const;
   bool has_offset(Eigen::Index i) const;
-  /// Rows that read the unknown forces of its state (f x n).
-  Eigen::MatrixXd force_rows() const;
   /// theta of [[parameters]] as known beforehand, of the rest within a factor of about 20 of the guess.
   filters::Gaussian prior() const { return prior_; }
   filters::InnovationProblem problem(const filters::Measurements& record) const;
 
-  /// What theta stands for, in physical units, and by how much it changes with theta.
+  /// How far forces and noise that are not stated may be from the guess, one deviation of ln: a factor of 20.
+  static constexpr double known_within = 3.0;
+  const Unknown& unknown(std::size_t parameter) const { return model_.unknowns[parameter]; }
+  /// What theta stands for, in physical units, its theta, and by how much it changes with theta.
   double value(std::size_t constant, double theta) const;
+  double place(std::size_t constant, double value) const;
   double slope(std::size_t constant, double theta) const;
   /// Standard deviations that forces and noise are taken to have at theta.
   std::vector<filters::LatentInput> forces_at(const Eigen::VectorXd& theta) const;
@@ -63,6 +79,7 @@ class SensingModel {
   void make_start();
   void guess_forces();
   Eigen::VectorXd parameters_at(const Eigen::VectorXd& theta) const;
+  SensingForm form(const Eigen::VectorXd& theta, const std::vector<filters::LatentInput>& forces) const;
 
   JointModel model_;
   std::shared_ptr<const filters::LinearMotion> motion_;
@@ -77,7 +94,9 @@ class SensingModel {
   filters::Gaussian prior_;
 };
 
-/// Standard deviations that the outputs of a model have for ever under its noise (p).
-Eigen::VectorXd stationary_deviations(const filters::LinearGaussian& model, const Eigen::MatrixXd& rows);
+/// Standard deviations that rows of a model's state have under its noise for ever, or where they grow without
+/// end, after about as many samples from rest (c).
+Eigen::VectorXd unread_deviations(const filters::LinearGaussian& model, const Eigen::MatrixXd& rows,
+                                  Eigen::Index samples);
 
 }  // namespace beamid::experiments

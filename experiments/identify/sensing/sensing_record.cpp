@@ -30,8 +30,6 @@ Channel channel_of(const UnknownForce& force) {
 }  // namespace
 
 SensingRecord sensing_record(const Experiment& experiment, const Record& record, const Place& place) {
-  if (experiment.unknown_forces.empty())
-    throw InputError(place, "no [[unknown_forces]]; expected where the forces act that were not measured");
   SensingRecord result;
   result.sensors.resize(experiment.virtual_sensors.size());
   result.forces.resize(experiment.unknown_forces.size());

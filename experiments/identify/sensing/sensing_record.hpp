@@ -21,7 +21,7 @@ struct SensingRecord {
   std::vector<Eigen::VectorXd> sensors, forces;
 };
 
-/// @throws InputError where no output is left, or the experiment names no unknown force.
+/// @throws InputError where no output is left.
 SensingRecord sensing_record(const Experiment& experiment, const Record& record, const Place& place);
 
 /// The experiment's own test, simulated, with what the virtual sensors would read without noise.

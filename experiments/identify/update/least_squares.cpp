@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "filters/levenberg_marquardt.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -61,45 +63,33 @@ std::optional<Fit> least_squares(const ModalResidual& residual, const VectorXd& 
   const bool slopes_apart = residual.model().dense();
   const double enough = slopes_apart ? 0.0 : 1e-7;  // of chi^2, where modes have fewer digits
   Fit fit;
-  double damping = 1e-2;
   int small_gains = 0;
-  while (fit.iterations < most_iterations) {
+  const auto step = [&](double damping) -> VectorXd {
     const MatrixXd normal = value->jacobian.transpose() * value->jacobian;
     const VectorXd gradient = value->jacobian.transpose() * value->residual;
-    const std::vector<bool> on_bound = held_by_bounds(space, x, gradient);
-    bool moved = false;
-    while (!moved && damping < 1e12) {
-      ++fit.iterations;
-      VectorXd step = step_from(normal, gradient, on_bound, damping);
-      const double length = step.cwiseAbs().maxCoeff();
-      if (!std::isfinite(length)) {
-        damping *= 10.0;
-        continue;
-      }
-      if (length > longest_step) step *= longest_step / length;
-      const VectorXd there = (x + step).cwiseMax(space.lower()).cwiseMin(space.upper());
-      auto next = value_at(residual, there, !slopes_apart);
-      const double before = value->chi_square();
-      if (next && next->chi_square() <= before) {
-        if (slopes_apart) next = value_at(residual, there, true);
-        const double gain = before - next->chi_square();
-        small_gains = gain <= 1e-10 * before ? small_gains + 1 : 0;
-        const double went = (there - x).cwiseAbs().maxCoeff();
-        fit.converged = went < shortest_step ||
-                        gain <= std::max(least_gain * before, enough * (1.0 + before)) || small_gains > 3;
-        x = there;
-        value = std::move(next);
-        damping = std::max(damping * 0.1, least_damping);
-        moved = true;
-      } else {
-        fit.converged = length < 1e-8;
-        if (fit.converged) break;
-        damping *= 5.0;
-      }
-    }
-    if (fit.converged || !moved) break;
-  }
-  fit.converged = fit.converged || damping >= 1e12;
+    return step_from(normal, gradient, held_by_bounds(space, x, gradient), damping);
+  };
+  const auto take = [&](const VectorXd& tried) {
+    const double length = tried.cwiseAbs().maxCoeff();
+    if (!std::isfinite(length)) return filters::TriedStep{};
+    const VectorXd there =
+        (x + std::min(1.0, longest_step / length) * tried).cwiseMax(space.lower()).cwiseMin(space.upper());
+    auto next = value_at(residual, there, !slopes_apart);
+    const double before = value->chi_square();
+    if (!next || !(next->chi_square() <= before)) return filters::TriedStep{0.0, length < 1e-8};
+    if (slopes_apart) next = value_at(residual, there, true);
+    const double gain = before - next->chi_square(), went = (there - x).cwiseAbs().maxCoeff();
+    small_gains = gain <= 1e-10 * before ? small_gains + 1 : 0;
+    x = there;
+    value = std::move(next);
+    return filters::TriedStep{1.0, went < shortest_step ||
+                                       gain <= std::max(least_gain * before, enough * (1.0 + before)) ||
+                                       small_gains > 3};
+  };
+  filters::MarquardtDamping rule;
+  rule.first = 1e-2, rule.raise = 5.0, rule.least_raised = 0.0;
+  rule.least = rule.negligible = least_damping, rule.most_steps = most_iterations;
+  fit.converged = filters::levenberg_marquardt(rule, step, take) != filters::DescentEnd::exhausted;
   fit.on_bound = held_by_bounds(space, x, value->jacobian.transpose() * value->residual);
   fit.x = std::move(x);
   fit.value = std::move(*value);

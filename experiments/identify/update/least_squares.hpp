@@ -12,7 +12,6 @@ struct Fit {
   Eigen::VectorXd x;
   ModalResidual::Value value;  ///< with its Jacobian
   std::vector<bool> on_bound;  ///< held there against the residual's slope
-  int iterations = 0;
   bool converged = false;
 
   double chi_square() const { return value.chi_square(); }

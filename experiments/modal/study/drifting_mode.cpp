@@ -1,12 +1,12 @@
 #include "experiments/modal/study/drifting_mode.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "experiments/modal/envelope_line.hpp"
 #include "experiments/signal/least_squares.hpp"
+#include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -43,32 +43,38 @@ VectorXcd through_logarithm(const VectorXcd& z, const VectorXd& x) {
   return complex_least_squares(powers, right);
 }
 
-/// Sum of squares that the best c near `c` leaves of y: Gauss-Newton, damped where it does not descend.
+/// d Re z / d (Re c_1, Im c_1, ...) (N x 2 terms).
+MatrixXd drift_slope(const VectorXcd& z, const VectorXd& x) {
+  MatrixXd slope(z.size(), 2 * terms);
+  VectorXcd part = z;
+  for (Index j = 0; j < terms; ++j, part.array() *= x.array().cast<Complex>()) {
+    slope.col(2 * j) = part.real();
+    slope.col(2 * j + 1) = -part.imag();
+  }
+  return slope;
+}
+
+/// Sum of squares that the best c near `c` leaves of y.
 double left_by_drifting(const VectorXd& y, const VectorXd& x, VectorXcd c) {
   VectorXcd z = drifting(c, x);
-  double squares = (y - z.real()).squaredNorm(), damping = 1e-6;
-  for (int step = 0; step < 30 && damping < 1e6; ++step) {
-    MatrixXd slope(y.size(), 2 * terms);
-    VectorXcd part = z;
-    for (Index j = 0; j < terms; ++j, part.array() *= x.array().cast<Complex>()) {
-      slope.col(2 * j) = part.real();
-      slope.col(2 * j + 1) = -part.imag();
-    }
-    MatrixXd normal = slope.transpose() * slope;
-    normal.diagonal() *= 1 + damping;
-    const VectorXd move = normal.ldlt().solve(slope.transpose() * (y - z.real()));
+  double squares = (y - z.real()).squaredNorm();
+  const auto step = [&](double damping) -> VectorXd {
+    const MatrixXd slope = drift_slope(z, x);
+    return filters::solve_damped(slope.transpose() * slope, damping, slope.transpose() * (y - z.real()));
+  };
+  const auto take = [&](const VectorXd& tried) {
     VectorXcd next = c;
-    for (Index j = 0; j < terms; ++j) next[j] += Complex(move[2 * j], move[2 * j + 1]);
+    for (Index j = 0; j < terms; ++j) next[j] += Complex(tried[2 * j], tried[2 * j + 1]);
     const VectorXcd there = drifting(next, x);
     const double left = (y - there.real()).squaredNorm();
-    if (!(left < squares)) {
-      damping *= 10;
-      continue;
-    }
+    if (!(left < squares)) return filters::TriedStep{};
     const bool settled = squares - left < 1e-6 * squares;
-    c = next, z = there, squares = left, damping *= 0.1;
-    if (settled) break;
-  }
+    c = next, z = there, squares = left;
+    return filters::TriedStep{1.0, settled};
+  };
+  filters::MarquardtDamping rule;
+  rule.most = 1e6, rule.most_steps = 30;
+  filters::levenberg_marquardt(rule, step, take);
   return squares;
 }
 

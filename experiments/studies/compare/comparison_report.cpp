@@ -111,6 +111,7 @@ Json comparison_values(const ComparedRun& run, const std::vector<std::string>& o
                                            {"error_percent", optional_number(p.error_percent())},
                                            {"bound", optional_number(p.bound)},
                                            {"bound_ratio", optional_number(p.bound_ratio())}};
+  if (run.has_estimate()) json["covariance"] = json_rows(covariance_of_parameters(run));
   if (run.reproduced.size() == 0) return json;
   json["response_error_percent"] = run.response_error_percent;
   json["frequency_hz"] = optional_number(run.frequency_hz);
@@ -119,6 +120,17 @@ Json comparison_values(const ComparedRun& run, const std::vector<std::string>& o
   json["mean_normalised_square"] = run.run.normalised_squares.mean();
   json["remarks"] = run.remarks;
   return json;
+}
+
+void add_arrays(const Comparison& comparison, Results& results) {
+  const bool alone = comparison.runs.size() == 1;
+  for (const ComparedRun& run : comparison.runs) {
+    if (run.reproduced.size() == 0) continue;
+    const std::string name = alone ? "" : name_of(comparison, run);
+    results.arrays.push_back({name, "innovations", run.run.innovations});
+    results.arrays.push_back({name, "reproduced", run.reproduced});
+  }
+  results.arrays.push_back({"", "time_s", comparison.compared.record.time.transpose()});
 }
 
 }  // namespace
@@ -166,6 +178,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
   add_notes(results, comparison.compared.notes);
   results.figures = figures(comparison);
+  add_arrays(comparison, results);
   for (const ComparedRun& run : comparison.runs) {
     const std::string name = fmt::format("{} {} {}", run.reduction, run.filter, run.discretisation);
     results.timing.emplace_back(name + " filter", run.seconds);

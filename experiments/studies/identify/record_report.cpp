@@ -209,6 +209,9 @@ Results report(const Experiment& experiment, const Record& record, const std::st
     results.paragraph("Stiffness, damping and mass are those of the motion at the first channel of " +
                       channels_text(placed) + ".");
   if (found.identification.run.failure) return results;
+  results.arrays = {{"", "innovations", found.identification.run.innovations},
+                    {"", "reproduced", found.reproduced},
+                    {"", "time_s", record.time.transpose()}};
   results.table(parameter_table(found));
   if (found.batch) results.paragraph(batch_text(found));
   results.paragraph(consistency_text(found));

@@ -6,6 +6,7 @@
 #include "experiments/config/description.hpp"
 #include "experiments/config/failure_response.hpp"
 #include "experiments/config/structure_description.hpp"
+#include "experiments/results/results.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
 
 namespace beamid::experiments {
@@ -87,6 +88,7 @@ Json values(const RecordIdentification& found, const Record& record) {
                    {"lower_95", p.lower_95()},
                    {"upper_95", p.upper_95()},
                    {"modal_analysis", number_or_null(p.modal)}};
+  if (!found.identification.run.failure) json["covariance"] = json_rows(covariance_of_parameters(found));
   json["equivalent_mass_kg"] = found.identification.found.mass;
   json["beam_frequency_hz"] = found.beam_frequency_hz;
   json["window_s"] = {record.time[0], record.time[record.size() - 1]};

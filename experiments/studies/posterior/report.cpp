@@ -1,38 +1,60 @@
 #include "experiments/studies/posterior/report.hpp"
 
+#include <fmt/format.h>
+
+#include "experiments/studies/sensing/report.hpp"
 #include "experiments/studies/update/report.hpp"
 
 namespace beamid::experiments {
+namespace {
+
+void add_doubts_of_modes(const PosteriorStudy& study, Results& results) {
+  if (!study.explains())
+    results.warning(update_verdict(*study.update).first +
+                    " The posterior takes their standard deviations as they are: it is too narrow.");
+  for (const std::string& warning : study.update->warnings) results.warning(warning);
+}
+
+nlohmann::ordered_json record_configuration(const Experiment& experiment, const PosteriorStudy& study) {
+  return {{"title", experiment.title}, {"reduction", study.source->sensing.reduction}};
+}
+
+}  // namespace
 
 Results posterior_report(const Experiment& experiment, const PosteriorStudy& study) {
   Results results;
   results.command = "posterior";
   results.seed = study.settings.seed;
-  results.configuration = update_configuration(experiment, study.update);
+  results.configuration = study.update ? update_configuration(experiment, *study.update)
+                                       : record_configuration(experiment, study);
   results.configuration["chains"] = study.settings.chains.chains;
   results.configuration["draws"] = study.settings.chains.draws;
   results.configuration["particles"] = study.settings.particles;
   results.values = posterior_values(study);
-  const bool converged = study.posterior.complaints().empty(), explains = study.update.updating.explains();
-  if (converged && explains && study.posterior.notable_humps() == 1)
+  if (study.source) results.paragraph(sensing_sentence(study.source->sensing, "The record"));
+  const bool converged = study.posterior.complaints().empty();
+  if (converged && study.explains() && study.posterior.notable_humps() == 1)
     results.paragraph(posterior_verdict(study));
   else
     results.warning(posterior_verdict(study), !converged);
-  if (!explains)
-    results.warning(update_verdict(study.update).first +
-                    " The posterior takes their standard deviations as they are: it is too narrow.");
-  for (const std::string& warning : study.update.warnings) results.warning(warning);
+  if (study.update)
+    add_doubts_of_modes(study, results);
+  else
+    add_sensing_verdict(study.source->sensing, results);
   results.heading("Parameters");
   results.table(posterior_table(study));
   for (const std::string& sentence : posterior_sentences(study)) results.paragraph(sentence);
   if (study.posterior.humps.size() > 1) {
     results.heading("Humps");
     results.table(hump_table(study));
-    if (!study.update.deciding.empty()) results.table(deciding_table(study.update.deciding));
+    if (study.update && !study.update->deciding.empty())
+      results.table(deciding_table(study.update->deciding));
   }
-  results.heading("Modes");
-  results.table(prediction_table(study));
-  for (const std::string& remark : study.update.data().remarks) results.paragraph(remark);
+  if (study.update) {
+    results.heading("Modes");
+    results.table(prediction_table(study));
+    for (const std::string& remark : study.update->data().remarks) results.paragraph(remark);
+  }
   results.figures.push_back(corner_figure(study));
   results.attachments.push_back({{"draws.h5"}, [&study](const std::filesystem::path& folder) {
                                    write_draws(study, folder / "draws.h5");

@@ -69,7 +69,7 @@ Table hump_table(const PosteriorStudy& study) {
 }
 
 Table prediction_table(const PosteriorStudy& study) {
-  const ModalData& data = study.update.data();
+  const ModalData& data = study.update->data();
   Table table{"modes", ""};
   table.column({"measured [Hz]", "measured_hz", "{:.4f}"})
       .column({"+- [Hz]", "standard_deviation_hz", "{:.2g}"})
@@ -79,7 +79,7 @@ Table prediction_table(const PosteriorStudy& study) {
   if (data.has_shapes()) table.column({"MAC", "mac", "{:.4f}"});
   for (std::size_t i = 0; i < data.modes.size(); ++i) {
     const PredictedFrequency& one = study.predicted[i];
-    std::vector<Cell> row{data.modes[i].frequency_hz, study.update.residual->frequency_deviation(i),
+    std::vector<Cell> row{data.modes[i].frequency_hz, study.update->residual->frequency_deviation(i),
                           one.drawn.median, one.drawn.lower_95, one.drawn.upper_95};
     if (data.has_shapes()) row.emplace_back(one.mac);
     table.row(std::move(row));

@@ -51,10 +51,10 @@ Json posterior_values(const PosteriorStudy& study) {
   const Posterior& posterior = study.posterior;
   Json json;
   json["verdict"] = posterior_verdict(study);
-  json["status"] = !posterior.complaints().empty()     ? "not converged"
-                   : !study.update.updating.explains() ? "not explained"
-                   : posterior.notable_humps() > 1     ? "several humps"
-                                                       : "one hump";
+  json["status"] = !posterior.complaints().empty() ? "not converged"
+                   : !study.explains()             ? "not explained"
+                   : posterior.notable_humps() > 1 ? "several humps"
+                                                   : "one hump";
   json["converged"] = posterior.complaints().empty();
   json["reasons"] = posterior.complaints();
   json["log_evidence"] = posterior.log_evidence();
@@ -71,15 +71,15 @@ Json posterior_values(const PosteriorStudy& study) {
     json["parameters"].push_back(parameter_values(study, j));
   for (std::size_t h = 0; h < posterior.humps.size(); ++h) json["humps"].push_back(hump_values(study, h));
   for (std::size_t i = 0; i < study.predicted.size(); ++i) {
-    Json mode{{"measured_hz", study.update.data().modes[i].frequency_hz},
-              {"standard_deviation_hz", study.update.residual->frequency_deviation(i)}};
+    Json mode{{"measured_hz", study.update->data().modes[i].frequency_hz},
+              {"standard_deviation_hz", study.update->residual->frequency_deviation(i)}};
     mode["predicted_hz"] = draw_values(study.predicted[i].drawn);
     mode["mac"] = number_or_null(study.predicted[i].mac);
     json["modes"].push_back(mode);
   }
   json["deciding_measurements"] = Json::array();
-  if (posterior.humps.size() > 1)
-    for (const DecidingMeasurement& one : study.update.deciding)
+  if (posterior.humps.size() > 1 && study.update)
+    for (const DecidingMeasurement& one : study.update->deciding)
       json["deciding_measurements"].push_back(
           {{"measurement", deciding_text(one)}, {"least_distance_standard_deviations", one.separation}});
   return json;

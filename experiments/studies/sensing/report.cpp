@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/models/estimates.hpp"
 #include "experiments/results/file.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-using Json = nlohmann::ordered_json;
-
-constexpr double normal_95 = 1.959963984540054;
 
 // "name [unit]" as the key of a column: "tip_force_n".
 std::string suffix_of_unit(const std::string& unit) {
@@ -23,75 +21,6 @@ std::string suffix_of_unit(const std::string& unit) {
   if (unit == "N") return "_n";
   if (unit == "m") return "_m";
   return "";  // strain
-}
-
-void add_sensing_verdict(const SensingStudy& study, Results& results) {
-  if (!study.converged)
-    results.warning(
-        "The constants were not found: " + study.failure + ". All below is where the search ended.", true);
-  for (const SensorNoise& one : study.noise)
-    if (one.explains_too_much())
-      results.warning(
-          fmt::format("{}: {:.0f} % of what it read is left to noise that nobody stated, {:.3g} {}. The "
-                      "structure, a sensor's place or unit, or the places of the unknown forces are not "
-                      "as described.",
-                      one.name, 100.0 * one.deviation / one.root_mean_square, one.deviation, one.unit),
-          true);
-  std::size_t free = 0;
-  for (const LeftOutSensor& one : study.left_out) {
-    if (one.contradicts())
-      results.warning(fmt::format("{}: the other sensors predict it with an error of {:.3g} {}, {:.2g} times "
-                                  "what they report. The structure, a sensor's place or unit, or the places "
-                                  "of the unknown forces are not as described.",
-                                  one.name, one.error, one.unit, one.error / one.expected),
-                      true);
-    free += one.free() ? 1 : 0;
-  }
-  if (study.left_out.empty())
-    results.warning(
-        "One sensor alone: nothing checks the structure as described, and its errors become force.");
-  else if (free == study.left_out.size())
-    results.warning(
-        "No sensor can be predicted from the others: any record would fit, and nothing checks the structure "
-        "as described. A sensor more would.");
-  else if (!study.contradicted())
-    results.paragraph(
-        fmt::format("{} of {} sensors are predicted by the others as well as their deviations say.",
-                    study.left_out.size() - free, study.left_out.size()));
-  if (study.unseen_constants > 0)
-    results.warning(
-        fmt::format("{} cannot be seen: these sensors read the same of {} as of rest. What changes slowly is "
-                    "known from the "
-                    "correlation time only; one displacement or strain would tell.",
-                    study.forces.size() == 1 ? "A constant force"
-                    : study.unseen_constants == 1
-                        ? "One combination of constant forces"
-                        : std::to_string(study.unseen_constants) + " combinations of constant forces",
-                    study.unseen_constants == 1 ? "it" : "them"));
-  for (const SensedHistory& one : study.histories)
-    if (one.undetermined())
-      results.warning(fmt::format(
-          "{}: not determined by these sensors; its error is {:.0f} % of what it would be without "
-          "any.",
-          one.name, 100.0 * one.reported_error() / one.unread_deviation));
-  const double square = study.innovations.mean_normalised_square,
-               correlation = study.innovations.lag_one_correlation;
-  if (square > SensingStudy::largest_square)
-    results.warning(
-        fmt::format(
-            "From sample to sample the sensors read {:.2g} times as far from what is expected of them "
-            "as they should: structure, sensors or forces are not as described.",
-            std::sqrt(square)),
-        true);
-  else if (study.innovations.whiteness_p_value < 1e-3 && study.converged)
-    results.warning(
-        fmt::format(
-            "Innovations are correlated from sample to sample, {:.2f}: the force is not such a process, "
-            "or the structure not quite as described. {}.",
-            correlation,
-            std::abs(correlation) > 0.3 ? "Deviations, and intervals of parameters above all, are too small"
-                                        : "Deviations may be too small"),
-        std::abs(correlation) > 0.3);
 }
 
 Table history_table(const SensingStudy& study) {
@@ -120,6 +49,13 @@ Table history_table(const SensingStudy& study) {
     table.row(row);
   }
   table.note = "Errors: root mean square over the record of the standard deviation at each sample.";
+  if (!study.filter.empty())
+    table.note += fmt::format(
+        " By {}, of the readings up to each sample; its first tenth, in which it finds the start, is not "
+        "counted.",
+        study.filter);
+  for (const std::string& remark : study.filter_remarks)
+    table.note += fmt::format(" {}: {}.", study.filter, remark);
   return table;
 }
 
@@ -185,7 +121,7 @@ Table history_columns(const SensingStudy& study) {
   return table;
 }
 
-// The quarter of the record about its largest force, at most four histories.
+// 600 samples about the largest force, at most four histories.
 Figure history_figure(const SensingStudy& study) {
   constexpr std::size_t most = 4;
   Figure figure{"sensed_histories", {}};
@@ -196,7 +132,7 @@ Figure history_figure(const SensingStudy& study) {
   for (const SensedHistory& one : study.histories) {
     if (figure.panels.size() == most) break;
     const VectorXd t = study.time.segment(from, shown), mean = one.mean.segment(from, shown),
-                   wide = normal_95 * one.deviation.segment(from, shown);
+                   wide = quantile_95 * one.deviation.segment(from, shown);
     Panel panel{"", {"time [s]"}, {one.unit.empty() ? one.name : one.name + " [" + one.unit + "]"}};
     panel.band("95 %", t, mean - wide, mean + wide, Colour::sky);
     if (one.truth) panel.line("true", t, one.truth->segment(from, shown), Colour::black);
@@ -210,14 +146,99 @@ Figure history_figure(const SensingStudy& study) {
 
 }  // namespace
 
+void add_sensing_verdict(const SensingStudy& study, Results& results) {
+  if (!study.converged)
+    results.warning(
+        "The constants were not found: " + study.failure + ". All below is where the search ended.", true);
+  for (const SensorNoise& one : study.noise)
+    if (one.explains_too_much())
+      results.warning(
+          fmt::format("{}: {:.0f} % of what it read is left to noise that nobody stated, {:.3g} {}. The "
+                      "structure, a sensor's place or unit, or the places of the unknown forces are not "
+                      "as described.",
+                      one.name, 100.0 * one.deviation / one.root_mean_square, one.deviation, one.unit),
+          true);
+  std::size_t free = 0;
+  for (const LeftOutSensor& one : study.left_out) {
+    if (one.contradicts())
+      results.warning(fmt::format("{}: the other sensors predict it with an error of {:.3g} {}, {:.2g} times "
+                                  "what they report. The structure, a sensor's place or unit, or the places "
+                                  "of the unknown forces are not as described.",
+                                  one.name, one.error, one.unit, one.error / one.expected),
+                      true);
+    free += one.free() ? 1 : 0;
+  }
+  if (study.left_out.empty())
+    results.warning(
+        study.forces.empty()
+            ? "One sensor alone: no other checks it, its place or its unit."
+            : "One sensor alone: nothing checks the structure as described, and its errors become "
+              "force.");
+  else if (free == study.left_out.size())
+    results.warning(
+        "No sensor can be predicted from the others: any record would fit, and nothing checks the structure "
+        "as described. A sensor more would.");
+  else if (!study.contradicted())
+    results.paragraph(
+        fmt::format("{} of {} sensors are predicted by the others as well as their deviations say.",
+                    study.left_out.size() - free, study.left_out.size()));
+  if (study.unseen_constants > 0)
+    results.warning(
+        fmt::format("{} cannot be seen: these sensors read the same of {} as of rest. What changes slowly is "
+                    "known from the "
+                    "correlation time only; one displacement or strain would tell.",
+                    study.forces.size() == 1 ? "A constant force"
+                    : study.unseen_constants == 1
+                        ? "One combination of constant forces"
+                        : std::to_string(study.unseen_constants) + " combinations of constant forces",
+                    study.unseen_constants == 1 ? "it" : "them"));
+  for (const SensedHistory& one : study.histories)
+    if (one.undetermined())
+      results.warning(fmt::format(
+          "{}: not determined by these sensors; its error is {:.0f} % of what it would be without "
+          "any.",
+          one.name, 100.0 * one.reported_error() / one.unread_deviation));
+  for (const SensedHistory& one : study.histories)
+    if (one.contradicts_smoother())
+      results.warning(
+          fmt::format("{} has failed: its {} is {:.2g} {} from the smoother's, which sees the same "
+                      "readings; it reports an error of {:.2g}.",
+                      study.filter, one.name, one.from_smoother, one.unit, one.reported_error()),
+          true);
+  const double square = study.innovations.mean_normalised_square,
+               correlation = study.innovations.lag_one_correlation;
+  if (square > SensingStudy::largest_square)
+    results.warning(
+        fmt::format(
+            "From sample to sample the sensors read {:.2g} times as far from what is expected of them "
+            "as they should: structure, sensors or forces are not as described.",
+            std::sqrt(square)),
+        true);
+  else if (study.innovations.whiteness_p_value < 1e-3 && study.converged)
+    results.warning(
+        fmt::format(
+            "Innovations are correlated from sample to sample, {:.2f}: the force is not such a process, "
+            "or the structure not quite as described. {}.",
+            correlation,
+            std::abs(correlation) > 0.3 ? "Deviations, and intervals of parameters above all, are too small"
+                                        : "Deviations may be too small"),
+        std::abs(correlation) > 0.3);
+}
+
+std::string sensing_sentence(const SensingStudy& study, const std::string& record) {
+  std::string text = fmt::format("{}: {} samples, {} coordinates ({})", record, study.time.size(),
+                                 study.coordinates, study.reduction);
+  if (!study.forces.empty())
+    text += fmt::format(", {} unknown force{}", study.forces.size(), study.forces.size() == 1 ? "" : "s");
+  return text + ".";
+}
+
 Results sensing_report(const Experiment& experiment, const SensingStudy& study, const std::string& record) {
   Results results;
   results.command = "sense";
   results.configuration["title"] = experiment.title;
   results.configuration["reduction"] = study.reduction;
-  results.paragraph(fmt::format("{}: {} samples, {} coordinates ({}), {} unknown force{}.", record,
-                                study.time.size(), study.coordinates, study.reduction, study.forces.size(),
-                                study.forces.size() == 1 ? "" : "s"));
+  results.paragraph(sensing_sentence(study, record));
   add_sensing_verdict(study, results);
   results.table(history_table(study));
   if (!study.left_out.empty()) results.table(left_out_table(study));
@@ -225,6 +246,7 @@ Results sensing_report(const Experiment& experiment, const SensingStudy& study, 
   if (!study.damages.empty()) results.table(damage_table(study));
   results.values["converged"] = study.converged;
   results.values["contradicted"] = study.contradicted();
+  if (!study.filter.empty()) results.values["filter"] = study.filter;
   results.values["unseen_constant_forces"] = study.unseen_constants;
   results.values["mean_normalised_square"] = study.innovations.mean_normalised_square;
   results.values["lag_one_correlation"] = study.innovations.lag_one_correlation;

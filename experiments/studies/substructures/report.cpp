@@ -163,6 +163,26 @@ Table part_table(const PartedIdentification& found) {
   return table;
 }
 
+// Of one part, one way: estimates, bounds, and the covariance by the filter itself.
+Json run_values(const ComparedRun& run) {
+  Json values{{"status", to_string(run.status)}, {"parameters", Json::array()}};
+  if (!run.has_estimate()) return values;
+  for (const ComparedParameter& one : run.parameters) {
+    Json parameter{{"name", one.estimate.name},
+                   {"unit", one.estimate.unit},
+                   {"value", one.estimate.value},
+                   {"deviation", one.estimate.deviation},
+                   {"own_deviation", own_deviation(run, one.estimate.name)}};
+    parameter["bound"] = one.bound ? Json(*one.bound) : Json(nullptr);
+    values["parameters"].push_back(std::move(parameter));
+  }
+  const Eigen::MatrixXd covariance = covariance_of_parameters(run);
+  const Eigen::VectorXd inverse = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlations = inverse.asDiagonal() * covariance * inverse.asDiagonal();
+  values["correlations"] = json_rows(correlations);
+  return values;
+}
+
 Figure joined_figure(const PartedIdentification& found) {
   ForestPlot plot{"", "estimate / joined estimate, 95 % intervals", {}, {}};
   ForestSeries parts{"parts, joined", {}, {}, {}, Colour::blue},
@@ -204,6 +224,11 @@ Results substructures_report(const Experiment& experiment, const PartedIdentific
                                         {"deviation", one.deviation},
                                         {"parts", one.parts},
                                         {"disagreement", one.disagreement}});
+  results.values["parts"] = Json::array();
+  for (const IdentifiedPart& part : found.parts)
+    results.values["parts"].push_back({{"name", part.part.name},
+                                       {"sections_noisy", run_values(part.run(Sections::noisy))},
+                                       {"sections_exact", run_values(part.run(Sections::exact))}});
   if (!found.joined.empty()) results.figures.push_back(joined_figure(found));
   return results;
 }

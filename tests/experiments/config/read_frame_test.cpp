@@ -43,6 +43,31 @@ std::string error_of(const std::string& text) {
   return "no error";
 }
 
+TEST(ReadFrame, TakesAxialLoadsAndDashpots) {
+  const FrameExperiment read = frame_of(joints + members +
+                                        "axial_load_n = -20\n"
+                                        "[[frame.supports]]\njoint = 1\nkind = \"clamped\"\n"
+                                        "[[frame.dashpots]]\njoint = 2\ntranslational_x_n_s_per_m = 15\n");
+  EXPECT_EQ(read.frame.members[1].axial_load, -20.0);
+  ASSERT_EQ(read.frame.dashpots.size(), 1u);
+  EXPECT_EQ(read.frame.dashpots[0].joint, 1);
+  EXPECT_EQ(read.frame.dashpots[0].x, 15.0);
+  const auto json = describe(read);
+  EXPECT_EQ(json["frame"]["members"][1]["axial_load_n"], -20.0);
+  EXPECT_EQ(json["frame"]["dashpots"][0]["translational_x_n_s_per_m"], 15.0);
+}
+
+TEST(ReadFrame, RefusesLoadsBeyondBuckling) {
+  // Oracle: a cantilever of 5 m and 100 N m2 buckles at pi^2 E I / (2 L)^2 = 9.8696 N.
+  const std::string column =
+      "[frame]\njoints = [{ x_m = 0, y_m = 0 }, { x_m = 0, y_m = 5 }]\n"
+      "[[frame.members]]\nfirst = 1\nsecond = 2\nbending_stiffness_n_m2 = 100\naxial_stiffness_n = 1e6\n"
+      "mass_kg = 10\naxial_load_n = 20\n"
+      "[[frame.supports]]\njoint = 1\nkind = \"clamped\"\n";
+  EXPECT_THAT(error_of(column), testing::HasSubstr("buckles at 0.4934"));
+  EXPECT_THAT(error_of(column), testing::StartsWith("frame.toml:1:"));
+}
+
 TEST(ReadFrame, TakesMembersByDimensionsAndByStiffness) {
   const FrameExperiment read = frame_of("title = \"roof\"\n" + joints + members);
   EXPECT_EQ(read.title, "roof");

@@ -97,6 +97,25 @@ TEST(ModelCheck, SaysWhichCandidatesAreNotSeparable) {
   for (const Explanation& pair : check.pairs) EXPECT_EQ(pair.verdict, Verdict::undetermined);
 }
 
+// Oracle: the pair of changes that was made, which leaves nothing. One descent from "nothing changed" ends in
+// another minimum of this pair.
+TEST(ModelCheck, FindsTheBestOfSeveralMinimaOfAPair) {
+  const fem::Beam beam = cantilever(1.4);
+  fem::Beam truth = beam;
+  for (const auto& [name, change] : {std::pair{"bending_stiffness", 0.3}, {"tip_offset", -0.135 * length}})
+    for (const Candidate& candidate : candidates_of({truth}))
+      if (candidate.name == name) {
+        truth = candidate.changed(truth, change);
+        break;
+      }
+  CheckedStructure changed{"beam", beam, 8, {}, {}};
+  for (const double f : fem::modes(fem::assemble(truth, 8), 4).frequency_hz())
+    changed.modes.push_back({f, 1e-4 * f, 0.01, 1e-4});
+  const ModelCheck check = check_model({changed}, {0.005, {"bending_stiffness", "tip_offset"}});
+  ASSERT_EQ(check.pairs.size(), 1U);
+  EXPECT_LT(check.pairs[0].chi_square, 1e-3);
+}
+
 // A stiffness moves the frequencies of all tip masses in one proportion, a forgotten mass the light ones
 // more.
 TEST(ModelCheck, TellsFromSeveralTipMassesWhatOneCannot) {

@@ -13,6 +13,7 @@
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/parts/cut_chain.hpp"
 #include "experiments/models/start_belief.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "filters/innovation_likelihood.hpp"
@@ -200,6 +201,29 @@ void expect_refused(const std::string& more, const std::string& words) {
     FAIL() << more;
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr(words));
+  }
+}
+
+TEST(Substructures, OfAChainTakeItsPartAlone) {
+  // Oracle: the same part of the chain uncut, whose parameter of all storeys keeps it from being cut.
+  const Experiment experiment = read(building(9, five_percent(9, 3.0), 3.0, 1.2) +
+                                     "[[substructures]]\nname = \"middle\"\nfrom_m = 3\nto_m = 7\n");
+  const ComparedRecord record = recorded(experiment);
+  const PartOfStructure& part = experiment.parts.front();
+  const CutChain cut = cut_chain(experiment, record_of_part(experiment, record, part, Sections::noisy), part);
+  EXPECT_EQ(cut.experiment.structure.beam().segments.size(), 5u);
+  EXPECT_EQ(cut.experiment.parameters.size(), 10u);
+  const Experiment asked = experiment_of_part(cut.experiment, cut.record, cut.part);
+  const ComparedRun alone = compare(asked, cut.record, {}, unwatched).runs.front();
+  const ComparedRecord own = record_of_part(experiment, record, part, Sections::noisy);
+  const ComparedRun uncut =
+      compare(experiment_of_part(experiment, own, part), own, {}, unwatched).runs.front();
+  ASSERT_EQ(alone.parameters.size(), uncut.parameters.size());
+  for (std::size_t j = 0; j < alone.parameters.size(); ++j) {
+    EXPECT_EQ(alone.parameters[j].estimate.name, uncut.parameters[j].estimate.name);
+    EXPECT_NEAR(alone.parameters[j].estimate.value / uncut.parameters[j].estimate.value, 1.0, 1e-7);
+    EXPECT_NEAR(alone.parameters[j].estimate.deviation / uncut.parameters[j].estimate.deviation, 1.0, 1e-5);
+    EXPECT_EQ(*alone.parameters[j].truth, *uncut.parameters[j].truth);
   }
 }
 

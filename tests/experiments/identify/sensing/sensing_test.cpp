@@ -70,11 +70,13 @@ std::string slower(std::string text) {
   return text.replace(text.find(fast), fast.size(), "frequency_hz = 20");
 }
 
-SensingStudy study_of(const std::string& text, const std::string& other = "") {
+SensingStudy study_of(const std::string& text, const std::string& other = "",
+                      const std::optional<Choice>& filter = {}) {
   const Experiment experiment = experiment_of(text);
   SensingRecord record = simulated_sensing(experiment, {}, {}, unwatched);
   const Experiment assumed = other.empty() ? experiment : experiment_of(other);
-  return study_sensing(assumed, record, sensing_reduction(assumed, record.record.interval()), {}, unwatched);
+  return study_sensing(assumed, record, sensing_reduction(assumed, record.record.interval()), {}, unwatched,
+                       filter);
 }
 
 TEST(Sensing, FindsTheForceAndTheRootsStrainAsWellAsItSays) {
@@ -90,6 +92,26 @@ TEST(Sensing, FindsTheForceAndTheRootsStrainAsWellAsItSays) {
     EXPECT_FALSE(one.undetermined()) << one.name;
   }
   EXPECT_LT(study.histories[0].error(), 0.05 * study.histories[0].root_mean_square());
+}
+
+TEST(Sensing, GivesTheHistoriesOfAFilterThatKnowsNothingOfTheForce) {
+  // Oracle: the simulated force and strain. The filter's process is wider than the force, so its errors are
+  // smaller than reported, and no more than four times those of the smoother, which sees what comes later.
+  const SensingStudy smoothed = study_of(slower(mast + gauge));
+  const SensingStudy study =
+      study_of(slower(mast + gauge), "", Choice{"gillijns_de_moor", {{"inputs", std::vector<double>{}}}});
+  for (std::size_t i = 0; i < study.histories.size(); ++i) {
+    const SensedHistory& one = study.histories[i];
+    EXPECT_FALSE(one.contradicts_smoother()) << one.name;
+    EXPECT_LT(one.error(), 1.3 * one.reported_error()) << one.name;
+    EXPECT_LT(one.error(), 4.0 * smoothed.histories[i].error()) << one.name;
+  }
+}
+
+TEST(Sensing, SaysWhereAFilterLeavesTheSmoother) {
+  const SensingStudy study = study_of(
+      slower(mast + gauge), "", Choice{"dual_kf", {{"inputs", std::vector<double>{}}, {"coupled", true}}});
+  EXPECT_TRUE(study.histories.back().contradicts_smoother());
 }
 
 TEST(Sensing, SaysThatAccelerationsDoNotSeeAConstantForce) {

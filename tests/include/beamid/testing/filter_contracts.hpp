@@ -14,4 +14,5 @@
 #include "beamid/testing/filter/manners.hpp"
 #include "beamid/testing/filter/missing_readings.hpp"
 #include "beamid/testing/filter/outliers.hpp"
+#include "beamid/testing/filter/unknown_inputs.hpp"
 #include "beamid/testing/named.hpp"

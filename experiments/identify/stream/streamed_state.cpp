@@ -1,0 +1,125 @@
+// What a stream's identification saves, and how it goes on from there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/identify/stream/streamed_identification.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// Filters whose belief is all that they carry from sample to sample.
+bool carries_its_belief_alone(const std::string& filter) {
+  const auto& contracts = filters::filter_registry().find(filter).contracts;
+  return contracts.contains(filters::contract::exact_on_linear_gaussian) &&
+         !contracts.contains(filters::contract::sampled_on_linear_gaussian);
+}
+
+std::vector<std::string> state_names(const JointModel& model) {
+  std::vector<std::string> names;
+  for (const filters::Label& label : model.motion->state_labels()) names.push_back(label.name);
+  return names;
+}
+
+std::vector<double> numbers(const MatrixXd& matrix) {
+  return {matrix.data(), matrix.data() + matrix.size()};
+}
+
+// Of so many rows, and columns unless they are -1: as many as there are.
+MatrixXd matrix(const nlohmann::json& saved, const char* key, Index rows, Index columns) {
+  const auto numbers = saved.at(key).get<std::vector<double>>();
+  const auto size = static_cast<Index>(numbers.size());
+  if (columns < 0 ? size % rows != 0 : size != rows * columns)
+    throw std::invalid_argument(fmt::format("{} has {} numbers; expected {} rows of {}", key, size, rows,
+                                            columns < 0 ? "as many" : std::to_string(columns)));
+  const MatrixXd result = Eigen::Map<const MatrixXd>(numbers.data(), rows, size / rows);
+  if (!result.allFinite()) throw std::invalid_argument(fmt::format("{} holds what is no number", key));
+  return result;
+}
+
+// Of a state that some record has shown something of: nothing is known for certain, and nothing not at all.
+void check_deviations(const char* of, const VectorXd& deviations) {
+  if (!(deviations.array() > 0.0).all())
+    throw std::invalid_argument(
+        fmt::format("a deviation of {} is {:g}; expected more than 0", of, deviations.minCoeff()));
+}
+
+}  // namespace
+
+void StreamedIdentification::check_can_be_saved() const {
+  if (carries_its_belief_alone(choice_.name)) return;
+  throw std::invalid_argument(
+      "filter '" + choice_.name +
+      "' holds more than its belief, and its state cannot be saved; ekf, iekf, ukf, srukf and the like can");
+}
+
+nlohmann::ordered_json StreamedIdentification::save() const {
+  check_can_be_saved();
+  if (good_.step == 0) throw std::invalid_argument("no sample has been taken in; nothing to save");
+  auto known = nlohmann::ordered_json::array();
+  for (const std::optional<Known>* one : {&older_, &newer_})
+    if (*one) known.push_back({{"mean", numbers((*one)->mean)}, {"covariance", numbers((*one)->covariance)}});
+  return {{"filter", choice_.name},
+          {"states", state_names(prepared_.model)},
+          {"interval_s", interval_},
+          {"step", good_.step},
+          {"time_s", good_.time},
+          {"mean", numbers(good_.belief.mean)},
+          {"covariance", numbers(good_.belief.covariance)},
+          {"factor", numbers(good_.belief.factor)},
+          {"health", watch_.save()},
+          {"outputs_since_known", remembered_},
+          {"known", known}};
+}
+
+void StreamedIdentification::resume(const nlohmann::json& saved) {
+  const auto check = [&](const char* key, const nlohmann::json& expected) {
+    const nlohmann::json& found = saved.at(key);
+    const bool short_enough =
+        found.is_primitive() ||
+        (found.is_array() && found.size() < 100 &&
+         std::all_of(found.begin(), found.end(), [](const auto& one) { return one.is_primitive(); }));
+    if (found != expected)
+      throw std::invalid_argument(fmt::format(
+          "{} is {}; expected {}", key, short_enough ? found.dump() : found.type_name(), expected.dump()));
+  };
+  try {
+    check("filter", choice_.name);
+    check("states", state_names(prepared_.model));
+    check("interval_s", interval_);
+    const auto n = static_cast<Index>(state_names(prepared_.model).size()),
+               q = static_cast<Index>(prepared_.model.unknown_places.size());
+    filters::SavedRun run;
+    run.belief = {matrix(saved, "mean", n, 1), matrix(saved, "covariance", n, -1),
+                  matrix(saved, "factor", n, -1)};
+    check_deviations("the state", run.belief.deviations());
+    run.time = saved.at("time_s").get<double>();
+    const double step = saved.at("step").get<double>();
+    if (!(step >= 1.0 && step <= 1e15 && step == std::floor(step)))
+      throw std::invalid_argument(fmt::format("step is {:g}; expected a count of samples", step));
+    run.step = static_cast<Index>(step);
+    InnovationWatch watch;
+    watch.resume(saved.at("health"));
+    std::vector<Known> known;
+    for (const auto& one : saved.at("known")) {
+      known.push_back({matrix(one, "mean", q, 1), matrix(one, "covariance", q, q)});
+      check_deviations("known", known.back().covariance.diagonal());
+    }
+    if (known.size() > 2) throw std::invalid_argument("known holds more than two; expected what was saved");
+    remembered_ = std::clamp<Index>(saved.at("outputs_since_known").get<Index>(), 0, InnovationWatch::window);
+    running_->resume(run);
+    watch_ = watch;
+    status_ = watch_.settled() ? Status::settled : Status::settling;
+    newer_ = known.empty() ? std::nullopt : std::optional(known.back());
+    older_ = known.size() < 2 ? std::nullopt : std::optional(known.front());
+    told_ = 0;
+    good_ = running_->save();
+  } catch (const nlohmann::json::exception&) {
+    throw std::invalid_argument("a key is missing or of another type; expected what --save-state wrote");
+  }
+}
+
+}  // namespace beamid::experiments
