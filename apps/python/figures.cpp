@@ -76,4 +76,16 @@ py::dict figures(const Outcome& outcome, const py::object& owner) {
   return all;
 }
 
+py::dict arrays(const Outcome& outcome, const py::object& owner) {
+  py::dict all;
+  if (!outcome.results) return all;
+  for (const experiments::Array& one : outcome.results->arrays) {
+    const py::ssize_t rows = one.values.rows(), columns = one.values.cols(), size = sizeof(double);
+    py::array_t<double> array({columns, rows}, {rows * size, size}, one.values.data(), owner);
+    array.attr("setflags")(py::arg("write") = false);
+    all[py::make_tuple(one.run, one.name)] = array;
+  }
+  return all;
+}
+
 }  // namespace beamid::python

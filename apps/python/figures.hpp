@@ -12,4 +12,7 @@ namespace beamid::python {
 /// @param owner the Python object of the outcome
 pybind11::dict figures(const Outcome& outcome, const pybind11::object& owner);
 
+/// {(run, name): values (N, p)}, likewise; run "" where there is only one.
+pybind11::dict arrays(const Outcome& outcome, const pybind11::object& owner);
+
 }  // namespace beamid::python

@@ -22,6 +22,7 @@ PYBIND11_MODULE(_beamid, module) {
                              [](const Outcome& one) { return one.refusal ? one.refusal->message : ""; })
       .def("json", &Outcome::json, py::call_guard<py::gil_scoped_release>())
       .def("report", &Outcome::report, py::call_guard<py::gil_scoped_release>())
+      .def("arrays", [](const py::object& self) { return arrays(self.cast<const Outcome&>(), self); })
       .def("figures", [](const py::object& self) { return figures(self.cast<const Outcome&>(), self); })
       .def("write", &Outcome::write, py::call_guard<py::gil_scoped_release>());
   module.def("run", [](const std::string& command, const std::vector<std::string>& words) {

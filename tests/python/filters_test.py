@@ -25,6 +25,10 @@ class Tracked:
         return self.h @ z
 
 
+def symmetric(matrix):
+    return (matrix + matrix.T) / 2
+
+
 class NumpyKalman:
     """What register_filter asks for."""
 
@@ -37,7 +41,7 @@ class NumpyKalman:
     def predict(self, u):
         a, q = self.model.transition_jacobian(self.mean, u), self.model.process_noise
         self.mean = self.model.transition(self.mean, u)
-        self.covariance = (1 + self.inflate) * a @ self.covariance @ a.T + (q if q.size else 0)
+        self.covariance = symmetric((1 + self.inflate) * a @ self.covariance @ a.T + (q if q.size else 0))
 
     def correct(self, y, u):
         h, r = self.model.output_jacobian(self.mean, u), self.model.output_noise
@@ -45,7 +49,7 @@ class NumpyKalman:
         gain = np.linalg.solve(s, h @ self.covariance).T
         self.mean = self.mean + gain @ rest
         kept = np.eye(len(self.mean)) - gain @ h
-        self.covariance = kept @ self.covariance @ kept.T + gain @ r @ gain.T
+        self.covariance = symmetric(kept @ self.covariance @ kept.T + gain @ r @ gain.T)
         return rest, s
 
 
@@ -126,6 +130,8 @@ class Filters(unittest.TestCase):
         fast = beamid.run_oscillator(x, 0.004, mass_kg=3.0, mean=start[0], covariance=start[1], noise=1e-5, observed="displacement")
         slow = beamid.run_filter("ekf", Oscillator(), x, *start)
         np.testing.assert_allclose(fast.mean, slow.mean, rtol=1e-5)
+        with self.assertRaisesRegex(AttributeError, "innovations were not kept; expected a run of run_filter"):
+            fast.innovations
         self.assertAlmostEqual(fast.mean[2], 3.0 * (13.1**2 + 1.3**2), delta=5 * fast.covariance[2, 2]**0.5)
 
     def test_a_system_is_what_its_function_says(self):

@@ -57,6 +57,36 @@ class Results(unittest.TestCase):
         self.assertEqual(list(self.found.frame("runs")["filter"]), ["ekf"])
         self.assertEqual(list(self.found.frame().columns), list(next(iter(self.found.tables.values()))))
 
+    def test_the_covariance_is_of_the_estimates(self):
+        self.assertEqual(self.found.parameters, ["bending_stiffness", "damping_ratio"])
+        deviations = [self.found[name].standard_deviation for name in self.found.parameters]
+        np.testing.assert_allclose(np.sqrt(np.diag(self.found.covariance)), deviations, rtol=1e-9)
+        self.assertLess(abs(self.found.covariance[0, 1]), 0.9 * deviations[0] * deviations[1])
+        oscillator = beamid.identify(TUTORIAL / "tip_acceleration.csv", beamid.Beam(**STEEL), window_s=(2, 10))
+        self.assertEqual(oscillator.parameters, ["frequency_hz", "damping_ratio", "stiffness_n_per_m", "damping_n_s_per_m"])
+        covariance = oscillator.covariance
+        np.testing.assert_allclose(np.sqrt(np.diag(covariance)), [oscillator[name].standard_deviation for name in oscillator.parameters],
+                                   rtol=1e-9)
+        slope = 0.5 * oscillator["frequency_hz"] / oscillator["stiffness_n_per_m"]  # of f = sqrt(K / M) / (2 pi)
+        np.testing.assert_allclose(covariance[0], slope * covariance[2], rtol=1e-9)
+        self.assertEqual(np.linalg.matrix_rank(covariance / np.sqrt(np.outer(np.diag(covariance), np.diag(covariance))), tol=1e-6), 2)
+
+    def test_the_motion_of_the_estimates_leaves_what_the_report_says(self):
+        samples = beamid.read(TUTORIAL / "tip_acceleration.csv", window_s=(2, 10))
+        np.testing.assert_array_equal(self.found.time, samples.time)
+        self.assertEqual(self.found.reproduced.shape, samples.samples.shape)
+        left = 100 * np.linalg.norm(samples.samples - self.found.reproduced) / np.linalg.norm(samples.samples)
+        run = self.found.values["runs"][0]
+        self.assertAlmostEqual(left / run["response_error_percent"], 1, places=9)
+        self.assertEqual(self.found.innovations.shape, samples.samples.shape)
+        settled = self.found.innovations[200:]
+        self.assertAlmostEqual(settled.std() / run["noise"][0], 1, delta=0.05)  # S is little more than R by then
+        self.assertTrue(np.shares_memory(self.found.innovations, self.found._outcome.arrays()["", "innovations"]))
+
+    def test_arrays_that_are_not_there_say_where_others_are(self):
+        with self.assertRaisesRegex(AttributeError, "modes has no innovations; expected an identification"):
+            beamid.modes(modes=1).innovations
+
     def test_curves_share_memory_with_the_results_and_outlive_them(self):
         found = beamid.modes(modes=1)
         before, again = found.figures, found._outcome.figures()
@@ -73,6 +103,8 @@ class Results(unittest.TestCase):
             self.assertEqual(other.json, self.found.json)
             self.assertEqual(repr(other), repr(self.found))
             self.assertEqual(other.command, self.found.command)
+            np.testing.assert_array_equal(other.innovations, self.found.innovations)
+            np.testing.assert_array_equal(other.covariance, self.found.covariance)
             self.assertEqual(other["damping_ratio"].interval(), self.found["damping_ratio"].interval())
             for name, figure in self.found.figures.items():
                 for mine, theirs in zip(figure["panels"][0]["curves"], other.figures[name]["panels"][0]["curves"]):
@@ -90,6 +122,10 @@ class Results(unittest.TestCase):
         self.assertIn(("rayleigh", "bending_stiffness"), found.estimates)
         with self.assertRaisesRegex(KeyError, "2 runs estimate 'bending_stiffness'"):
             found["bending_stiffness"]
+        self.assertEqual(found.arrays["rayleigh", "innovations"].shape, (501, 1))
+        for name in ("innovations", "covariance"):
+            with self.assertRaisesRegex(AttributeError, "runs"):
+                getattr(found, name)
 
     def test_a_misspelt_result_is_suggested(self):
         with self.assertRaisesRegex(KeyError, "did you mean 'damping_ratio'"):

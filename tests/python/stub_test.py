@@ -1,5 +1,6 @@
 """The stub names what the module has. Oracles: the module itself, and mypy where it is installed."""
 import ast
+import os
 import subprocess
 import sys
 import unittest
@@ -47,7 +48,8 @@ class Stub(unittest.TestCase):
             (folder / "wrong.py").write_text(USE + "beamid.identify(3)\n")
             for file, code in (("use.py", 0), ("wrong.py", 1)):
                 done = subprocess.run([sys.executable, "-m", "mypy", "--follow-imports=silent", "--ignore-missing-imports", file],
-                                      capture_output=True, text=True, check=False)
+                                      capture_output=True, text=True, check=False,
+                                      env={**os.environ, "MYPYPATH": str(STUB.parents[1])})
                 self.assertEqual(done.returncode, code, done.stdout)
 
 

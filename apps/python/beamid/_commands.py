@@ -14,7 +14,7 @@ def _described(name):
     places = ["a record or several" if word["name"] == "record" and word["several"] else
               "a record" if word["name"] == "record" else word["name"] for word in about["words"]]
     if _takes_structure(about):
-        places.append("a structure: Beam, Chain, Frame, SpaceFrame or Experiment, or an experiment file, NAME.toml")
+        places.append("a structure: Beam, Chain, Frame, SpaceFrame, System or Experiment, or an experiment file, NAME.toml")
     if places:
         lines += [f":param arguments: {'; '.join(places)}"]
     for option in about["options"]:

@@ -12,10 +12,18 @@ class FilterRun:
     innovations                 (N, p), NaN where nothing was read; whitened_innovations of unit covariance
     log_likelihood, failure     of all readings; why the run ended early, or None
     means, deviations           of every state (N, n), where keep="all"
+
+    run_oscillator keeps mean, covariance, log_likelihood and failure alone.
     """
 
     def __init__(self, found):
         self.__dict__.update(found)
+
+    def __getattr__(self, name):
+        if name in ("means", "deviations", "innovations", "whitened_innovations", "remarks"):
+            wanted = 'keep="all"' if name in ("means", "deviations") else "a run of run_filter"
+            raise AttributeError(f"{name} were not kept; expected {wanted}")
+        raise AttributeError(f"FilterRun has no {name!r}")
 
     def __repr__(self):
         ended = f"failed: {self.failure}" if self.failure else f"log-likelihood {self.log_likelihood:.6g}"
@@ -103,7 +111,7 @@ def register_filter(name, make, summary="a filter in Python", options=None):
     :raises InputError: where the name is taken
     """
     try:
-        _beamid.register_filter(name, summary, "[kalman1960]",
+        _beamid.register_filter(name, summary, "no source stated",
                                 [(key, _number(value), "of a filter in Python") for key, value in (options or {}).items()], make)
     except ValueError as error:
         raise InputError(str(error)) from None

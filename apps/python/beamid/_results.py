@@ -78,6 +78,9 @@ class Results:
     found.values                the whole of results.json, as dictionaries and lists
     found.tables["modes"]       a dictionary of columns, numpy arrays (N)
     found.frame("modes")        the same as a pandas DataFrame; without a name the first table
+    found.covariance            (q, q) of the estimates, in the order of found.parameters
+    found.innovations           (N, p) of the filter's last pass, and found.reproduced (N, p), the motion that the estimates
+                                make, both at found.time (N); numpy arrays that share memory with the results
     found.figures["spectrum"]   captions and curves, numpy arrays (N) that share memory with the results
     found.messages              warnings and failures, worst news first in the report
     found.code                  the command's exit code: 3 where there is no estimate to rely on
@@ -114,6 +117,50 @@ class Results:
     @functools.cached_property
     def figures(self):
         return self._outcome.figures()
+
+    @functools.cached_property
+    def arrays(self):
+        """Innovations, reproduced (N, p) and time_s (N, 1) by name; where there are several runs, by (run, name)."""
+        return {name if run == "" else (run, name): values for (run, name), values in self._outcome.arrays().items()}
+
+    def _array(self, name):
+        if name in self.arrays:
+            return self.arrays[name]
+        runs = [key[0] for key in self.arrays if isinstance(key, tuple) and key[1] == name]
+        if runs:
+            raise AttributeError(f"{len(runs)} runs have {name}; expected found.arrays[run, {name!r}] with one of {', '.join(map(repr, runs))}")
+        raise AttributeError(f"{self.values.get('command', 'this command')} has no {name}; expected an identification")
+
+    @property
+    def innovations(self):
+        return self._array("innovations")
+
+    @property
+    def reproduced(self):
+        return self._array("reproduced")
+
+    @property
+    def time(self):
+        return self._array("time_s")[:, 0]
+
+    def _alone(self):
+        """What one run found. :raises AttributeError: where several did, or none"""
+        runs = self.values.get("runs", [self.values])
+        if len(runs) != 1 or "covariance" not in runs[0]:
+            raise AttributeError(f"{self.values.get('command', 'this command')} has no covariance of one run; expected an identification of "
+                                 "one record, or found.values['runs'][i]['covariance']")
+        return runs[0]
+
+    @functools.cached_property
+    def covariance(self):
+        return np.array(self._alone()["covariance"], dtype=float)
+
+    @functools.cached_property
+    def parameters(self):
+        """Names of the estimates, in the order of found.covariance."""
+        run = self._alone()
+        source = run.get("parameters", run)
+        return [name for name, one in source.items() if _estimate(one) is not None]
 
     @functools.cached_property
     def tables(self):
@@ -193,7 +240,7 @@ class Results:
 
     def __getstate__(self):
         state = {name: getattr(self, name) for name in ("code", "command", "_inputs", "json", "report")}
-        return {**state, "_outcome": None, "figures": _copied(self.figures)}
+        return {**state, "_outcome": None, "figures": _copied(self.figures), "arrays": _copied(self.arrays)}
 
     def __repr__(self):
         return self.report.rstrip("\n")
