@@ -6,7 +6,8 @@
 # included last by the top-level list, when all install() rules are known
 set(CPACK_PACKAGE_NAME beamid)
 set(CPACK_PACKAGE_VENDOR "the beamid authors")
-set(CPACK_PACKAGE_CONTACT "the beamid authors <beamid@localhost>" CACHE STRING "Maintainer of the packages: NAME <ADDRESS>")
+set(CPACK_PACKAGE_CONTACT "the beamid authors <beamid@beamid.invalid>" CACHE STRING
+    "Maintainer of the packages, for whoever publishes them to fill in: NAME <ADDRESS>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "identification of beams from vibration records")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_VERBATIM_VARIABLES ON)

@@ -40,8 +40,7 @@ foreach(name IN LISTS names)
   set(contents_${name} "${printed}")
   set(package_${name} ${package})
   if(LINTIAN)
-    # The owners' address is theirs to fill in: -D CPACK_PACKAGE_CONTACT="NAME <ADDRESS>".
-    run(${LINTIAN} --allow-root --fail-on error --suppress-tags bogus-mail-host,bogus-mail-host-in-debian-changelog ${package})
+    run(${LINTIAN} --allow-root --fail-on error ${package})
   endif()
 endforeach()
 
