@@ -51,21 +51,21 @@ void check(const OscillatorTrials& kind, const std::vector<LaneTrial>& trials) {
   }
 }
 
-bool avx2() {
-  static const bool usable =
-      algorithms::compiled_for_avx2() && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return usable;
-}
-
 void run_any(TrialGroup& group) {
-  if (avx2()) return algorithms::run_group_avx2(group);
+  if (algorithms::avx2_is_usable()) return algorithms::run_group_avx2(group);
   algorithms::run_group<2, algorithms::Baseline>(group);
 }
 
 }  // namespace
 
+bool algorithms::avx2_is_usable() {
+  static const bool usable =
+      compiled_for_avx2() && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return usable;
+}
+
 std::string batch_instructions() {
-  return avx2() ? "avx2" : "baseline";
+  return algorithms::avx2_is_usable() ? "avx2" : "baseline";
 }
 
 std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vector<LaneTrial>& trials,
@@ -74,7 +74,7 @@ std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vect
   const MatrixXd process =
       kind.process_noise.size() > 0 ? kind.process_noise : MatrixXd(MatrixXd::Zero(4, 4));
   std::vector<TrialResult> results(trials.size());
-  const std::size_t lanes = avx2() ? 4 : 2;
+  const std::size_t lanes = algorithms::avx2_is_usable() ? 4 : 2;
   for (std::size_t first = 0; first < trials.size(); first += lanes) {
     MatrixXd covariances[TrialGroup::most];
     TrialGroup group{kind.mass,

@@ -15,6 +15,9 @@ struct Avx2 {};
 void run_group_avx2(TrialGroup& group) {
   run_group<4, Avx2>(group);
 }
+void run_innovations_avx2(InnovationGroup& group) {
+  run_innovations<4, Avx2>(group);
+}
 bool compiled_for_avx2() {
   return true;
 }
@@ -22,6 +25,7 @@ bool compiled_for_avx2() {
 #else
 
 void run_group_avx2(TrialGroup&) {}
+void run_innovations_avx2(InnovationGroup&) {}
 bool compiled_for_avx2() {
   return false;
 }

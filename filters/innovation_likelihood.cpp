@@ -1,8 +1,11 @@
 #include "filters/innovation_likelihood.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "filters/innovation_passes.hpp"
 
 namespace beamid::filters {
 namespace {
@@ -22,28 +25,24 @@ class Likelihood {
     return 0.5 * (theta - first()).dot(prior_ * (theta - first()));
   }
   bool free_inputs() const { return problem_.free_inputs; }
-  KalmanPass at(const VectorXd& theta) const {
-    KalmanPass pass =
-        kalman_pass(problem_.model(theta), problem_.record, problem_.interval, KeptSteps::innovations);
-    if (problem_.free_inputs) pass.cost -= log_determinants(pass);
-    return pass;
+  /// J but for the prior's part. @throws std::runtime_error where it is not finite
+  double cost_at(const VectorXd& theta) const { return cost(passes_at({theta}, false).front()); }
+  /// At several theta. @throws as cost_at()
+  std::vector<InnovationPass> passes_at(const std::vector<VectorXd>& places, bool covariances) const {
+    std::vector<LinearGaussian> models;
+    for (const VectorXd& theta : places) models.push_back(problem_.model(theta));
+    auto passes = innovation_passes(models, problem_.record, problem_.interval, covariances);
+    if (std::any_of(passes.begin(), passes.end(), [](const InnovationPass& one) { return one.failed; }))
+      throw std::runtime_error("the covariance of an innovation is not positive definite");
+    return passes;
+  }
+  double cost(const InnovationPass& pass) const {
+    return problem_.free_inputs ? 0.5 * pass.squares : pass.cost();
   }
 
  private:
   const InnovationProblem& problem_;
   MatrixXd prior_;
-
-  // 1/2 sum_k ln det S_k
-  static double log_determinants(const KalmanPass& pass) {
-    VectorXd of_step(static_cast<Index>(pass.steps.size()));
-    for (std::size_t i = 0; i < pass.steps.size(); ++i) {
-      const Eigen::LLT<MatrixXd> factor(pass.steps[i].innovation_covariance);
-      of_step[static_cast<Index>(i)] = factor.matrixLLT().diagonal().array().log().sum();
-    }
-    double sum = 0.0;
-    for (const std::size_t step : pass.step_of) sum += of_step[static_cast<Index>(step)];
-    return sum;
-  }
 };
 
 // Information at theta, and the gradient of J, from differences by these steps.
@@ -53,38 +52,70 @@ struct Slope {
   double cost = 0.0;  // without the prior's part, as the information
 };
 
-Slope slope_at(const Likelihood& likelihood, const VectorXd& theta, const VectorXd& steps) {
-  const KalmanPass here = likelihood.at(theta);
-  const Index samples = here.innovations.cols(), q = theta.size();
-  std::vector<KalmanPass> above, below;
-  Slope slope{MatrixXd::Zero(q, q), likelihood.prior() * (theta - likelihood.first()), here.cost};
-  for (Index j = 0; j < q; ++j) {
-    VectorXd there = theta;
-    there[j] = theta[j] + steps[j];
-    above.push_back(likelihood.at(there));
-    there[j] = theta[j] - steps[j];
-    below.push_back(likelihood.at(there));
-    slope.gradient[j] += (above.back().cost - below.back().cost) / (2.0 * steps[j]);
-  }
-  for (Index k = 0; k < samples; ++k) {
-    const std::vector<Index>& seen = here.step(k).seen;
-    const auto p = static_cast<Index>(seen.size());
-    if (p == 0) continue;
-    MatrixXd white(p, q), squares(p * p, q), turned(p, p);
-    const Eigen::LLT<MatrixXd> factor(here.step(k).innovation_covariance);
-    for (Index j = 0; j < q; ++j) {
-      const KalmanPass &up = above[static_cast<std::size_t>(j)], &down = below[static_cast<std::size_t>(j)];
-      const double width = 2.0 * steps[j];
-      white.col(j) = factor.matrixL().solve(
-          VectorXd(up.innovations.col(k)(seen) - down.innovations.col(k)(seen)) / width);
-      if (likelihood.free_inputs()) continue;
-      turned = factor.matrixL().solve(
-          (up.step(k).innovation_covariance - down.step(k).innovation_covariance) / width);
-      turned = factor.matrixL().solve(turned.transpose().eval()).eval();
-      squares.col(j) = std::sqrt(0.5) * turned.reshaped();
+// L^-1 of every column; by hand, since matrices of a few rows are no work for blocked solvers and their
+// memory.
+void whiten(const MatrixXd& root, MatrixXd& columns) {
+  for (Index c = 0; c < columns.cols(); ++c)
+    for (Index i = 0; i < root.rows(); ++i) {
+      for (Index l = 0; l < i; ++l) columns(i, c) -= root(i, l) * columns(l, c);
+      columns(i, c) /= root(i, i);
     }
-    slope.information.noalias() += white.transpose() * white;
-    if (!likelihood.free_inputs()) slope.information.noalias() += squares.transpose() * squares;
+}
+
+// sum_k d_i e_k^T S_k^-1 d_j e_k, and 1/2 tr(S_k^-1 d_i S_k S_k^-1 d_j S_k) where the covariances count.
+// @param passes at theta, then above and below it in every direction
+MatrixXd information_of(const std::vector<InnovationPass>& passes, const VectorXd& steps, bool traces) {
+  const InnovationPass& here = passes[0];
+  const Index q = steps.size(), p = here.innovations.rows();
+  MatrixXd information = MatrixXd::Zero(q, q), slopes(p, q), turned(p, p), products(p * p, q), root;
+  std::vector<Index> seen;
+  for (Index k = 0; k < here.innovations.cols(); ++k) {
+    if (k == 0 ||
+        here.step_of[static_cast<std::size_t>(k)] != here.step_of[static_cast<std::size_t>(k - 1)]) {
+      seen.clear();
+      for (Index i = 0; i < p; ++i)
+        if (std::isfinite(here.innovations(i, k))) seen.push_back(i);
+      root = here.covariance(k)(seen, seen).llt().matrixL();
+    }
+    const auto read = static_cast<Index>(seen.size());
+    slopes.resize(read, q), turned.resize(read, read), products.resize(read * read, q);
+    for (Index j = 0; j < q; ++j) {
+      const InnovationPass &up = passes[static_cast<std::size_t>(2 * j + 1)],
+                           &down = passes[static_cast<std::size_t>(2 * j + 2)];
+      const double width = 2.0 * steps[j];
+      for (Index i = 0; i < read; ++i)
+        slopes(i, j) = (up.innovations(seen[i], k) - down.innovations(seen[i], k)) / width;
+      if (!traces) continue;
+      const auto above = up.covariance(k), below = down.covariance(k);
+      for (Index c = 0; c < read; ++c)
+        for (Index i = 0; i < read; ++i)
+          turned(i, c) = (above(seen[i], seen[c]) - below(seen[i], seen[c])) / width;
+      whiten(root, turned);
+      turned.transposeInPlace();
+      whiten(root, turned);
+      products.col(j) = std::sqrt(0.5) * turned.reshaped();
+    }
+    whiten(root, slopes);
+    information += slopes.transpose().lazyProduct(slopes);
+    if (traces) information += products.transpose().lazyProduct(products);
+  }
+  return information;
+}
+
+Slope slope_at(const Likelihood& likelihood, const VectorXd& theta, const VectorXd& steps) {
+  std::vector<VectorXd> places{theta};
+  for (Index j = 0; j < theta.size(); ++j)
+    for (const double step : {steps[j], -steps[j]}) {
+      places.push_back(theta);
+      places.back()[j] = theta[j] + step;
+    }
+  const std::vector<InnovationPass> passes = likelihood.passes_at(places, true);
+  Slope slope{information_of(passes, steps, !likelihood.free_inputs()),
+              likelihood.prior() * (theta - likelihood.first()), likelihood.cost(passes[0])};
+  for (Index j = 0; j < theta.size(); ++j) {
+    const auto above = static_cast<std::size_t>(2 * j + 1);
+    slope.gradient[j] +=
+        (likelihood.cost(passes[above]) - likelihood.cost(passes[above + 1])) / (2.0 * steps[j]);
   }
   return slope;
 }
@@ -111,7 +142,7 @@ InnovationFit fit_innovations(const InnovationProblem& problem, const VectorXd& 
   constexpr int most_iterations = 15, most_halvings = 6;
   constexpr double close_enough = 0.02;
   const Likelihood likelihood(problem);
-  InnovationFit fit{begin, {}, likelihood.at(begin).cost + likelihood.prior_cost(begin), false};
+  InnovationFit fit{begin, {}, likelihood.cost_at(begin) + likelihood.prior_cost(begin), false};
   const VectorXd steps = difference_steps(likelihood);
   for (int i = 0; i < most_iterations && !fit.converged; ++i) {
     const Slope slope = slope_at(likelihood, fit.constants, steps);
@@ -124,7 +155,7 @@ InnovationFit fit_innovations(const InnovationProblem& problem, const VectorXd& 
     for (int halving = 0; halving < most_halvings && !lower; ++halving, step *= 0.5) {
       try {
         const VectorXd there = fit.constants + step;
-        const double cost = likelihood.at(there).cost + likelihood.prior_cost(there);
+        const double cost = likelihood.cost_at(there) + likelihood.prior_cost(there);
         if (cost < fit.cost) fit.cost = cost, fit.constants = there, lower = true;
       } catch (const std::runtime_error&) {  // beyond what the model can be: a shorter step
       }
@@ -136,7 +167,7 @@ InnovationFit fit_innovations(const InnovationProblem& problem, const VectorXd& 
 }
 
 double innovation_log_likelihood(const InnovationProblem& problem, const VectorXd& theta) {
-  return -Likelihood(problem).at(theta).cost;
+  return -Likelihood(problem).cost_at(theta);
 }
 
 InnovationSlope innovation_slope(const InnovationProblem& problem, const VectorXd& theta) {

@@ -9,13 +9,6 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-void require_even_stamps(const Measurements& record, double interval) {
-  const double slack = 1e-6 * interval + 2.0 * record.time_resolution;
-  for (Index k = 0; k + 1 < record.size(); ++k)
-    if (std::abs(record.time[k + 1] - record.time[k] - interval) > slack)
-      throw std::invalid_argument("stamps are uneven; expected even ones");
-}
-
 std::vector<Index> outputs_read(const Measurements& record, Index k) {
   std::vector<Index> seen;
   for (Index i = 0; i < record.outputs.rows(); ++i)
@@ -56,6 +49,13 @@ MatrixXd next_covariance(const LinearGaussian& model, const KalmanStep& step) {
 
 }  // namespace
 
+void require_even_stamps(const Measurements& record, double interval) {
+  const double slack = 1e-6 * interval + 2.0 * record.time_resolution;
+  for (Index k = 0; k + 1 < record.size(); ++k)
+    if (std::abs(record.time[k + 1] - record.time[k] - interval) > slack)
+      throw std::invalid_argument("stamps are uneven; expected even ones");
+}
+
 LinearGaussian linear_gaussian(DiscreteModel& model, const std::vector<Index>& held, const VectorXd& theta,
                                const Gaussian& start, Index inputs) {
   std::vector<bool> is_held(static_cast<std::size_t>(start.mean.size()), false);
@@ -92,8 +92,7 @@ LinearGaussian linear_gaussian(DiscreteModel& model, const std::vector<Index>& h
   return form;
 }
 
-KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, double interval,
-                       KeptSteps kept) {
+KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, double interval) {
   require_even_stamps(record, interval);
   const Index p = record.outputs.rows(), n = model.a.rows(), samples = record.size();
   KalmanPass pass{MatrixXd(n, samples), MatrixXd::Constant(p, samples, std::nan("")), {}, {}, 0.0};
@@ -107,10 +106,6 @@ KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, 
     if (!steady || seen != pass.steps.back().seen) {
       if (steady) covariance = next_covariance(model, pass.steps.back());  // a gap ends the steady state
       steady = false;
-      if (kept == KeptSteps::innovations && !pass.steps.empty()) {  // of the step before
-        pass.steps.back().covariance.resize(0, 0);
-        pass.steps.back().gain.resize(0, 0);
-      }
       pass.steps.push_back(step_at(model, covariance, std::move(seen)));
       const KalmanStep& step = pass.steps.back();
       h = model.h(step.seen, Eigen::all);

@@ -30,10 +30,6 @@ struct KalmanStep {
   Eigen::MatrixXd innovation_covariance;  ///< S (p' x p')
 };
 
-/// What a pass keeps of every step: of a state that never settles (a constant in it) covariance and gain are
-/// n^2 numbers a sample, which a likelihood does not need.
-enum class KeptSteps { innovations, all };
-
 /// A record through the Kalman filter.
 struct KalmanPass {
   Eigen::MatrixXd means;        ///< of x_k, before y_k (n x N)
@@ -49,8 +45,10 @@ struct KalmanPass {
 /// that of the steady state: a sample then costs n^2 and not n^3.
 /// @throws std::invalid_argument where stamps are uneven; std::runtime_error where the covariance of an
 /// innovation is not positive definite, or the likelihood is not finite.
-KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, double interval,
-                       KeptSteps kept = KeptSteps::all);
+KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, double interval);
+
+/// @throws std::invalid_argument where stamps are not this far apart
+void require_even_stamps(const Measurements& record, double interval);
 
 /// C x_k + D u_k for every sample, given the whole record.
 struct SmoothedRows {
@@ -63,7 +61,7 @@ struct SmoothedRows {
 ///
 ///     r <- H^T S^-1 e_k + L^T r,   W <- H^T S^-1 H + L^T W L,   x_k|N = x_k + P_k r,   P_k|N = P_k - P_k W
 ///     P_k
-/// @param pass which kept all; @param rows C (c x n); @param feed D (c x m), empty: none
+/// @param rows C (c x n); @param feed D (c x m), empty: none
 SmoothedRows smoothed_rows(const LinearGaussian& model, const Measurements& record, const KalmanPass& pass,
                            const Eigen::MatrixXd& rows, const Eigen::MatrixXd& feed);
 

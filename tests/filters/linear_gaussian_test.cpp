@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "filters/innovation_passes.hpp"
+
 namespace beamid::linear_gaussian_test {
 namespace {
 
@@ -111,6 +113,42 @@ TEST(LinearGaussian, SaysWhereAnInnovationHasNoVariance) {
   filters::LinearGaussian model = some_model();
   model.r(0, 0) = -5.0;
   EXPECT_THROW(filters::kalman_pass(model, some_record(20), 1.0), std::runtime_error);
+}
+
+TEST(InnovationPasses, AreThoseOfEveryModelAlone) {
+  // Oracle: kalman_pass(). Seven models, so that a group of lanes is not full; gaps in one output and in
+  // both; correlated noise; one model whose gain never settles, since nothing moves its state.
+  filters::Measurements record = some_record(300);
+  record.outputs(0, 150) = record.outputs(1, 150) = record.outputs(1, 220) = record.outputs(0, 0) =
+      std::numeric_limits<double>::quiet_NaN();
+  std::vector<filters::LinearGaussian> models(7, some_model());
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    models[i].a *= 1.0 - 0.02 * static_cast<double>(i);
+    models[i].r(0, 1) = models[i].r(1, 0) = 0.01 * static_cast<double>(i);
+  }
+  models[2].q.setZero(), models[2].a.setIdentity();
+  const std::vector<filters::InnovationPass> passes = filters::innovation_passes(models, record, 1.0, true);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const filters::KalmanPass alone = filters::kalman_pass(models[i], record, 1.0);
+    ASSERT_FALSE(passes[i].failed);
+    EXPECT_NEAR(passes[i].cost(), alone.cost, 1e-11 * std::abs(alone.cost)) << i;
+    for (Index k = 0; k < record.size(); ++k) {
+      const std::vector<Index>& seen = alone.step(k).seen;
+      ASSERT_LT((passes[i].innovations(seen, k) - alone.innovations(seen, k)).norm(), 1e-11) << i << " " << k;
+      ASSERT_LT((passes[i].covariance(k)(seen, seen) - alone.step(k).innovation_covariance).norm(), 1e-11)
+          << i << " " << k;
+      for (Index j = 0; j < 2; ++j)
+        EXPECT_EQ(std::isnan(passes[i].innovations(j, k)), std::isnan(record.outputs(j, k)));
+    }
+  }
+}
+
+TEST(InnovationPasses, MarkTheModelThatFailsAlone) {
+  std::vector<filters::LinearGaussian> models(4, some_model());
+  models[1].r(0, 0) = -5.0;
+  const auto passes = filters::innovation_passes(models, some_record(20), 1.0, false);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(passes[i].failed, i == 1) << i;
+  EXPECT_NEAR(passes[0].cost(), filters::kalman_pass(models[0], some_record(20), 1.0).cost, 1e-10);
 }
 
 }  // namespace

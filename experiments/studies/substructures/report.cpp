@@ -110,12 +110,12 @@ Table joined_table(const PartedIdentification& found) {
   const bool truth = is_simulated(found);
   table.column({"parameter", "parameter"})
       .column({"unit", "unit"})
-      .column({"estimate", "estimate", "{:.6g}"})
+      .column({"estimate", "estimate", "{:.5g}"})
       .column({"deviation [%]", "deviation_percent", "{:.2g}"});
   if (truth) table.column({"error [%]", "error_percent", "{:+.2g}"});
   table.column({"parts", "parts", "{:.0f}"});
   if (found.whole)
-    table.column({"whole", "whole_estimate", "{:.6g}"})
+    table.column({"whole", "whole_estimate", "{:.5g}"})
         .column({"deviation [%]", "whole_deviation_percent", "{:.2g}"})
         .column({"bound [%]", "whole_bound_percent", "{:.2g}"});
   for (const JoinedParameter& one : found.joined) {
@@ -140,10 +140,10 @@ Table part_table(const PartedIdentification& found) {
   Table table{"parts", "Part by part"};
   table.column({"part", "part"})
       .column({"parameter", "parameter"})
-      .column({"estimate", "estimate", "{:.6g}"})
+      .column({"estimate", "estimate", "{:.5g}"})
       .column({"deviation [%]", "deviation_percent", "{:.2g}"})
       .column({"bound [%]", "bound_percent", "{:.2g}"})
-      .column({"sections exact", "exact_estimate", "{:.6g}"})
+      .column({"sections exact", "exact_estimate", "{:.5g}"})
       .column({"deviation [%]", "exact_deviation_percent", "{:.2g}"});
   for (const IdentifiedPart& part : found.parts)
     for (const ComparedParameter& one : part.run(Sections::noisy).parameters) {
