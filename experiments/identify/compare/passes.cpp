@@ -135,18 +135,21 @@ void Passes::finish() {
 void Passes::judge_motion() {
   const auto& shown = context_.analysis.mode;
   const VectorXd& state = run_.run.last.mean;
-  run_.mode = lowest_mode(*run_.model, state, run_.unknown_state);
+  const std::optional<double> record_hz = shown ? std::optional(shown->frequency_hz) : std::nullopt;
+  const auto modes = recorded_modes(*run_.model, state, run_.unknown_state, record_hz);
+  if (modes) run_.mode = modes->shown;
   FoundMode found = run_.mode.value_or(FoundMode{});
+  double lowest_hz = modes ? modes->lowest.frequency_hz : 0.0;
   if (!dynamic_cast<const filters::LinearMotion*>(run_.model->motion.get())) {
     if (!shown) return;
     const auto of_motion =
         recorded_frequency(run_.reproduced.row(0), record_.inputs, dt_, shown->frequency_hz);
     if (!of_motion.value_hz) return;
-    found.frequency_hz = *of_motion.value_hz;
+    found.frequency_hz = lowest_hz = *of_motion.value_hz;
   }
-  if (found.frequency_hz > 0.0) run_.frequency_hz = found.frequency_hz;
+  if (lowest_hz > 0.0) run_.frequency_hz = lowest_hz;
   found.frequency_hz = shown_at(found.frequency_hz, 1.0 / dt_);
-  run_.reason = divergence(found, shown ? std::optional(shown->frequency_hz) : std::nullopt);
+  run_.reason = divergence(found, record_hz);
   if (!run_.reason.empty()) run_.status = ComparedRun::Status::diverged;
 }
 

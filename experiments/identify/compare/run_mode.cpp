@@ -1,9 +1,12 @@
 #include "experiments/identify/compare/run_mode.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace beamid::experiments {
 
@@ -44,25 +47,37 @@ VectorXd shares_of_record(const filters::LinearMotion& motion, const VectorXd& s
   return largest > 0.0 ? VectorXd(share / largest) : VectorXd::Ones(n);
 }
 
-std::optional<FoundMode> slowest(const filters::LinearMotion& motion, const VectorXd& state) {
+// Oscillations that the record holds, with their shares of it; the slowest first.
+std::vector<std::pair<FoundMode, double>> oscillations(const filters::LinearMotion& motion,
+                                                       const VectorXd& state) {
   constexpr double at_rest = 1e-6;  // of the fastest rate: what rounding makes of a motion without stiffness
   constexpr double in_record = 1e-8;
   MatrixXd rates;
   motion.motion_matrix(state, rates);
-  std::optional<FoundMode> lowest;
   const Eigen::EigenSolver<MatrixXd> solver(rates);
   const Eigen::VectorXcd& eigenvalues = solver.eigenvalues();
   const double fastest = eigenvalues.cwiseAbs().maxCoeff();
   const VectorXd share = shares_of_record(motion, state, rates, solver);
+  std::vector<std::pair<FoundMode, double>> found;
   for (Index i = 0; i < eigenvalues.size(); ++i) {
     const std::complex<double> lambda = eigenvalues[i];
+    if (!(lambda.imag() > at_rest * fastest) || !(share[i] > in_record)) continue;
     const double frequency = std::abs(lambda) / (2.0 * std::numbers::pi);
-    if (!(lambda.imag() > at_rest * fastest) || !(share[i] > in_record) ||
-        (lowest && frequency >= lowest->frequency_hz))
-      continue;
-    lowest = FoundMode{frequency, -lambda.real() / std::abs(lambda)};
+    found.emplace_back(FoundMode{frequency, -lambda.real() / std::abs(lambda)}, share[i]);
   }
-  return lowest;
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first.frequency_hz < b.first.frequency_hz; });
+  return found;
+}
+
+// Of the slowest and of those with a tenth of the largest share, the one nearest to a frequency.
+FoundMode nearest(const std::vector<std::pair<FoundMode, double>>& found, double hz) {
+  constexpr double strong = 0.1;
+  const auto distance = [&](const FoundMode& mode) { return std::abs(std::log(mode.frequency_hz / hz)); };
+  FoundMode best = found.front().first;
+  for (const auto& [mode, share] : found)
+    if (share > strong && distance(mode) < distance(best)) best = mode;
+  return best;
 }
 
 void add_deviations(const filters::LinearMotion& motion, const VectorXd& state,
@@ -73,9 +88,11 @@ void add_deviations(const filters::LinearMotion& motion, const VectorXd& state,
     const double step = part * std::sqrt(unknowns.covariance(j, j));
     VectorXd moved = state;
     moved[places[static_cast<std::size_t>(j)]] += step;
-    if (const auto mode = slowest(motion, moved); mode && step > 0.0)
-      slopes.col(j) << (mode->frequency_hz - found.frequency_hz) / step,
-          (mode->damping_ratio - found.damping_ratio) / step;
+    if (const auto modes = oscillations(motion, moved); !modes.empty() && step > 0.0) {
+      const FoundMode mode = nearest(modes, found.frequency_hz);
+      slopes.col(j) << (mode.frequency_hz - found.frequency_hz) / step,
+          (mode.damping_ratio - found.damping_ratio) / step;
+    }
   }
   const Eigen::Vector2d variance =
       (slopes * unknowns.covariance * slopes.transpose()).diagonal().cwiseMax(0.0);
@@ -85,13 +102,17 @@ void add_deviations(const filters::LinearMotion& motion, const VectorXd& state,
 
 }  // namespace
 
-std::optional<FoundMode> lowest_mode(const JointModel& model, const VectorXd& state,
-                                     const filters::Gaussian& unknowns) {
+std::optional<RecordedModes> recorded_modes(const JointModel& model, const VectorXd& state,
+                                            const filters::Gaussian& unknowns,
+                                            std::optional<double> record_hz) {
   const auto* motion = dynamic_cast<const filters::LinearMotion*>(model.motion.get());
   if (!motion) return {};
-  std::optional<FoundMode> found = slowest(*motion, state);
-  if (found) add_deviations(*motion, state, unknowns, model.unknown_places, *found);
-  return found;
+  const auto found = oscillations(*motion, state);
+  if (found.empty()) return {};
+  const FoundMode& lowest = found.front().first;
+  RecordedModes modes{lowest, record_hz ? nearest(found, *record_hz) : lowest};
+  add_deviations(*motion, state, unknowns, model.unknown_places, modes.shown);
+  return modes;
 }
 
 }  // namespace beamid::experiments

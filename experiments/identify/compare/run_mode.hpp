@@ -1,4 +1,4 @@
-// The lowest mode of a record in a model at its estimate.
+// The modes of a record in a model at its estimate.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,21 @@
 
 namespace beamid::experiments {
 
-/// The slowest oscillation of the equations of motion at a state that the measured inputs reach and the
-/// sensors see: of a tower shaken along x not its mode along y. Absent: nothing oscillates.
+/// Of the oscillations of the equations of motion at a state that the measured inputs reach and the sensors
+/// see: of a tower shaken along x not its mode along y.
+struct RecordedModes {
+  FoundMode lowest;
+  /// The one that the record shows: among the lowest and those as strong in it, by reach and sight, as a
+  /// tenth of the strongest, the nearest to the frequency found in the record. Deviations are known of this
+  /// one.
+  FoundMode shown;
+};
+
+/// Absent: nothing oscillates, or the motion is not linear.
 /// @param unknowns their estimate and covariance as the state carries them (q): deviations to first order
-std::optional<FoundMode> lowest_mode(const JointModel& model, const Eigen::VectorXd& state,
-                                     const filters::Gaussian& unknowns);
+/// @param record_hz of the mode found in the record [Hz]; absent: the lowest is shown
+std::optional<RecordedModes> recorded_modes(const JointModel& model, const Eigen::VectorXd& state,
+                                            const filters::Gaussian& unknowns,
+                                            std::optional<double> record_hz);
 
 }  // namespace beamid::experiments

@@ -84,4 +84,8 @@ double unseen_probability(const Updating& updating) {
   return all > 0 ? static_cast<double>(once) / static_cast<double>(all) : 1.0;
 }
 
+bool starts_say_little(const Updating& updating) {
+  return unseen_probability(updating) > 0.5;
+}
+
 }  // namespace beamid::experiments

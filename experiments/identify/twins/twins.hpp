@@ -29,5 +29,7 @@ TwinSearch exact_twins(const ModalModel& model, const ModalData& data, const Pro
 
 /// Probability that one more start would end at a set not seen yet [good1953]: sets seen once, over starts.
 double unseen_probability(const Updating& updating);
+/// Whether that is above a half: nearly every start ended at a place of its own.
+bool starts_say_little(const Updating& updating);
 
 }  // namespace beamid::experiments

@@ -83,8 +83,10 @@ ModalModel::Found ModalModel::found(const VectorXd& values, bool slopes) const {
   for (std::size_t j = 0; j < asked_.parameters.size(); ++j)
     if (fem::value_of(there, asked_.parameters[j]) != values[static_cast<Index>(j)])
       there = fem::with_value(there, asked_.parameters[j], values[static_cast<Index>(j)]);
+  // A beam's mesh has nodes where its parameters begin and end; else the derivatives are not needed.
   const fem::StructuralSystem system =
-      fem::assemble_parametric(there, elements_, points_, asked_.parameters).system;
+      there.is_beam() ? fem::assemble_parametric(there, elements_, points_, asked_.parameters).system
+                      : fem::assemble(there, elements_, points_);
   const fem::Modes modes = fem::modes(system, std::min(size(), slopes ? 2 * count_ + 6 : count_));
   Found result{modes.angular_frequency.cwiseAbs2(), modes.shape, {}};
   if (slopes && points_.size() > 1 && modes.rigid == 0)

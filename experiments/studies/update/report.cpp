@@ -47,7 +47,8 @@ Results report(const Experiment& experiment, const UpdateStudy& study) {
   if (study.updating.continuum())
     results.paragraph("Of a continuum of sets that fit as well one is shown.");
   else if (study.updating.as_well() == 1)
-    results.paragraph("No other set fits as well.");
+    results.paragraph(study.complete() ? "No other set fits as well."
+                                       : "No other set was found that fits as well.");
   if (study.updating.as_well() > 1 && !study.deciding.empty()) results.table(deciding_table(study.deciding));
   results.figures.push_back(update_figure(study, "updated_parameters"));
   return results;

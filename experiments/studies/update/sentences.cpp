@@ -61,6 +61,11 @@ std::pair<std::string, bool> update_verdict(const UpdateStudy& study) {
     return {sets_text(updating) + ", and the modes cannot tell which is true: " + numbers + ".", false};
   if (study.twins.method == TwinSearch::Method::all_solutions && !study.complete())
     return {fmt::format("One set of parameters explains the modes, as far as was found: {}.", numbers), true};
+  if (study.twins.method != TwinSearch::Method::all_solutions && starts_say_little(updating))
+    return {
+        fmt::format("One set of parameters explains the modes, as far as so few starts can tell ({}): {}.",
+                    updating.starts, numbers),
+        true};
   return {fmt::format("One set of parameters explains the modes: {}.", numbers), true};
 }
 
@@ -96,10 +101,18 @@ std::string completeness_text(const UpdateStudy& study) {
                      "Not proven complete: {} of the {} complex solutions were found and told apart; some "
                      "lie together or too near each other.",
                      twins.found, twins.complex_solutions);
-  return fmt::format(
-      "Not proven complete, since {}: found by searches from {} starts. The chance that one more "
-      "start ends elsewhere is about {:.2g} % (sets that one start alone found).",
-      twins.reason, study.updating.starts, 100.0 * unseen_probability(study.updating));
+  const std::size_t starts = study.updating.starts;
+  const std::string searched =
+      fmt::format("Not proven complete, since {}: found by searches from {} start{}.", twins.reason, starts,
+                  starts == 1 ? "" : "s");
+  if (starts_say_little(study.updating))
+    return searched +
+           " So few say nothing of other sets: nearly each of them ended at a place of its own. Ask for more "
+           "by --starts.";
+  return searched + fmt::format(
+                        " The chance that one more start ends elsewhere is about {:.2g} % (sets that "
+                        "one start alone found).",
+                        100.0 * unseen_probability(study.updating));
 }
 
 std::string deciding_text(const DecidingMeasurement& one) {

@@ -1,4 +1,4 @@
-// The lowest mode of a record: what is neither reached nor seen is none.
+// Modes of a record: what is neither reached nor seen is none; the one shown is the nearest that is strong.
 #include "experiments/identify/compare/run_mode.hpp"
 
 #include <gtest/gtest.h>
@@ -43,15 +43,19 @@ class Two final : public filters::LinearMotion {
   bool forced_;
 };
 
-double frequency_of(const Two& motion) {
+std::optional<RecordedModes> modes_of(const Two& motion, std::optional<double> record_hz) {
   JointModel model;
   model.motion = std::make_shared<Two>(motion);
   model.unknown_places = {4};
   VectorXd state = VectorXd::Zero(5);
   state[4] = 9.0;
-  const auto found =
-      lowest_mode(model, state, {VectorXd::Constant(1, 9.0), MatrixXd::Constant(1, 1, 0.01), {}});
-  return found ? 2.0 * std::numbers::pi * found->frequency_hz : 0.0;
+  return recorded_modes(model, state, {VectorXd::Constant(1, 9.0), MatrixXd::Constant(1, 1, 0.01), {}},
+                        record_hz);
+}
+
+double frequency_of(const Two& motion) {
+  const auto found = modes_of(motion, {});
+  return found ? 2.0 * std::numbers::pi * found->lowest.frequency_hz : 0.0;
 }
 
 TEST(LowestMode, IsTheSlowestWhereTheRecordHoldsIt) {
@@ -66,6 +70,26 @@ TEST(LowestMode, IsNoneThatTheInputsDoNotReach) {
 TEST(LowestMode, IsNoneThatNoSensorSees) {
   EXPECT_NEAR(frequency_of(Two(1.0, 0.0, true)), 3.0, 1e-12);
   EXPECT_NEAR(frequency_of(Two(1.0, 0.0, false)), 3.0, 1e-12);
+}
+
+// d(omega / 2 pi) / dk = 1 / (4 pi omega), of a deviation of 0.1.
+TEST(ShownMode, IsTheNearestToTheRecordsWithADeviationOfItsOwn) {
+  constexpr double hz = 1.0 / (2.0 * std::numbers::pi);
+  const auto second = modes_of(Two(1.0, 1.0, true), 2.8 * hz);
+  ASSERT_TRUE(second);
+  EXPECT_NEAR(second->lowest.frequency_hz, hz, 1e-12);
+  EXPECT_NEAR(second->shown.frequency_hz, 3.0 * hz, 1e-12);
+  EXPECT_NEAR(second->shown.frequency_deviation_hz, 0.1 * hz / 6.0, 1e-5);
+  const auto first = modes_of(Two(1.0, 1.0, true), 1.3 * hz);
+  ASSERT_TRUE(first);
+  EXPECT_NEAR(first->shown.frequency_hz, hz, 1e-12);
+  EXPECT_NEAR(first->shown.frequency_deviation_hz, 0.0, 1e-12);
+}
+
+TEST(ShownMode, IsNoneThatIsHardlyInTheRecord) {
+  const auto modes = modes_of(Two(1000.0, 1.0, true), 3.0 / (2.0 * std::numbers::pi));
+  ASSERT_TRUE(modes);
+  EXPECT_NEAR(modes->shown.frequency_hz, modes->lowest.frequency_hz, 1e-12);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "experiments/identify/twins/twins.hpp"
 #include "experiments/identify/update/update_study.hpp"
 #include "filters/random.hpp"
 #include "tests/experiments/identify/update/update_cases.hpp"
@@ -19,6 +20,16 @@ const VectorXd second_set = lbf_per_in * VectorXd{{7.18, 8.08, 9.03, 14.69}};
 
 UpdateSettings few_starts(int starts = 40, ModelTrust trust = {}) {
   return {trust, starts};
+}
+
+// Good and Turing: each place seen once speaks for one not seen.
+TEST(Updating, OfFewStartsThatAgreeOnNothingSaysLittle) {
+  Updating updating;
+  updating.sets.resize(2);
+  updating.sets[0].starts = 1, updating.sets[1].starts = 1;
+  EXPECT_TRUE(starts_say_little(updating));
+  updating.sets[0].starts = 9;
+  EXPECT_FALSE(starts_say_little(updating));
 }
 
 TEST(Updating, NamesAllSixBuildingsOfFourFrequencies) {
