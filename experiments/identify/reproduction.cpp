@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -39,7 +40,10 @@ void take_misfit(const filters::Measurements& record, Reproduction& motion) {
   double coloured = 0.0;
   for (Index i = 0; i < share.size(); ++i) {
     const VectorXd rest = record.outputs.row(i) - motion.outputs.row(i);
-    if (filters::whiteness_of(rest).p_value < surely_coloured) coloured += share[i] * share[i];
+    const filters::Whiteness whiteness = filters::whiteness_of(rest);
+    // White noise beside a motion takes a part of its own from every correlation.
+    if (whiteness.p_value < surely_coloured)
+      coloured += share[i] * share[i] * std::min(1.0, whiteness.autocorrelation.cwiseAbs().maxCoeff());
   }
   motion.misfit_percent = per_channel * std::sqrt(coloured);
 }

@@ -16,7 +16,8 @@ struct Reproduction {
   Eigen::MatrixXd outputs;              ///< (p x N)
   Eigen::VectorXd residual_deviation;   ///< root mean square of what is left, per channel (p)
   double response_error_percent = 0.0;  ///< 100 ||y - outputs|| / ||y||, channels weighed by their size
-  double misfit_percent = 0.0;  ///< likewise, of channels whose rest is not white: what noise does not explain
+  /// Likewise, of channels whose rest is not white the part that is correlated: what noise does not explain.
+  double misfit_percent = 0.0;
 };
 
 /// What the outputs leave of the samples that were read.

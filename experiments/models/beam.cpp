@@ -20,6 +20,7 @@
 #include "experiments/models/motion/following_motion.hpp"
 #include "experiments/models/motion/sensor_options.hpp"
 #include "experiments/models/motion/supported_motion.hpp"
+#include "fem/moved_mass.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -237,6 +238,9 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
   model->mode_frequencies = modes.angular_frequency;
   fem::Modes on_mesh = modes;
   on_mesh.shape = reduced.lift(modes.shape);
+  if (description.base >= 0 && dense && modes.size() < equations.system.size())
+    model->moved_share = fem::moved_share(
+        equations.system, description.forces[static_cast<std::size_t>(description.base)], on_mesh.shape);
   const VectorXd scale = scale_of_modes(equations.system, description.observations, on_mesh.shape);
   const MatrixXd shapes = on_mesh.shape * scale.asDiagonal();
   const bool follows = moves_in_modes(equations, modes, description) &&

@@ -74,6 +74,7 @@ struct JointModel {
   Eigen::VectorXd mode_frequencies;  ///< omega (k) [rad/s]
 
   double equivalent_mass = 0.0;  ///< at the first output, of a model of one coordinate [kg]; else 0
+  double moved_share = 1.0;  ///< of the mass that a measured motion of the base moves (fem/moved_mass.hpp)
 
   Eigen::Index motion_size() const { return mode_shapes.rows(); }  ///< r
 };
