@@ -104,7 +104,7 @@ std::string structure_line(const Experiment& experiment, const fem::StructuralSy
   const fem::Structure& structure = experiment.structure;
   const std::string first =
       fmt::format("irst mode predicted at {:.4f} Hz", fem::modes(system, 1).frequency_hz()[0]);
-  if (!structure.is_beam())
+  if (!structure.is_beam() || structure.is_chain())
     return fmt::format("  {:<8} {} F{}.\n", structure.kind(),
                        structure_text(experiment, experiment.elements, system.size()), first);
   const fem::Beam& beam = structure.beam();

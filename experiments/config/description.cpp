@@ -70,6 +70,12 @@ std::string bending_stiffness_text(const fem::Beam& beam) {
       beam, [](const auto& s) -> auto& { return s.bending_stiffness; });
 }
 
+std::string damping_text(const fem::DampingLaw& law, const fem::StructuralSystem& system) {
+  const std::string text = fem::name(law);
+  if (system.damping.nonZeros() == 0) return text;
+  return std::holds_alternative<fem::Undamped>(law) ? "dashpots" : text + " and dashpots";
+}
+
 std::string beam_text(const fem::Beam& beam, int elements, Eigen::Index coordinates) {
   if (beam.shear_building) return storeys_text(beam);
   const bool timoshenko =

@@ -15,6 +15,9 @@ std::string beam_text(const fem::Beam& beam, int elements, Eigen::Index coordina
 /// E I [N m2]: "228.96", or "28.62 to 228.96" where it varies.
 std::string bending_stiffness_text(const fem::Beam& beam);
 
+/// "rayleigh", "modal and dashpots", "dashpots".
+std::string damping_text(const fem::DampingLaw& law, const fem::StructuralSystem& system);
+
 /// {"law": "rayleigh", "anchors": [...]}
 nlohmann::ordered_json describe(const fem::DampingLaw& law);
 

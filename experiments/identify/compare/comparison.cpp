@@ -199,6 +199,10 @@ ComparedRecord measured_record(std::string name, const Record& record) {
 
 Comparison compare(const Experiment& experiment, ComparedRecord record, const std::filesystem::path& folder,
                    const Progress& progress, filters::Keep keep) {
+  if (!experiment.unknown_forces.empty())
+    throw std::invalid_argument(
+        "[[unknown_forces]] are followed by beamid sense and beamid posterior, which find the structure's "
+        "parameters beside them; expected none where forces are measured or the motion is free");
   Comparison comparison{std::move(record), {}, {}};
   comparison.analysis = analyse(experiment, comparison.compared.record);
   const RecordAnalysis& analysis = comparison.analysis;

@@ -44,6 +44,9 @@ struct ComparedParameter {
   Estimate estimate;
   std::optional<double> truth;  ///< [unit of the estimate]
   std::optional<double> bound;  ///< Cramer-Rao bound on its deviation [unit]; absent: not determined
+  /// The filter's deviation over the least that record and prior allow, where it was clearly below and is
+  /// widened to that; else 1.
+  double overconfidence = 1.0;
 
   std::optional<double> error_percent() const;
   std::optional<double> bound_ratio() const;  ///< deviation / bound

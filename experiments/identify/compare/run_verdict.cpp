@@ -74,7 +74,20 @@ std::vector<double> by_influence(ComparedRun& run) {
   return factors;
 }
 
+// A filter that is surer than record and prior allow has been linearised elsewhere, or has lost its spread:
+// its deviation becomes the least there is.
+double to_bound(ComparedParameter& p, double factor) {
+  constexpr double clearly = 0.8;
+  if (!p.bound) return factor;
+  const double least = 1.0 / std::hypot(1.0 / *p.bound, 1.0 / p.estimate.prior_deviation);
+  const double part = factor * p.estimate.deviation / least;
+  if (!(part < clearly && part > 0.0)) return factor;
+  p.overconfidence = part;
+  return factor / part;
+}
+
 void widen(ComparedRun& run, std::size_t j, double factor) {
+  factor = to_bound(run.parameters[j], factor);
   Estimate& e = run.parameters[j].estimate;
   const Unknown& unknown = run.unknowns[j];
   const auto place = static_cast<Eigen::Index>(j);

@@ -128,23 +128,20 @@ std::string why_surer(const Comparison& comparison, const ComparedRun& run) {
          "from nearer initial estimates";
 }
 
-// A deviation below the bound, by more than what was known beforehand explains.
+// Deviations below the bound, by more than what was known beforehand explains.
 std::string surer_text(const Comparison& comparison) {
-  constexpr double clearly = 0.8;
   std::string text;
   for (const ComparedRun& run : comparison.runs) {
     std::string surer;
-    for (const ComparedParameter& p : run.parameters) {
-      if (!is_sound(run) || !p.bound) continue;
-      const double least = 1.0 / std::hypot(1.0 / *p.bound, 1.0 / p.estimate.prior_deviation);
-      if (p.estimate.deviation < clearly * least)
-        surer += fmt::format("{}{} {:.2g}", surer.empty() ? "" : ", ", p.estimate.name,
-                             p.estimate.deviation / least);
-    }
+    for (const ComparedParameter& p : run.parameters)
+      if (p.overconfidence < 1.0)
+        surer += fmt::format("{}{} {:.2g}", surer.empty() ? "" : ", ", p.estimate.name, p.overconfidence);
     if (!surer.empty())
-      text +=
-          fmt::format("{}Overconfident: standard deviations of {}, as parts of the Cramer-Rao bound: {}; {}.",
-                      text.empty() ? "" : " ", name_of(comparison, run), surer, why_surer(comparison, run));
+      text += fmt::format(
+          "{}Overconfident: the filter's standard deviations of {} were, as parts of the Cramer-Rao bound: "
+          "{}; "
+          "{}. They are widened to the bound.",
+          text.empty() ? "" : " ", name_of(comparison, run), surer, why_surer(comparison, run));
   }
   return text;
 }

@@ -150,7 +150,7 @@ Results report(const Experiment& experiment, const FrequencyResponses& found) {
   results.paragraph(fmt::format("{} at {} frequencies from {:.6g} to {:.6g} Hz, {}. Damping: {}.",
                                 to_string(settings.kind), settings.points, found.frequency_hz[0],
                                 found.frequency_hz[found.frequency_hz.size() - 1], found.method.name,
-                                fem::name(experiment.damping)));
+                                damping_text(experiment.damping, found.system)));
   results.table(resonance_table(experiment, found));
   add_notes(results, found.notes);
   results.attachments.push_back(

@@ -199,9 +199,10 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   results.paragraph(structure_text(experiment, static_cast<Eigen::Index>(test->system.mesh.elements.size()),
                                    test->system.size()));
   results.paragraph(fmt::format("{} Damping: {}. Method {}: {} steps of {:g} s; {} samples at {:g} Hz.",
-                                excitations_text(test->excitations), fem::name(experiment.damping),
-                                settings.method.name, test->response.time.size() - 1, test->step,
-                                test->record.size(), settings.sampling_rate));
+                                excitations_text(test->excitations),
+                                damping_text(experiment.damping, test->system), settings.method.name,
+                                test->response.time.size() - 1, test->step, test->record.size(),
+                                settings.sampling_rate));
   results.table(sensor_table(*test));
   if (const std::string text = acquisition_text(*test); !text.empty()) results.paragraph(text);
   if (test->record.channels.size() > test->sensors.size())
