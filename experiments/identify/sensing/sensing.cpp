@@ -117,14 +117,15 @@ filters::InnovationConsistency consistency_of(const filters::KalmanPass& pass, I
 
 // At the constants that all sensors together say: what is checked is the structure, not their estimate. A
 // constant offset of the sensor is its own, and no error of the prediction.
-LeftOutSensor left_out(const SensingModel& model, const filters::LinearGaussian& form, const Channel& channel,
+LeftOutSensor left_out(const SensingModel& model, const SensingForm& at_found, const Channel& channel,
                        double noise, Index i) {
+  const filters::LinearGaussian& form = at_found.matrices;
   filters::Measurements rest = model.record();
   const VectorXd read = rest.outputs.row(i);
   rest.outputs.row(i).setConstant(std::nan(""));
   const filters::KalmanPass pass = filters::kalman_pass(form, rest, model.interval());
   const filters::SmoothedRows found =
-      filters::smoothed_rows(form, rest, pass, model.row_without_offset(form, i), form.d.row(i));
+      filters::smoothed_rows(form, rest, pass, at_found.row_without_offset(i), form.d.row(i));
   const VectorXd error = read - found.means.row(0).transpose();
   LeftOutSensor result{channel.name, si_unit(channel.quantity)};
   result.root_mean_square = rms(model.has_offset(i) ? centred(read) : read);
@@ -271,7 +272,7 @@ SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& re
   for (Index i = 0; i < model.measured() && model.measured() > 1; ++i) {
     const Channel& channel = record.record.channels[static_cast<std::size_t>(i)];
     countdown.begin(channel.name);
-    study.left_out.push_back(left_out(model, form, channel, noise[i], i));
+    study.left_out.push_back(left_out(model, at_found, channel, noise[i], i));
   }
   return study;
 }

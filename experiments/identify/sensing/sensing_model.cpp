@@ -58,6 +58,13 @@ MatrixXd SensingForm::force_rows() const {
   return rows;
 }
 
+MatrixXd SensingForm::row_without_offset(Index i) const {
+  MatrixXd row = matrices.h.row(i);
+  for (const auto& [output, place] : offsets)
+    if (output == i) row(0, place) = 0.0;
+  return row;
+}
+
 // P = A P A^T + Q, by doubling: P_2j = P_j + A^j P_j A^jT. A random walk's grows by as much as it is.
 VectorXd unread_deviations(const filters::LinearGaussian& model, const MatrixXd& rows, Index samples) {
   MatrixXd a = model.a, p = model.q;
@@ -114,13 +121,6 @@ SensingModel::SensingModel(const Experiment& experiment, const SensingRecord& re
                             si_unit(channel.quantity),
                             static_cast<std::size_t>(channel.quantity),
                             {i}});
-  }
-  const filters::LatentInputs latent(motion_, forces_);
-  for (const JointModel::Offset& offset : model_.offsets) {
-    const Index place = latent.moved(offset.place);
-    const auto before = std::count_if(model_.unknown_places.begin(), model_.unknown_places.end(),
-                                      [&](Index held) { return latent.moved(held) < place; });
-    offsets_.emplace_back(offset.channel, place - before);
   }
   add_constants(experiment);
   make_start();
@@ -246,8 +246,12 @@ SensingForm SensingModel::form(const VectorXd& theta, const std::vector<filters:
   const MatrixXd r = noise_at(theta).cwiseAbs2().asDiagonal();
   result.model = filters::discretise(latent, interval(), "exponential", {q, r});
   result.matrices = filters::linear_gaussian(*result.model, known, eta, result.start, record_.inputs.rows());
-  for (Index i = measured_; i < outputs(); ++i)
-    result.matrices.h.row(i) = row_without_offset(result.matrices, i);
+  for (const JointModel::Offset& offset : model_.offsets) {
+    const auto found =
+        std::lower_bound(result.moving.begin(), result.moving.end(), latent->moved(offset.place));
+    result.offsets.emplace_back(offset.channel, found - result.moving.begin());
+  }
+  for (Index i = measured_; i < outputs(); ++i) result.matrices.h.row(i) = result.row_without_offset(i);
   return result;
 }
 
@@ -264,15 +268,9 @@ SensingForm SensingModel::form_of_walks(const VectorXd& theta) const {
   return form(theta, forces);
 }
 
-MatrixXd SensingModel::row_without_offset(const filters::LinearGaussian& model, Index i) const {
-  MatrixXd row = model.h.row(i);
-  for (const auto& [output, place] : offsets_)
-    if (output == i) row(0, place) = 0.0;
-  return row;
-}
-
 bool SensingModel::has_offset(Index i) const {
-  return std::any_of(offsets_.begin(), offsets_.end(), [&](const auto& one) { return one.first == i; });
+  return std::any_of(model_.offsets.begin(), model_.offsets.end(),
+                     [&](const auto& one) { return one.channel == i; });
 }
 
 filters::InnovationProblem SensingModel::problem(const filters::Measurements& record) const {

@@ -30,7 +30,12 @@ struct SensingForm {
   filters::Gaussian start;                        ///< of z, the parameters known
   std::vector<Eigen::Index> moving;               ///< entries of z but the parameters
   filters::LinearGaussian matrices;               ///< of those
-  Eigen::MatrixXd force_rows() const;             ///< that read the unknown forces of those (f x n)
+  /// Output, and place of its sensor's offset in those: it depends on how many states the forces have.
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> offsets = {};
+
+  Eigen::MatrixXd force_rows() const;  ///< that read the unknown forces of those (f x n)
+  /// What output i reads of those, but for its sensor's own offset (1 x n).
+  Eigen::MatrixXd row_without_offset(Eigen::Index i) const;
 };
 
 class SensingModel {
@@ -53,8 +58,6 @@ class SensingModel {
   /// With random walks in their place that change by as much from sample to sample: for filters that take
   /// nothing else for known of the forces.
   SensingForm form_of_walks(const Eigen::VectorXd& theta) const;
-  /// What output i reads of its state, but for the sensor's own offset (1 x n).
-  Eigen::MatrixXd row_without_offset(const filters::LinearGaussian& model, Eigen::Index i) const;
   bool has_offset(Eigen::Index i) const;
   /// theta of [[parameters]] as known beforehand, of the rest within a factor of about 20 of the guess.
   filters::Gaussian prior() const { return prior_; }
@@ -89,8 +92,7 @@ class SensingModel {
   std::vector<filters::LatentInput> forces_;  // as stated; deviations and times guessed where not
   Eigen::VectorXd noise_;                     // likewise (p)
   std::vector<SensingConstant> constants_;
-  filters::Gaussian start_;                                     // of the motion's own state
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> offsets_;  // output, and place of its offset in x
+  filters::Gaussian start_;  // of the motion's own state
   filters::Gaussian prior_;
 };
 

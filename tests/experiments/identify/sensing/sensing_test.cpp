@@ -108,6 +108,26 @@ TEST(Sensing, GivesTheHistoriesOfAFilterThatKnowsNothingOfTheForce) {
   }
 }
 
+TEST(Sensing, TakesAVirtualAccelerationFromAFilterWhoseForceHasFewerStates) {
+  // Oracle: the simulated acceleration. The filter's walk has one state where the smoother's process has two,
+  // so the offsets of accelerometers are elsewhere in its state. Its force is known to a seventh of the
+  // smoother's, and so is the acceleration.
+  const std::string asked = slower(mast + gauge) + R"(
+[[virtual_sensors]]
+name = "between"
+quantity = "acceleration"
+position_m = 1.0
+)";
+  const SensingStudy smoothed = study_of(asked);
+  const SensingStudy study =
+      study_of(asked, "", Choice{"gillijns_de_moor", {{"inputs", std::vector<double>{}}}});
+  const SensedHistory& one = study.histories[1];
+  ASSERT_EQ(one.name, "between");
+  EXPECT_FALSE(one.contradicts_smoother());
+  EXPECT_LT(one.error(), 1.3 * one.reported_error());
+  EXPECT_LT(one.reported_error(), 10.0 * smoothed.histories[1].reported_error());
+}
+
 TEST(Sensing, SaysWhereAFilterLeavesTheSmoother) {
   const SensingStudy study = study_of(
       slower(mast + gauge), "", Choice{"dual_kf", {{"inputs", std::vector<double>{}}, {"coupled", true}}});
