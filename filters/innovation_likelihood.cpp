@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "filters/innovation_passes.hpp"
+#include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::filters {
 namespace {
@@ -120,6 +121,12 @@ Slope slope_at(const Likelihood& likelihood, const VectorXd& theta, const Vector
   return slope;
 }
 
+// Whether theta is within a deviation of a maximum.
+bool is_at(const InnovationFit& maximum, const VectorXd& theta, const MatrixXd& prior) {
+  const VectorXd off = theta - maximum.constants;
+  return off.dot((maximum.information + prior) * off) < 1.0;
+}
+
 VectorXd difference_steps(const Likelihood& likelihood) {
   constexpr double part = 1e-3;  // of the deviations known beforehand
   return part * likelihood.prior().diagonal().cwiseSqrt().cwiseInverse();
@@ -138,30 +145,44 @@ InnovationProblem held_problem(DiscreteModel& model, const Measurements& record,
           {start.mean(held), start.covariance(held, held), {}}};
 }
 
-InnovationFit fit_innovations(const InnovationProblem& problem, const VectorXd& begin) {
-  constexpr int most_iterations = 15, most_halvings = 6;
-  constexpr double close_enough = 0.02;
+InnovationFit fit_innovations(const InnovationProblem& problem, const VectorXd& begin,
+                              const InnovationSearch& search) {
+  constexpr int halvings = 6;
+  constexpr double close_enough = 0.02, rounding = 0.1;
   const Likelihood likelihood(problem);
   InnovationFit fit{begin, {}, likelihood.cost_at(begin) + likelihood.prior_cost(begin), false};
   const VectorXd steps = difference_steps(likelihood);
-  for (int i = 0; i < most_iterations && !fit.converged; ++i) {
-    const Slope slope = slope_at(likelihood, fit.constants, steps);
+  Slope slope = slope_at(likelihood, fit.constants, steps);
+  for (int i = 0; i < search.most_iterations && !fit.converged; ++i) {
     fit.information = slope.information;
     const MatrixXd curvature = slope.information + likelihood.prior();
     VectorXd step = -curvature.ldlt().solve(slope.gradient);
     const double length = std::sqrt(std::max(0.0, step.dot(curvature * step)));
-    // Halved, not damped: as it ends at 0.02 deviations, levenberg_marquardt() would end at other digits.
-    bool lower = false;
-    for (int halving = 0; halving < most_halvings && !lower; ++halving, step *= 0.5) {
+    const bool last = length < close_enough;
+    // Taken where J falls; and, as the next step needs it, only where the model can be had all around.
+    const auto take = [&](const VectorXd& tried) {
       try {
-        const VectorXd there = fit.constants + step;
+        const VectorXd there = fit.constants + tried;
         const double cost = likelihood.cost_at(there) + likelihood.prior_cost(there);
-        if (cost < fit.cost) fit.cost = cost, fit.constants = there, lower = true;
+        if (!(cost < fit.cost)) return false;
+        if (!last) slope = slope_at(likelihood, there, steps);
+        fit.cost = cost, fit.constants = there;
+        return true;
       } catch (const std::runtime_error&) {  // beyond what the model can be: a shorter step
+        return false;
       }
+    };
+    // Halved first, then damped: as it ends at 0.02 deviations, levenberg_marquardt() would end at other
+    // digits.
+    bool lower = false;
+    for (int halving = 0; halving < halvings && !lower; ++halving, step *= 0.5) lower = take(step);
+    for (const double damping : {0.1, 10.0, 1e3, 1e5}) {
+      if (lower || last) break;
+      lower = take(-solve_damped(curvature, damping, slope.gradient));
     }
-    fit.converged = length < close_enough;
+    fit.converged = last || (!lower && length < rounding);
     if (!lower) break;
+    if (search.known && is_at(*search.known, fit.constants, likelihood.prior())) break;
   }
   return fit;
 }

@@ -56,12 +56,20 @@ struct InnovationFit {
   bool converged = false;
 };
 
+/// Where a search may end.
+struct InnovationSearch {
+  int most_iterations = 100;  ///< a logarithm of a noise falls by 0.5 at most in each
+  /// A maximum found before: a search that comes within a deviation of it ends there, not converged.
+  const InnovationFit* known = nullptr;
+};
+
 /// Gauss-Newton from `begin` (q), its derivatives central differences of steps of a thousandth of the
-/// deviations known beforehand; halved where J would grow. Converged: the last step was below 2 % of the
-/// deviations.
+/// deviations known beforehand; halved where J would grow or there is no model, then damped. Converged: the
+/// last step was below 2 % of the deviations, or no step below 10 % of them lowers J, for rounding.
 /// @throws std::invalid_argument where stamps are uneven; std::runtime_error where a covariance is not
-/// positive.
-InnovationFit fit_innovations(const InnovationProblem& problem, const Eigen::VectorXd& begin);
+/// positive at `begin`.
+InnovationFit fit_innovations(const InnovationProblem& problem, const Eigen::VectorXd& begin,
+                              const InnovationSearch& search = {});
 
 /// I at theta (q x q).
 Eigen::MatrixXd innovation_information(const InnovationProblem& problem, const Eigen::VectorXd& constants);

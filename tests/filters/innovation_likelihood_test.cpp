@@ -107,6 +107,32 @@ TEST(InnovationLikelihood, ScattersAsItsInformationSays) {
   EXPECT_NEAR(std::sqrt(errors.squaredNorm() / runs) / bound, 1.0, 0.1);
 }
 
+TEST(InnovationLikelihood, RefusesAStepToWhereThereIsNoModel) {
+  // Oracle: the maximum of the same likelihood without the hole, which is beside the first step, where the
+  // differences of the second are taken.
+  const filters::Measurements record = some_record(60, 4);
+  Autoregression model;
+  filters::InnovationProblem problem = filters::held_problem(model, record, {1}, known());
+  const VectorXd begin = VectorXd::Constant(1, 0.2);
+  const filters::InnovationFit whole = filters::fit_innovations(problem, begin);
+  filters::InnovationSearch once;
+  once.most_iterations = 1;
+  const double first = filters::fit_innovations(problem, begin, once).constants[0];
+  const double deviation = 1.0 / std::sqrt(whole.information(0, 0));
+  ASSERT_GT(std::abs(first - whole.constants[0]), 0.02 * deviation);
+  const auto everywhere = problem.model;
+  int refused = 0;
+  problem.model = [&](const VectorXd& theta) {
+    filters::LinearGaussian form = everywhere(theta);
+    if (std::abs(theta[0] - first - 0.01) < 1e-4) form.r.setConstant(-1e6), ++refused;
+    return form;
+  };
+  const filters::InnovationFit fit = filters::fit_innovations(problem, begin);
+  EXPECT_GT(refused, 0);
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.constants[0], whole.constants[0], 0.02 * deviation);
+}
+
 TEST(InnovationLikelihood, LeavesReadingsOutThatAreNotThere) {
   // Oracle: the same record cut where the reading is missing behind its end.
   filters::Measurements record = some_record(61, 4);
