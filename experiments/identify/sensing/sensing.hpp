@@ -1,12 +1,14 @@
 // Forces that nobody measured, and motion where no sensor was.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/identify/sensing/fatigue_damage.hpp"
 #include "experiments/identify/sensing/sensing_model.hpp"
+#include "experiments/identify/sensing/sensor_zero.hpp"
 #include "filters/innovation_consistency.hpp"
 
 namespace beamid::experiments {
@@ -70,6 +72,7 @@ struct SensingStudy {
   std::vector<SensorNoise> noise;        ///< of every sensor that was read
   filters::InnovationConsistency innovations;
   int unseen_constants = 0;  ///< SensingModel::unseen_constant_forces
+  std::vector<SoleZero> sole_zeros = {};
   struct SensorDamage {
     std::string name;
     FatigueDamage damage;
@@ -80,6 +83,9 @@ struct SensingStudy {
   /// Of the innovations over what they should be; 1 of a right model.
   static constexpr double largest_square = 1.5;
   bool contradicted() const;
+  /// Innovations so far from white that intervals are too small.
+  bool correlated() const { return std::abs(innovations.lag_one_correlation) > 0.3; }
+  bool is_to_rely_on() const { return converged && !contradicted() && !correlated(); }
 };
 
 /// Constants by the likelihood of the innovations, then all histories at them, by the smoother or a filter;

@@ -33,6 +33,13 @@ double noise_floor(const VectorXd& samples) {
   return std::clamp(found, 1e-5 * all, 0.1 * all);
 }
 
+// Rank of what sensors read of constant forces (p x f), in parts of what it is made up of.
+Index seen_combinations(const MatrixXd& read) {
+  constexpr double rounding = 1e-8;
+  if (read.size() == 0) return read.cols();
+  return (Eigen::JacobiSVD<MatrixXd>(read).singularValues().array() > rounding).count();
+}
+
 filters::LatentInput::Process process_of(UnknownForce::Process process) {
   using To = filters::LatentInput::Process;
   switch (process) {
@@ -109,7 +116,10 @@ SensingModel::SensingModel(const Experiment& experiment, const SensingRecord& re
     const Channel& channel = record.record.channels[static_cast<std::size_t>(i)];
     const double stated = stated_noise(experiment, channel);
     noise_[i] = stated > 0.0 ? stated : noise_floor(record.record.samples.row(i).transpose());
-    if (stated > 0.0) continue;
+    if (stated > 0.0) {
+      stated_.push_back(i);
+      continue;
+    }
     const auto same = std::find_if(constants_.begin(), constants_.end(), [&](const SensingConstant& one) {
       return one.index == static_cast<std::size_t>(channel.quantity);
     });
@@ -121,6 +131,13 @@ SensingModel::SensingModel(const Experiment& experiment, const SensingRecord& re
                             si_unit(channel.quantity),
                             static_cast<std::size_t>(channel.quantity),
                             {i}});
+  }
+  // One number for all sensors of a quantity: what motion adds to a floor differs from sensor to sensor, and
+  // as a ratio between them nothing would correct it.
+  for (const SensingConstant& one : constants_) {
+    std::vector<double> floors;
+    for (const Index i : one.channels) floors.push_back(noise_[i]);
+    noise_(one.channels).setConstant(median(floors));
   }
   add_constants(experiment);
   make_start();
@@ -160,6 +177,15 @@ void SensingModel::make_start() {
       deviation = unknown.deviation / std::abs(unknown.slope(prior_.mean[j]));
     }
     prior_.covariance(j, j) = deviation * deviation;
+  }
+}
+
+void SensingModel::take_prior(const SensingModel& other) {
+  for (std::size_t j = 0; j < constants_.size(); ++j) {
+    if (constants_[j].kind != Kind::parameter) continue;
+    const auto place = static_cast<Index>(j);
+    prior_.mean[place] = other.prior_.mean[place];
+    prior_.covariance(place, place) = other.prior_.covariance(place, place);
   }
 }
 
@@ -277,6 +303,17 @@ filters::InnovationProblem SensingModel::problem(const filters::Measurements& re
   return {[this](const VectorXd& theta) { return at(theta); }, record, interval(), prior_};
 }
 
+filters::InnovationProblem SensingModel::wider_problem(const filters::Measurements& record,
+                                                       double factor) const {
+  filters::InnovationProblem wider = problem(record);
+  wider.model = [this, factor](const VectorXd& theta) {
+    filters::LinearGaussian form = at(theta);
+    for (const Index i : stated_) form.r(i, i) *= factor * factor;
+    return form;
+  };
+  return wider;
+}
+
 double SensingModel::value(std::size_t constant, double theta) const {
   const SensingConstant& one = constants_[constant];
   switch (one.kind) {
@@ -304,10 +341,8 @@ double SensingModel::slope(std::size_t constant, double theta) const {
 }
 
 // Of a constant force the motion at rest, x = -A^-1 B; what the sensors read of it, beside what its parts
-// are.
-int SensingModel::unseen_constant_forces(const VectorXd& theta) const {
-  constexpr double rounding = 1e-8;
-  if (forces_.empty()) return 0;
+// are; nothing where there is no rest.
+MatrixXd SensingModel::constant_forces_read(const VectorXd& theta) const {
   VectorXd state = VectorXd::Zero(start_.mean.size());
   state(model_.unknown_places) = parameters_at(theta);
   const Index all = motion_->motion_size(), r = 2 * model_.motion_size();
@@ -317,7 +352,7 @@ int SensingModel::unseen_constant_forces(const VectorXd& theta) const {
   const VectorXd none = VectorXd::Zero(motion_->input_size());
   motion_->output_jacobian(state, none, h);
   const Eigen::FullPivLU<MatrixXd> solver(a.topLeftCorner(r, r));
-  if (!solver.isInvertible() || all < r) return 0;
+  if (!solver.isInvertible() || all < r) return {};
   VectorXd rest, shown;
   motion_->output(state, none, rest);
   MatrixXd read(measured_, static_cast<Index>(forces_.size()));
@@ -332,8 +367,24 @@ int SensingModel::unseen_constant_forces(const VectorXd& theta) const {
     const VectorXd size = direct.cwiseAbs() + h.topLeftCorner(measured_, r).cwiseAbs() * x.cwiseAbs();
     read.col(i) = (sum.array() / size.array().max(1e-300)).matrix();
   }
-  const VectorXd singular = Eigen::JacobiSVD<MatrixXd>(read).singularValues();
-  return static_cast<int>(read.cols() - (singular.array() > rounding).count());
+  return read;
+}
+
+int SensingModel::unseen_constant_forces(const VectorXd& theta) const {
+  const MatrixXd read = constant_forces_read(theta);
+  return static_cast<int>(read.cols() - seen_combinations(read));
+}
+
+std::vector<Index> SensingModel::sole_zeros(const VectorXd& theta) const {
+  MatrixXd read = constant_forces_read(theta);
+  const Index all = seen_combinations(read);
+  std::vector<Index> sole;
+  for (Index i = 0; i < read.rows(); ++i) {
+    MatrixXd others = read;
+    others.row(i).setZero();
+    if (seen_combinations(others) < all) sole.push_back(i);
+  }
+  return sole;
 }
 
 }  // namespace beamid::experiments

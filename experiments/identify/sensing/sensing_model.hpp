@@ -44,6 +44,9 @@ class SensingModel {
   SensingModel(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
                const std::filesystem::path& folder);
 
+  /// Takes what another model of the same parameters, guessed elsewhere, knew of them beforehand.
+  void take_prior(const SensingModel& other);
+
   const std::vector<SensingConstant>& constants() const { return constants_; }  ///< theta (q)
   const filters::Measurements& record() const { return record_; }
   double interval() const { return record_.interval(); }
@@ -62,6 +65,9 @@ class SensingModel {
   /// theta of [[parameters]] as known beforehand, of the rest within a factor of about 20 of the guess.
   filters::Gaussian prior() const { return prior_; }
   filters::InnovationProblem problem(const filters::Measurements& record) const;
+  /// With noise that the file states taken for `factor` times that: far from the truth all structures are
+  /// infinitely unlikely, and the likelihood full of maxima.
+  filters::InnovationProblem wider_problem(const filters::Measurements& record, double factor) const;
 
   /// How far forces and noise that are not stated may be from the guess, one deviation of ln: a factor of 20.
   static constexpr double known_within = 3.0;
@@ -76,12 +82,16 @@ class SensingModel {
 
   /// Combinations of constant forces that no sensor which was read can tell from rest.
   int unseen_constant_forces(const Eigen::VectorXd& theta) const;
+  /// Outputs that were read without which more such combinations could not be told: what is constant rests on
+  /// the zero of each alone.
+  std::vector<Eigen::Index> sole_zeros(const Eigen::VectorXd& theta) const;
 
  private:
   void add_constants(const Experiment& experiment);
   void make_start();
   void guess_forces();
   Eigen::VectorXd parameters_at(const Eigen::VectorXd& theta) const;
+  Eigen::MatrixXd constant_forces_read(const Eigen::VectorXd& theta) const;
   SensingForm form(const Eigen::VectorXd& theta, const std::vector<filters::LatentInput>& forces) const;
 
   JointModel model_;
@@ -91,6 +101,7 @@ class SensingModel {
   Eigen::Index measured_ = 0;
   std::vector<filters::LatentInput> forces_;  // as stated; deviations and times guessed where not
   Eigen::VectorXd noise_;                     // likewise (p)
+  std::vector<Eigen::Index> stated_;          // outputs whose noise the file states
   std::vector<SensingConstant> constants_;
   filters::Gaussian start_;  // of the motion's own state
   filters::Gaussian prior_;

@@ -23,6 +23,12 @@ std::string suffix_of_unit(const std::string& unit) {
   return "";  // strain
 }
 
+// A part of a whole that may be next to nothing.
+std::string share(double part, double whole) {
+  constexpr double most = 10.0;
+  return part <= most * whole ? fmt::format("{:.0f} %", 100.0 * part / whole) : "more than 1000 %";
+}
+
 Table history_table(const SensingStudy& study) {
   Table table{"sensed", "What no sensor read"};
   const bool truth = std::any_of(study.histories.begin(), study.histories.end(),
@@ -153,10 +159,10 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
   for (const SensorNoise& one : study.noise)
     if (one.explains_too_much())
       results.warning(
-          fmt::format("{}: {:.0f} % of what it read is left to noise that nobody stated, {:.3g} {}. The "
+          fmt::format("{}: {} of what it read is left to noise that nobody stated, {:.3g} {}. The "
                       "structure, a sensor's place or unit, or the places of the unknown forces are not "
                       "as described.",
-                      one.name, 100.0 * one.deviation / one.root_mean_square, one.deviation, one.unit),
+                      one.name, share(one.deviation, one.root_mean_square), one.deviation, one.unit),
           true);
   std::size_t free = 0;
   for (const LeftOutSensor& one : study.left_out) {
@@ -178,7 +184,7 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
     results.warning(
         "No sensor can be predicted from the others: any record would fit, and nothing checks the structure "
         "as described. A sensor more would.");
-  else if (!study.contradicted())
+  else if (study.is_to_rely_on())
     results.paragraph(
         fmt::format("{} of {} sensors are predicted by the others as well as their deviations say.",
                     study.left_out.size() - free, study.left_out.size()));
@@ -192,12 +198,23 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
                         ? "One combination of constant forces"
                         : std::to_string(study.unseen_constants) + " combinations of constant forces",
                     study.unseen_constants == 1 ? "it" : "them"));
+  for (const SoleZero& zero : study.sole_zeros) {
+    std::string moved;
+    for (std::size_t j = 0; j < zero.shifts.size() && j < study.histories.size(); ++j)
+      moved += fmt::format("{}{} by {:.3g} {}", moved.empty() ? "" : ", ", study.histories[j].name,
+                           zero.shifts[j], study.histories[j].unit);
+    results.warning(fmt::format(
+        "Means rest on the zero of {} alone, which is taken for exact: no other sensor tells an "
+        "offset of it from a constant force. Off by {:g} {} it shifts {}. The errors below do not "
+        "hold it.",
+        zero.name, zero.off, zero.unit, moved));
+  }
   for (const SensedHistory& one : study.histories)
     if (one.undetermined())
-      results.warning(fmt::format(
-          "{}: not determined by these sensors; its error is {:.0f} % of what it would be without "
-          "any.",
-          one.name, 100.0 * one.reported_error() / one.unread_deviation));
+      results.warning(
+          fmt::format("{}: not determined by these sensors; its error is {} of what it would be without "
+                      "any.",
+                      one.name, share(one.reported_error(), one.unread_deviation)));
   for (const SensedHistory& one : study.histories)
     if (one.contradicts_smoother())
       results.warning(
@@ -214,15 +231,27 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
             "as they should: structure, sensors or forces are not as described.",
             std::sqrt(square)),
         true);
-  else if (study.innovations.whiteness_p_value < 1e-3 && study.converged)
+  else if (study.innovations.whiteness_p_value < 1e-3)
     results.warning(
         fmt::format(
             "Innovations are correlated from sample to sample, {:.2f}: the force is not such a process, "
             "or the structure not quite as described. {}.",
             correlation,
-            std::abs(correlation) > 0.3 ? "Deviations, and intervals of parameters above all, are too small"
-                                        : "Deviations may be too small"),
-        std::abs(correlation) > 0.3);
+            study.correlated() ? "Deviations, and intervals of parameters above all, are too small"
+                               : "Deviations may be too small"),
+        study.correlated());
+}
+
+// A force that is not known takes in whatever inertia its place has.
+static void add_what_is_unchecked(const Experiment& experiment, Results& results) {
+  for (const ParameterChoice& parameter : experiment.parameters)
+    if (parameter.quantity.find("mass") != std::string::npos) return;
+  std::string places;
+  for (const UnknownForce& force : experiment.unknown_forces)
+    if (force.quantity == Quantity::force) places += (places.empty() ? "" : ", ") + force.name;
+  if (!places.empty())
+    results.paragraph("No sensor checks the mass where " + places +
+                      " acts: what it is off becomes part of the force, and all sensors agree.");
 }
 
 std::string sensing_sentence(const SensingStudy& study, const std::string& record) {
@@ -240,12 +269,21 @@ Results sensing_report(const Experiment& experiment, const SensingStudy& study, 
   results.configuration["reduction"] = study.reduction;
   results.paragraph(sensing_sentence(study, record));
   add_sensing_verdict(study, results);
+  add_what_is_unchecked(experiment, results);
+  if (experiment.fatigue && study.damages.empty())
+    results.warning(
+        "[fatigue] asks for the damage of strains, and no [[virtual_sensors]] has quantity = \"strain\": "
+        "nothing is worked out.");
   results.table(history_table(study));
   if (!study.left_out.empty()) results.table(left_out_table(study));
   if (!study.constants.empty()) results.table(constant_table(study));
   if (!study.damages.empty()) results.table(damage_table(study));
   results.values["converged"] = study.converged;
   results.values["contradicted"] = study.contradicted();
+  results.values["status"] = !study.converged       ? "not converged"
+                             : study.contradicted() ? "contradicted"
+                             : study.correlated()   ? "correlated"
+                                                    : "converged";
   if (!study.filter.empty()) results.values["filter"] = study.filter;
   results.values["unseen_constant_forces"] = study.unseen_constants;
   results.values["mean_normalised_square"] = study.innovations.mean_normalised_square;

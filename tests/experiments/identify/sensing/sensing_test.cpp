@@ -167,5 +167,124 @@ relative_deviation = 0.3
   EXPECT_LT(deviation, 0.01 * truth);
 }
 
+TEST(Sensing, SaysWhatRestsOnTheZeroOfOneSensor) {
+  // Oracle: of a cantilever under a constant force F at its end, strain h/2 F (l - x) / (E I) at x.
+  const SensingStudy study = study_of(mast + gauge);
+  ASSERT_EQ(study.sole_zeros.size(), 1u);
+  const SoleZero& zero = study.sole_zeros[0];
+  EXPECT_EQ(zero.name, "gauge");
+  const double stiffness = 210e9 * 0.05 * std::pow(0.012, 3) / 12.0;
+  const double force = zero.off * stiffness / (0.006 * 1.5);
+  EXPECT_NEAR(std::abs(zero.shifts.back()), force, 0.02 * force);
+  const double root = zero.off * 2.0 / 1.5;
+  EXPECT_NEAR(std::abs(zero.shifts.front()), root, 0.02 * root);
+  EXPECT_TRUE(study_of(mast).sole_zeros.empty());
+}
+
+// A shear building; the true stiffnesses k [N/m] or what is guessed.
+std::string building(const std::string& stiffnesses, const std::string& noise) {
+  return R"(
+title = "building"
+[chain]
+masses_kg = [1000, 1000, 800]
+heights_m = [3, 3, 3]
+stiffnesses_n_per_m = )" +
+         stiffnesses + R"(
+[damping]
+law = "modal"
+ratio = 0.02
+[reduction]
+method = "none"
+[excitation]
+kind = "random"
+position_m = 9
+amplitude_n = 1000
+frequency_hz = 12
+[simulation]
+duration_s = 15
+sampling_rate_hz = 100
+seed = 3
+[[sensors]]
+name = "a1"
+position_m = 3
+)" + noise +
+         R"(
+[[sensors]]
+name = "a2"
+position_m = 6
+)" + noise +
+         R"(
+[[sensors]]
+name = "a3"
+position_m = 9
+)" + noise +
+         R"(
+[[sensors]]
+name = "d3"
+quantity = "displacement"
+position_m = 9
+noise_m = 1e-5
+[[unknown_forces]]
+name = "wind"
+position_m = 9
+[[virtual_sensors]]
+name = "v2"
+quantity = "displacement"
+position_m = 6
+)";
+}
+
+std::string asked_of_storeys() {
+  std::string text;
+  for (const char* storey : {"0", "3", "6"})
+    text += std::string("[[parameters]]\nquantity = \"storey_stiffness\"\nname = \"k") + storey +
+            "\"\nfrom_m = " + storey + "\nto_m = " + std::to_string(std::stoi(storey) + 3) +
+            "\nform = \"logarithmic\"\nrelative_deviation = 0.3\n";
+  return text;
+}
+
+TEST(Sensing, FindsStoreysFromGuessesAFifthOff) {
+  // Oracle: the stiffnesses simulated, within 4 deviations (the force is smoother than its process, so that
+  // these are a little small), and to a thousandth. With the noise stated the guess is some 100 deviations of
+  // every reading off; damped modes have to follow the stiffnesses from the guess's shapes.
+  const std::string noise = "noise_m_per_s2 = 0.02";
+  const Experiment truth = experiment_of(building("[2.0e6, 1.6e6, 1.2e6]", noise));
+  const Experiment guess = experiment_of(building("[1.6e6, 1.6e6, 1.6e6]", noise) + asked_of_storeys());
+  const SensingRecord record = simulated_sensing(truth, {}, {}, unwatched);
+  const SensingStudy study =
+      study_sensing(guess, record, sensing_reduction(guess, record.record.interval()), {}, unwatched);
+  ASSERT_TRUE(study.converged) << study.failure;
+  EXPECT_FALSE(study.contradicted());
+  const std::vector<double> k{2.0e6, 1.6e6, 1.2e6};
+  for (std::size_t j = 0; j < k.size(); ++j) {
+    const SensedConstant& one = study.constants[j];
+    EXPECT_NEAR(one.value, k[j], 4.0 * (one.upper_95 - one.lower_95) / (2.0 * 1.96)) << one.name;
+    EXPECT_NEAR(one.value, k[j], 1e-3 * k[j]) << one.name;
+  }
+}
+
+TEST(Sensing, FindsTheNoiseOfSensorsThatReadMotionsOfSeveralSizes) {
+  // Oracle: 0.02 m/s2, that of all three accelerometers, to 6 %: the force simulated is no process of
+  // Matern, and makes more of it than the interval of 2.7 %.
+  const std::string noise = "noise_m_per_s2 = 0.02";
+  for (const char* seed : {"seed = 3", "seed = 5", "seed = 8"}) {
+    std::string text = building("[2.0e6, 1.6e6, 1.2e6]", noise);
+    text.replace(text.find("seed = 3"), 8, seed);
+    const Experiment experiment = experiment_of(text);
+    SensingRecord record = simulated_sensing(experiment, {}, {}, unwatched);
+    for (Channel& one : record.record.channels) one.noise = 0.0;
+    const SensingStudy study = study_sensing(
+        experiment, record, sensing_reduction(experiment, record.record.interval()), {}, unwatched);
+    ASSERT_TRUE(study.converged) << study.failure;
+    bool found = false;
+    for (const SensedConstant& one : study.constants) {
+      if (one.name != "noise_acceleration") continue;
+      found = true;
+      EXPECT_NEAR(one.value, 0.02, 0.06 * 0.02) << seed;
+    }
+    EXPECT_TRUE(found);
+  }
+}
+
 }  // namespace
 }  // namespace beamid::sensing_test
