@@ -57,6 +57,7 @@ int run_sense(const Values& values) {
   if (!values.text("filter").empty())
     filter = parse_choice(values.text("filter"), "--filter", filters::filter_registry());
   const std::vector<fs::path> file = record_files(values, config, experiment.record_file);
+  int code = 0;
   deliver(values, [&] {
     const Progress progress = show_progress(values);
     const fs::path folder = config.parent_path();
@@ -67,6 +68,10 @@ int run_sense(const Values& values) {
       record = simulated_sensing(experiment, folder, place, progress);
     } else {
       prepared = read_and_prepare(file[0], experiment.format);
+      constexpr Eigen::Index fewest = 100;  // of innovations, for their test
+      if (prepared.record.size() < fewest)
+        throw InputError({file[0].string()}, std::to_string(prepared.record.size()) +
+                                                 " samples; expected at least " + std::to_string(fewest));
       record = sensing_record(experiment, prepared.record, place);
     }
     Results results = [&] {
@@ -80,9 +85,10 @@ int run_sense(const Values& values) {
       }
     }();
     if (!file.empty()) tell_preparation(results, prepared, experiment.format);
+    if (results.values.value("status", "converged") != "converged") code = 3;  // as identify
     return results;
   });
-  return 0;
+  return code;
 }
 
 }  // namespace
@@ -104,7 +110,10 @@ Command sense_command() {
           "  beamid sense record.csv --config mast.toml --at 0 --out sensed\n"
           "  beamid sense --config mast.toml\n"
           "  beamid sense --config mast.toml --filter gillijns_de_moor\n",
-          run_sense};
+          run_sense,
+          "",
+          "3  nothing to rely on, and \"status\" in results.json says why: constants \"not converged\", the "
+          "structure \"contradicted\", or innovations \"correlated\"\n"};
 }
 
 }  // namespace beamid::apps

@@ -201,8 +201,9 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
   for (const SoleZero& zero : study.sole_zeros) {
     std::string moved;
     for (std::size_t j = 0; j < zero.shifts.size() && j < study.histories.size(); ++j)
-      moved += fmt::format("{}{} by {:.3g} {}", moved.empty() ? "" : ", ", study.histories[j].name,
-                           zero.shifts[j], study.histories[j].unit);
+      if (std::abs(zero.shifts[j]) > 1e-3 * study.histories[j].reported_error())
+        moved += fmt::format("{}{} by {:.3g} {}", moved.empty() ? "" : ", ", study.histories[j].name,
+                             zero.shifts[j], study.histories[j].unit);
     results.warning(fmt::format(
         "Means rest on the zero of {} alone, which is taken for exact: no other sensor tells an "
         "offset of it from a constant force. Off by {:g} {} it shifts {}. The errors below do not "
