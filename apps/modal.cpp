@@ -118,6 +118,7 @@ int run_modal(const Values& values) {
   if (values.has("events"))
     for (const char* const other : {"amplitude", "modes", "polish", "no-polish"})
       if (values.has(other)) throw UsageError(std::string("--events takes no --") + other);
+  int code = 0;
   deliver(values, [&] {
     std::vector<PreparedRecord> prepared;
     std::vector<Record> records;
@@ -138,9 +139,10 @@ int run_modal(const Values& values) {
     }
     for (std::size_t r = 0; r < records.size(); ++r)
       tell_cost(results, names[r], prepared[r], requests[r].format);
+    if (values.has("events") && results.values["status"] == "contradicted") code = 3;
     return results;
   });
-  return 0;
+  return code;
 }
 
 }  // namespace
@@ -159,7 +161,10 @@ Command modal_command() {
           "  beamid modal --config cantilever.toml --method half_power --out results\n"
           "  beamid modal event1.NS1 event2.NS1 event3.NS1 --events --out column\n"
           "  beamid modal hits.csv more_hits.csv --method frf_lscf --band 5 200 --out results\n",
-          run_modal};
+          run_modal,
+          "",
+          "3  --events: a sign, the order or the clocks of base and response are not as described; the first "
+          "lines say which.\n"};
 }
 
 }  // namespace beamid::apps

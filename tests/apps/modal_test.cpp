@@ -286,6 +286,33 @@ TEST(Modal, FollowsTheFirstModeOverThePeakAcceleration) {
   }
 }
 
+// The record with one column of every line changed.
+std::string with_second_column(const std::string& record, double factor) {
+  std::istringstream lines(record);
+  std::ostringstream changed;
+  std::string line;
+  for (bool first = true; std::getline(lines, line); first = false) {
+    const std::size_t last = line.rfind(',');
+    if (first)
+      changed << line << "\n";
+    else
+      changed << line.substr(0, last) << "," << factor * std::stod(line.substr(last + 1)) << "\n";
+  }
+  return changed.str();
+}
+
+// Oracle: what was done to the record.
+TEST(Modal, SaysThatTheSurfacePointsTheOtherWay) {
+  Workplace place;
+  place.write("turned.csv", with_second_column(event(2.5, 1.0, 4), -1.0));
+  const Outcome outcome = place.run("modal turned.csv --events");
+  EXPECT_EQ(outcome.code, 3) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("The sign of one channel is turned"));
+  place.write("right.csv", with_second_column(event(2.5, 1.0, 4), 1.0));
+  const Outcome right = place.run("modal right.csv --events");
+  EXPECT_EQ(right.code, 0) << right.out;
+}
+
 TEST(Modal, NeedsTheMotionOfTheBaseForEvents) {
   Workplace place;
   place.write("decay.csv", decay(1, 1));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/modal/base_response.hpp"
+#include "experiments/modal/base_doubt.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/figure.hpp"
 
@@ -20,7 +20,46 @@ struct Event {
   double peak = 0.0, base_peak = 0.0;  // [m/s2]
   std::optional<BaseResponse> response;
   std::string reason;  // why there is none
+  BaseDoubt doubt;
+  double interval = 0.0;  // [s]
 };
+
+constexpr double much_left = 30.0, much_damped = 0.3;  // [%], [-]
+
+// What is wrong with the two channels, or what makes the fit doubtful.
+std::string doubt_sentence(const Event& event) {
+  const BaseDoubt& doubt = event.doubt;
+  const std::string then = fmt::format(
+      "leaves {:.3g} % of the motion instead of {}: f1 {:.4g} Hz, damping ratio {:.3g} %",
+      doubt.instead.left_percent,
+      std::isfinite(doubt.left_percent) ? fmt::format("{:.3g} %", doubt.left_percent) : "more than half",
+      doubt.instead.frequency_hz, 100.0 * doubt.instead.damping_ratio);
+  const std::string wrong = event.response ? " What the table says of it is wrong." : "";
+  switch (doubt.kind) {
+    case BaseDoubt::Kind::reversed:
+      return fmt::format("The sign of one channel is turned: so changed, one mode {}.{}", then, wrong);
+    case BaseDoubt::Kind::late:
+      return fmt::format("The response was recorded {} samples ({:.3g} s) too {}: moved back, one mode {}.{}",
+                         std::abs(doubt.samples), std::abs(doubt.samples) * event.interval,
+                         doubt.samples > 0 ? "late" : "early", then, wrong);
+    case BaseDoubt::Kind::exchanged:
+      return fmt::format("The base and the response are exchanged: put right, one mode {}.{}", then, wrong);
+    case BaseDoubt::Kind::none:
+      break;
+  }
+  if (!event.response) return {};
+  if (event.response->damping_ratio > much_damped)
+    return fmt::format(
+        "A damping ratio of {:.3g} % is of no resonance: base and response may be exchanged, or "
+        "the band holds no mode.",
+        100.0 * event.response->damping_ratio);
+  if (event.response->left_percent > much_left)
+    return fmt::format(
+        "One mode leaves {:.3g} % of the motion in its band: another cause moves the response, or "
+        "several modes do. f1 and the damping ratio may be further off than their deviations say.",
+        event.response->left_percent);
+  return {};
+}
 
 Event event_of(const std::string& name, const Record& record,
                const std::optional<std::pair<double, double>>& band_hz) {
@@ -35,7 +74,10 @@ Event event_of(const std::string& name, const Record& record,
                     "and one of acceleration (the surface)",
                     name, base < 0 ? "base_acceleration" : "acceleration"));
   const VectorXd u = record.samples.row(base), y = record.samples.row(response);
-  Event event{name, record.channels[static_cast<std::size_t>(response)].name, 0.0, 0.0, {}, {}};
+  Event event{name, record.channels[static_cast<std::size_t>(response)].name,
+              0.0,  0.0,
+              {},   {},
+              {},   record.interval()};
   event.peak = (y.array() - y.mean()).abs().maxCoeff();
   event.base_peak = (u.array() - u.mean()).abs().maxCoeff();
   try {
@@ -43,6 +85,7 @@ Event event_of(const std::string& name, const Record& record,
   } catch (const std::invalid_argument& error) {
     event.reason = error.what();
   }
+  event.doubt = base_doubt(u, y, event.interval);
   return event;
 }
 
@@ -72,7 +115,7 @@ Table events_table(const std::vector<Event>& events) {
 Figure events_figure(const std::vector<Event>& events) {
   std::vector<const Event*> shown;
   for (const Event& one : events)
-    if (one.response) shown.push_back(&one);
+    if (one.response && !one.doubt.surely()) shown.push_back(&one);
   const auto count = static_cast<Index>(shown.size());
   VectorXd peak(count), f(count), f_half(count), xi(count), xi_half(count);
   for (Index i = 0; i < count; ++i) {
@@ -101,7 +144,7 @@ Figure events_figure(const std::vector<Event>& events) {
 std::string change_sentence(const std::vector<Event>& events) {
   const Event *weakest = nullptr, *strongest = nullptr;
   for (const Event& one : events) {
-    if (!one.response) continue;
+    if (!one.response || one.doubt.surely()) continue;
     if (!weakest || one.peak < weakest->peak) weakest = &one;
     if (!strongest || one.peak > strongest->peak) strongest = &one;
   }
@@ -127,8 +170,14 @@ Results event_report(const std::vector<std::string>& names, const std::vector<Re
   Results results;
   results.command = "modal";
   results.configuration["method"] = "base_response";
-  for (const Event& one : events)
+  bool contradicted = false;
+  for (const Event& one : events) {
     if (!one.response) results.warning(fmt::format("{}: {}.", one.name, one.reason), true);
+    if (const std::string doubt = doubt_sentence(one); !doubt.empty())
+      results.warning(fmt::format("{}: {}", one.name, doubt), one.doubt.surely());
+    contradicted = contradicted || one.doubt.surely();
+  }
+  results.values["status"] = contradicted ? "contradicted" : "converged";
   if (const std::string change = change_sentence(events); !change.empty())
     results.paragraph("With the peak acceleration " + change);
   results.table(events_table(events));
@@ -143,13 +192,18 @@ Results event_report(const std::vector<std::string>& names, const std::vector<Re
       entry["frequency_standard_deviation_hz"] = one.response->frequency_deviation_hz;
       entry["damping_ratio"] = one.response->damping_ratio;
       entry["damping_ratio_standard_deviation"] = one.response->damping_ratio_deviation;
+      entry["participation"] = one.response->participation;
+      entry["left_percent"] = one.response->left_percent;
       entry["band_hz"] = {one.response->band_hz.first, one.response->band_hz.second};
     } else {
       entry["reason"] = one.reason;
     }
+    if (const std::string doubt = doubt_sentence(one); !doubt.empty()) entry["doubt"] = doubt;
+    if (one.doubt.kind == BaseDoubt::Kind::late) entry["late_s"] = one.doubt.samples * one.interval;
     results.values["events"].push_back(std::move(entry));
   }
-  if (std::any_of(events.begin(), events.end(), [](const Event& one) { return one.response.has_value(); }))
+  if (std::any_of(events.begin(), events.end(),
+                  [](const Event& one) { return one.response.has_value() && !one.doubt.surely(); }))
     results.figures.push_back(events_figure(events));
   return results;
 }
