@@ -23,6 +23,7 @@ int run_substructures(const Values& values) {
   if (experiment.parameters.empty())
     throw InputError({config.string()}, "no [[parameters]]; expected what is asked of the parts");
   const std::vector<fs::path> file = record_files(values, config, experiment.record_file);
+  int code = 0;
   deliver(values, [&] {
     const Progress progress = show_progress(values);
     ComparedRecord record;
@@ -35,8 +36,10 @@ int run_substructures(const Values& values) {
     }
     Results results = [&] {
       try {
-        return substructures_report(experiment, identify_parts(experiment, record, config.parent_path(),
-                                                               !values.has("no-whole"), progress));
+        const PartedIdentification found =
+            identify_parts(experiment, record, config.parent_path(), !values.has("no-whole"), progress);
+        code = found.converged() ? 0 : 3;
+        return substructures_report(experiment, found);
       } catch (const std::invalid_argument& error) {
         throw InputError({config.string()}, error.what());
       }
@@ -44,7 +47,7 @@ int run_substructures(const Values& values) {
     if (!file.empty()) tell_preparation(results, prepared, experiment.format);
     return results;
   });
-  return 0;
+  return code;
 }
 
 }  // namespace
@@ -60,7 +63,11 @@ Command substructures_command() {
            output_options()},
           "  beamid substructures --config building.toml --out parts\n"
           "  beamid substructures record.csv --config building.toml --no-whole\n",
-          run_substructures};
+          run_substructures,
+          "",
+          "3  a part has no estimate to rely on: its filter \"diverged\", or the record \"contradicted\" it; "
+          "what "
+          "is joined is of the others.\n"};
 }
 
 }  // namespace beamid::apps

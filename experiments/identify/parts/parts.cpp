@@ -11,6 +11,7 @@
 
 #include "experiments/config/channel_places.hpp"
 #include "experiments/identify/parts/cut_chain.hpp"
+#include "experiments/identify/parts/widened_part.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
@@ -139,6 +140,12 @@ std::vector<JoinedParameter> joined(const Experiment& experiment, const std::vec
 
 }  // namespace
 
+bool PartedIdentification::converged() const {
+  return std::all_of(parts.begin(), parts.end(), [](const IdentifiedPart& one) {
+    return one.run(Sections::noisy).status == ComparedRun::Status::converged;
+  });
+}
+
 PartedIdentification identify_parts(const Experiment& given, const ComparedRecord& record,
                                     const std::filesystem::path& folder, bool whole,
                                     const Progress& progress) {
@@ -156,6 +163,7 @@ PartedIdentification identify_parts(const Experiment& given, const ComparedRecor
     else
       one.noisy = identify_part(experiment, placed, one.part, Sections::noisy, folder);
   });
+  for (IdentifiedPart& one : result.parts) widen_by_innovations(one.noisy.runs.front());
   result.joined = joined(experiment, result.parts);
   const Eigen::Index coordinates = fem::assemble(experiment.structure, experiment.elements).size();
   if (whole && coordinates > most_whole_coordinates) {

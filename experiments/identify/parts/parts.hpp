@@ -33,6 +33,8 @@ struct PartedIdentification {
   std::optional<Comparison> whole;  ///< of one run; absent where it was not asked for
   std::vector<JoinedParameter> joined;
   std::string no_whole;  ///< why not
+
+  bool converged() const;  ///< every part, the noise at its sections counted
 };
 
 /// Every part of the experiment on its share of the record, two at a time, and the whole beside them where it

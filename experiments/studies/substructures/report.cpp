@@ -53,7 +53,7 @@ ExactSections exact_sections(const PartedIdentification& found) {
   for (const IdentifiedPart& part : found.parts)
     for (const ComparedParameter& one : part.run(Sections::noisy).parameters) {
       const ComparedParameter* const exact = find(part.run(Sections::exact), one.estimate.name);
-      if (!exact || !part.run(Sections::noisy).has_estimate()) continue;
+      if (!exact || part.run(Sections::noisy).status != ComparedRun::Status::converged) continue;
       const double off = std::abs(exact->estimate.value - one.truth.value_or(one.estimate.value)) /
                          own_deviation(part.run(Sections::exact), one.estimate.name);
       result.mean_square += off * off;
@@ -94,6 +94,8 @@ void add_verdict(const PartedIdentification& found, Results& results) {
         fmt::format("{} of {} parts identified, the noise at their sections counted; parameters that "
                     "several have are joined below.",
                     good, found.parts.size()));
+  else
+    results.warning("No part was identified: nothing is joined.", true);
   const ExactSections exact = exact_sections(found);
   if (good == 0 || exact.count == 0) return;
   results.paragraph(
@@ -145,7 +147,8 @@ Table part_table(const PartedIdentification& found) {
       .column({"bound [%]", "bound_percent", "{:.2g}"})
       .column({"sections exact", "exact_estimate", "{:.5g}"})
       .column({"deviation [%]", "exact_deviation_percent", "{:.2g}"});
-  for (const IdentifiedPart& part : found.parts)
+  for (const IdentifiedPart& part : found.parts) {
+    if (part.run(Sections::noisy).status != ComparedRun::Status::converged) continue;  // no estimate
     for (const ComparedParameter& one : part.run(Sections::noisy).parameters) {
       const ComparedParameter* const exact = find(part.run(Sections::exact), one.estimate.name);
       const double value = one.estimate.value;
@@ -156,6 +159,7 @@ Table part_table(const PartedIdentification& found) {
                                     exact->estimate.value)
                        : std::nan("")});
     }
+  }
   table.note =
       "Bound: what no unbiased estimate from this part's channels falls below, their noise at the sections "
       "counted. Sections exact: the same part as if the motion there were known without noise, "
@@ -204,6 +208,13 @@ Figure joined_figure(const PartedIdentification& found) {
   return figure;
 }
 
+// The worst of the parts' own.
+const char* substructures_status(const PartedIdentification& found) {
+  auto worst = ComparedRun::Status::converged;
+  for (const IdentifiedPart& part : found.parts) worst = std::max(worst, part.run(Sections::noisy).status);
+  return to_string(worst);
+}
+
 }  // namespace
 
 Results substructures_report(const Experiment& experiment, const PartedIdentification& found) {
@@ -214,8 +225,9 @@ Results substructures_report(const Experiment& experiment, const PartedIdentific
     results.configuration["substructures"].push_back(part.part.name);
   add_verdict(found, results);
   if (!found.joined.empty()) results.table(joined_table(found));
-  results.table(part_table(found));
+  if (Table parts = part_table(found); parts.rows() > 0) results.table(std::move(parts));
   if (!found.no_whole.empty()) results.paragraph(found.no_whole);
+  results.values["status"] = substructures_status(found);
   results.values["joined"] = Json::array();
   for (const JoinedParameter& one : found.joined)
     results.values["joined"].push_back({{"name", one.name},
