@@ -21,7 +21,7 @@ OptionGroup posterior_options() {
   return {"Draws",
           {whole("draws", "N", 100, 1000000, "of each of four chains; without it 1000, from a record 250"),
            whole("particles", "N", 100, 1000000,
-                 "of the tempering that looks for humps; without it 1000, from a record 200"),
+                 "of each of two temperings that look for humps; without it 1000, from a record 200"),
            whole("seed", "N", 0, 4294967295.0, "of all random numbers").by_default("1")}};
 }
 
@@ -74,7 +74,7 @@ int run_posterior(const Values& values) {
     warn(results, experiment);
     return results;
   });
-  return 0;
+  return study->posterior.disagrees() ? 3 : 0;
 }
 
 }  // namespace
@@ -95,7 +95,8 @@ Command posterior_command() {
       "Priors are what [[parameters]] states: a deviation (normal; lognormal of form \"logarithmic\"), "
       "bounds "
       "(uniform). Where\nnothing is stated, log-uniform within a factor of 10 of the initial estimate is "
-      "assumed.\n"};
+      "assumed.\n",
+      "3  the two temperings, the humps or the chains disagree: the first line says by how much.\n"};
 }
 
 }  // namespace beamid::apps

@@ -6,21 +6,35 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "filters/random.hpp"
+
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr Index most_climbers = 200;
-constexpr double notable_share = 0.01;
+constexpr double notable_share = 0.01, most_apart = 4.0;  // [-], [nat]
 
-MatrixXd climb_starts(const TemperedDraws& tempered, const MatrixXd& known) {
-  const Index stride = std::max<Index>(1, tempered.draws.cols() / most_climbers),
-              n = tempered.draws.cols() / stride;
-  MatrixXd starts(tempered.draws.rows(), n + known.cols());
-  for (Index i = 0; i < n; ++i) starts.col(i) = tempered.draws.col(i * stride);
-  if (known.cols() > 0) starts.rightCols(known.cols()) = known;
-  return starts;
+MatrixXd climb_starts(const TemperedDraws& first, const TemperedDraws& second, const MatrixXd& known,
+                      const PosteriorSettings& settings) {
+  std::vector<VectorXd> starts;
+  for (const TemperedDraws* const one : {&first, &second}) {
+    const Index stride = std::max<Index>(1, 2 * one->draws.cols() / most_climbers);
+    for (Index i = 0; i < one->draws.cols(); i += stride) starts.emplace_back(one->draws.col(i));
+  }
+  filters::RandomStream random(settings.seed + 4, 0);
+  for (std::size_t i = 0; i < settings.prior_climbs; ++i)
+    starts.emplace_back(random.normal(first.draws.rows(), 1));
+  MatrixXd all(first.draws.rows(), static_cast<Index>(starts.size()) + known.cols());
+  for (std::size_t i = 0; i < starts.size(); ++i) all.col(static_cast<Index>(i)) = starts[i];
+  if (known.cols() > 0) all.rightCols(known.cols()) = known;
+  return all;
+}
+
+// ln of the mean of two evidences.
+double log_mean(double a, double b) {
+  return std::max(a, b) + std::log(0.5 * (1.0 + std::exp(-std::abs(a - b))));
 }
 
 void judge_chains(const HumpMixture& mixture, Posterior& result) {
@@ -51,8 +65,16 @@ Posterior sample_posterior(const Likelihood& likelihood, const MatrixXd& known,
                            const PosteriorSettings& settings, const Progress& progress) {
   Posterior result;
   result.tempered = tempered_draws(likelihood, settings.particles, settings.seed, progress);
+  constexpr std::uint64_t other_seed = 0x9e3779b9;
+  TemperedDraws second = tempered_draws(likelihood, settings.particles, settings.seed + other_seed, progress);
   progress("maxima");
-  result.humps = separate_humps(likelihood, climb_starts(result.tempered, known));
+  result.humps = separate_humps(likelihood, climb_starts(result.tempered, second, known, settings));
+  const double evidence = log_mean(result.tempered.log_evidence, second.log_evidence);
+  const std::size_t evaluations = result.tempered.evaluations + second.evaluations;
+  result.tempered_apart = std::abs(result.tempered.log_evidence - second.log_evidence);
+  if (second.log_evidence > result.tempered.log_evidence) result.tempered = std::move(second);
+  result.tempered.log_evidence = evidence;
+  result.tempered.evaluations = evaluations;
   if (result.humps.empty()) throw std::invalid_argument("no maximum of the posterior was found");
   HumpMixture mixture(result.humps);
   progress("evidence");
@@ -98,6 +120,25 @@ std::size_t Posterior::draws() const {
   return chains.size() * static_cast<std::size_t>(chains.front().draws.cols());
 }
 
+VectorXd Posterior::best_draw() const {
+  VectorXd best = humps.front().top;
+  double highest = humps.front().log_density;
+  for (const Hump& one : humps)
+    if (one.log_density > highest) highest = one.log_density, best = one.top;
+  for (const PosteriorChain& chain : chains) {
+    Index at = 0;
+    const double here = chain.log_posterior.maxCoeff(&at);
+    if (here > highest) highest = here, best = chain.draws.col(at);
+  }
+  return best;
+}
+
+bool Posterior::humps_in_doubt() const {
+  return tempered_apart > most_apart ||
+         (!importance.poor() &&
+          std::abs(importance.log_evidence - tempered.log_evidence) > 1.0 + tempered_apart);
+}
+
 std::vector<std::string> Posterior::complaints() const {
   std::vector<std::string> list;
   if (!(worst_r_hat() < largest_r_hat))
@@ -111,9 +152,14 @@ std::vector<std::string> Posterior::complaints() const {
   if (importance.poor())
     list.emplace_back(
         "the humps are no humps a mixture would resemble: evidence and weights are those of the samplers");
-  else if (std::abs(importance.log_evidence - tempered.log_evidence) > 1.0)
+  else if (std::abs(importance.log_evidence - tempered.log_evidence) > 1.0 + tempered_apart)
     list.push_back(fmt::format("the evidence by importance sampling and by tempering differ by {:.1f} nat",
                                importance.log_evidence - tempered.log_evidence));
+  if (tempered_apart > most_apart)
+    list.push_back(
+        fmt::format("two independent temperings differ by {:.1f} nat, expected at most {}: ask for "
+                    "more particles",
+                    tempered_apart, most_apart));
   for (std::size_t h = 0; h < share.size(); ++h)
     if (const double spread = std::sqrt(std::max(share[h] * (1.0 - share[h]), 1e-6) / fewest_effective());
         std::abs(share[h] - chain_share[h]) > 5.0 * spread + 0.01) {

@@ -14,15 +14,17 @@ namespace beamid::experiments {
 
 struct PosteriorSettings {
   std::uint64_t seed = 1;
-  std::size_t particles = 1000;         ///< of the tempering
+  std::size_t particles = 1000;         ///< of each of two temperings
+  std::size_t prior_climbs = 200;       ///< climbs from draws of the prior, which no tempering has led astray
   std::size_t importance_draws = 8000;  ///< of the evidence
   ChainSettings chains = {};
 };
 
 struct Posterior {
-  TemperedDraws tempered;
-  std::vector<Hump> humps;    ///< the heaviest first
-  std::vector<double> share;  ///< of each, sum 1
+  TemperedDraws tempered;  ///< of the tempering with the larger evidence; the mean of both as the evidence
+  double tempered_apart = 0.0;  ///< of the two evidences [nat]
+  std::vector<Hump> humps;      ///< the heaviest first
+  std::vector<double> share;    ///< of each, sum 1
   ImportanceSample importance;
   std::vector<PosteriorChain> chains;
   std::vector<std::vector<std::size_t>> hump_of;  ///< of each chain's draws
@@ -37,6 +39,11 @@ struct Posterior {
   double fewest_effective() const;
   std::size_t divergences() const;
   std::size_t draws() const;
+  /// The temperings disagree, or importance sampling disagrees with them: humps may be missing.
+  bool humps_in_doubt() const;
+  /// That, or chains that have not met: no number to rely on.
+  bool disagrees() const { return humps_in_doubt() || worst_r_hat() > 1.05; }
+  Eigen::VectorXd best_draw() const;  ///< u of the largest posterior density that a chain or a climb met
   /// Why not to rely on it, a clause each; none: it has converged.
   std::vector<std::string> complaints() const;
 };
@@ -44,8 +51,9 @@ struct Posterior {
 inline constexpr double largest_r_hat = 1.01;  ///< [vehtari2021]
 inline constexpr double fewest_effective_draws = 400;
 
-/// Tempering from the prior finds where there is probability; from what it left and from `known` (q x n)
-/// Newton's method climbs to the tops of the humps; importance sampling weighs them; chains draw.
+/// Two independent temperings from the prior find where there is probability; from what they left, from draws
+/// of the prior and from `known` (q x n) Newton's method climbs to the tops of the humps; importance sampling
+/// weighs them; chains draw.
 /// @throws std::invalid_argument where the prior and what was measured exclude each other.
 Posterior sample_posterior(const Likelihood& likelihood, const Eigen::MatrixXd& known,
                            const PosteriorSettings& settings, const Progress& progress = unwatched);

@@ -158,8 +158,10 @@ PosteriorStudy study_posterior(const Experiment& experiment, SensingRecord recor
   VectorXd likeliest(study.likelihood->size());
   for (Index j = 0; j < likeliest.size(); ++j)
     likeliest[j] = source->sensing.constants[static_cast<std::size_t>(j)].value;
-  study.source = std::move(source);
   sample(study, study.likelihood->nearest(likeliest), settings, progress);
+  source->sensing = study_sensing_at(experiment, source->record, source->reduction, folder,
+                                     study.likelihood->physical(study.posterior.best_draw()));
+  study.source = std::move(source);
   return study;
 }
 

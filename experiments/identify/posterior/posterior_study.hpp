@@ -41,7 +41,7 @@ struct RecordSource {
   SensingRecord record;
   Choice reduction;
   std::unique_ptr<const SensingModel> model;
-  SensingStudy sensing;  ///< at the likeliest constants
+  SensingStudy sensing;  ///< at the best draw
 };
 
 struct PosteriorStudy {

@@ -139,13 +139,19 @@ double largest_move(const SensingModel& model, const VectorXd& from, const Found
 }
 
 // @param model in: as guessed; out: as the constants were found in
+// @param given physical values, which nothing is to be found of
 Found find_constants(const SensingSetting& setting, std::unique_ptr<SensingModel>& model,
-                     SensingStudy& study) {
+                     const std::optional<VectorXd>& given, SensingStudy& study) {
   constexpr int most_rounds = 5;
   constexpr double settled = 0.2;  // deviations
   const filters::Gaussian prior = model->prior();
   Found found{prior.mean, prior.covariance};
   if (prior.mean.size() == 0) return found;
+  if (given) {
+    for (Index j = 0; j < given->size(); ++j)
+      found.theta[j] = model->place(static_cast<std::size_t>(j), (*given)[j]);
+    return found;
+  }
   const MatrixXd one = MatrixXd::Identity(prior.mean.size(), prior.mean.size());
   const auto take = [&](const filters::InnovationFit& fit) {
     found = {fit.constants, (fit.information + model->prior().covariance.llt().solve(one)).ldlt().solve(one)};
@@ -267,42 +273,9 @@ FilteredRows histories_by(const Choice& filter, const SensingModel& model, const
   return filtered_rows(std::move(form), filter, model.record(), rows, feed);
 }
 
-}  // namespace
-
-double SensedHistory::root_mean_square() const {
-  return rms(mean.tail(mean.size() - first));
-}
-double SensedHistory::reported_error() const {
-  return rms(deviation.tail(deviation.size() - first));
-}
-double SensedHistory::error() const {
-  return rms((mean - *truth).tail(mean.size() - first));
-}
-
-bool SensingStudy::contradicted() const {
-  return innovations.mean_normalised_square > largest_square ||
-         std::any_of(left_out.begin(), left_out.end(), [](const auto& one) { return one.contradicts(); }) ||
-         std::any_of(noise.begin(), noise.end(), [](const auto& one) { return one.explains_too_much(); });
-}
-
-Choice sensing_reduction(const Experiment& experiment, double interval) {
-  constexpr Index most = 12;
-  if (experiment.reduction_is_stated) return experiment.reduction;
-  const fem::StructuralSystem system = fem::assemble(experiment.structure, experiment.elements);
-  Choice choice{"none", {}};
-  if (experiment.structure.is_chain() && system.size() <= most) return choice;
-  const fem::Modes modes = fem::modes(system, std::min(most, system.size()));
-  const double highest = 0.8 * std::numbers::pi / interval;
-  const Index kept = std::max<Index>(1, (modes.angular_frequency.array() < highest).count());
-  choice.name = "modal_truncation";
-  choice.options = reduction::reduction_registry().completed(
-      choice.name, {{"modes", static_cast<double>(kept)}, {"static_correction", true}});
-  return choice;
-}
-
-SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
-                           const std::filesystem::path& folder, const Progress& progress,
-                           const std::optional<Choice>& filter) {
+SensingStudy sensed(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
+                    const std::filesystem::path& folder, const Progress& progress,
+                    const std::optional<Choice>& filter, const std::optional<VectorXd>& constants) {
   for (const VirtualSensor& sensor : experiment.virtual_sensors)
     for (const ParameterChoice& parameter : experiment.parameters)
       if (sensor.bending_moment && parameter.quantity == "bending_stiffness")
@@ -316,7 +289,7 @@ SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& re
   require_memory_of(*found_in);
   Countdown countdown(progress, static_cast<std::size_t>(found_in->measured()) + 2, "passes");
   countdown.begin("likelihood");
-  const Found found = find_constants({experiment, record, reduction, folder}, found_in, study);
+  const Found found = find_constants({experiment, record, reduction, folder}, found_in, constants, study);
   const SensingModel& model = *found_in;
   study.coordinates = model.coordinates();
   study.forces = model.forces_at(found.theta);
@@ -360,6 +333,51 @@ SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& re
     study.left_out.push_back(left_out(model, at_found, channel, noise[i], i));
   }
   return study;
+}
+
+}  // namespace
+
+double SensedHistory::root_mean_square() const {
+  return rms(mean.tail(mean.size() - first));
+}
+double SensedHistory::reported_error() const {
+  return rms(deviation.tail(deviation.size() - first));
+}
+double SensedHistory::error() const {
+  return rms((mean - *truth).tail(mean.size() - first));
+}
+
+bool SensingStudy::contradicted() const {
+  return innovations.mean_normalised_square > largest_square ||
+         std::any_of(left_out.begin(), left_out.end(), [](const auto& one) { return one.contradicts(); }) ||
+         std::any_of(noise.begin(), noise.end(), [](const auto& one) { return one.explains_too_much(); });
+}
+
+Choice sensing_reduction(const Experiment& experiment, double interval) {
+  constexpr Index most = 12;
+  if (experiment.reduction_is_stated) return experiment.reduction;
+  const fem::StructuralSystem system = fem::assemble(experiment.structure, experiment.elements);
+  Choice choice{"none", {}};
+  if (experiment.structure.is_chain() && system.size() <= most) return choice;
+  const fem::Modes modes = fem::modes(system, std::min(most, system.size()));
+  const double highest = 0.8 * std::numbers::pi / interval;
+  const Index kept = std::max<Index>(1, (modes.angular_frequency.array() < highest).count());
+  choice.name = "modal_truncation";
+  choice.options = reduction::reduction_registry().completed(
+      choice.name, {{"modes", static_cast<double>(kept)}, {"static_correction", true}});
+  return choice;
+}
+
+SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
+                           const std::filesystem::path& folder, const Progress& progress,
+                           const std::optional<Choice>& filter) {
+  return sensed(experiment, record, reduction, folder, progress, filter, {});
+}
+
+SensingStudy study_sensing_at(const Experiment& experiment, const SensingRecord& record,
+                              const Choice& reduction, const std::filesystem::path& folder,
+                              const VectorXd& constants) {
+  return sensed(experiment, record, reduction, folder, unwatched, {}, constants);
 }
 
 }  // namespace beamid::experiments

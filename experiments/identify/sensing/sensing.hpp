@@ -96,6 +96,11 @@ SensingStudy study_sensing(const Experiment& experiment, const SensingRecord& re
                            const std::filesystem::path& folder, const Progress& progress,
                            const std::optional<Choice>& filter = {});
 
+/// The same by the smoother at constants that are known otherwise, physical, in the model's order.
+SensingStudy study_sensing_at(const Experiment& experiment, const SensingRecord& record,
+                              const Choice& reduction, const std::filesystem::path& folder,
+                              const Eigen::VectorXd& constants);
+
 /// What the file says; else none of a chain of up to 12 floors, and of other structures the modes below 0.8
 /// of the Nyquist frequency, 12 at most, with the static deflection under every force.
 Choice sensing_reduction(const Experiment& experiment, double interval);

@@ -56,6 +56,7 @@ Json posterior_values(const PosteriorStudy& study) {
                    : posterior.notable_humps() > 1 ? "several humps"
                                                    : "one hump";
   json["converged"] = posterior.complaints().empty();
+  json["disagrees"] = posterior.disagrees();
   json["reasons"] = posterior.complaints();
   json["log_evidence"] = posterior.log_evidence();
   json["log_evidence_standard_error"] =
@@ -65,6 +66,7 @@ Json posterior_values(const PosteriorStudy& study) {
   json["r_hat"] = posterior.worst_r_hat();
   json["effective_draws"] = posterior.fewest_effective();
   json["divergences"] = posterior.divergences();
+  json["log_evidence_temperings_apart"] = posterior.tempered_apart;
   json["tempering_stages"] = posterior.tempered.stages;
   json["likelihood_evaluations"] = posterior.evaluations;
   for (std::size_t j = 0; j < study.unknowns().size(); ++j)
