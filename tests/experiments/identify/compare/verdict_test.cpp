@@ -136,6 +136,23 @@ TEST(Passes, DoNotMoveWhatTheRecordDoesNotTell) {
   EXPECT_NEAR(often.value, few.value, 0.05 * 0.004);
 }
 
+// Two hundred particles for a posterior thousands of times narrower than the prior end as a few copies.
+TEST(Verdict, NoDeviationIsBelowTheBound) {
+  const Comparison found =
+      compared(cantilever("[simulation]\nduration_s = 4\nsampling_rate_hz = 100\n" + sensor + ask_stiffness +
+                              "[[filters]]\nmethod = \"particle\"\nparticles = 200\nregularise = false\n",
+                          {"modal_truncation"}));
+  const ComparedRun& run = found.runs[0];
+  ASSERT_TRUE(run.has_estimate()) << run.reason;
+  bool surer = false;
+  for (const ComparedParameter& p : run.parameters) {
+    ASSERT_TRUE(p.bound);
+    surer = surer || p.overconfidence < 0.8;
+    EXPECT_GE(p.estimate.deviation, 0.79 / std::hypot(1.0 / *p.bound, 1.0 / p.estimate.prior_deviation));
+  }
+  EXPECT_TRUE(surer);
+}
+
 TEST(Words, BlameCollapsedParticlesAndNoNestedShapes) {
   Comparison comparison;
   ComparedRun run;
@@ -148,16 +165,17 @@ TEST(Words, BlameCollapsedParticlesAndNoNestedShapes) {
   ComparedParameter p;
   p.estimate.name = "bending_stiffness";
   p.estimate.value = 200.0;
-  p.estimate.deviation = 0.01;
+  p.estimate.deviation = 1.0;
   p.estimate.prior_deviation = 60.0;
   p.bound = 1.0;
+  p.overconfidence = 0.01;
   run.parameters = {p};
   ComparedRun guyan = run;
   guyan.reduction = "guyan:positions=0.2 0.4";
   guyan.filter = "ekf";
   guyan.coordinates = 6;
   guyan.response_error_percent = 4.0;
-  guyan.parameters[0].estimate.deviation = 1.0;
+  guyan.parameters[0].overconfidence = 1.0;
   ComparedRun smaller = guyan;
   smaller.reduction = "modal_truncation";
   smaller.coordinates = 3;

@@ -163,6 +163,27 @@ TEST(Substructure, OfSensorsExchangedIsNotConverged) {
   const PartedIdentification found = identify_parts(experiment, record, {}, false, unwatched);
   EXPECT_NE(found.parts.front().run(Sections::noisy).status, ComparedRun::Status::converged);
   EXPECT_TRUE(found.joined.empty());
+  EXPECT_FALSE(found.converged());
+}
+
+// Oracle: with all noise a tenth of what it is the weights are the same, and so is the true spread: estimates
+// and deviations of the run with the noise stated well.
+TEST(Substructure, OfNoiseStatedTooSmallHasDeviationsAsWideAsThatOfTheNoiseThereIs) {
+  const Experiment experiment = read(building(6, five_percent(6, 6.0), 6.0, 1.2) +
+                                     "[[substructures]]\nname = \"floors 3 and 4\"\nfrom_m = 2\nto_m = 5\n");
+  ComparedRecord record = recorded(experiment);
+  const PartedIdentification well = identify_parts(experiment, record, {}, false, unwatched);
+  for (Channel& channel : record.record.channels) channel.noise *= 0.1;
+  record.sensor_noise *= 0.1;
+  const PartedIdentification tenth = identify_parts(experiment, record, {}, false, unwatched);
+  const ComparedRun &right = well.parts.front().run(Sections::noisy),
+                    &wrong = tenth.parts.front().run(Sections::noisy);
+  ASSERT_TRUE(right.has_estimate() && wrong.has_estimate());
+  ASSERT_FALSE(wrong.warnings.empty());
+  EXPECT_THAT(wrong.warnings.front(), testing::HasSubstr("deviations are widened"));
+  for (std::size_t j = 0; j < right.parameters.size(); ++j)
+    EXPECT_NEAR(wrong.parameters[j].estimate.deviation / right.parameters[j].estimate.deviation, 1.0, 0.15)
+        << right.parameters[j].estimate.name;
 }
 
 TEST(Substructure, OfASystemIsBoundedByPlacesByName) {
