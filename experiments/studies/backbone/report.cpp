@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/identify/backbone/damping_trend.hpp"
 #include "experiments/models/estimates.hpp"
 
 namespace beamid::experiments {
@@ -177,6 +178,12 @@ Results report(const BackboneSettings& settings, const Record& record, const std
   else
     results.warning(backbone_verdict(study), !determined);
   for (const std::string& warning : study.warnings) results.warning(warning);
+  // A loop that is determined says itself what a cycle dissipates.
+  if (study.loop != LoopKind::masing && study.loop != LoopKind::between)
+    if (const std::string text =
+            damping_trend_text(damping_trend(study.windows.windows), study.windows.windows);
+        !text.empty())
+      results.warning(text);
   if (!settings.mass_known)
     results.paragraph("No mass is given: forces, stiffnesses and dampings are those of 1 kg (--mass).");
   const double rate = 1 / record.interval();
