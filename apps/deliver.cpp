@@ -87,4 +87,8 @@ void deliver(const Values& values, const std::function<experiments::Results()>& 
   for (const std::string& line : experiments::wrapped(last, terminal_page().width)) std::cout << line << "\n";
 }
 
+int exit_code(const experiments::Results& results) {
+  return results.values.value("status", "converged") == "converged" ? 0 : 3;
+}
+
 }  // namespace beamid::apps

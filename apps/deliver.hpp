@@ -15,4 +15,7 @@ namespace beamid::apps {
 /// and writes them to --out. Where a program receives them, nothing is printed.
 void deliver(const Values& values, const std::function<experiments::Results()>& find);
 
+/// 3 where "status" says that there is nothing to rely on, which is no error of the command's; else 0.
+int exit_code(const experiments::Results& results);
+
 }  // namespace beamid::apps

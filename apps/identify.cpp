@@ -129,11 +129,6 @@ Results identify_together(const std::vector<IdentifyRequest>& requests, const st
   return results;
 }
 
-/// 3 where there is no estimate to rely on, which is no error of the command's.
-int exit_code(const Results& results) {
-  return results.values.value("status", "converged") == "converged" ? 0 : 3;
-}
-
 int run_identify(const Values& values) {
   const Words configs = values.texts("config");
   if (configs.size() > 1) {

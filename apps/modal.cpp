@@ -139,7 +139,7 @@ int run_modal(const Values& values) {
     }
     for (std::size_t r = 0; r < records.size(); ++r)
       tell_cost(results, names[r], prepared[r], requests[r].format);
-    if (values.has("events") && results.values["status"] == "contradicted") code = 3;
+    code = exit_code(results);
     return results;
   });
   return code;

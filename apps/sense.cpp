@@ -85,7 +85,7 @@ int run_sense(const Values& values) {
       }
     }();
     if (!file.empty()) tell_preparation(results, prepared, experiment.format);
-    if (results.values.value("status", "converged") != "converged") code = 3;  // as identify
+    code = exit_code(results);
     return results;
   });
   return code;

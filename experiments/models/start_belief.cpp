@@ -51,8 +51,7 @@ StartScale start_scale(const JointModel& model, const std::vector<Observation>& 
     const double usual = reading(observations[i].quantity, omega);
     if (observations[i].quantity != Quantity::strain && std::abs(unit) < 0.05 * usual) continue;
     if (unit != 0.0)
-      scale.displacement =
-          std::max(scale.displacement, largest_measured(samples.row(i)) / std::abs(unit));
+      scale.displacement = std::max(scale.displacement, largest_measured(samples.row(i)) / std::abs(unit));
   }
   return scale;
 }

@@ -43,8 +43,8 @@ NoiseBeam described(const std::string& file, int modes) {
   Eigen::VectorXd ratios = Eigen::VectorXd::Constant(modes, 0.005);
   if (!std::holds_alternative<fem::Undamped>(experiment.damping))
     ratios = fem::damping_ratios(experiment.damping, frequencies);
-  return {experiment.title.empty() ? file : experiment.title, beam,
-          100.0 * beam.tip_mass() / beam.mass(), ratios};
+  return {experiment.title.empty() ? file : experiment.title, beam, 100.0 * beam.tip_mass() / beam.mass(),
+          ratios};
 }
 
 class HigherModeStudy final : public Study {

@@ -179,7 +179,8 @@ TEST(Modes, OfAFineMeshAreDrawnOnACoarserOne) {
 
 TEST(BeamOptions, AreRefusedWhenTheyMakeNoSense) {
   const std::pair<const char*, const char*> cases[] = {
-      {"modes --support clamped-fre", "--support: beam.support is the text \"clamped-fre\"; did you mean 'clamped-free'?"},
+      {"modes --support clamped-fre",
+       "--support: beam.support is the text \"clamped-fre\"; did you mean 'clamped-free'?"},
       {"modes --length -1", "--length: beam.length_m is -1; expected a positive number"},
       {"modes --height nan", "beamid: modes: --height is 'nan'; expected a number"},
       {"modes --length long", "beamid: modes: --length is 'long'; expected a number"},

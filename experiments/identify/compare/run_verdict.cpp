@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/compare/widened_interval.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
 #include "experiments/identify/record_identification.hpp"
 
@@ -26,8 +27,7 @@ std::string innovations_text(const filters::InnovationConsistency& c, double mis
                                                   : std::string("the record holds");
   return fmt::format(
       "The innovations are {} (Ljung-Box p = {:.2g}, mean normalised square {:.3g}): {} motion that the "
-      "model "
-      "does not{}, and the intervals are a lower limit of the uncertainty{}.",
+      "model does not{}, and the intervals are a lower limit of the uncertainty{}.",
       what, c.whiteness_p_value, c.mean_normalised_square, motion, misfit_percent > 0.0 ? " make" : "",
       misfit_percent > 0.0 ? ": a mass, a place or a gain believed wrongly moves estimates by more" : "");
 }
@@ -88,14 +88,8 @@ double to_bound(ComparedParameter& p, double factor) {
 
 void widen(ComparedRun& run, std::size_t j, double factor) {
   factor = to_bound(run.parameters[j], factor);
-  Estimate& e = run.parameters[j].estimate;
-  const Unknown& unknown = run.unknowns[j];
-  const auto place = static_cast<Eigen::Index>(j);
-  const double mean = run.unknown_state.mean[place];
-  const double half = quantile_95 * factor * std::sqrt(run.unknown_state.covariance(place, place));
-  e.deviation *= factor;
-  e.lower_95 = unknown.to_physical(mean - half);
-  e.upper_95 = unknown.to_physical(mean + half);
+  run.parameters[j].estimate.deviation *= factor;
+  set_interval(run, j, factor);
 }
 
 // "the damping ratio 0.56 % (modal analysis 0.40 %, 12 standard deviations)", where it is many of them.
@@ -125,15 +119,14 @@ std::string difference_text(const ModalEstimate& modal, const ComparedRun& run) 
 // A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
 // that started otherwise.
 void judge_driven_motion(const RunContext& context, ComparedRun& run) {
-  constexpr double too_much =
-      10.0;  // one sensor a storey off leaves 40, masses off by half 20, no defect 0.4
+  // A sensor a storey off leaves 40, a mass off by half 20, no defect 0.4.
+  constexpr double too_much = 10.0;
   if (!context.analysis.forced() || !(run.misfit_percent > too_much)) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format(
       "the measured input does not make the record's motion of this model: {:.3g} % of it is left, and is no "
       "noise. A sensor's place, a sign, a unit or a clock is wrong, an input is missing, a mass or the "
-      "damping "
-      "is not as described, or the filter has settled on a wrong answer",
+      "damping is not as described, or the filter has settled on a wrong answer",
       run.misfit_percent);
   run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
 }

@@ -25,12 +25,12 @@ struct SharedEstimate {
 
 /// As joint_estimate() with unknowns that belong together by their names: with E_r picking those of record r,
 ///
-///     I = sum_r E_r^T I_r E_r + N,   I_r = (P_r^-1 - P0_r^-1) / k_r^2,   m = I^-1 (sum_r E_r^T I_r m_r + N m_0),
-///     chi^2 = sum_r (m_r - E_r m)^T I_r (m_r - E_r m)
+///     I = sum_r E_r^T I_r E_r + N,   I_r = (P_r^-1 - P0_r^-1) / k_r^2,   m = I^-1 (sum_r E_r^T I_r m_r + N
+///     m_0), chi^2 = sum_r (m_r - E_r m)^T I_r (m_r - E_r m)
 ///
-/// k_r being the noise ratio of the record, N what is known beforehand: of nuisance unknowns what their prior says, once; of the others 1e-8 of
-/// it, so that what no record says anything of remains as uncertain as before. A single record need not
-/// determine its own unknowns: I_r may be singular.
+/// k_r being the noise ratio of the record, N what is known beforehand: of nuisance unknowns what their prior
+/// says, once; of the others 1e-8 of it, so that what no record says anything of remains as uncertain as
+/// before. A single record need not determine its own unknowns: I_r may be singular.
 /// @throws std::invalid_argument without records.
 SharedEstimate shared_estimate(const std::vector<NamedBelief>& records);
 

@@ -101,9 +101,8 @@ void join_with_covariances(const std::vector<PartSays>& parts, std::vector<Joine
 std::vector<JoinedParameter> joined(const Experiment& experiment, const std::vector<IdentifiedPart>& parts) {
   std::map<std::string, std::vector<const ComparedParameter*>> found;
   for (const IdentifiedPart& part : parts) {
-    const ComparedRun& run = part.run(Sections::noisy);
-    if (run.status != ComparedRun::Status::converged) continue;
-    for (const ComparedParameter& parameter : run.parameters)
+    if (!part.converged()) continue;
+    for (const ComparedParameter& parameter : part.run(Sections::noisy).parameters)
       found[parameter.estimate.name].push_back(&parameter);
   }
   std::vector<JoinedParameter> all;
@@ -132,8 +131,7 @@ std::vector<JoinedParameter> joined(const Experiment& experiment, const std::vec
   }
   std::vector<PartSays> say;
   for (const IdentifiedPart& part : parts)
-    if (part.run(Sections::noisy).status == ComparedRun::Status::converged)
-      say.push_back(says(part.run(Sections::noisy), place_of));
+    if (part.converged()) say.push_back(says(part.run(Sections::noisy), place_of));
   if (!all.empty()) join_with_covariances(say, all);
   return all;
 }
@@ -141,9 +139,7 @@ std::vector<JoinedParameter> joined(const Experiment& experiment, const std::vec
 }  // namespace
 
 bool PartedIdentification::converged() const {
-  return std::all_of(parts.begin(), parts.end(), [](const IdentifiedPart& one) {
-    return one.run(Sections::noisy).status == ComparedRun::Status::converged;
-  });
+  return std::all_of(parts.begin(), parts.end(), [](const IdentifiedPart& one) { return one.converged(); });
 }
 
 PartedIdentification identify_parts(const Experiment& given, const ComparedRecord& record,

@@ -17,6 +17,8 @@ struct IdentifiedPart {
   const ComparedRun& run(Sections sections) const {
     return (sections == Sections::exact ? exact : noisy).runs.front();
   }
+  /// With the noise at its sections counted: only then it has an estimate that is joined.
+  bool converged() const { return run(Sections::noisy).status == ComparedRun::Status::converged; }
 };
 
 /// A parameter as all parts say together, weighed by their covariances.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/compare/widened_interval.hpp"
+
 namespace beamid::experiments {
 
 void widen_by_innovations(ComparedRun& run) {
@@ -14,15 +16,11 @@ void widen_by_innovations(ComparedRun& run) {
   const double factor = std::sqrt(found.mean_normalised_square);
   for (std::size_t j = 0; j < run.parameters.size(); ++j) {
     const auto place = static_cast<Eigen::Index>(j);
-    const Unknown& unknown = run.unknowns[j];
-    const double mean = run.unknown_state.mean[place],
-                 spread = factor * std::sqrt(run.unknown_state.covariance(place, place)),
-                 deviation = std::abs(unknown.slope(mean)) * spread;
-    Estimate& estimate = run.parameters[j].estimate;
-    if (!(deviation > estimate.deviation)) continue;
-    estimate.deviation = deviation;
-    estimate.lower_95 = unknown.to_physical(mean - quantile_95 * spread);
-    estimate.upper_95 = unknown.to_physical(mean + quantile_95 * spread);
+    const double deviation = factor * std::sqrt(run.unknown_state.covariance(place, place)) *
+                             std::abs(run.unknowns[j].slope(run.unknown_state.mean[place]));
+    if (!(deviation > run.parameters[j].estimate.deviation)) continue;
+    run.parameters[j].estimate.deviation = deviation;
+    set_interval(run, j, factor);
   }
   run.interval_factor = std::max(run.interval_factor, factor);
   constexpr double worth_saying = 1.1;

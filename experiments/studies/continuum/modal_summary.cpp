@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "experiments/config/description.hpp"
-#include "experiments/config/structure_description.hpp"
 #include "experiments/config/read_beam.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/studies/continuum/mode_trust.hpp"
 #include "fem/damping.hpp"
 #include "fem/exact/exact_modes.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/modal/base_doubt.hpp"
+#include "experiments/modal/channel_fault.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/figure.hpp"
 
@@ -20,31 +20,31 @@ struct Event {
   double peak = 0.0, base_peak = 0.0;  // [m/s2]
   std::optional<BaseResponse> response;
   std::string reason;  // why there is none
-  BaseDoubt doubt;
+  ChannelFault fault;
   double interval = 0.0;  // [s]
 };
 
 constexpr double much_left = 30.0, much_damped = 0.3;  // [%], [-]
 
 // What is wrong with the two channels, or what makes the fit doubtful.
-std::string doubt_sentence(const Event& event) {
-  const BaseDoubt& doubt = event.doubt;
+std::string fault_sentence(const Event& event) {
+  const ChannelFault& fault = event.fault;
   const std::string then = fmt::format(
       "leaves {:.3g} % of the motion instead of {}: f1 {:.4g} Hz, damping ratio {:.3g} %",
-      doubt.instead.left_percent,
-      std::isfinite(doubt.left_percent) ? fmt::format("{:.3g} %", doubt.left_percent) : "more than half",
-      doubt.instead.frequency_hz, 100.0 * doubt.instead.damping_ratio);
+      fault.instead.left_percent,
+      std::isfinite(fault.left_percent) ? fmt::format("{:.3g} %", fault.left_percent) : "more than half",
+      fault.instead.frequency_hz, 100.0 * fault.instead.damping_ratio);
   const std::string wrong = event.response ? " What the table says of it is wrong." : "";
-  switch (doubt.kind) {
-    case BaseDoubt::Kind::reversed:
+  switch (fault.kind) {
+    case ChannelFault::Kind::reversed:
       return fmt::format("The sign of one channel is turned: so changed, one mode {}.{}", then, wrong);
-    case BaseDoubt::Kind::late:
+    case ChannelFault::Kind::late:
       return fmt::format("The response was recorded {} samples ({:.3g} s) too {}: moved back, one mode {}.{}",
-                         std::abs(doubt.samples), std::abs(doubt.samples) * event.interval,
-                         doubt.samples > 0 ? "late" : "early", then, wrong);
-    case BaseDoubt::Kind::exchanged:
+                         std::abs(fault.samples), std::abs(fault.samples) * event.interval,
+                         fault.samples > 0 ? "late" : "early", then, wrong);
+    case ChannelFault::Kind::exchanged:
       return fmt::format("The base and the response are exchanged: put right, one mode {}.{}", then, wrong);
-    case BaseDoubt::Kind::none:
+    case ChannelFault::Kind::none:
       break;
   }
   if (!event.response) return {};
@@ -85,7 +85,7 @@ Event event_of(const std::string& name, const Record& record,
   } catch (const std::invalid_argument& error) {
     event.reason = error.what();
   }
-  event.doubt = base_doubt(u, y, event.interval);
+  event.fault = channel_fault(u, y, event.interval);
   return event;
 }
 
@@ -115,7 +115,7 @@ Table events_table(const std::vector<Event>& events) {
 Figure events_figure(const std::vector<Event>& events) {
   std::vector<const Event*> shown;
   for (const Event& one : events)
-    if (one.response && !one.doubt.surely()) shown.push_back(&one);
+    if (one.response && !one.fault.surely()) shown.push_back(&one);
   const auto count = static_cast<Index>(shown.size());
   VectorXd peak(count), f(count), f_half(count), xi(count), xi_half(count);
   for (Index i = 0; i < count; ++i) {
@@ -144,7 +144,7 @@ Figure events_figure(const std::vector<Event>& events) {
 std::string change_sentence(const std::vector<Event>& events) {
   const Event *weakest = nullptr, *strongest = nullptr;
   for (const Event& one : events) {
-    if (!one.response || one.doubt.surely()) continue;
+    if (!one.response || one.fault.surely()) continue;
     if (!weakest || one.peak < weakest->peak) weakest = &one;
     if (!strongest || one.peak > strongest->peak) strongest = &one;
   }
@@ -173,9 +173,9 @@ Results event_report(const std::vector<std::string>& names, const std::vector<Re
   bool contradicted = false;
   for (const Event& one : events) {
     if (!one.response) results.warning(fmt::format("{}: {}.", one.name, one.reason), true);
-    if (const std::string doubt = doubt_sentence(one); !doubt.empty())
-      results.warning(fmt::format("{}: {}", one.name, doubt), one.doubt.surely());
-    contradicted = contradicted || one.doubt.surely();
+    if (const std::string text = fault_sentence(one); !text.empty())
+      results.warning(fmt::format("{}: {}", one.name, text), one.fault.surely());
+    contradicted = contradicted || one.fault.surely();
   }
   results.values["status"] = contradicted ? "contradicted" : "converged";
   if (const std::string change = change_sentence(events); !change.empty())
@@ -198,12 +198,12 @@ Results event_report(const std::vector<std::string>& names, const std::vector<Re
     } else {
       entry["reason"] = one.reason;
     }
-    if (const std::string doubt = doubt_sentence(one); !doubt.empty()) entry["doubt"] = doubt;
-    if (one.doubt.kind == BaseDoubt::Kind::late) entry["late_s"] = one.doubt.samples * one.interval;
+    if (const std::string text = fault_sentence(one); !text.empty()) entry["doubt"] = text;
+    if (one.fault.kind == ChannelFault::Kind::late) entry["late_s"] = one.fault.samples * one.interval;
     results.values["events"].push_back(std::move(entry));
   }
   if (std::any_of(events.begin(), events.end(),
-                  [](const Event& one) { return one.response.has_value() && !one.doubt.surely(); }))
+                  [](const Event& one) { return one.response.has_value() && !one.fault.surely(); }))
     results.figures.push_back(events_figure(events));
   return results;
 }

@@ -150,6 +150,18 @@ Figure history_figure(const SensingStudy& study) {
   return figure;
 }
 
+// A force that is not known takes in whatever inertia its place has.
+void add_what_is_unchecked(const Experiment& experiment, Results& results) {
+  for (const ParameterChoice& parameter : experiment.parameters)
+    if (parameter.quantity.find("mass") != std::string::npos) return;
+  std::string places;
+  for (const UnknownForce& force : experiment.unknown_forces)
+    if (force.quantity == Quantity::force) places += (places.empty() ? "" : ", ") + force.name;
+  if (!places.empty())
+    results.paragraph("No sensor checks the mass where " + places +
+                      " acts: what it is off becomes part of the force, and all sensors agree.");
+}
+
 }  // namespace
 
 void add_sensing_verdict(const SensingStudy& study, Results& results) {
@@ -241,18 +253,6 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
             study.correlated() ? "Deviations, and intervals of parameters above all, are too small"
                                : "Deviations may be too small"),
         study.correlated());
-}
-
-// A force that is not known takes in whatever inertia its place has.
-static void add_what_is_unchecked(const Experiment& experiment, Results& results) {
-  for (const ParameterChoice& parameter : experiment.parameters)
-    if (parameter.quantity.find("mass") != std::string::npos) return;
-  std::string places;
-  for (const UnknownForce& force : experiment.unknown_forces)
-    if (force.quantity == Quantity::force) places += (places.empty() ? "" : ", ") + force.name;
-  if (!places.empty())
-    results.paragraph("No sensor checks the mass where " + places +
-                      " acts: what it is off becomes part of the force, and all sensors agree.");
 }
 
 std::string sensing_sentence(const SensingStudy& study, const std::string& record) {

@@ -53,7 +53,7 @@ ExactSections exact_sections(const PartedIdentification& found) {
   for (const IdentifiedPart& part : found.parts)
     for (const ComparedParameter& one : part.run(Sections::noisy).parameters) {
       const ComparedParameter* const exact = find(part.run(Sections::exact), one.estimate.name);
-      if (!exact || part.run(Sections::noisy).status != ComparedRun::Status::converged) continue;
+      if (!exact || !part.converged()) continue;
       const double off = std::abs(exact->estimate.value - one.truth.value_or(one.estimate.value)) /
                          own_deviation(part.run(Sections::exact), one.estimate.name);
       result.mean_square += off * off;
@@ -148,7 +148,7 @@ Table part_table(const PartedIdentification& found) {
       .column({"sections exact", "exact_estimate", "{:.5g}"})
       .column({"deviation [%]", "exact_deviation_percent", "{:.2g}"});
   for (const IdentifiedPart& part : found.parts) {
-    if (part.run(Sections::noisy).status != ComparedRun::Status::converged) continue;  // no estimate
+    if (!part.converged()) continue;
     for (const ComparedParameter& one : part.run(Sections::noisy).parameters) {
       const ComparedParameter* const exact = find(part.run(Sections::exact), one.estimate.name);
       const double value = one.estimate.value;

@@ -34,8 +34,8 @@ TEST(Diagnostics, ComeWithEveryIdentification) {
   EXPECT_EQ(counted, static_cast<double>(record.size()));
 }
 
-// Oracle: a noise said to be 1e-11 m/s2 where it is 0.06 ends the run that stops; the others reach the end and
-// tell what they met.
+// Oracle: a noise said to be 1e-11 m/s2 where it is 0.06 ends the run that stops; the others reach the end
+// and tell what they met.
 TEST(OnFailure, GoesOnWhereItIsAskedTo) {
   const Record record = simulated.record({Quantity::acceleration}, 0.01, 9);
   Experiment experiment = simulated.experiment();

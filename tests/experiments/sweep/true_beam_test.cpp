@@ -14,17 +14,14 @@
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "tests/experiments/sweep/exact_rig.hpp"
+#include "tests/experiments/sweep/sweep_rows.hpp"
 
 namespace beamid::experiments::true_beam_test {
 namespace {
 
-SweepPlan plan_with(const std::vector<std::string>& vary, int seeds, bool once) {
-  SweepPlan plan;
-  for (const std::string& text : vary) plan.varied.push_back(parse_varied(text));
-  plan.seeds = seeds;
-  plan.once = once;
-  check(plan);
-  return plan;
+SweepPlan plan_of(const std::vector<std::string>& vary, int seeds, bool at_once) {
+  const SweepPlan plan = plan_with(vary, 1, seeds);
+  return at_once ? once(plan) : plan;
 }
 
 std::vector<SweepRow> swept(const SweepPlan& plan) {
@@ -50,7 +47,7 @@ TEST(SweepTruth, IsThatOfTheBeamSimulatedWhateverMassIsAssumed) {
   const double bias = 100.0 * (assumed.mass / lighter.mass - 1.0);  // of M omega^2 with the wrong M: 5.8 %
   ASSERT_GT(bias, 5.0);
   for (const bool once : {true, false}) {
-    const SweepPlan plan = plan_with({"truth.beam.tip_mass_kg=0.30"}, 8, once);
+    const SweepPlan plan = plan_of({"truth.beam.tip_mass_kg=0.30"}, 8, once);
     const auto rows = swept(plan);
     for (const PointStatistics& one : statistics(plan, rows)) {
       EXPECT_NEAR(one.bias_percent, bias, 5.0 * one.bias_percent_error + 0.05) << one.parameter << once;
@@ -64,7 +61,7 @@ TEST(SweepTruth, IsThatOfTheBeamSimulatedWhateverMassIsAssumed) {
 
 TEST(SweepBound, FollowsTheNoiseSimulatedAndNotTheOneAssumed) {
   for (const bool once : {true, false}) {
-    const SweepPlan plan = plan_with({"sensors[1].noise_m=1e-4,1e-3"}, 1, once);
+    const SweepPlan plan = plan_of({"sensors[1].noise_m=1e-4,1e-3"}, 1, once);
     const auto rows = swept(plan);
     ASSERT_EQ(rows.size(), 4u);
     EXPECT_NEAR(rows[2].bound / rows[0].bound, 10.0, once ? 1e-6 : 1.0) << once;
@@ -73,7 +70,7 @@ TEST(SweepBound, FollowsTheNoiseSimulatedAndNotTheOneAssumed) {
 
 TEST(SweepReport, PrintsNoErrorBelowTheBoundWithoutASentence) {
   const auto text_of = [](double error) {
-    const SweepPlan plan = plan_with({"beam.length_m=1,2"}, 50, false);
+    const SweepPlan plan = plan_with({"beam.length_m=1,2"}, 1, 50);
     std::vector<SweepRow> rows;
     for (std::size_t i = 0; i < 50; ++i) {
       SweepRow row;

@@ -6,7 +6,7 @@
 namespace beamid::experiments {
 
 /// What of the two channels, changed, explains their motion much better.
-struct BaseDoubt {
+struct ChannelFault {
   enum class Kind {
     none,
     reversed,  ///< the response with its sign turned
@@ -27,6 +27,6 @@ inline constexpr int most_late_samples = 10;
 /// it left (half of its square), or, of a participation below zero, less with the sign turned. The order is
 /// doubted only where the response moves less than the base, or xi is above 0.3. Where the channels show no
 /// mode, every change that gives one counts.
-BaseDoubt base_doubt(const Eigen::VectorXd& base, const Eigen::VectorXd& response, double interval);
+ChannelFault channel_fault(const Eigen::VectorXd& base, const Eigen::VectorXd& response, double interval);
 
 }  // namespace beamid::experiments

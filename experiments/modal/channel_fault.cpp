@@ -1,4 +1,4 @@
-#include "experiments/modal/base_doubt.hpp"
+#include "experiments/modal/channel_fault.hpp"
 
 #include <cmath>
 #include <limits>
@@ -25,12 +25,12 @@ double largest_swing(const VectorXd& signal) {
 
 }  // namespace
 
-BaseDoubt base_doubt(const VectorXd& base, const VectorXd& response, double interval) {
+ChannelFault channel_fault(const VectorXd& base, const VectorXd& response, double interval) {
   const std::optional<BaseResponse> found = response_if_any(base, response, interval);
-  BaseDoubt best;
+  ChannelFault best;
   double least = found ? found->left_percent : std::numeric_limits<double>::infinity();
   const double left = least;
-  const auto consider = [&](BaseDoubt::Kind kind, int samples, const std::optional<BaseResponse>& changed,
+  const auto consider = [&](ChannelFault::Kind kind, int samples, const std::optional<BaseResponse>& changed,
                             double share) {
     if (!changed || !(changed->left_percent < share * left) || !(changed->left_percent < least) ||
         !(changed->participation > 0.0) || changed->damping_ratio > overdamped)
@@ -40,20 +40,20 @@ BaseDoubt base_doubt(const VectorXd& base, const VectorXd& response, double inte
   };
   // The band is that of the same peak: neither change moves |Y| / |U|.
   const bool negative = found && found->participation < 0.0;
-  consider(BaseDoubt::Kind::reversed, 0, response_if_any(base, -response, interval),
+  consider(ChannelFault::Kind::reversed, 0, response_if_any(base, -response, interval),
            negative ? 1.0 : much_less);
   for (int late = -most_late_samples; late <= most_late_samples; ++late) {
     const Index n = base.size() - std::abs(late);
     if (late == 0 || n < 2) continue;
     const VectorXd &first = late > 0 ? base : response, &second = late > 0 ? response : base;
     const VectorXd head = first.head(n), tail = second.tail(n);
-    consider(BaseDoubt::Kind::late, late,
+    consider(ChannelFault::Kind::late, late,
              late > 0 ? response_if_any(head, tail, interval) : response_if_any(tail, head, interval),
              much_less);
   }
   const bool too_damped = found && found->damping_ratio > overdamped;
   if (too_damped || largest_swing(response) < largest_swing(base))
-    consider(BaseDoubt::Kind::exchanged, 0, response_if_any(response, base, interval),
+    consider(ChannelFault::Kind::exchanged, 0, response_if_any(response, base, interval),
              too_damped ? 1.0 : much_less);
   return best;
 }

@@ -1,5 +1,5 @@
 // Oracle: the oscillators that made the motion, and what was done to the records.
-#include "experiments/modal/base_doubt.hpp"
+#include "experiments/modal/channel_fault.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-namespace beamid::experiments::base_doubt_test {
+namespace beamid::experiments::channel_fault_test {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -50,8 +50,8 @@ Pair event(const std::vector<std::array<double, 3>>& modes, unsigned seed, Index
   return pair;
 }
 
-BaseDoubt doubt_of(const VectorXd& base, const VectorXd& response) {
-  return base_doubt(base, response, interval);
+ChannelFault doubt_of(const VectorXd& base, const VectorXd& response) {
+  return channel_fault(base, response, interval);
 }
 
 VectorXd later(const VectorXd& signal, Index samples) {
@@ -64,7 +64,7 @@ const std::vector<std::array<double, 3>> one_mode{{2.5, 0.05, 1.0}},
     column{{2.5, 0.05, 1.25}, {5.6, 0.11, -0.35}, {8.3, 0.17, 0.1}},
     four_floors{{2.5, 0.05, 1.24}, {7.2, 0.05, -0.33}, {11.03, 0.05, 0.12}, {13.53, 0.05, -0.03}};
 
-TEST(BaseDoubt, HasNoneOfHealthyEvents) {
+TEST(ChannelFault, HasNoneOfHealthyEvents) {
   for (const auto& modes : {one_mode, column, four_floors})
     for (unsigned seed = 0; seed < 4; ++seed)
       for (const Index samples : {Index{800}, Index{4000}}) {
@@ -73,44 +73,44 @@ TEST(BaseDoubt, HasNoneOfHealthyEvents) {
       }
 }
 
-TEST(BaseDoubt, HasNoneOfAnIsolatedStructure) {
+TEST(ChannelFault, HasNoneOfAnIsolatedStructure) {
   for (unsigned seed = 0; seed < 3; ++seed) {
     const Pair isolated = event({{0.5, 0.1, 1.0}}, seed, 8000);
     EXPECT_FALSE(doubt_of(isolated.base, isolated.response).surely()) << seed;
   }
 }
 
-TEST(BaseDoubt, TellsASignThatIsTurned) {
+TEST(ChannelFault, TellsASignThatIsTurned) {
   for (const auto& modes : {one_mode, column, four_floors})
     for (unsigned seed = 0; seed < 2; ++seed) {
       const Pair pair = event(modes, seed);
-      const BaseDoubt doubt = doubt_of(pair.base, -pair.response);
-      EXPECT_EQ(doubt.kind, BaseDoubt::Kind::reversed) << modes.size() << " modes, seed " << seed;
+      const ChannelFault doubt = doubt_of(pair.base, -pair.response);
+      EXPECT_EQ(doubt.kind, ChannelFault::Kind::reversed) << modes.size() << " modes, seed " << seed;
       EXPECT_NEAR(doubt.instead.damping_ratio, 0.05, 0.006);
     }
 }
 
-TEST(BaseDoubt, TellsHowLateTheResponseIs) {
+TEST(ChannelFault, TellsHowLateTheResponseIs) {
   for (const auto& modes : {one_mode, column, four_floors})
     for (unsigned seed = 0; seed < 2; ++seed) {
       const Pair pair = event(modes, seed);
-      const BaseDoubt late = doubt_of(pair.base, later(pair.response, 5)),
-                      early = doubt_of(later(pair.base, 5), pair.response);
-      EXPECT_EQ(late.kind, BaseDoubt::Kind::late);
+      const ChannelFault late = doubt_of(pair.base, later(pair.response, 5)),
+                         early = doubt_of(later(pair.base, 5), pair.response);
+      EXPECT_EQ(late.kind, ChannelFault::Kind::late);
       EXPECT_NEAR(late.samples, 5, 1) << modes.size() << " modes, seed " << seed;
-      EXPECT_EQ(early.kind, BaseDoubt::Kind::late);
+      EXPECT_EQ(early.kind, ChannelFault::Kind::late);
       EXPECT_NEAR(early.samples, -5, 1) << modes.size() << " modes, seed " << seed;
     }
 }
 
-TEST(BaseDoubt, TellsBaseAndResponseExchanged) {
+TEST(ChannelFault, TellsBaseAndResponseExchanged) {
   for (const auto& modes : {one_mode, column, four_floors})
     for (unsigned seed = 0; seed < 2; ++seed) {
       const Pair pair = event(modes, seed);
-      EXPECT_EQ(doubt_of(pair.response, pair.base).kind, BaseDoubt::Kind::exchanged)
+      EXPECT_EQ(doubt_of(pair.response, pair.base).kind, ChannelFault::Kind::exchanged)
           << modes.size() << " modes, seed " << seed;
     }
 }
 
 }  // namespace
-}  // namespace beamid::experiments::base_doubt_test
+}  // namespace beamid::experiments::channel_fault_test
