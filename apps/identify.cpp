@@ -12,6 +12,7 @@
 #include "experiments/identify/noise_source.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/identify/record_identification.hpp"
+#include "experiments/studies/compare/clock_report.hpp"
 #include "experiments/studies/damping/compared_laws.hpp"
 #include "experiments/studies/identify/identification_report.hpp"
 #include "experiments/studies/identify/joint_comparison_report.hpp"
@@ -56,8 +57,12 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
     results = report(experiment, record, name, study_damping_law(experiment, record, law, folder));
   } else {
     const Comparison found = identified(one, folder, progress);
-    results = one.is_free_oscillator() ? report(experiment, record, name, oscillator_in(found))
-                                       : identification_report(experiment, found);
+    if (one.is_free_oscillator()) {
+      results = report(experiment, found.compared.record, name, oscillator_in(found));
+      tell_clocks(results, found);
+    } else {
+      results = identification_report(experiment, found);
+    }
   }
   for (const std::string& text : one.decisions()) results.paragraph(text);
   tell_preparation(results, one.as_analysed(), experiment.format);

@@ -83,7 +83,7 @@ void take_words(const Values& values, RecordFormat& format) {
     format.window_place = {"--window"};
   }
   if (values.has("reader")) format.reader = values.text("reader");
-  if (values.has("skip-malformed")) format.skip_malformed = true;
+  if (values.has("skip-malformed")) format.malformed = MalformedRows::skip;
   if (values.has("stamps")) format.irregular = values.text("stamps") == "as_they_are";
 }
 

@@ -28,6 +28,9 @@ namespace fs = std::filesystem;
 using namespace experiments;
 
 Record earlier_record(const Values& values, const Experiment& experiment, const fs::path& config) {
+  if (!experiment.format.own_clock.empty())
+    throw UsageError("a stream comes by one clock; expected no own_clock under [record] in " +
+                     config.string());
   if (values.has("like")) return prepared_record(values.text("like"), experiment.format);
   if (experiment.record_file)
     return prepared_record(config.parent_path() / *experiment.record_file, experiment.format);

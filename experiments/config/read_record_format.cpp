@@ -46,10 +46,22 @@ const Schema<DescribedRecord>& record_keys() {
                "lines before the first row of numbers, the last non-blank of which names the columns; with 0 "
                "one line of names is found by itself",
                "23")
-          .choice("malformed", &R::skip_malformed, {std::pair{"refuse", false}, {"skip", true}},
+          .choice("malformed", &R::malformed,
+                  {std::pair{"refuse", MalformedRows::refuse},
+                   {"skip", MalformedRows::skip},
+                   {"missing", MalformedRows::as_missing}},
                   "rows with text among the numbers or of another length: refused at their place, or left "
-                  "out, counted and located",
+                  "out, counted and located; `\"missing\"` takes cells that are empty, `nan`, `na` or `null` "
+                  "for samples that were not read, and refuses the rest",
                   "\"skip\"")
+          .choice("missing_input", &R::missing_input,
+                  {std::pair{"refuse", MissingInput::refuse},
+                   {"leave_out", MissingInput::leave_out},
+                   {"zero", MissingInput::zero}},
+                  "samples that a measured force or base acceleration lacks: refused by what needs them; the "
+                  "longest stretch in which every input is known is used, and said; or 0, a force that does "
+                  "not act where it was not recorded",
+                  "\"leave_out\"")
           .choice("stamps", &R::irregular, {std::pair{"even", false}, {"as_they_are", true}},
                   "whether the times must have equal intervals or may only increase. Filters take unequal "
                   "ones as they are, what needs even samples resamples the record and says so "
@@ -64,6 +76,11 @@ const Schema<DescribedRecord>& record_keys() {
                   "([theory](theory/discretisation_bias.md#the-bias-of-a-measured-force))",
                   "\"linear\"")
           .fallback("`\"band_limited\"` where at least half of the stamps are even, else `\"linear\"`")
+          .key("own_clock", &R::own_clock,
+               "channels, by name or quantity, that another clock has stamped: `identify` and `compare` find "
+               "the lag of each with the parameters ([theory](theory/own_clocks.md)); others refuse such a "
+               "record",
+               "[\"acceleration_x9m\"]")
           .key("sampling_rate_hz", &R::sampling_rate, positive,
                "exact rate; times are then start + k / rate. Refused where a printed time is half an "
                "interval, its rounding set aside, from there",

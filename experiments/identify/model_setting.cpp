@@ -62,6 +62,10 @@ std::vector<Index> input_channels(const Record& record) {
 }
 
 filters::Measurements measurements(const Record& record) {
+  if (!record.own_clock.empty())
+    throw std::invalid_argument(
+        "channels with a clock of their own ([record] own_clock): identify and compare find their lags; "
+        "expected one clock, or the step shift for lags that are known");
   const std::vector<Index> outputs = output_channels(record), forces = input_channels(record);
   filters::Measurements result{record.time, record.samples(outputs, Eigen::all), {}};
   if (record.time_resolution < 0.5 * record.interval()) result.time_resolution = record.time_resolution;

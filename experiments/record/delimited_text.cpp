@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
@@ -102,7 +103,7 @@ void DelimitedText::find_rows() {
         header_line_ = comment_line_;
         name_columns(comment_, header_line_);
       }
-      split_fields(line_, separator_, fields_);
+      split_row();
       return;
     }
   }
@@ -155,7 +156,20 @@ void DelimitedText::name_columns(std::string_view header, std::size_t line) {
     header_line_ = 0;
     return;
   }
+  if (fields.size() > width_) {  // cells at the end of the first row may hold nothing
+    const std::size_t shown = std::exchange(width_, fields.size());
+    split_row();
+    if (fields_.size() != width_) width_ = shown;
+  }
   for (const std::string_view field : fields) names_.emplace_back(unquoted(field));
+}
+
+void DelimitedText::split_row() {
+  split_fields(line_, separator_, fields_);
+  if (fields_.size() >= width_ || separator_ == ' ') return;
+  std::vector<std::string_view> all;
+  split_fields(line_, separator_, all, true);
+  if (all.size() == width_) fields_ = std::move(all);
 }
 
 bool DelimitedText::next_line() {
@@ -183,7 +197,7 @@ bool DelimitedText::next() {
     return true;
   }
   while (next_row()) {
-    split_fields(line_, separator_, fields_);
+    split_row();
     if (fields_.size() == width_) return true;
     if (!tolerant_)
       throw InputError(row_place(), fmt::format("{}; expected {} as in the first row",

@@ -14,7 +14,7 @@ namespace beamid::experiments {
 /// Blank lines and comment lines (# or % first) are passed over, lines end with LF, CRLF or CR. The names of
 /// the columns come from the last non-blank of the header lines, or, without header lines, from a first row
 /// in which nothing is a number, or else from the comment just before the first row where it names as many
-/// columns.
+/// columns. Cells at the end of a row that hold nothing count where the row has its separators.
 ///
 /// A tolerant walk begins at the first two rows in succession that are numbers throughout and equally long.
 /// The lines before them that hold as many fields and no number name the columns and then their units; rows
@@ -62,6 +62,7 @@ class DelimitedText {
   void find_header(int header_lines);  ///< and the first row after it
   void find_rows();                    ///< the same of a tolerant walk
   void choose_separator();             ///< and the decimal sign, by the first rows
+  void split_row();                    ///< of this line, with cells at its end that hold nothing
   void name_columns(std::string_view header, std::size_t line);
 
   std::string file_;

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "experiments/record/record_columns.hpp"
 #include "experiments/record/record_places.hpp"
 #include "experiments/record/record_reader.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -104,14 +108,27 @@ Record cut(const Record& record, const RecordFormat& format, const std::string& 
   }
 }
 
-/// Refuses the first row in which a column that is used holds no finite number, or leaves all such rows out.
-void check_rows(RecordTable& table, const std::vector<std::size_t>& used, bool skip) {
+/// Whether a cell says that nothing was read.
+bool is_missing(const RecordTable& table, std::size_t row, std::size_t column) {
+  if (!table.cell) return std::isnan(table.columns[column][row]);
+  std::string text = unquoted(table.cell(row, column).text);
+  for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return text.empty() || text == "nan" || text == "na" || text == "null";
+}
+
+/// Refuses the first row in which a column that is used holds no finite number, or leaves all such rows out,
+/// or takes what is missing for missing.
+/// @param time which of them is the stamps
+void check_rows(RecordTable& table, const std::vector<std::size_t>& used, std::optional<std::size_t> time,
+                MalformedRows malformed) {
   std::vector<bool> kept(table.rows(), true);
   std::vector<std::size_t> lines = table.skipped_lines;
   for (std::size_t row = 0; row < table.rows(); ++row)
     for (const std::size_t column : used) {
       if (std::isfinite(table.columns[column][row])) continue;
-      if (!skip) throw table.fault(row, column);
+      if (malformed == MalformedRows::as_missing && column != time && is_missing(table, row, column))
+        continue;
+      if (malformed != MalformedRows::skip) throw table.fault(row, column);
       if (kept[row]) lines.push_back(row < table.lines.size() ? table.lines[row] : row + 1);
       kept[row] = false;
     }
@@ -129,7 +146,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   std::vector<std::size_t> used;
   if (columns.time) used.push_back(columns.time->index);
   for (const RecordColumn& column : columns.channels) used.push_back(column.index);
-  check_rows(table, used, format.skip_malformed);
+  check_rows(table, used, columns.time ? std::optional(columns.time->index) : std::nullopt, format.malformed);
   if (table.rows() < 2)
     throw InputError(
         table.rows() ? table.row_place(table.rows() - 1) : Place{table.file},
@@ -149,6 +166,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
     record.channels.push_back(column.channel);
   }
   record.input_path = format.input;
+  record.own_clock = format.own_clock;
   if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
   record.remarks = table.remarks;
   record.warnings = table.warnings;

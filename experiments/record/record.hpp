@@ -52,6 +52,7 @@ struct Record {
   double time_resolution = 0.0;            ///< stamps are as exact as they were printed, within this [s]
   std::vector<std::string> remarks = {};   ///< for reports: lines left out, what was done to the samples
   std::vector<std::string> warnings = {};  ///< what may make any result wrong, for the first lines of reports
+  std::vector<std::string> own_clock = {};   ///< names or quantities of channels stamped by other clocks
   std::optional<InputPath> input_path = {};  ///< absent: band-limited where stamps are even, else linear
 
   Eigen::Index size() const { return time.size(); }

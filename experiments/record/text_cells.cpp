@@ -20,6 +20,7 @@ std::function<TextField(std::size_t, std::size_t)> TextCells::cells(char separat
     std::vector<std::string_view> fields;
     split_fields(rows->lines[row], separator, fields);
     const std::size_t at = columns.empty() ? column : columns[column];
+    if (at >= fields.size()) split_fields(rows->lines[row], separator, fields, true);  // it may hold nothing
     if (at >= fields.size()) return TextField{{rows->file, rows->numbers[row], 1}, ""};
     const auto offset = static_cast<std::size_t>(fields[at].data() - rows->lines[row].data());
     return TextField{{rows->file, rows->numbers[row], offset + 1}, std::string(fields[at])};

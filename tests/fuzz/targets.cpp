@@ -75,15 +75,16 @@ void refusable(const auto& work) {
 
 void read_both_ways(const std::string& reader, const std::string& bytes) {
   const fs::path file = folder().write("record", bytes);
-  for (const bool tolerant : {false, true})
+  for (const auto malformed : {MalformedRows::refuse, MalformedRows::skip, MalformedRows::as_missing})
     refusable([&] {
       RecordFormat format;
       format.reader = reader;
-      format.skip_malformed = format.irregular = tolerant;
+      format.malformed = malformed;
+      format.irregular = malformed != MalformedRows::refuse;
       const Record record = read_record(file, format);
       promise(record.size() >= 2 && record.samples.rows() == static_cast<long>(record.channels.size()) &&
               record.samples.cols() == record.size() && record.time.allFinite() &&
-              record.samples.allFinite());
+              (malformed == MalformedRows::as_missing || record.samples.allFinite()));
       for (long k = 1; k < record.size(); ++k) promise(record.time[k] > record.time[k - 1]);
     });
 }

@@ -107,8 +107,9 @@ class Record:
         base_acceleration_mm_per_s2: npt.ArrayLike = ..., base_acceleration_g: npt.ArrayLike = ...,
         support_acceleration_m_per_s2: npt.ArrayLike = ..., support_acceleration_mm_per_s2: npt.ArrayLike = ...,
         support_acceleration_g: npt.ArrayLike = ..., reader: str = ..., separator: str = ..., decimal: str = ...,
-        header_lines: int = ..., malformed: str = ..., stamps: str = ..., input: str = ...,
-        sampling_rate_hz: _Number = ..., window_s: Sequence[_Number] = ..., prepare: _Tables = ...) -> None: ...
+        header_lines: int = ..., malformed: str = ..., missing_input: str = ..., stamps: str = ..., input: str = ...,
+        own_clock: Sequence[str] = ..., sampling_rate_hz: _Number = ..., window_s: Sequence[_Number] = ...,
+        prepare: _Tables = ...) -> None: ...
     @property
     def numbers(self) -> int: ...
     @property
@@ -180,9 +181,9 @@ class Experiment(_Structure):
     def read(cls, path: _Path) -> Experiment: ...
 
 def read(path: _Path, *, reader: str = ..., separator: str = ..., decimal: str = ..., header_lines: int = ...,
-    malformed: str = ..., stamps: str = ..., input: str = ..., sampling_rate_hz: _Number = ...,
-    window_s: Sequence[_Number] = ..., time: _Table | _Structure = ..., channels: _Tables = ...,
-    prepare: _Tables = ...) -> RecordFile: ...
+    malformed: str = ..., missing_input: str = ..., stamps: str = ..., input: str = ...,
+    own_clock: Sequence[str] = ..., sampling_rate_hz: _Number = ..., window_s: Sequence[_Number] = ...,
+    time: _Table | _Structure = ..., channels: _Tables = ..., prepare: _Tables = ...) -> RecordFile: ...
 def modes(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., modes: int | None = ...,
     surface: bool | None = ..., length: _Number | None = ..., width: _Number | None = ...,
     height: _Number | None = ..., diameter: _Number | None = ..., youngs_modulus: _Number | None = ...,

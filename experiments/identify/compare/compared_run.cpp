@@ -39,6 +39,10 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
                      const RunSettings& settings) {
   Passes passes(context, setting, started, settings);
   ComparedRun& run = passes.run();
+  if (context.compared.has_open_clocks()) {
+    passes.follow_common_clock();
+    return run;
+  }
   const auto refuse = [&](const std::string& reason) {
     run.status = Status::refused;
     run.reason = reason;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "experiments/config/read_reduction.hpp"
+#include "experiments/identify/clocks/aligned_clocks.hpp"
 #include "experiments/identify/compare/compared_run.hpp"
 #include "experiments/identify/compare/run_noise.hpp"
 #include "experiments/identify/compare/run_verdict.hpp"
@@ -113,6 +114,12 @@ const StartedModel& start_from_record(const RunContext& context, ReducedBeam& ma
 // the beat, and starts there only where it is lost otherwise.
 ComparedRun run_from_best_start(const RunContext& context, ReducedBeam& made, const RunSettings& settings) {
   const RecordAnalysis& analysis = context.analysis;
+  if (context.compared.has_open_clocks()) {
+    const filters::Measurements measured = measurements(analysis.record);
+    return run_once(context, *made.setting,
+                    {*made.model, own_guess(*made.model, made.setting->observations, measured.outputs)},
+                    settings);
+  }
   std::optional<StartedModel> from_mode;
   if (analysis.modal && !analysis.aliased && context.experiment.parameters.empty() &&
       noise_is_stated_well(context))
@@ -203,6 +210,8 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
     throw std::invalid_argument(
         "[[unknown_forces]] are followed by beamid sense and beamid posterior, which find the structure's "
         "parameters beside them; expected none where forces are measured or the motion is free");
+  if (!record.record.own_clock.empty())
+    record = aligned_clocks(experiment, std::move(record), folder, progress);
   Comparison comparison{std::move(record), {}, {}};
   comparison.analysis = analyse(experiment, comparison.compared.record);
   const RecordAnalysis& analysis = comparison.analysis;

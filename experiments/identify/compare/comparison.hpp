@@ -10,6 +10,7 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/analysis.hpp"
 #include "experiments/identify/batch.hpp"
+#include "experiments/identify/clocks/clock_step.hpp"
 #include "experiments/identify/noise_in_estimates.hpp"
 #include "experiments/models/divergence.hpp"
 #include "experiments/models/estimates.hpp"
@@ -30,6 +31,10 @@ struct ComparedRecord {
   /// Noise of the channels of motion, from before an event (p): noise_before_event(); needed where the
   /// experiment wants it.
   Eigen::VectorXd quiet_noise = {};
+  std::vector<OwnClock> clocks = {};  ///< of channels that have one of their own, with their lags
+  bool clocks_are_aligned = false;    ///< else such a channel is not looked at yet
+
+  bool has_open_clocks() const { return !clocks.empty() && !clocks_are_aligned; }
 };
 
 /// A record of a file.
@@ -88,9 +93,10 @@ struct ComparedRun {
   std::shared_ptr<JointModel> model;      ///< on the basis of the last pass; absent where it was refused
   IdentificationSettings settings;        ///< of the last pass
   filters::FilterRun run;
-  std::vector<Unknown> unknowns;                    ///< of the model, in the order of the parameters (q)
-  filters::Gaussian unknown_state, unknown_start;   ///< of what the filter's state carries for them: at the
-                                                    ///< end, and at the start of the last pass (q)
+  std::vector<Unknown> unknowns;                   ///< of the model, in the order of the parameters (q)
+  filters::Gaussian unknown_state, unknown_start;  ///< of what the filter's state carries for them: at the
+                                                   ///< end, and at the start of the last pass (q)
+  std::optional<ClockStep> clocks;  ///< of channels with clocks of their own; absent: there are none
   std::optional<filters::Diagnostics> diagnostics;  ///< of the last pass; absent below 100 samples
   std::vector<filters::Gaussian> smoothed;          ///< of every sample, where a smoother was asked for
   std::optional<BatchIdentification> batch;         ///< where it was asked for

@@ -66,12 +66,17 @@ std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double i
                              {{}, output_noise});
 }
 
+FirstGuess own_guess(const JointModel& model, const std::vector<Observation>& observations,
+                     const MatrixXd& outputs) {
+  const filters::Gaussian known = start_belief(
+      model, start_directions(model, observations, start_scale(model, observations, outputs, 1.0)));
+  return {known.mean, covariance_of_unknowns(model, known)};
+}
+
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
                        const filters::Measurements& record, double frequency_hz) {
   const double dt = record.interval();
-  const filters::Gaussian known = start_belief(
-      model, start_directions(model, observations, start_scale(model, observations, record.outputs, 1.0)));
-  FirstGuess guess{known.mean, covariance_of_unknowns(model, known)};
+  FirstGuess guess = own_guess(model, observations, record.outputs);
   for (double factor = 1.0 / (guess_samples_per_period * frequency_hz * dt); factor >= 2.0;
        factor /= level_ratio) {
     const int whole = static_cast<int>(factor);

@@ -31,6 +31,11 @@ namespace beamid::experiments {
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
                        const filters::Measurements& record, double frequency_hz);
 
+/// What the model says of itself, at rest: where no record is to be looked at.
+/// @param outputs (p x N) whose size scales the motion
+FirstGuess own_guess(const JointModel& model, const std::vector<Observation>& observations,
+                     const Eigen::MatrixXd& outputs);
+
 /// The start directions with the unknowns' covariance of a guess.
 StartDirections with_guess(StartDirections directions, const JointModel& model, const FirstGuess& guess);
 

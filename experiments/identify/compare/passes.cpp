@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -15,6 +16,7 @@
 #include "experiments/identify/recorded_frequency.hpp"
 #include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/models/finest_discretisation.hpp"
+#include "experiments/signal/missing_samples.hpp"
 #include "filters/smoother.hpp"
 
 namespace beamid::experiments {
@@ -34,6 +36,15 @@ std::string unsettled_text(double moved) {
       "Not settled: its last pass moved an unknown by {:.2g} standard deviations. More passes ([compare] "
       "passes) or nearer initial estimates are needed.",
       moved);
+}
+
+// Channels whose lags are not known yet are not read.
+void ignore_clocks(const std::vector<OwnClock>& clocks, MatrixXd& outputs, KnownNoise& known) {
+  for (const OwnClock& clock : clocks)
+    for (const Index i : clock.outputs) {
+      known.configured[i] = std::max(largest_measured(outputs.row(i)), known.configured[i]);
+      outputs.row(i).setConstant(std::nan(""));
+    }
 }
 
 }  // namespace
@@ -57,6 +68,7 @@ Passes::Passes(const RunContext& context, const ModelSetting& setting, const Sta
   run_.settings.discretisation = settings.discretisation;
   run_.settings.on_failure = context.experiment.on_failure;
   run_.settings.input_noise = input_noise(context.experiment, context.analysis.record);
+  if (context.compared.has_open_clocks()) ignore_clocks(context.compared.clocks, record_.outputs, known_);
 }
 
 bool Passes::filter() {
@@ -114,6 +126,7 @@ void Passes::finish() {
       noise_of_bound(context_.compared, known_, run_.noise_left, run_.noise).cwiseAbs2().asDiagonal();
   const auto discrete = finest(*run_.model, dt_, noise);
   if (nearest_with_own_scheme()) motion_ = reproduce(*discrete, motion_.initial_state, directions_, record_);
+  if (context_.compared.clocks_are_aligned) take_clocks(*discrete);
   score(input_bounds_.size() > 0
             ? input_bounds_
             : run_bounds(*discrete, *run_.model, motion_.initial_state, directions_, record_));
@@ -130,6 +143,11 @@ void Passes::finish() {
                                               {{}, run_.settings.output_noise});
     run_.smoothed = filters::smooth(run_.run, *filtered, record_, context_.experiment.smoother).beliefs;
   }
+}
+
+void Passes::follow_common_clock() {
+  begin_at(started_.guess.mean);
+  run_.reproduced = motion_.outputs;
 }
 
 void Passes::judge_motion() {
@@ -231,13 +249,27 @@ bool Passes::filter_once() {
   return true;
 }
 
+// Lags that are unknown too leave less of the record to the unknowns.
+void Passes::take_clocks(filters::DiscreteModel& discrete) {
+  run_.clocks = clock_step(discrete, motion_.initial_state, directions_, record_, motion_.outputs,
+                           context_.compared.clocks);
+  const VectorXd& w = run_.clocks->widening;
+  MatrixXd& own = run_.unknown_state.covariance;
+  own = w.asDiagonal() * own * w.asDiagonal();
+  MatrixXd& all = run_.run.last.covariance;
+  const std::vector<Index>& places = run_.model->unknown_places;
+  if (all.size() > 0) all(places, places) = own;
+}
+
 void Passes::score(const VectorXd& bound) {
   const std::vector<Estimate> found = estimates(*run_.model, run_.run.last);
   for (std::size_t j = 0; j < found.size(); ++j) {
     ComparedParameter parameter{found[j], {}, {}};
     if (context_.compared.truth)
       parameter.truth = true_value(*context_.compared.truth, settings_.true_mass, run_.model->unknowns[j]);
-    if (const double least = bound[static_cast<Index>(j)]; std::isfinite(least)) parameter.bound = least;
+    const double wider = run_.clocks ? run_.clocks->widening[static_cast<Index>(j)] : 1.0;
+    if (const double least = wider * bound[static_cast<Index>(j)]; std::isfinite(least))
+      parameter.bound = least;
     run_.parameters.push_back(parameter);
   }
   run_.reproduced = motion_.outputs;

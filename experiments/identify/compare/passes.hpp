@@ -28,6 +28,8 @@ class Passes {
   void fit_inputs_noise();
   /// Estimates, the motion that they make of the record, their bounds; what else was asked for.
   void finish();
+  /// The motion at the first guess that is nearest to the channels of the common clock.
+  void follow_common_clock();
   /// Whether that motion is the record's: else the run diverged.
   void judge_motion();
 
@@ -37,6 +39,7 @@ class Passes {
   FirstGuess working_guess() const;
   void begin_at(const Eigen::VectorXd& state);
   void weigh_noise();
+  void take_clocks(filters::DiscreteModel& discrete);
   bool filter_once();
   void score(const Eigen::VectorXd& bound);
 
@@ -44,7 +47,7 @@ class Passes {
   const ModelSetting& setting_;
   const StartedModel& started_;
   const RunSettings& settings_;
-  const filters::Measurements record_;
+  filters::Measurements record_;
   const double dt_;
   KnownNoise known_;
   ComparedRun run_;

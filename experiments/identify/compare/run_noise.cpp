@@ -57,7 +57,7 @@ VectorXd noise_of_bound(const ComparedRecord& compared, const KnownNoise& known,
 }
 
 MatrixXd unit_noise(const MatrixXd& outputs) {
-  return root_mean_squares(outputs).cwiseMax(1e-300).cwiseAbs2().asDiagonal();
+  return root_mean_squares(outputs).cwiseMax(1e-150).cwiseAbs2().asDiagonal();
 }
 
 }  // namespace beamid::experiments

@@ -116,6 +116,17 @@ std::string difference_text(const ModalEstimate& modal, const ComparedRun& run) 
          ". The modal analysis knows no model: trust it, or give the model the modes that it lacks.";
 }
 
+// As K and C of one degree of freedom are judged (judgement.cpp): damping that is not the record's is no
+// estimate.
+bool has_another_damping(const ModalEstimate& modal, const ComparedRun& run) {
+  constexpr double twice = 2.0, many = 3.0;
+  const FoundMode& mode = *run.mode;
+  const double apart = std::abs(mode.damping_ratio - modal.damping_ratio) /
+                       std::hypot(mode.damping_ratio_deviation, modal.damping_ratio_standard_deviation);
+  return apart > many && !(mode.damping_ratio < twice * modal.damping_ratio &&
+                           twice * mode.damping_ratio > modal.damping_ratio);
+}
+
 // A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
 // that started otherwise.
 void judge_driven_motion(const RunContext& context, ComparedRun& run) {
@@ -153,10 +164,19 @@ void judge_model(const RunContext& context, ComparedRun& run) {
   }
   judge_driven_motion(context, run);
   judge_moved_mass(run);
-  // A model that has the mode's companions does not have its frequency alone.
-  const bool one_mode = run.coordinates == 1 || (modal && modal->companions.empty());
+  // A model that has the mode's companions does not have its frequency alone, and an aliased one has another.
+  const bool one_mode =
+      !context.analysis.aliased && (run.coordinates == 1 || (modal && modal->companions.empty()));
   if (modal && run.mode && one_mode)
-    if (const std::string text = difference_text(*modal, run); !text.empty()) run.warnings.push_back(text);
+    if (const std::string text = difference_text(*modal, run); !text.empty()) {
+      run.warnings.push_back(text);
+      if (has_another_damping(*modal, run)) {
+        run.status = ComparedRun::Status::contradicted;
+        run.reason =
+            fmt::format("damping ratio {:.3g} %, where the modal analysis of the record has {:.3g} %",
+                        100.0 * run.mode->damping_ratio, 100.0 * modal->damping_ratio);
+      }
+    }
   if (run.diagnostics && run.diagnostics->consistency)
     if (const std::string text = innovations_text(*run.diagnostics->consistency,
                                                   context.analysis.forced() ? run.misfit_percent : 0.0);
@@ -188,7 +208,7 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
 }  // namespace
 
 void judge_run(const RunContext& context, ComparedRun& run) {
-  if (run.status == ComparedRun::Status::refused) return;
+  if (run.status == ComparedRun::Status::refused || context.compared.has_open_clocks()) return;
   if (asks_free_oscillator(context.experiment, context.analysis.record))
     judge_oscillator(context, run);
   else if (run.status == ComparedRun::Status::converged)

@@ -21,7 +21,7 @@ class DelimitedTextReader final : public RecordReader {
     const auto content =
         std::make_shared<const std::string>(read_text(file, "a record of numbers in columns"));
     DelimitedText text(file.string(), *content, format.separator, format.header_lines, format.decimal,
-                       format.skip_malformed);
+                       format.malformed == MalformedRows::skip);
     RecordTable table;
     table.file = file.string();
     table.names = text.names();

@@ -37,7 +37,7 @@ void cut(Inspection& found, const RecordFormat& format) {
 
 Inspection inspect(const std::filesystem::path& file, const RecordFormat& format) {
   RecordFormat tolerant = format;
-  tolerant.skip_malformed = true;
+  tolerant.malformed = MalformedRows::skip;
   Inspection found;
   found.file = file.filename().string();
   found.reader = reader_of(file, format);

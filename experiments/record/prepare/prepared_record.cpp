@@ -1,5 +1,6 @@
 #include "experiments/record/prepare/prepared_record.hpp"
 
+#include "experiments/record/prepare/known_inputs.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/read_record.hpp"
 #include "experiments/text/method_choice.hpp"
@@ -26,7 +27,10 @@ void PreparedRecord::take(Record prepared, const RecordFormat& format, const std
   if (format.window)
     record = at_place(format.window_place.file.empty() ? Place{file.string()} : format.window_place,
                       [&] { return record.window(format.window->first, format.window->second); });
+  std::string stretch =
+      at_place(Place{file.string()}, [&] { return take_known_inputs(record, format.missing_input); });
   record.warnings = warnings_of(defects, record);
+  if (!stretch.empty()) record.warnings.push_back(std::move(stretch));
   refuse_mostly_missing(record, defects, file);
 }
 

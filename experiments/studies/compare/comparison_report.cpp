@@ -8,6 +8,7 @@
 #include "experiments/config/description.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/record_inputs.hpp"
+#include "experiments/studies/compare/clock_report.hpp"
 #include "experiments/studies/compare/comparison_figures.hpp"
 #include "experiments/studies/compare/comparison_words.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
@@ -175,6 +176,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   results.table(run_table(comparison));
   for (const std::string& name : parameter_names(comparison))
     results.table(parameter_table(comparison, name));
+  tell_clocks(results, comparison);
   for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
   add_notes(results, comparison.compared.notes);
   results.figures = figures(comparison);

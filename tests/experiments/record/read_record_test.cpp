@@ -138,7 +138,7 @@ TEST(ReadRecord, RefusesBadNumbersAtTheirPlaces) {
         "in the configuration"},
        {"0,1,2\n1,1\n", "bad.txt:2:1: 2 columns; expected 3 as in the first row"},
        {"0 1\n1 1 1\n", "bad.txt:2:1: 3 columns; expected 2 as in the first row"},
-       {"0,1\n1,\n", "bad.txt:2:1: 1 column; expected 2 as in the first row"}});
+       {"0,1\n1,\n", "bad.txt:2:3: column 2 holds nothing; expected a number"}});
 }
 
 TEST(ReadRecord, RefusesFilesWithoutRows) {

@@ -34,7 +34,7 @@ TEST(DelimitedTextReader, CountsAndLocatesTheLinesItIsToldToSkip) {
       "4\t5\t0.30\n5\t6\n6\t7\t0.40\n");
   EXPECT_NE(input_error_of(file, [&] { read_record(file.path()); }), "no error");
   RecordFormat format;
-  format.skip_malformed = true, format.irregular = true;
+  format.malformed = MalformedRows::skip, format.irregular = true;
   const Record record = read_record(file.path(), format);
   EXPECT_EQ(record.time, (Eigen::Vector4d(0, 0.1, 0.3, 0.4)));
   EXPECT_EQ(record.channel_names(), (std::vector<std::string>{"a", "b"}));
@@ -46,12 +46,32 @@ TEST(DelimitedTextReader, CountsAndLocatesTheLinesItIsToldToSkip) {
               HasSubstr("bad.txt:9:5: time 0.3 after 0.1"));
 }
 
+// Loggers of several rates leave cells empty, the last of a row among them.
+TEST(DelimitedTextReader, TakesEmptyCellsForMissingWhereToldTo) {
+  const TemporaryFile file("rates.csv",
+                           "time_s,acceleration_m_per_s2,force_n\n0,1,\n0.1,,2\n0.2,3,nan\n0.3, NA ,5\n");
+  EXPECT_EQ(input_error_of(file, [&] { read_record(file.path()); }),
+            "rates.csv:2:5: column 3 holds nothing; expected a number");
+  RecordFormat format;
+  format.malformed = MalformedRows::as_missing;
+  const Eigen::MatrixXd samples = read_record(file.path(), format).samples;
+  const auto is_read = samples.array().isFinite();
+  EXPECT_EQ(is_read.count(), 4);
+  EXPECT_EQ(is_read.select(samples, 0.0), (Eigen::MatrixXd(2, 4) << 1, 0, 3, 0, 0, 2, 0, 5).finished());
+  const TemporaryFile text("text.csv", "time_s,force_n\n0,1\n0.1,broken\n0.2,3\n");
+  EXPECT_EQ(input_error_of(text, [&] { read_record(text.path(), format); }),
+            "text.csv:3:5: column 2 holds 'broken'; expected a number");
+  const TemporaryFile stamp("stamp.csv", "time_s,force_n\n0,1\n,2\n0.2,3\n");
+  EXPECT_EQ(input_error_of(stamp, [&] { read_record(stamp.path(), format); }),
+            "stamp.csv:3:1: column 1 holds nothing; expected a number");
+}
+
 TEST(DelimitedTextReader, ReadsOrRefusesDamagedFiles) {
   std::string text = "time_s,acceleration_g\n";
   for (int k = 0; k < written_samples; ++k)
     text += printed("%.2f", 0.01 * k) + "," + printed("%.6f", first_signal(k)) + "\n";
   RecordFormat tolerant;
-  tolerant.skip_malformed = true;
+  tolerant.malformed = MalformedRows::skip;
   expect_read_or_refused("fuzz.csv", text, {}, 5, 300);
   expect_read_or_refused("fuzz.csv", text, tolerant, 6, 300);
 }
@@ -80,7 +100,7 @@ TEST(ReadRecord, TurnsNamesIntoUtf8WithoutControlCharacters) {
 TEST(ReadRecord, RefusesAUnitThatContradictsTheName) {
   const TemporaryFile file("units.txt", "time_s\tacceleration_g\ns\tm/s2\n0\t1\n0.1\t2\n0.2\t3\n");
   RecordFormat format;
-  format.skip_malformed = true;
+  format.malformed = MalformedRows::skip;
   EXPECT_EQ(input_error_of(file, [&] { read_record(file.path(), format); }),
             "units.txt:1: 'acceleration_g' has the unit 'm/s2'; expected the one of its name");
 }
