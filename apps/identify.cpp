@@ -19,6 +19,7 @@
 #include "experiments/studies/identify/joint_report.hpp"
 #include "experiments/studies/identify/record_report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
+#include "experiments/studies/twins/record_report.hpp"
 #include "experiments/text/method_choice.hpp"
 
 namespace beamid::apps {
@@ -56,12 +57,15 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
   if (!law.empty()) {
     results = report(experiment, record, name, study_damping_law(experiment, record, law, folder));
   } else {
-    const Comparison found = identified(one, folder, progress);
+    Comparison found = identified(one, folder, progress);
     if (one.is_free_oscillator()) {
       results = report(experiment, found.compared.record, name, oscillator_in(found));
       tell_clocks(results, found);
     } else {
+      const RecordTwins twins = record_twins(experiment, found, folder);
+      warn_of_twins(found, twins);
       results = identification_report(experiment, found);
+      tell_twins(results, found.runs.at(0), twins);
     }
   }
   for (const std::string& text : one.decisions()) results.paragraph(text);

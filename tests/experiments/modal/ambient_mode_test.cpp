@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numbers>
 
 #include "experiments/modal/modal_method.hpp"
@@ -47,36 +49,65 @@ VectorXd shaken(double frequency, double zeta, double dt, Index samples, filters
   return y;
 }
 
-TEST(AmbientMode, ScattersAsTheLawAndItsOwnDeviationsSay) {
-  // Oracle: the law of long records, and the scatter over 300 seeds, which is known to 4 %.
-  constexpr int runs = 300;
+/// Of the estimates of many records, relative to the law of long ones.
+struct Scatter {
+  double frequency = 0.0, damping = 0.0;          ///< rms about the mean
+  double own_frequency = 0.0, own_damping = 0.0;  ///< mean of what each reports
+  double bias = 0.0;                              ///< of the frequency, in standard errors
+};
+
+Scatter scatter_over_law(double periods, int runs) {
   constexpr double f = 1.0, zeta = 0.01, dt = 0.2;
-  constexpr Index samples = 5000;  // 1000 periods
-  VectorXd frequency(runs), damping(runs), own_frequency(runs), own_damping(runs);
+  const auto samples = static_cast<Index>(periods / (f * dt));
+  VectorXd frequency(runs), damping(runs);
+  Scatter result;
+  const AmbientLaw law = ambient_law(zeta, periods, 10.0);
   for (int run = 0; run < runs; ++run) {
     filters::RandomStream random(7, static_cast<std::uint64_t>(run));
     const VectorXd y = shaken(f, zeta, dt, samples, random);
     MatrixXd channels(2, samples);  // the noise shows where the mode does not: across its shape
     channels << y.transpose(), 0.6 * y.transpose();
-    channels += 0.05 * std::sqrt(y.squaredNorm() / samples) * random.normal(2, samples);
+    channels += 0.05 * std::sqrt(y.squaredNorm() / static_cast<double>(samples)) * random.normal(2, samples);
     const BandCoefficients all = fourier_coefficients(channels, dt);
     const AmbientMode mode =
         ambient_mode(within(all, {0.9 * f, 1.1 * f}), f, 0.012, ResponseKind::displacement);
-    ASSERT_TRUE(mode.converged) << run;
+    EXPECT_TRUE(mode.converged) << run;
     frequency[run] = mode.frequency_hz / f - 1.0;
     damping[run] = mode.damping_ratio / zeta - 1.0;
-    own_frequency[run] = mode.frequency_deviation_hz / f;
-    own_damping[run] = mode.damping_ratio_deviation / zeta;
+    result.own_frequency += mode.frequency_deviation_hz / f / law.frequency / runs;
+    result.own_damping += mode.damping_ratio_deviation / zeta / law.damping / runs;
   }
-  const AmbientLaw law = ambient_law(zeta, 1000.0, 10.0);
-  const auto scatter = [](const VectorXd& values) {
+  const auto rms = [runs](const VectorXd& values) {
     return std::sqrt((values.array() - values.mean()).square().sum() / (runs - 1));
   };
-  EXPECT_NEAR(scatter(frequency) / law.frequency, 1.0, 0.12);
-  EXPECT_NEAR(scatter(damping) / law.damping, 1.0, 0.12);
-  EXPECT_NEAR(own_frequency.mean() / law.frequency, 1.0, 0.05);
-  EXPECT_NEAR(own_damping.mean() / law.damping, 1.0, 0.05);
-  EXPECT_NEAR(frequency.mean(), 0.0, 3.3 * scatter(frequency) / std::sqrt(runs));
+  result.frequency = rms(frequency) / law.frequency;
+  result.damping = rms(damping) / law.damping;
+  result.bias = frequency.mean() / (rms(frequency) / std::sqrt(runs));
+  return result;
+}
+
+TEST(AmbientMode, ScattersAsTheLawAndItsOwnDeviationsSay) {
+  // Oracle: the law of long records, and the scatter over 300 seeds, which is known to 4 %.
+  const Scatter found = scatter_over_law(1000.0, 300);
+  EXPECT_NEAR(found.frequency, 1.0, 0.12);
+  EXPECT_NEAR(found.damping, 1.0, 0.12);
+  EXPECT_NEAR(found.own_frequency, 1.0, 0.05);
+  EXPECT_NEAR(found.own_damping, 1.0, 0.05);
+  EXPECT_LT(std::abs(found.bias), 3.3);
+}
+
+// With BEAMID_LONG_AMBIENT: 1,000 seeds know the scatter to 2.2 %. A damping known to 15 %, of 1,000 periods,
+// is not in the range where the law is exact; one known to 5 % is.
+TEST(AmbientMode, ScattersAsTheLawMoreNearlyInLongerRecords) {
+  if (std::getenv("BEAMID_LONG_AMBIENT") == nullptr) GTEST_SKIP() << "BEAMID_LONG_AMBIENT asks for it";
+  for (const double periods : {1000.0, 3000.0, 9000.0}) {
+    const Scatter found = scatter_over_law(periods, 1000);
+    std::printf(
+        "%.0f periods: scatter / law of the frequency %.3f, of the damping %.3f; own deviations %.3f, %.3f\n",
+        periods, found.frequency, found.damping, found.own_frequency, found.own_damping);
+    EXPECT_NEAR(found.frequency, 1.0, 0.06);
+    EXPECT_NEAR(found.damping, 1.0, periods > 1000.0 ? 0.06 : 0.1);
+  }
 }
 
 TEST(Bayoma, FindsTheModesOfAChainWithTheirShapes) {

@@ -1,0 +1,188 @@
+#include "experiments/identify/twins/record_twins.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "experiments/identify/compare/first_guess.hpp"
+#include "experiments/identify/compare/started_model.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/reproduction.hpp"
+#include "experiments/identify/update/update_study.hpp"
+#include "experiments/models/finest_discretisation.hpp"
+#include "filters/batch_estimator.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+constexpr std::size_t most_stiffnesses = 8;
+constexpr Index most_coordinates = 80;
+constexpr int few_starts = 40;
+constexpr ModelTrust exactly{0.0005, 0.03};
+
+bool is_stiffness(const std::string& quantity) {
+  return quantity.ends_with("_stiffness") || quantity == "factor";
+}
+
+/// The structure with the parameters that were found, nothing else known of them: what its frequencies say.
+struct FoundStructure {
+  Experiment experiment;
+  std::vector<Index> places;  ///< of its parameters among the run's (q)
+};
+
+FoundStructure structure_found(const Experiment& experiment, const ComparedRun& run) {
+  FoundStructure result{experiment, {}};
+  result.experiment.parameters.clear();
+  for (std::size_t j = 0; j < run.unknowns.size(); ++j) {
+    const Unknown& unknown = run.unknowns[j];
+    if (!is_stiffness(unknown.quantity) || unknown.nuisance || unknown.mode) continue;
+    ParameterChoice choice{unknown.quantity, unknown.name, unknown.region};
+    choice.guess = run.parameters[j].estimate.value;
+    result.experiment.parameters.push_back(choice);
+    result.places.push_back(static_cast<Index>(j));
+  }
+  return result;
+}
+
+bool worth_a_search(const FoundStructure& found, const Comparison& comparison) {
+  const ComparedRun& run = comparison.runs.front();
+  const std::size_t asked = found.places.size();
+  return run.has_estimate() && !run.oscillator && run.run.last.mean.size() > 0 && asked >= 2 &&
+         asked <= most_stiffnesses && run.coordinates >= static_cast<Index>(asked) &&
+         !is_nonlinear(*run.model) && !has_noise(run.settings.input_noise) &&
+         fem::assemble(found.experiment.structure, found.experiment.elements).size() <= most_coordinates;
+}
+
+/// Output error of the record from a set of unknowns on.
+class RecordFit {
+ public:
+  RecordFit(const Experiment& experiment, const Comparison& comparison, const std::filesystem::path& folder)
+      : experiment_(experiment),
+        run_(comparison.runs.front()),
+        setting_(model_setting(experiment, comparison.analysis.record, experiment.reduction, folder)),
+        record_(measurements(comparison.analysis.record)) {}
+
+  struct Fit {
+    filters::BatchEstimate estimate;
+    VectorXd unknowns;  ///< as the state carries them (q)
+  };
+  /// @param unknowns as the state carries them (q)
+  /// Absent where the motion from there does not stay finite.
+  std::optional<Fit> from(const VectorXd& unknowns) const {
+    try {
+      return moved_from(unknowns);
+    } catch (const std::runtime_error&) {
+      return {};
+    }
+  }
+
+ private:
+  Fit moved_from(const VectorXd& unknowns) const {
+    VectorXd state = run_.run.last.mean;
+    state(run_.model->unknown_places) = unknowns;
+    const JointModel model = on_basis_at(experiment_.model, setting_, *run_.model, state);
+    const double duration = record_.interval() * static_cast<double>(record_.time.size());
+    const StartDirections directions = start_directions(
+        model, setting_.observations, start_scale(model, setting_.observations, record_.outputs, duration));
+    const auto discrete = finest(model, record_.interval(), run_.settings.output_noise);
+    const Reproduction motion = reproduce(*discrete, state, directions, record_);
+    filters::BatchSettings settings;
+    settings.max_iterations = 25;
+    settings.tolerance = 1e-2;
+    Fit fit{filters::estimate_batch(*discrete, motion.initial_state, directions.all(), record_, settings),
+            {}};
+    if (fit.estimate.costs.empty()) throw std::runtime_error(fit.estimate.reason);
+    fit.unknowns = fit.estimate.state(model.unknown_places);
+    return fit;
+  }
+
+  const Experiment& experiment_;
+  const ComparedRun& run_;
+  ModelSetting setting_;
+  filters::Measurements record_;
+};
+
+double distance_to_prior(const ComparedRun& run, const VectorXd& unknowns) {
+  const VectorXd away = unknowns - run.unknown_start.mean;
+  return away.cwiseQuotient(run.unknown_start.covariance.diagonal().cwiseSqrt()).squaredNorm();
+}
+
+// In one of the stiffnesses by more than 2 %.
+bool differ(const VectorXd& a, const VectorXd& b, const std::vector<Index>& places) {
+  return std::any_of(places.begin(), places.end(),
+                     [&](Index j) { return std::abs(a[j] - b[j]) > 0.02 * std::abs(b[j]); });
+}
+
+VectorXd physical(const ComparedRun& run, const VectorXd& unknowns) {
+  VectorXd values(unknowns.size());
+  for (Index j = 0; j < values.size(); ++j)
+    values[j] = run.unknowns[static_cast<std::size_t>(j)].to_physical(unknowns[j]);
+  return values;
+}
+
+std::vector<VectorXd> same_frequencies(const UpdateStudy& study, const FoundStructure& found,
+                                       const ComparedRun& run) {
+  std::vector<VectorXd> others;
+  for (const ParameterSet& set : study.updating.sets) {
+    VectorXd values = physical(run, run.unknown_state.mean);
+    const VectorXd here = values;
+    values(found.places) = set.values;
+    if (!set.as_well || !differ(values, here, found.places)) continue;
+    VectorXd unknowns = run.unknown_state.mean;
+    try {
+      for (const Index j : found.places)
+        unknowns[j] = run.unknowns[static_cast<std::size_t>(j)].to_state(values[j]);
+    } catch (const std::invalid_argument&) {  // outside its bounds
+      continue;
+    }
+    others.push_back(unknowns);
+  }
+  return others;
+}
+
+}  // namespace
+
+RecordTwins record_twins(const Experiment& experiment, const Comparison& comparison,
+                         const std::filesystem::path& folder) {
+  RecordTwins result;
+  const ComparedRun& run = comparison.runs.front();
+  const FoundStructure found = structure_found(experiment, run);
+  if (!worth_a_search(found, comparison)) return result;
+  const UpdateStudy study =
+      study_update(found.experiment, described_modes(found.experiment), {exactly, few_starts});
+  if (study.updating.continuum()) return result;  // which the bounds tell
+  const std::vector<VectorXd> others = same_frequencies(study, found, run);
+  result.tried = others.size();
+  if (others.empty()) return result;
+
+  const RecordFit record(experiment, comparison, folder);
+  const std::optional<RecordFit::Fit> best = record.from(run.unknown_state.mean);
+  if (!best) return result;
+  const VectorXd here = physical(run, best->unknowns);
+  const double prior = distance_to_prior(run, run.unknown_state.mean),
+               widened = run.interval_factor * run.interval_factor;
+  for (const VectorXd& other : others) {
+    const std::optional<RecordFit::Fit> fit = record.from(other);
+    if (!fit) continue;
+    RecordTwin twin{physical(run, fit->unknowns),
+                    2.0 * (fit->estimate.costs.back() - best->estimate.costs.back()) / widened,
+                    distance_to_prior(run, fit->unknowns) - prior};
+    const bool known = std::any_of(result.sets.begin(), result.sets.end(), [&](const RecordTwin& one) {
+      return !differ(one.values, twin.values, found.places);
+    });
+    if (twin.chi_square <= as_well_chi_square && differ(twin.values, here, found.places) && !known)
+      result.sets.push_back(std::move(twin));
+  }
+  std::sort(result.sets.begin(), result.sets.end(),
+            [](const RecordTwin& a, const RecordTwin& b) { return a.prior_chi_square < b.prior_chi_square; });
+  if (result.sets.empty()) return result;
+  std::vector<VectorXd> sets{here(found.places)};
+  for (const RecordTwin& twin : result.sets) sets.emplace_back(twin.values(found.places));
+  result.deciding = deciding_measurements(*study.model, study.data(), sets, exactly);
+  return result;
+}
+
+}  // namespace beamid::experiments

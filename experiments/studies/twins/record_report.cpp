@@ -1,0 +1,90 @@
+#include "experiments/studies/twins/record_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/studies/update/report.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index;
+
+constexpr std::size_t most_shown = 8;
+
+// What decides between them, a clause.
+std::string prior_text(const RecordTwin& likeliest) {
+  constexpr double clear = 6.0, most = 100.0;
+  const double more = likeliest.prior_chi_square;
+  if (std::abs(more) < clear) return "what was known beforehand does not tell which is true";
+  return fmt::format("only what was known beforehand tells them apart, {:.2g} to 1 for {}",
+                     std::exp(0.5 * std::min(std::abs(more), most)),
+                     more > 0.0 ? "the one found" : "another one");
+}
+
+Table twin_table(const ComparedRun& run, const RecordTwins& twins) {
+  const std::size_t shown = std::min(twins.sets.size(), most_shown);
+  Table table{"twins", "Other sets of parameters that explain the record as well"};
+  table.column({"parameter", "parameter"}).column({"unit", "unit"}).column({"found", "found", "{:.5g}"});
+  for (std::size_t s = 0; s < shown; ++s)
+    table.column({fmt::format("set {}", s + 2), fmt::format("set_{}", s + 2), "{:.5g}"});
+  const auto row = [&](const std::string& name, const std::string& unit, double found, const auto& of) {
+    std::vector<Cell> cells{name, unit, found};
+    for (std::size_t s = 0; s < shown; ++s) cells.emplace_back(of(twins.sets[s]));
+    table.row(std::move(cells));
+  };
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    const Estimate& e = run.parameters[j].estimate;
+    row(e.name, e.unit, e.value, [&](const RecordTwin& twin) { return twin.values[static_cast<Index>(j)]; });
+  }
+  row("chi^2 more, of the record", "", 0.0, [](const RecordTwin& twin) { return twin.chi_square; });
+  row("chi^2 more, beforehand", "", 0.0, [](const RecordTwin& twin) { return twin.prior_chi_square; });
+  if (twins.sets.size() > shown)
+    table.note = fmt::format("{} more in results.json.", twins.sets.size() - shown);
+  return table;
+}
+
+}  // namespace
+
+void warn_of_twins(Comparison& found, const RecordTwins& twins) {
+  if (twins.sets.empty()) return;
+  const std::size_t others = twins.sets.size();
+  std::string text = fmt::format(
+      "NOT UNIQUE: at least {} other set{} of parameters explain{} this record as well, and {}. The "
+      "intervals "
+      "are those of one of {} answers.",
+      others, others == 1 ? "" : "s", others == 1 ? "s" : "", prior_text(twins.sets.front()), others + 1);
+  std::vector<std::string>& warnings = found.runs.front().warnings;
+  warnings.insert(warnings.begin(), std::move(text));
+}
+
+void tell_twins(Results& results, const ComparedRun& run, const RecordTwins& twins) {
+  if (twins.tried == 0) return;
+  auto sets = nlohmann::ordered_json::array();
+  for (const RecordTwin& twin : twins.sets) {
+    auto values = nlohmann::ordered_json::array();
+    for (std::size_t j = 0; j < run.parameters.size(); ++j)
+      values.push_back({{"name", run.parameters[j].estimate.name},
+                        {"unit", run.parameters[j].estimate.unit},
+                        {"value", twin.values[static_cast<Index>(j)]}});
+    sets.push_back({{"parameters", values},
+                    {"chi_square_more", twin.chi_square},
+                    {"prior_chi_square_more", twin.prior_chi_square}});
+  }
+  results.values["twins"] = {{"tried", twins.tried}, {"sets", sets}};
+  if (twins.sets.empty()) {
+    results.paragraph(fmt::format(
+        "{} other set{} of parameters {} the same frequencies; the record's shapes and forces rule {} out.",
+        twins.tried, twins.tried == 1 ? "" : "s", twins.tried == 1 ? "has" : "have",
+        twins.tried == 1 ? "it" : "them"));
+    return;
+  }
+  results.table(twin_table(run, twins));
+  if (!twins.deciding.empty()) {
+    results.paragraph("Best to tell them apart: " + deciding_text(twins.deciding.front()) + ".");
+    results.table(deciding_table(twins.deciding));
+  }
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,15 @@
+// What of a record's parameters is one answer of several, as a user sees it.
+#pragma once
+
+#include "experiments/identify/twins/record_twins.hpp"
+#include "experiments/results/results.hpp"
+
+namespace beamid::experiments {
+
+/// The first of the run's warnings where other sets explain the record as well; else nothing.
+void warn_of_twins(Comparison& found, const RecordTwins& twins);
+
+/// Their table, what would decide, and "twins" of results.json; nothing where none was tried.
+void tell_twins(Results& results, const ComparedRun& run, const RecordTwins& twins);
+
+}  // namespace beamid::experiments

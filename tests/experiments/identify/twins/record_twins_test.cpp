@@ -1,0 +1,96 @@
+// Several answers of one record. Oracle: two storeys of equal masses by hand. k1 + 2 k2 and k1 k2 are all
+// that the frequencies know, so that (2 k2, k1 / 2) has those of (k1, k2).
+#include "experiments/identify/twins/record_twins.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/studies/twins/record_report.hpp"
+#include "tests/experiments/results/temporary_folder.hpp"
+
+namespace beamid::experiments::record_twins_test {
+namespace {
+
+using testing::HasSubstr, testing::IsEmpty, testing::SizeIs;
+
+constexpr double k1 = 2.0e6, k2 = 1.4e6;
+
+const std::string release = "kind = \"release\"\nposition_m = 2\ndeflection_m = 0.01\n",
+                  push = "kind = \"random\"\nposition_m = 2\namplitude_n = 800\nfrequency_hz = 25\n";
+
+std::string sensor(int floor) {
+  return "[[sensors]]\nposition_m = " + std::to_string(floor) + "\nnoise_m_per_s2 = 0.02\n";
+}
+
+std::string storey(int number, double guess, const std::string& also) {
+  return "[[parameters]]\nquantity = \"storey_stiffness\"\nfrom_m = " + std::to_string(number - 1) +
+         "\nto_m = " + std::to_string(number) + "\nguess_n_per_m = " + std::to_string(guess) + "\n" + also;
+}
+
+/// @param beforehand of every parameter, as a line of [[parameters]]
+Experiment storeys(const std::string& excitation, const std::string& sensors,
+                   const std::string& beforehand = "relative_deviation = 0.3\n") {
+  return read_experiment(TomlTable::parse(
+      "[chain]\nmasses_kg = [1000, 1000]\nstiffnesses_n_per_m = [2.0e6, 1.4e6]\n[damping]\nratio = 0.02\n"
+      "[excitation]\n" +
+          excitation + "[simulation]\nduration_s = 10\nsampling_rate_hz = 100\nsteps_per_sample = 4\n" +
+          "[model]\nname = \"beam\"\nsensor_bias = false\n[reduction]\nmethod = \"none\"\n" + sensors +
+          storey(1, 1.03 * k1, beforehand) + storey(2, 0.98 * k2, beforehand),
+      "storeys.toml"));
+}
+
+class TwinsOfARecord : public testing::Test {
+ protected:
+  Comparison found(const Experiment& e) const {
+    return identify_with_model(e, simulated_record(e, place_.path, unwatched), place_.path, unwatched);
+  }
+  TemporaryFolder place_;
+};
+
+TEST_F(TwinsOfARecord, AreThoseOfItsFrequenciesWhereOneSensorSeesADecay) {
+  const Experiment e = storeys(release, sensor(2));
+  Comparison comparison = found(e);
+  const ComparedRun& run = comparison.runs.at(0);
+  ASSERT_TRUE(run.has_estimate()) << run.reason;
+  const RecordTwins twins = record_twins(e, comparison, place_.path);
+  ASSERT_THAT(twins.sets, SizeIs(1));
+  // Either may be found; each is the other's twin.
+  const double first = run.parameters[0].estimate.value, second = run.parameters[1].estimate.value;
+  EXPECT_NEAR(twins.sets[0].values[0] / (2.0 * second), 1.0, 0.01);
+  EXPECT_NEAR(twins.sets[0].values[1] / (0.5 * first), 1.0, 0.01);
+  EXPECT_NEAR(twins.sets[0].chi_square, 0.0, 1.0);
+  EXPECT_FALSE(twins.deciding.empty());
+  warn_of_twins(comparison, twins);
+  EXPECT_THAT(run.warnings.front(), HasSubstr("NOT UNIQUE: at least 1 other set of parameters explains"));
+  EXPECT_THAT(run.warnings.front(), HasSubstr("what was known beforehand"));
+}
+
+TEST_F(TwinsOfARecord, AreRuledOutByASecondSensorOrAMeasuredForce) {
+  for (const Experiment& e :
+       {storeys(release, sensor(1) + sensor(2)), storeys(push, sensor(2)), storeys(push, sensor(1))}) {
+    Comparison comparison = found(e);
+    const ComparedRun& run = comparison.runs.at(0);
+    ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
+    EXPECT_NEAR(run.parameters[0].estimate.value / k1, 1.0, 0.02);
+    const RecordTwins twins = record_twins(e, comparison, place_.path);
+    EXPECT_EQ(twins.tried, 1u);
+    EXPECT_THAT(twins.sets, IsEmpty());
+    const std::size_t before = run.warnings.size();
+    warn_of_twins(comparison, twins);
+    EXPECT_THAT(run.warnings, SizeIs(before));
+  }
+}
+
+TEST_F(TwinsOfARecord, AreToldApartBeforehandWhereMuchIsKnown) {
+  const Experiment e = storeys(release, sensor(2), "relative_deviation = 0.05\n");
+  Comparison comparison = found(e);
+  EXPECT_NEAR(comparison.runs.at(0).parameters[0].estimate.value / k1, 1.0, 0.02);
+  warn_of_twins(comparison, record_twins(e, comparison, place_.path));
+  EXPECT_THAT(comparison.runs.at(0).warnings.front(), HasSubstr("to 1 for the one found"));
+}
+
+}  // namespace
+}  // namespace beamid::experiments::record_twins_test
