@@ -58,6 +58,8 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
     if (whole && context.experiment.noise_method.name == "likelihood")
       whole = passes.filter_with_likeliest_noise();
     if (whole) passes.fit_inputs_noise();
+    // `identify` answers; a comparison shows what each filter does.
+    if (whole && settings.keep == filters::Keep::all_beliefs) passes.mend_by_output_error();
     if (whole) passes.finish();
   } catch (const std::invalid_argument& error) {  // a scheme or a filter that such a model cannot have
     run.refused_at = settings.filter.place;

@@ -208,8 +208,9 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
                    const Progress& progress, filters::Keep keep) {
   if (!experiment.unknown_forces.empty())
     throw std::invalid_argument(
-        "[[unknown_forces]] are followed by beamid sense and beamid posterior, which find the structure's "
-        "parameters beside them; expected none where forces are measured or the motion is free");
+        "[[unknown_forces]] are followed by beamid identify (of one RECORD), sense and posterior, which find "
+        "the "
+        "structure's parameters beside them; expected none where forces are measured or the motion is free");
   if (!record.record.own_clock.empty())
     record = aligned_clocks(experiment, std::move(record), folder, progress);
   Comparison comparison{std::move(record), {}, {}};
@@ -249,6 +250,8 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
     return run.status != ComparedRun::Status::refused;
   });
   if (any) return comparison;
+  if (comparison.runs.empty())
+    throw std::invalid_argument("nothing to compare; expected a reduction, a filter and a discretisation");
   const ComparedRun& first = comparison.runs.front();
   if (first.refused_at.file.empty()) throw std::invalid_argument(first.reason);
   throw InputError(first.refused_at, first.reason);

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "experiments/identify/compare/known_prior.hpp"
-#include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/compare/run_bound.hpp"
 #include "experiments/identify/compare/run_mode.hpp"
 #include "experiments/identify/compare/true_value.hpp"
@@ -83,30 +82,6 @@ bool Passes::filter_with_likeliest_noise() {
   known_.configured = found.deviation;
   run_.noise_relative_deviation = found.relative_deviation;
   return filter();
-}
-
-// A filter of motion and unknowns together is biased by the noise of its inputs (innovation_likelihood.hpp).
-void Passes::fit_inputs_noise() {
-  if (!has_noise(run_.settings.input_noise)) return;
-  const SteadyClock::time_point start = SteadyClock::now();
-  const JointModel& model = *run_.model;
-  filters::Gaussian known = start_belief(model, with_guess(directions_, model, started_.guess));
-  known.mean(model.unknown_places) = started_.guess.mean(started_.model.unknown_places);
-  const NoisyInputFit fit = fit_noisy_inputs(model, run_.settings, known, run_.run.last.mean, record_);
-  run_.seconds += seconds_since(start);
-  if (!fit.failure.empty())
-    run_.remarks.push_back(
-        "The noise of the inputs counts in the filter alone, which it biases: " + fit.failure + ".");
-  if (!fit.failure.empty()) return;
-  filters::Gaussian& last = run_.run.last;
-  last.mean(model.unknown_places) = fit.unknowns.mean;
-  last.covariance(model.unknown_places, Eigen::all).setZero();
-  last.covariance(Eigen::all, model.unknown_places).setZero();
-  last.covariance(model.unknown_places, model.unknown_places) = fit.unknowns.covariance;
-  run_.unknown_state = of_unknowns(model, last);
-  input_bounds_ = fit.bounds;
-  last_move_ = 0.0;
-  begin_at(next_start(model, run_.settings.initial, last).mean);
 }
 
 void Passes::begin() {

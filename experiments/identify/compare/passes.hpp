@@ -1,6 +1,8 @@
 // The passes of one run over the record.
 #pragma once
 
+#include <optional>
+
 #include "experiments/identify/compare/compared_run.hpp"
 #include "experiments/identify/compare/run_noise.hpp"
 #include "experiments/identify/model_setting.hpp"
@@ -26,6 +28,9 @@ class Passes {
   bool filter_with_likeliest_noise();
   /// Of noisy inputs, the unknowns once more by the likelihood of the innovations.
   void fit_inputs_noise();
+  /// Of a driven record that the filter's end does not make, the unknowns by all samples at once, where these
+  /// do.
+  void mend_by_output_error();
   /// Estimates, the motion that they make of the record, their bounds; what else was asked for.
   void finish();
   /// The motion at the first guess that is nearest to the channels of the common clock.
@@ -40,6 +45,8 @@ class Passes {
   void begin_at(const Eigen::VectorXd& state);
   void weigh_noise();
   void take_clocks(filters::DiscreteModel& discrete);
+  std::optional<filters::Gaussian> output_error(Eigen::VectorXd state);
+  void take_unknowns(const filters::Gaussian& unknowns);
   bool filter_once();
   void score(const Eigen::VectorXd& bound);
 

@@ -1,0 +1,119 @@
+// The unknowns by all samples at once, where the filter's end is not to be had or not to be kept.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+
+#include "experiments/identify/compare/known_prior.hpp"
+#include "experiments/identify/compare/noisy_input_fit.hpp"
+#include "experiments/identify/compare/passes.hpp"
+#include "experiments/models/finest_discretisation.hpp"
+#include "filters/batch_estimator.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using PassClock = std::chrono::steady_clock;
+
+double seconds_from(PassClock::time_point start) {
+  return std::chrono::duration<double>(PassClock::now() - start).count();
+}
+
+}  // namespace
+
+// A filter of motion and unknowns together is biased by the noise of its inputs (innovation_likelihood.hpp).
+void Passes::fit_inputs_noise() {
+  if (!has_noise(run_.settings.input_noise)) return;
+  const PassClock::time_point start = PassClock::now();
+  const JointModel& model = *run_.model;
+  filters::Gaussian known = start_belief(model, with_guess(directions_, model, started_.guess));
+  known.mean(model.unknown_places) = started_.guess.mean(started_.model.unknown_places);
+  const NoisyInputFit fit = fit_noisy_inputs(model, run_.settings, known, run_.run.last.mean, record_);
+  run_.seconds += seconds_from(start);
+  if (!fit.failure.empty())
+    run_.remarks.push_back(
+        "The noise of the inputs counts in the filter alone, which it biases: " + fit.failure + ".");
+  if (!fit.failure.empty()) return;
+  take_unknowns(fit.unknowns);
+  input_bounds_ = fit.bounds;
+}
+
+// In place of the filter's.
+void Passes::take_unknowns(const filters::Gaussian& unknowns) {
+  const std::vector<Index>& places = run_.model->unknown_places;
+  filters::Gaussian& last = run_.run.last;
+  last.mean(places) = unknowns.mean;
+  last.covariance(places, Eigen::all).setZero();
+  last.covariance(Eigen::all, places).setZero();
+  last.covariance(places, places) = unknowns.covariance;
+  run_.unknown_state = of_unknowns(*run_.model, last);
+  last_move_ = 0.0;
+  begin_at(next_start(*run_.model, run_.settings.initial, last).mean);
+}
+
+// Output error from a state on, on the basis of each estimate in turn; with what is known beforehand. Absent:
+// no minimum, or not of every direction.
+std::optional<filters::Gaussian> Passes::output_error(VectorXd state) {
+  constexpr int most_bases = 8;
+  constexpr double settled = 0.1;  // of a deviation
+  const std::vector<Index>& places = run_.model->unknown_places;
+  filters::BatchSettings settings;
+  settings.tolerance = 1e-3;
+  for (int i = 0; i < most_bases; ++i) {
+    begin_at(state);
+    run_.noise = assumed_noise(known_, noise_shown());
+    const auto discrete = finest(*run_.model, dt_, run_.noise.cwiseAbs2().asDiagonal());
+    const filters::BatchEstimate found =
+        filters::estimate_batch(*discrete, motion_.initial_state, directions_.all(), record_, settings);
+    if (found.covariance.size() == 0) return {};
+    const Index q = static_cast<Index>(places.size());
+    const MatrixXd rows = directions_.all()(places, Eigen::all);
+    filters::Gaussian unknowns{found.state(places), rows * found.covariance * rows.transpose(), {}};
+    const VectorXd moved =
+        (unknowns.mean - state(places)).cwiseQuotient(unknowns.covariance.diagonal().cwiseSqrt());
+    state = found.state;
+    if (moved.cwiseAbs().maxCoeff() > settled) continue;
+    const MatrixXd information = unknowns.covariance.llt().solve(MatrixXd::Identity(q, q)),
+                   known = started_.guess.unknowns.llt().solve(MatrixXd::Identity(q, q));
+    const MatrixXd whole = (information + known).llt().solve(MatrixXd::Identity(q, q));
+    const VectorXd before = started_.guess.mean(started_.model.unknown_places);
+    unknowns.mean += whole * known * (before - unknowns.mean);
+    unknowns.covariance = whole;
+    return unknowns;
+  }
+  return {};
+}
+
+void Passes::mend_by_output_error() {
+  constexpr double not_the_record = 2.0, much_better = 0.5;  // % that is left and no noise; of it
+  const double left = motion_.misfit_percent;
+  if (!context_.analysis.forced() || is_nonlinear(*run_.model) || nearest_with_own_scheme() ||
+      has_noise(run_.settings.input_noise) || run_.run.last.covariance.size() == 0 ||
+      !(left > not_the_record))
+    return;
+  const PassClock::time_point start = PassClock::now();
+  const VectorXd filtered = motion_.initial_state, noise = run_.noise;
+  std::optional<filters::Gaussian> best;
+  double least = much_better * left;
+  for (const VectorXd& from : {filtered, started_.guess.mean}) {
+    const std::optional<filters::Gaussian> found = output_error(from);
+    if (!found || !(motion_.misfit_percent < least)) continue;
+    best = found;
+    least = motion_.misfit_percent;
+  }
+  run_.noise = noise;
+  begin_at(filtered);
+  if (best) {
+    take_unknowns(*best);
+    filter_once();
+    take_unknowns(*best);
+    run_.remarks.push_back(
+        fmt::format("The filter settled where {:.3g} % of the record was left; the estimates are those of "
+                    "all samples at once (output error), which leave {:.2g} %.",
+                    left, motion_.misfit_percent));
+  }
+  run_.seconds += seconds_from(start);
+}
+
+}  // namespace beamid::experiments
