@@ -49,7 +49,8 @@ bool is_beam_of_one_mode(const IdentificationRequest& one) {
 
 void cut_decay(IdentificationRequest& one) {
   RecordFormat& format = one.experiment.format;
-  if (format.window || !input_channels(one.prepared.record).empty()) return;
+  const bool driven = !input_channels(one.prepared.record).empty() || !one.experiment.unknown_forces.empty();
+  if (format.window || driven) return;
   const auto window = decay_window(one.experiment, one.prepared.record);
   if (!window) return;
   format.window = {window->from, window->to};
@@ -59,7 +60,9 @@ void cut_decay(IdentificationRequest& one) {
 
 void keep_out_higher_modes(IdentificationRequest& one) {
   RecordFormat& format = one.experiment.format;
-  if (!format.preparation.empty() || !(one.is_free_oscillator() || is_beam_of_one_mode(one))) return;
+  if (!format.preparation.empty() || !one.experiment.unknown_forces.empty() ||
+      !(one.is_free_oscillator() || is_beam_of_one_mode(one)))
+    return;
   Experiment oscillator = one.experiment;  // the same question, whatever model asks it
   oscillator.model = {"sdof", model_registry().completed("sdof", {})};
   oscillator.parameters.clear();

@@ -31,16 +31,20 @@ std::string identifiability_percent(const ParameterBound& p, double value) {
 }
 
 std::string determined_text(const Identifiability& found) {
-  std::vector<std::string> determined, poor;
+  constexpr double roughly = 20.0;  // %: a 95 % interval that is as wide as four fifths of the value
+  std::vector<std::string> determined, rough, poor;
   for (const ParameterBound& p : found.parameters) {
     if (p.nuisance) continue;
     if (p.verdict == BoundVerdict::determined)
-      determined.push_back(fmt::format("{} to {}", p.name, identifiability_percent(p, p.bound_percent())));
+      (p.bound_percent() < roughly ? determined : rough)
+          .push_back(fmt::format("{} to {}", p.name, identifiability_percent(p, p.bound_percent())));
     if (p.verdict == BoundVerdict::poor)
       poor.push_back(fmt::format("{} (bound {})", p.name, identifiability_percent(p, p.bound_percent())));
   }
-  std::string text = determined.empty() ? "No parameter is determined by itself."
-                                        : "Determined: " + list_of(determined) + ".";
+  std::string text = !determined.empty() ? "Determined: " + list_of(determined) + "."
+                     : rough.empty()     ? "No parameter is determined by itself."
+                                         : "No parameter is determined well.";
+  if (!rough.empty()) text += " Only roughly: " + list_of(rough) + ".";
   if (!poor.empty()) text += " In principle, but not in practice: " + list_of(poor) + ".";
   return text;
 }

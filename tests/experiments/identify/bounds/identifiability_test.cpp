@@ -1,6 +1,7 @@
 // Whole tests of the study's beam.
 #include "experiments/identify/bounds/identifiability.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -197,6 +198,15 @@ TEST(IdentifiabilityReport, SaysInWordsWhatIsKnownOnlyInCombination) {
   };
   EXPECT_TRUE(said("Only in combination: bending_stiffness and tip_mass."));
   EXPECT_TRUE(said("Determined: damping_ratio to"));
+}
+
+TEST(IdentifiabilityReport, CallsNothingDeterminedThatIsKnownRoughly) {
+  Identifiability one = found(stiffness_and_tip_mass, "beam", "modal_truncation:modes=1");
+  for (ParameterBound& p : one.parameters) {
+    p.verdict = ParameterBound::Verdict::determined;
+    p.bound = (p.name == "damping_ratio" ? 0.45 : 0.03) * p.size;
+  }
+  EXPECT_THAT(words(one), testing::Contains(testing::HasSubstr("Only roughly: damping_ratio to 45 %.")));
 }
 
 }  // namespace
