@@ -50,6 +50,23 @@ TEST_F(PosteriorCommand, RepeatsItselfToTheBit) {
   EXPECT_EQ(contents(place_.folder() / "one" / "draws.h5"), contents(place_.folder() / "two" / "draws.h5"));
 }
 
+// Six storeys and five frequencies, each known to 0.02 Hz: a thin sheet, which a hundred particles do not
+// find twice.
+TEST_F(PosteriorCommand, EndsWithThreeWhereItsTwoTemperingsDisagree) {
+  place_.write("six.toml",
+               "[chain]\nmasses_kg = [1000, 1000, 1000, 1000, 1000, 800]\n"
+               "stiffnesses_n_per_m = [2.0e6, 2.0e6, 1.6e6, 1.6e6, 1.2e6, 1.2e6]\n");
+  std::string five;
+  for (const char* const hz : {"1.6165", "4.5", "7.2", "9.0", "11.0"})
+    five += std::string("[[modes]]\nfrequency_hz = ") + hz + "\nfrequency_standard_deviation_hz = 0.02\n";
+  place_.write("five.toml", five);
+  const Outcome outcome =
+      place_.run("posterior five.toml --config six.toml --model-error 0 --draws 100 --particles 100");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::StartsWith("Not converged: chains differ"));
+  EXPECT_THAT(outcome.out, HasSubstr("temperings differ by"));
+}
+
 TEST_F(PosteriorCommand, RefusesAFrequencyWithoutAnyStandardDeviation) {
   place_.write("bare.toml", "[[modes]]\nfrequency_hz = 7.2\n");
   const Outcome outcome = place_.run("posterior bare.toml --config frame.toml --model-error 0");

@@ -9,6 +9,7 @@
 #include "experiments/identify/compare/started_model.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/reproduction.hpp"
+#include "experiments/identify/twins/twins.hpp"
 #include "experiments/identify/update/update_study.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "filters/batch_estimator.hpp"
@@ -22,10 +23,6 @@ constexpr std::size_t most_stiffnesses = 8;
 constexpr Index most_coordinates = 80;
 constexpr int few_starts = 40;
 constexpr ModelTrust exactly{0.0005, 0.03};
-
-bool is_stiffness(const std::string& quantity) {
-  return quantity.ends_with("_stiffness") || quantity == "factor";
-}
 
 /// The structure with the parameters that were found, nothing else known of them: what its frequencies say.
 struct FoundStructure {

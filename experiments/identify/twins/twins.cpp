@@ -75,6 +75,10 @@ TwinSearch exact_twins(const ModalModel& model, const ModalData& data, const Pro
   return search;
 }
 
+bool is_stiffness(const std::string& quantity) {
+  return quantity.ends_with("_stiffness") || quantity == "factor";
+}
+
 double unseen_probability(const Updating& updating) {
   std::size_t once = 0, all = 0;
   for (const ParameterSet& set : updating.sets) {

@@ -27,6 +27,9 @@ struct TwinSearch {
 /// were measured: a chain storey by storey. Elsewhere no values, and the reason.
 TwinSearch exact_twins(const ModalModel& model, const ModalData& data, const Progress& progress = unwatched);
 
+/// Whether [[parameters]] asks about a stiffness by this quantity, of which there may be twins.
+bool is_stiffness(const std::string& quantity);
+
 /// Probability that one more start would end at a set not seen yet [good1953]: sets seen once, over starts.
 double unseen_probability(const Updating& updating);
 /// Whether that is above a half: nearly every start ended at a place of its own.

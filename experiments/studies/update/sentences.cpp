@@ -136,10 +136,9 @@ std::string twins_warning(const Experiment& experiment) {
   constexpr std::size_t most = 6;  // under a second
   constexpr ModelTrust exactly{0.0005, 0.03};
   constexpr int few_starts = 40;
-  const auto asked = std::count_if(
-      experiment.parameters.begin(), experiment.parameters.end(), [](const ParameterChoice& choice) {
-        return choice.quantity.ends_with("_stiffness") || choice.quantity == "factor";
-      });
+  const auto asked =
+      std::count_if(experiment.parameters.begin(), experiment.parameters.end(),
+                    [](const ParameterChoice& choice) { return is_stiffness(choice.quantity); });
   if (asked < 2 || asked > static_cast<std::ptrdiff_t>(most)) return {};
   try {
     if (fem::assemble(experiment.structure, experiment.elements).size() > static_cast<Index>(most)) return {};
