@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "experiments/identify/in_double.hpp"
 #include "experiments/identify/mode_residual.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/decimation.hpp"
@@ -72,7 +73,8 @@ SpectralLines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal
 
 double student_factor(double freedom) {
   constexpr double point = 0.975;
-  return boost::math::quantile(boost::math::students_t(freedom), point) / quantile_95;
+  return boost::math::quantile(boost::math::students_t_distribution<double, InDouble>(freedom), point) /
+         quantile_95;
 }
 
 NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const ModalEstimate& modal) {

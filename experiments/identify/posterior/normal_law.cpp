@@ -5,13 +5,9 @@
 #include <limits>
 #include <numbers>
 
+#include "experiments/identify/in_double.hpp"
+
 namespace beamid::experiments {
-namespace {
-
-// Not by way of long double, whose table overflows where a processor (valgrind's) has but 64 bits of it.
-using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
-
-}  // namespace
 
 double below_normal(double u) {
   return 0.5 * std::erfc(-u / std::numbers::sqrt2);
