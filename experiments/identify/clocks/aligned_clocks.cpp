@@ -72,7 +72,7 @@ Experiment guessed_without(const std::vector<OwnClock>& clocks, const Experiment
 /// The record on one clock, and what is identified of it.
 class Alignment {
  public:
-  Alignment(const Experiment& experiment, ComparedRecord record, const std::filesystem::path& folder,
+  Alignment(const Experiment& experiment, const ComparedRecord& record, const std::filesystem::path& folder,
             const Progress& progress)
       : experiment_(experiment),
         folder_(folder),
@@ -143,7 +143,7 @@ ComparedRecord aligned_clocks(const Experiment& experiment, ComparedRecord recor
   record.clocks = own_clocks(record.record);
   record.record.own_clock.clear();
   const Experiment nearer = guessed_without(record.clocks, plain, record, folder, progress);
-  Alignment alignment(plain, std::move(record), folder, progress);
+  Alignment alignment(plain, record, folder, progress);
   Eigen::VectorXd lags = likeliest_lags(alignment, alignment.identify(nearer));
   for (int pass = 0; pass < most; ++pass) {
     if (!alignment.try_lags(lags)) break;
@@ -151,7 +151,7 @@ ComparedRecord aligned_clocks(const Experiment& experiment, ComparedRecord recor
     if ((step.lag.array().abs() <= 0.1 * step.deviation.array()).all()) return alignment.record();
     lags += step.lag;
   }
-  alignment.record().notes.push_back(
+  alignment.record().notes.emplace_back(
       "The lags of the clocks have not settled: look at them before anything else.");
   return alignment.record();
 }

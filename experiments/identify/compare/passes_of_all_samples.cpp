@@ -1,6 +1,7 @@
 // The unknowns by all samples at once, where the filter's end is not to be had or not to be kept.
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <chrono>
 #include <optional>
 
@@ -67,7 +68,7 @@ std::optional<filters::Gaussian> Passes::output_error(VectorXd state) {
     const filters::BatchEstimate found =
         filters::estimate_batch(*discrete, motion_.initial_state, directions_.all(), record_, settings);
     if (found.covariance.size() == 0) return {};
-    const Index q = static_cast<Index>(places.size());
+    const auto q = static_cast<Index>(places.size());
     const MatrixXd rows = directions_.all()(places, Eigen::all);
     filters::Gaussian unknowns{found.state(places), rows * found.covariance * rows.transpose(), {}};
     const VectorXd moved =

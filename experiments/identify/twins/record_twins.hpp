@@ -28,11 +28,11 @@ struct RecordTwins {
 /// likewise. A record of one sensor in a free decay knows frequencies alone; more sensors, forces and the
 /// base tell shapes apart.
 ///
-/// @param found of one run. Without an estimate, of fewer than two stiffnesses, of more than 8 of them, of a
-/// structure of more than 80 coordinates or a model of fewer coordinates than stiffnesses: no sets, none
+/// @param comparison of one run. Without an estimate, of fewer than two stiffnesses, of more than 8 of them,
+/// of a structure of more than 80 coordinates or a model of fewer coordinates than stiffnesses: no sets, none
 /// tried.
 /// @param folder as of compare()
-RecordTwins record_twins(const Experiment& experiment, const Comparison& found,
+RecordTwins record_twins(const Experiment& experiment, const Comparison& comparison,
                          const std::filesystem::path& folder);
 
 }  // namespace beamid::experiments
