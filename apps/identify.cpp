@@ -6,6 +6,7 @@
 #include "apps/identify_family.hpp"
 #include "apps/identify_request.hpp"
 #include "apps/record_options.hpp"
+#include "apps/sensed_record.hpp"
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/joint_comparison.hpp"
 #include "experiments/identify/joint_identification.hpp"
@@ -19,7 +20,6 @@
 #include "experiments/studies/identify/joint_report.hpp"
 #include "experiments/studies/identify/record_report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
-#include "experiments/studies/sensing/report.hpp"
 #include "experiments/studies/twins/record_report.hpp"
 #include "experiments/text/method_choice.hpp"
 
@@ -49,26 +49,15 @@ const RecordIdentification& oscillator_in(const Comparison& found) {
   return *found.runs.at(0).oscillator;
 }
 
-/// The parameters beside forces that nobody measured, as `beamid sense` finds them.
-Results identify_under_unknown_forces(const IdentifyRequest& one, const fs::path& config,
-                                      const Progress& progress) {
-  const Experiment& experiment = one.experiment;
-  const SensingRecord record = sensing_record(experiment, one.prepared.record, {config.string()});
-  const Choice reduction = sensing_reduction(experiment, record.record.interval());
-  Results results =
-      sensing_report(experiment, study_sensing(experiment, record, reduction, config.parent_path(), progress),
-                     one.file.filename().string());
-  results.command = "identify";
-  tell_preparation(results, one.prepared, experiment.format);
-  return results;
-}
-
 Results identify_one(const IdentifyRequest& one, const std::string& law, const fs::path& config,
                      const Progress& progress) {
   const Experiment& experiment = one.experiment;
   const fs::path folder = config.parent_path();
-  if (law.empty() && !experiment.unknown_forces.empty())
-    return identify_under_unknown_forces(one, config, progress);
+  if (law.empty() && !experiment.unknown_forces.empty()) {
+    Results sensed = sensed_record(experiment, one.prepared, one.file, config, progress);
+    sensed.command = "identify";
+    return sensed;
+  }
   const Record& record = one.prepared.record;
   const std::string name = one.file.filename().string();
   Results results;

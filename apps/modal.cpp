@@ -129,8 +129,7 @@ int run_modal(const Values& values) {
       if (!record.own_clock.empty())
         record.warnings.emplace_back(
             "Channels with a clock of their own (own_clock) are taken as stamped: frequencies and damping do "
-            "not "
-            "depend on a lag, shapes do.");
+            "not depend on a lag, shapes do.");
       records.push_back(made_analysable(prepared.back().record));
       names.push_back(request.file.filename().string());
     }

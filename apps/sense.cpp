@@ -5,13 +5,14 @@
 #include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
+#include "apps/sensed_record.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_sensing.hpp"
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/models/structure_points.hpp"
-#include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/sensing/report.hpp"
 #include "experiments/text/choice_text.hpp"
+#include "experiments/text/method_choice.hpp"
 #include "filters/filter.hpp"
 
 namespace beamid::apps {
@@ -60,31 +61,17 @@ int run_sense(const Values& values) {
   int code = 0;
   deliver(values, [&] {
     const Progress progress = show_progress(values);
-    const fs::path folder = config.parent_path();
     const Place place{config.string()};
     PreparedRecord prepared;
-    SensingRecord record;
-    if (file.empty()) {
-      record = simulated_sensing(experiment, folder, place, progress);
-    } else {
-      prepared = read_and_prepare(file[0], experiment.format);
-      constexpr Eigen::Index fewest = 100;  // of innovations, for their test
-      if (prepared.record.size() < fewest)
-        throw InputError({file[0].string()}, std::to_string(prepared.record.size()) +
-                                                 " samples; expected at least " + std::to_string(fewest));
-      record = sensing_record(experiment, prepared.record, place);
-    }
-    Results results = [&] {
-      try {
-        const Choice reduction = sensing_reduction(experiment, record.record.interval());
-        return sensing_report(experiment,
-                              study_sensing(experiment, record, reduction, folder, progress, filter),
-                              file.empty() ? "Simulated" : file[0].filename().string());
-      } catch (const std::invalid_argument& error) {
-        throw InputError(place, error.what());
-      }
-    }();
-    if (!file.empty()) tell_preparation(results, prepared, experiment.format);
+    if (!file.empty()) prepared = read_and_prepare(file[0], experiment.format);
+    Results results = at_place(place, [&] {
+      if (!file.empty()) return sensed_record(experiment, prepared, file[0], config, progress, filter);
+      const fs::path folder = config.parent_path();
+      const SensingRecord record = simulated_sensing(experiment, folder, place, progress);
+      const Choice reduction = sensing_reduction(experiment, record.record.interval());
+      return sensing_report(
+          experiment, study_sensing(experiment, record, reduction, folder, progress, filter), "Simulated");
+    });
     code = exit_code(results);
     return results;
   });

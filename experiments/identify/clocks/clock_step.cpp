@@ -71,7 +71,7 @@ ClockStep clock_step(filters::DiscreteModel& discrete, const VectorXd& initial_s
   // To a unit diagonal: seconds beside shares of deviations.
   const VectorXd scale = all.diagonal().head(q + g).cwiseSqrt();
   if (!(scale.tail(g).array() > 0.0).all())
-    throw std::runtime_error("a channel with a clock of its own does not move: nothing tells its lag");
+    throw std::runtime_error("a channel with a clock of its own does not move: its lag cannot be determined");
   const MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * all.topLeftCorner(q + g, q + g) * scale.cwiseInverse().asDiagonal();
   const MatrixXd covariance = Eigen::LDLT<MatrixXd>(scaled).solve(MatrixXd::Identity(q + g, q + g));

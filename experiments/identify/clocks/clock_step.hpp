@@ -1,4 +1,4 @@
-// What a run tells of the clocks of single channels.
+// The lags of single channels from the residual of a run.
 #pragma once
 
 #include <Eigen/Core>

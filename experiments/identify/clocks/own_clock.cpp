@@ -17,10 +17,13 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+bool goes_by(const Channel& channel, const std::string& name) {
+  return name == channel.name || name == to_string(channel.quantity);
+}
+
 bool is_named(const Record& record, const Channel& channel) {
-  return std::any_of(record.own_clock.begin(), record.own_clock.end(), [&](const std::string& name) {
-    return name == channel.name || name == to_string(channel.quantity);
-  });
+  return std::any_of(record.own_clock.begin(), record.own_clock.end(),
+                     [&](const std::string& name) { return goes_by(channel, name); });
 }
 
 // Of the samples that are there, about their mean, in units of their rms; 0 elsewhere.
@@ -52,9 +55,8 @@ std::vector<OwnClock> own_clocks(const Record& record) {
   std::string known;
   for (const Channel& channel : record.channels) known += (known.empty() ? "" : ", ") + channel.name;
   for (const std::string& name : record.own_clock)
-    if (std::none_of(record.channels.begin(), record.channels.end(), [&](const Channel& channel) {
-          return name == channel.name || name == to_string(channel.quantity);
-        }))
+    if (std::none_of(record.channels.begin(), record.channels.end(),
+                     [&](const Channel& channel) { return goes_by(channel, name); }))
       throw std::invalid_argument(
           fmt::format("own_clock names no channel '{}'; the record has: {}", name, known));
   if (!evenly_sampled(record))

@@ -12,7 +12,7 @@ namespace beamid::experiments {
 struct OwnClock {
   Eigen::Index channel = 0;           ///< of the record
   bool input = false;                 ///< a measured force or motion of the base
-  std::vector<Eigen::Index> outputs;  ///< whose motion tells of it: its own, or all of an input (of p)
+  std::vector<Eigen::Index> outputs;  ///< that depend on the lag: its own, or all of an input (of p)
   double lag = 0.0;                   ///< behind the others, as found [s]
   double deviation = 0.0;             ///< of the lag, unknown parameters and start allowed for [s]
 };

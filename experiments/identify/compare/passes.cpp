@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "experiments/identify/compare/known_prior.hpp"
@@ -25,10 +24,6 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr double settled_move = 1.0;  // of a last pass, in standard deviations
-
-double seconds_since(SteadyClock::time_point start) {
-  return std::chrono::duration<double>(SteadyClock::now() - start).count();
-}
 
 std::string unsettled_text(double moved) {
   return fmt::format(

@@ -1,6 +1,7 @@
 // The passes of one run over the record.
 #pragma once
 
+#include <chrono>
 #include <optional>
 
 #include "experiments/identify/compare/compared_run.hpp"
@@ -10,6 +11,11 @@
 #include "experiments/models/start_belief.hpp"
 
 namespace beamid::experiments {
+
+/// Wall time of a pass [s].
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// One run in the making; run_once() says in what order.
 class Passes {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <chrono>
 #include <optional>
 
 #include "experiments/identify/compare/known_prior.hpp"
@@ -12,30 +11,23 @@
 #include "filters/batch_estimator.hpp"
 
 namespace beamid::experiments {
-namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-using PassClock = std::chrono::steady_clock;
-
-double seconds_from(PassClock::time_point start) {
-  return std::chrono::duration<double>(PassClock::now() - start).count();
-}
-
-}  // namespace
 
 // A filter of motion and unknowns together is biased by the noise of its inputs (innovation_likelihood.hpp).
 void Passes::fit_inputs_noise() {
   if (!has_noise(run_.settings.input_noise)) return;
-  const PassClock::time_point start = PassClock::now();
+  const auto start = std::chrono::steady_clock::now();
   const JointModel& model = *run_.model;
   filters::Gaussian known = start_belief(model, with_guess(directions_, model, started_.guess));
   known.mean(model.unknown_places) = started_.guess.mean(started_.model.unknown_places);
   const NoisyInputFit fit = fit_noisy_inputs(model, run_.settings, known, run_.run.last.mean, record_);
-  run_.seconds += seconds_from(start);
-  if (!fit.failure.empty())
+  run_.seconds += seconds_since(start);
+  if (!fit.failure.empty()) {
     run_.remarks.push_back(
         "The noise of the inputs counts in the filter alone, which it biases: " + fit.failure + ".");
-  if (!fit.failure.empty()) return;
+    return;
+  }
   take_unknowns(fit.unknowns);
   input_bounds_ = fit.bounds;
 }
@@ -93,7 +85,7 @@ void Passes::mend_by_output_error() {
       has_noise(run_.settings.input_noise) || run_.run.last.covariance.size() == 0 ||
       !(left > not_the_record))
     return;
-  const PassClock::time_point start = PassClock::now();
+  const auto start = std::chrono::steady_clock::now();
   const VectorXd filtered = motion_.initial_state, noise = run_.noise;
   std::optional<filters::Gaussian> best;
   double least = much_better * left;
@@ -114,7 +106,7 @@ void Passes::mend_by_output_error() {
                     "all samples at once (output error), which leave {:.2g} %.",
                     left, motion_.misfit_percent));
   }
-  run_.seconds += seconds_from(start);
+  run_.seconds += seconds_since(start);
 }
 
 }  // namespace beamid::experiments

@@ -62,13 +62,9 @@ class RecordFit {
         setting_(model_setting(experiment, comparison.analysis.record, experiment.reduction, folder)),
         record_(measurements(comparison.analysis.record)) {}
 
-  struct Fit {
-    filters::BatchEstimate estimate;
-    VectorXd unknowns;  ///< as the state carries them (q)
-  };
   /// @param unknowns as the state carries them (q)
-  /// Absent where the motion from there does not stay finite.
-  std::optional<Fit> from(const VectorXd& unknowns) const {
+  /// @returns nothing where the motion from there does not stay finite
+  std::optional<filters::BatchEstimate> from(const VectorXd& unknowns) const {
     try {
       return moved_from(unknowns);
     } catch (const std::runtime_error&) {
@@ -77,7 +73,7 @@ class RecordFit {
   }
 
  private:
-  Fit moved_from(const VectorXd& unknowns) const {
+  filters::BatchEstimate moved_from(const VectorXd& unknowns) const {
     VectorXd state = run_.run.last.mean;
     state(run_.model->unknown_places) = unknowns;
     const JointModel model = on_basis_at(experiment_.model, setting_, *run_.model, state);
@@ -89,10 +85,9 @@ class RecordFit {
     filters::BatchSettings settings;
     settings.max_iterations = 25;
     settings.tolerance = 1e-2;
-    Fit fit{filters::estimate_batch(*discrete, motion.initial_state, directions.all(), record_, settings),
-            {}};
-    if (fit.estimate.costs.empty()) throw std::runtime_error(fit.estimate.reason);
-    fit.unknowns = fit.estimate.state(model.unknown_places);
+    filters::BatchEstimate fit =
+        filters::estimate_batch(*discrete, motion.initial_state, directions.all(), record_, settings);
+    if (fit.costs.empty()) throw std::runtime_error(fit.reason);
     return fit;
   }
 
@@ -113,19 +108,12 @@ bool differ(const VectorXd& a, const VectorXd& b, const std::vector<Index>& plac
                      [&](Index j) { return std::abs(a[j] - b[j]) > 0.02 * std::abs(b[j]); });
 }
 
-VectorXd physical(const ComparedRun& run, const VectorXd& unknowns) {
-  VectorXd values(unknowns.size());
-  for (Index j = 0; j < values.size(); ++j)
-    values[j] = run.unknowns[static_cast<std::size_t>(j)].to_physical(unknowns[j]);
-  return values;
-}
-
 std::vector<VectorXd> same_frequencies(const UpdateStudy& study, const FoundStructure& found,
                                        const ComparedRun& run) {
   std::vector<VectorXd> others;
+  const VectorXd here = unknown_values(*run.model, run.run.last.mean);
   for (const ParameterSet& set : study.updating.sets) {
-    VectorXd values = physical(run, run.unknown_state.mean);
-    const VectorXd here = values;
+    VectorXd values = here;
     values(found.places) = set.values;
     if (!set.as_well || !differ(values, here, found.places)) continue;
     VectorXd unknowns = run.unknown_state.mean;
@@ -156,17 +144,17 @@ RecordTwins record_twins(const Experiment& experiment, const Comparison& compari
   if (others.empty()) return result;
 
   const RecordFit record(experiment, comparison, folder);
-  const std::optional<RecordFit::Fit> best = record.from(run.unknown_state.mean);
+  const std::optional<filters::BatchEstimate> best = record.from(run.unknown_state.mean);
   if (!best) return result;
-  const VectorXd here = physical(run, best->unknowns);
+  const VectorXd here = unknown_values(*run.model, best->state);
   const double prior = distance_to_prior(run, run.unknown_state.mean),
                widened = run.interval_factor * run.interval_factor;
   for (const VectorXd& other : others) {
-    const std::optional<RecordFit::Fit> fit = record.from(other);
+    const std::optional<filters::BatchEstimate> fit = record.from(other);
     if (!fit) continue;
-    RecordTwin twin{physical(run, fit->unknowns),
-                    2.0 * (fit->estimate.costs.back() - best->estimate.costs.back()) / widened,
-                    distance_to_prior(run, fit->unknowns) - prior};
+    RecordTwin twin{unknown_values(*run.model, fit->state),
+                    2.0 * (fit->costs.back() - best->costs.back()) / widened,
+                    distance_to_prior(run, fit->state(run.model->unknown_places)) - prior};
     const bool known = std::any_of(result.sets.begin(), result.sets.end(), [&](const RecordTwin& one) {
       return !differ(one.values, twin.values, found.places);
     });

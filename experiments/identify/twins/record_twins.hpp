@@ -25,8 +25,8 @@ struct RecordTwins {
 
 /// The sets with the frequencies of the structure that was found (twins.hpp), each moved to where it is
 /// nearest to the record (output error, all samples at once, no prior) and held against the set found, moved
-/// likewise. A record of one sensor in a free decay knows frequencies alone; more sensors, forces and the
-/// base tell shapes apart.
+/// likewise. A record of one sensor in a free decay knows frequencies alone; further sensors and
+/// measured inputs know of shapes.
 ///
 /// @param comparison of one run. Without an estimate, of fewer than two stiffnesses, of more than 8 of them,
 /// of a structure of more than 80 coordinates or a model of fewer coordinates than stiffnesses: no sets, none

@@ -21,8 +21,7 @@ void tell_clocks(Results& results, const Comparison& comparison) {
   }
   table.note =
       "Behind the other channels; below 0 ahead of them. Found with the parameters, whose deviations allow "
-      "for "
-      "them. The record is used and drawn on one clock.";
+      "for them. The record is used and drawn on one clock.";
   results.table(table);
 }
 

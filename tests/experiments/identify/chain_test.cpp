@@ -1,7 +1,6 @@
 // A shear building under a moving base or forces, identified storey by storey. Oracles: the values that its
 // record was simulated with, and the Cramer-Rao bound.
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -14,6 +13,7 @@
 #include "experiments/record/write_record.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "experiments/signal/random.hpp"
+#include "tests/experiments/identify/ground_motion.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"
 
 namespace beamid::experiments::chain_test {
@@ -65,14 +65,7 @@ guess_n_s_per_m = 3000
 
 class MovingBase : public testing::Test {
  protected:
-  MovingBase() {
-    std::ofstream file(place_.path / "quake.csv");
-    file << "time_s,base_acceleration_m_per_s2\n";
-    const Eigen::VectorXd white = standard_normal(2001, 3, 0);
-    double slow = 0.0;
-    for (Eigen::Index k = 0; k < white.size(); ++k)
-      file << 0.01 * static_cast<double>(k) << ',' << (slow += 0.5 * (white[k] - slow)) << '\n';
-  }
+  MovingBase() { test::write_ground_motion(place_.path / "quake.csv", 2001); }
 
   Experiment experiment(const std::string& more, std::uint64_t seed = 1) const {
     Experiment e = read_experiment(TomlTable::parse(std::string(building) + more, "building.toml"));

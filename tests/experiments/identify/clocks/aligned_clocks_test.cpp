@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "experiments/signal/random.hpp"
+#include "tests/experiments/identify/ground_motion.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"
 
 namespace beamid::experiments::aligned_clocks_test {
@@ -62,14 +62,7 @@ quantity = "damping_ratio"
 
 class Clocks : public testing::Test {
  protected:
-  Clocks() {
-    std::ofstream file(place_.path / "quake.csv");
-    file << "time_s,base_acceleration_m_per_s2\n";
-    const Eigen::VectorXd white = standard_normal(1401, 3, 0);
-    double slow = 0.0;
-    for (Index k = 0; k < white.size(); ++k)
-      file << 0.01 * static_cast<double>(k) << ',' << (slow += 0.5 * (white[k] - slow)) << '\n';
-  }
+  Clocks() { test::write_ground_motion(place_.path / "quake.csv", 1401); }
 
   /// Every tenth sample of two floors and the base, each channel by so many thousandths of a second late.
   Comparison found(std::uint64_t seed, const std::vector<Index>& late_ms,

@@ -9,6 +9,7 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/studies/twins/record_report.hpp"
+#include "tests/experiments/identify/ground_motion.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"
 
 namespace beamid::experiments::record_twins_test {
@@ -81,6 +82,18 @@ TEST_F(TwinsOfARecord, AreRuledOutByASecondSensorOrAMeasuredForce) {
     const std::size_t before = run.warnings.size();
     warn_of_twins(comparison, twins);
     EXPECT_THAT(run.warnings, SizeIs(before));
+  }
+}
+
+// The roof's answer to the ground is k1 k2 / (m^2 s^4 + m (k1 + 2 k2) s^2 + k1 k2), the first floor's is not.
+TEST_F(TwinsOfARecord, UnderAMovingBaseAreSeenByTheFirstFloorAndNotByTheRoof) {
+  test::write_ground_motion(place_.path / "quake.csv", 1201);
+  const std::string base = "kind = \"base\"\nfile = \"quake.csv\"\n";
+  for (const int floor : {1, 2}) {
+    const Experiment e = storeys(base, sensor(floor));
+    const RecordTwins twins = record_twins(e, found(e), place_.path);
+    EXPECT_EQ(twins.tried, 1u);
+    EXPECT_THAT(twins.sets, SizeIs(floor - 1));
   }
 }
 
