@@ -83,7 +83,4 @@ struct DampingLawStudy {
 DampingLawStudy study_damping_law(const Experiment& experiment, const Record& record, const std::string& law,
                                   const std::filesystem::path& folder = {});
 
-/// What the record supports, and whether that fits: sentences.
-std::string law_words(const DampingLawStudy& study);
-
 }  // namespace beamid::experiments

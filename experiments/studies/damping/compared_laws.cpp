@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/identify/damping_law/law_sections.hpp"
+#include "experiments/studies/damping/law_words.hpp"
 
 namespace beamid::experiments {
 namespace {

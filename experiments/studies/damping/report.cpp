@@ -11,27 +11,13 @@
 #include "experiments/identify/record_inputs.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/axis_label.hpp"
+#include "experiments/studies/damping/law_words.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
-
-const char* title_of(const std::string& law) {
-  return law == "viscous"     ? "viscous"
-         : law == "coulomb"   ? "viscous and Coulomb"
-         : law == "quadratic" ? "viscous and quadratic"
-                              : "viscous, Coulomb and quadratic";
-}
-
-// How large a difference of BIC is, in the words of [kass1995].
-const char* strength(double difference) {
-  return difference > 10.0  ? "very strong"
-         : difference > 6.0 ? "strong"
-         : difference > 2.0 ? "positive"
-                            : "hardly any";
-}
 
 double least_bic(const DampingLawStudy& study) {
   double least = study.supported().bic;
@@ -56,13 +42,12 @@ Table law_table(const DampingLawStudy& study) {
     const std::string remark = &law == &study.supported() ? (study.named ? "as asked" : "supported")
                                : law.possible             ? ""
                                                           : law.reason;
-    table.row({title_of(law.name), static_cast<double>(law.unknowns), law.log_likelihood, law.aic - aic,
+    table.row({law_title(law.name), static_cast<double>(law.unknowns), law.log_likelihood, law.aic - aic,
                law.bic - bic, remark});
   }
   table.note =
       "All laws have a cubic spring beside the linear one, and the same noise. Least: among the laws that "
-      "are "
-      "possible.";
+      "are possible.";
   return table;
 }
 
@@ -79,8 +64,7 @@ Table estimate_table(const DampingLawStudy& study) {
       table.row({law.name, e.name, e.unit, e.value, e.lower_95, e.upper_95});
   table.note = fmt::format(
       "Forces and stiffnesses are those of one coordinate of mass {:.4f} kg at the first sensor; a mass "
-      "wrong "
-      "by 1 % makes them wrong by 1 %.",
+      "wrong by 1 % makes them wrong by 1 %.",
       study.supported().model.equivalent_mass);
   return table;
 }
@@ -104,68 +88,6 @@ Table amplitude_table(const DampingLawStudy& study) {
       fmt::format("Of the viscous damping that dissipates as much in a cycle. Frequency by the law {}.",
                   study.supported().name);
   return table;
-}
-
-std::string verdict(const DampingLawStudy& study) {
-  const FittedLaw& best = study.supported();
-  if (study.named)
-    return fmt::format("As asked: {} damping{}.", title_of(best.name),
-                       best.possible ? "" : ", which this record does not support: " + best.reason);
-  if (!best.possible) return "The record determines none of the laws: " + best.reason + ".";
-  double second = std::nan("");
-  std::string other;
-  for (const FittedLaw& law : study.laws)
-    if (&law != &best && law.possible && !(law.bic - best.bic > second)) {
-      second = law.bic - best.bic;
-      other = title_of(law.name);
-    }
-  constexpr double hardly = 2.0;  // of BIC
-  std::string text =
-      fmt::format("The record {} {} damping", second < hardly ? "leans to" : "supports", title_of(best.name));
-  if (std::isfinite(second))
-    text +=
-        fmt::format(": {} evidence against {}, whose BIC is {:.1f} higher", strength(second), other, second);
-  text += ".";
-  for (const FittedLaw& law : study.laws) {
-    if (law.possible || law.state.size() == 0 || law.bic > best.bic - hardly) continue;
-    text += fmt::format(
-        " Likelier, but impossible, is {} damping (BIC {:.1f} lower; {}): the true law is none of these, and "
-        "the estimates are those of the nearest.",
-        title_of(law.name), best.bic - law.bic, law.reason);
-    break;
-  }
-  if (best.name == "viscous")
-    text += " Neither friction nor quadratic damping makes the record likely enough to pay for itself.";
-  text += fmt::format(
-      " From {:.3g} to {:.3g} mm the damping ratio goes from {:.5f} to {:.5f} and the frequency from {:.4f} "
-      "to {:.4f} Hz.",
-      1e3 * study.first_amplitude, 1e3 * study.last_amplitude, best.damping_ratio(study.first_amplitude),
-      best.damping_ratio(study.last_amplitude), best.frequency_hz(study.first_amplitude),
-      best.frequency_hz(study.last_amplitude));
-  return text;
-}
-
-// Whether the best of the laws is good enough.
-std::string fit_words(const DampingLawStudy& study) {
-  const LawMisfit& misfit = study.misfit;
-  if (!misfit.tested)
-    return fmt::format(
-        "Whether any of these laws fits cannot be tested: {} section{} of the decay that share no sample, "
-        "too "
-        "few for a law of {} unknowns.",
-        misfit.sections, misfit.sections == 1 ? "" : "s", study.supported().model.unknowns.size());
-  const std::string size = fmt::format(
-      "chi^2 {:.3g} of {} degrees of freedom in {} sections of the decay, the damping ratio "
-      "{:+.2g} % off at {:.3g} mm",
-      misfit.chi_square, misfit.freedom, misfit.sections, 100.0 * misfit.largest, 1e3 * misfit.at_amplitude);
-  if (!misfit.lacks) return "The law fits sections of the decay: " + size + " at most.";
-  return fmt::format(
-      "Lack of fit: {} damping does not describe this decay ({}). It is the nearest of these laws, its "
-      "intervals are {:.2g} times too narrow for what is left, and nothing follows from it beyond {:.3g} to "
-      "{:.3g} mm.",
-      title_of(study.supported().name), size,
-      std::sqrt(misfit.chi_square / static_cast<double>(misfit.freedom)), 1e3 * study.last_amplitude,
-      1e3 * study.first_amplitude);
 }
 
 Colour law_colour(const FittedLaw& law) {
@@ -199,7 +121,7 @@ Figure figure(const Record& record, const DampingLawStudy& study) {
       a[i] = study.first_amplitude * std::pow(study.last_amplitude / study.first_amplitude, part);
       xi[i] = 100.0 * law.damping_ratio(a[i]);
     }
-    ratios.add(&law == &study.supported() ? CurveStyle::line : CurveStyle::dashed, title_of(law.name),
+    ratios.add(&law == &study.supported() ? CurveStyle::line : CurveStyle::dashed, law_title(law.name),
                1e3 * a, xi, law_colour(law));
   }
   if (!study.sections.empty()) add_sections(study, ratios);
@@ -207,7 +129,7 @@ Figure figure(const Record& record, const DampingLawStudy& study) {
   Panel left{"residuals of the laws", {"time [s]"}, {axis_label(channel.quantity)}};
   for (const FittedLaw* law : {&study.laws.front(), &study.supported()})
     if (law->left.size() > 0 && (left.curves.empty() || law != &study.laws.front()))
-      left.line(title_of(law->name), study.time, law->left.row(0), law_colour(*law));
+      left.line(law_title(law->name), study.time, law->left.row(0), law_colour(*law));
   Figure both{"damping_law", {ratios, left}, 2, 1};
   both.height = 720;
   both.caption =
@@ -236,11 +158,6 @@ Json damping_law_values(const FittedLaw& law) {
 
 }  // namespace
 
-std::string law_words(const DampingLawStudy& study) {
-  return study.misfit.lacks ? fit_words(study) + " " + verdict(study)
-                            : verdict(study) + " " + fit_words(study);
-}
-
 Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
                const DampingLawStudy& study) {
   Results results;
@@ -268,33 +185,32 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   for (const FittedLaw& law : study.laws) results.values["laws"].push_back(damping_law_values(law));
   results.heading(experiment.title.empty() ? record_name : experiment.title);
   for (const std::string& warning : study.warnings) results.warning(warning);
-  results.paragraph(fmt::format(
-      "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz; mode at {:.4f} Hz. Low-passed and decimated by "
-      "{} to {} samples for the fits.",
-      record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
-      study.modal.frequency_hz, study.decimation, study.samples.cols()));
+  results.paragraph(
+      fmt::format("{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz; mode at {:.4f} Hz. Low-passed and "
+                  "decimated by {} to {} samples for the fits.",
+                  record_name, record.size(), record.time[0], record.time[record.size() - 1],
+                  1.0 / record.interval(), study.modal.frequency_hz, study.decimation, study.samples.cols()));
   for (const std::string& remark : study.remarks) results.paragraph(remark);
   if (const auto inputs = record_inputs(record)) {
     results.values["inputs_between_samples"] = to_string(inputs->path);
     results.paragraph(words(*inputs));
   }
-  if (study.misfit.lacks) results.warning(fit_words(study));
-  results.paragraph(verdict(study));
-  if (!study.misfit.lacks) results.paragraph(fit_words(study));
+  if (study.misfit.lacks) results.warning(law_fit_words(study));
+  results.paragraph(law_verdict(study));
+  if (!study.misfit.lacks) results.paragraph(law_fit_words(study));
   results.table(law_table(study));
   results.table(estimate_table(study));
   results.table(amplitude_table(study));
   const Channel& channel = record.channels[output_channels(record)[0]];
   results.paragraph(fmt::format(
       "Noise assumed of {}: {:.4g} {}, as dense as what the richest law leaves near the mode. The sign of "
-      "the "
-      "velocity is smoothed over {:.3g} m/s.",
+      "the velocity is smoothed over {:.3g} m/s.",
       to_string(channel.quantity), study.noise[0], si_unit(channel.quantity), study.friction_velocity));
   for (const CompanionMode& mode : study.modal.companions)
-    results.paragraph(fmt::format(
-        "Beside the mode there is another at {:.2f} Hz with {:.0f} % of its amplitude; a law of one "
-        "mode may take its beat for damping.",
-        mode.frequency_hz, 100.0 * mode.amplitude / study.modal.amplitude));
+    results.paragraph(
+        fmt::format("Beside the mode there is another at {:.2f} Hz with {:.0f} % of its amplitude; a law of "
+                    "one mode may take its beat for damping.",
+                    mode.frequency_hz, 100.0 * mode.amplitude / study.modal.amplitude));
   results.figures.push_back(figure(record, study));
   return results;
 }
