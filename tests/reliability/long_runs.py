@@ -130,7 +130,8 @@ def sweep(options, folder):
             rows = sum(1 for _ in file) - 1
         print(f"sweep: {cases:,} cases in {time.monotonic() - begun:.0f} s ({used.ru_utime + used.ru_stime:.0f} s of processor time), "
               f"rows {rows:,}, journal {largest:,} bytes at most, cases.csv {final.stat().st_size:,}, memory {peaks[-1]} kB")
-        if status != 0 or rows != cases or largest > 1.05 * final.stat().st_size:
+        # One row for each parameter of each case.
+        if status != 0 or rows == 0 or rows % cases != 0 or largest > 1.05 * final.stat().st_size:
             return False
     return True
 
@@ -172,7 +173,7 @@ def main():
     parser.add_argument("--samples", type=int, default=100_000_000)
     parser.add_argument("--cases", type=int, default=1_000_000)
     parser.add_argument("--commands", type=int, default=10_000)
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     runs = {"stream": stream, "latency": latency, "sweep": sweep, "soak": soak}
     kept = True
     for name in options.run or runs:
