@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
   for (const auto& target : beamid::fuzz::targets())
     if (name && std::strcmp(name, target.name) == 0) chosen = &target;
   if (chosen) {
-    chosen->read("");  // what it sets up once is no input's time
+    chosen->read("", 0);  // what it sets up once is no input's time
     return 0;
   }
   std::fprintf(stderr, "BEAMID_FUZZ names no target; expected one of:");
@@ -27,6 +27,10 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  chosen->read({reinterpret_cast<const char*>(data), size});
+  // The way is part of the input: the sum of its bytes, which any mutation changes.
+  unsigned sum = 0;
+  for (std::size_t k = 0; k < size; ++k) sum += data[k];
+  chosen->read({reinterpret_cast<const char*>(data), size},
+               static_cast<int>(sum % static_cast<unsigned>(chosen->ways)));
   return 0;
 }

@@ -44,9 +44,10 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
 
   fs::path write(const std::string& name, const std::string& bytes) const {
-    fs::create_directories((path_ / name).parent_path());
-    write_file(path_ / name, bytes);
-    return path_ / name;
+    const fs::path file = path_ / name;
+    if (file.parent_path() != path_) fs::create_directories(file.parent_path());
+    write_file(file, bytes);
+    return file;
   }
 
  private:
@@ -73,33 +74,34 @@ void refusable(const auto& work) {
 
 // ---- Records
 
-void read_both_ways(const std::string& reader, const std::string& bytes) {
-  const fs::path file = folder().write("record", bytes);
-  for (const auto malformed : {MalformedRows::refuse, MalformedRows::skip, MalformedRows::as_missing})
-    refusable([&] {
-      RecordFormat format;
-      format.reader = reader;
-      format.malformed = malformed;
-      format.irregular = malformed != MalformedRows::refuse;
-      const Record record = read_record(file, format);
-      promise(record.size() >= 2 && record.samples.rows() == static_cast<long>(record.channels.size()) &&
-              record.samples.cols() == record.size() && record.time.allFinite() &&
-              (malformed == MalformedRows::as_missing || record.samples.allFinite()));
-      for (long k = 1; k < record.size(); ++k) promise(record.time[k] > record.time[k - 1]);
-    });
-}
+constexpr int named_ways = 3, record_ways = named_ways + 1;
 
-/// Columns that say nothing of themselves: the first two are times and accelerations.
-void read_unnamed(const std::string& reader, const std::string& bytes) {
-  read_both_ways(reader, bytes);
-  refusable([&] {
-    RecordFormat format;
-    format.reader = reader;
+/// With malformed rows refused, skipped or taken for missing; in the last way the columns say nothing of
+/// themselves: the first two are times and accelerations.
+template <const char* const& reader>
+void read_as(const std::string& bytes, int way) {
+  constexpr MalformedRows malformed[]{MalformedRows::refuse, MalformedRows::skip, MalformedRows::as_missing};
+  const fs::path file = folder().write("record", bytes);
+  RecordFormat format;
+  format.reader = reader;
+  if (way < named_ways) {
+    format.malformed = malformed[way];
+    format.irregular = way > 0;
+  } else {
     format.sampling_rate = 100.0;
     format.channels = {{Quantity::acceleration, "", 2}};
-    read_record(folder().write("record", bytes), format);
+  }
+  refusable([&] {
+    const Record record = read_record(file, format);
+    promise(record.size() >= 2 && record.samples.rows() == static_cast<long>(record.channels.size()) &&
+            record.samples.cols() == record.size() && record.time.allFinite() &&
+            (format.malformed == MalformedRows::as_missing || record.samples.allFinite()));
+    for (long k = 1; k < record.size(); ++k) promise(record.time[k] > record.time[k - 1]);
   });
 }
+
+constexpr const char *text = "delimited_text", *lvm = "lvm", *nied = "nied", *uff58 = "uff58", *mat = "mat",
+                     *hdf5 = "hdf5";
 
 // ---- The experiment of tutorial 2, for what is read beside one
 
@@ -129,7 +131,7 @@ const nlohmann::json& saved_state() {
   return saved;
 }
 
-void read_state(const std::string& bytes) {
+void read_state(const std::string& bytes, int) {
   static const std::unique_ptr<StreamedIdentification> stream = new_stream();
   refusable([&] {
     stream->resume(read_json(folder().write("state.json", bytes), "a state"));
@@ -143,7 +145,7 @@ void read_state(const std::string& bytes) {
   stream->news();
 }
 
-void read_samples(const std::string& bytes) {
+void read_samples(const std::string& bytes, int) {
   static const std::unique_ptr<StreamedIdentification> stream = new_stream();
   stream->resume(saved_state());
   refusable([&] {
@@ -161,11 +163,11 @@ void read_samples(const std::string& bytes) {
 
 // ---- Experiment files and sweeps
 
-void read_experiment_file(const std::string& bytes) {
+void read_experiment_file(const std::string& bytes, int) {
   refusable([&] { read_experiment(folder().write("experiment.toml", bytes)); });
 }
 
-void read_plan(const std::string& bytes) {
+void read_plan(const std::string& bytes, int) {
   refusable([&] {
     const auto table = TomlTable::read(folder().write("sweep.toml", bytes)).find_table("sweep");
     if (!table) return;
@@ -176,7 +178,7 @@ void read_plan(const std::string& bytes) {
   });
 }
 
-void read_journal(const std::string& bytes) {
+void read_journal(const std::string& bytes, int) {
   refusable([&] {
     SweepPlan plan;
     plan.varied = {parse_varied("damping.ratio=0.01,0.02"), parse_varied("beam.mass_kg=uniform:3:4")};
@@ -187,7 +189,7 @@ void read_journal(const std::string& bytes) {
   });
 }
 
-void read_sweep_manifest(const std::string& bytes) {
+void read_sweep_manifest(const std::string& bytes, int) {
   refusable([&] {
     const fs::path file = folder().write("manifest.json", bytes);
     plan_of(read_manifest(file), file);
@@ -218,20 +220,20 @@ void join(const std::string& results, const std::string& page) {
 
 const std::vector<Target>& targets() {
   static const std::vector<Target> all{
-      {"text", [](const std::string& bytes) { read_unnamed("delimited_text", bytes); }},
-      {"lvm", [](const std::string& bytes) { read_unnamed("lvm", bytes); }},
-      {"nied", [](const std::string& bytes) { read_unnamed("nied", bytes); }},
-      {"uff58", [](const std::string& bytes) { read_both_ways("uff58", bytes); }},
-      {"mat", [](const std::string& bytes) { read_unnamed("mat", bytes); }},
-      {"hdf5", [](const std::string& bytes) { read_unnamed("hdf5", bytes); }},
+      {"text", read_as<text>, record_ways},
+      {"lvm", read_as<lvm>, record_ways},
+      {"nied", read_as<nied>, record_ways},
+      {"uff58", read_as<uff58>, named_ways},
+      {"mat", read_as<mat>, record_ways},
+      {"hdf5", read_as<hdf5>, record_ways},
       {"experiment", read_experiment_file},
       {"plan", read_plan},
       {"journal", read_journal},
       {"manifest", read_sweep_manifest},
       {"samples", read_samples},
       {"state", read_state},
-      {"results", [](const std::string& bytes) { join(bytes, own_page()); }},
-      {"page", [](const std::string& bytes) { join(own_results, bytes); }}};
+      {"results", [](const std::string& bytes, int) { join(bytes, own_page()); }},
+      {"page", [](const std::string& bytes, int) { join(own_results, bytes); }}};
   return all;
 }
 

@@ -19,7 +19,8 @@ TEST_P(FoundInputs, AreReadOrRefused) {
     if (!apps::fs::exists(folder)) continue;
     for (const auto& entry : apps::fs::directory_iterator(folder)) {
       SCOPED_TRACE(entry.path());
-      EXPECT_NO_THROW(GetParam().read(apps::contents(entry.path())));
+      for (int way = 0; way < GetParam().ways; ++way)
+        EXPECT_NO_THROW(GetParam().read(apps::contents(entry.path()), way));
       ++count;
     }
   }
