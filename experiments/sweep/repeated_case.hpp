@@ -16,9 +16,9 @@ struct Repeats::Common {
   Record clean;  ///< without noise
   std::string reduction;
   std::vector<Observation> observations;
-  JointModel model, true_model;  ///< of the beam assumed, and of the one simulated
-  bool one_place = true;         ///< all channels read the same displacement
-  VectorXd sensor_noise, noise;  ///< put into the records, and assumed by the filter (p)
+  JointModel model, true_model;         ///< of the beam assumed, and of the one simulated
+  bool one_place = true;                ///< all channels read the same displacement
+  Eigen::VectorXd sensor_noise, noise;  ///< put into the records, and assumed by the filter (p)
   std::vector<std::optional<double>> truth, bound;
   double frequency_hz = 0.0;  ///< of the beam simulated
 
