@@ -268,16 +268,6 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
     places = layout(description, modes.size());
     model->motion = std::make_shared<ReducedMotion>(std::move(small), std::move(description), rows, "mode");
   } else {
-    if (!setting.continuum->structure.is_beam())
-      throw std::invalid_argument(
-          fmt::format("a {} of more than {} unknowns needs a reduction; expected [reduction] of fewer "
-                      "coordinates, such as modal or craig_bampton",
-                      setting.continuum->structure.kind(), most_dense));
-    if (asks_about_dashpots(equations))
-      throw std::invalid_argument(
-          fmt::format("storey_damping of more than {} floors needs a reduction; expected [reduction] of "
-                      "fewer coordinates, or stiffness_damping",
-                      most_dense));
     describe_damping(setting.damping, elastic(modes), damped_modes(equations, modes), description);
     model->mode_shapes = shapes;
     places = layout(description, equations.system.size());

@@ -13,30 +13,25 @@
 #include <complex>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "experiments/models/banded/banded_step.hpp"
-#include "experiments/models/banded/continuum_motion.hpp"
 #include "fem/cantilever.hpp"
 #include "fem/modes.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "filters/filter.hpp"
+#include "tests/bench/mesh_problem.hpp"
 
 namespace {
 
 using namespace beamid;
+using namespace beamid::bench;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using experiments::Drive, experiments::Quantity;
 
 constexpr double interval = 1e-3;  // [s]
-constexpr Index mode_count = 3;
-
-double processor_seconds() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 fem::Beam study_beam(double tip_mass) {
   fem::Cantilever beam;
@@ -46,13 +41,6 @@ fem::Beam study_beam(double tip_mass) {
   beam.tip_mass = tip_mass;
   return beam;
 }
-
-struct Problem {
-  fem::ParametricSystem equations;
-  fem::Modes modes;
-  experiments::MotionDescription description;
-  filters::Gaussian start;
-};
 
 Problem make_problem(int elements) {
   using Property = fem::BeamParameter::Quantity;
@@ -71,48 +59,11 @@ Problem make_problem(int elements) {
       {Drive::Kind::property, 0}, {Drive::Kind::property, 1}, {Drive::Kind::damping_ratio, -1}};
   description.observations = {{Quantity::acceleration}};
   description.sensor_bias = true;
-  for (Index i = 0; i < mode_count; ++i) {
-    const VectorXd phi = problem.modes.shape.col(i), strain = system.stiffness.strain * phi;
-    experiments::DampedMode mode{system.mass * phi,
-                                 MatrixXd(system.size(), 2),
-                                 VectorXd(2),
-                                 system.stiffness.energy(phi),
-                                 VectorXd(2),
-                                 0.0,
-                                 2};
-    for (Index j = 0; j < 2; ++j) {
-      const auto& slope = problem.equations.derivatives[static_cast<std::size_t>(j)];
-      mode.momentum_slopes.col(j) = slope.mass * phi;
-      mode.mass_slopes[j] = phi.dot(mode.momentum_slopes.col(j));
-      mode.stiffness_slopes[j] = strain.dot(slope.rigidity * strain);
-    }
-    description.damped_modes.push_back(std::move(mode));
-  }
-  const experiments::StateLayout places = layout(description, system.size());
-  const Index n = system.size();
-  VectorXd mean = VectorXd::Zero(places.size);
-  MatrixXd factor = MatrixXd::Zero(places.size, 2 * mode_count + 4);
-  // A release from 12 mm as far as it moves these modes, known to 5 %.
-  const VectorXd amplitude = problem.modes.shape.transpose() * (system.mass * (0.012 * static_shape(system)));
-  for (Index i = 0; i < mode_count; ++i) {
-    const double omega = problem.modes.angular_frequency[i], doubt = 0.05 * amplitude[i];
-    mean.head(n) += amplitude[i] * problem.modes.shape.col(i);
-    factor.col(2 * i).head(n) = doubt * problem.modes.shape.col(i);
-    factor.col(2 * i + 1).segment(n, n) = doubt * omega * problem.modes.shape.col(i);
-  }
-  for (Index j = 0; j < 3; ++j) {
-    mean[places.unknowns + j] = description.unknowns[static_cast<std::size_t>(j)].guess;
-    factor(places.unknowns + j, 2 * mode_count + j) =
-        description.unknowns[static_cast<std::size_t>(j)].deviation;
-  }
-  factor(places.biases[0], 2 * mode_count + 3) = 0.1;
-  problem.start = {mean, {}, factor};
+  damp_modes(2, problem);
+  // A release from 12 mm as far as it moves these modes.
+  start_in_modes(problem.modes.shape.transpose() * (system.mass * (0.012 * static_shape(system))), 0.0,
+                 problem);
   return problem;
-}
-
-std::unique_ptr<filters::DiscreteModel> discrete(const Problem& problem) {
-  return discretise(std::make_shared<experiments::ContinuumMotion>(problem.equations, problem.description),
-                    interval, "pade", {{}, MatrixXd::Constant(1, 1, 0.05 * 0.05)});
 }
 
 // A reading per sample of a motion that starts a hundredth off the belief, with parameters off the guess.
@@ -134,54 +85,21 @@ VectorXd readings(const Problem& problem, filters::DiscreteModel& model, Index s
 }
 
 void cost(Index samples, const std::vector<int>& meshes) {
-  std::printf(
-      "# coordinates, directions, microseconds: mean alone, mean and directions, reading and its "
-      "derivatives, readings of the directions\n");
-  for (const int elements : meshes) {
-    const Problem problem = make_problem(elements);
-    const auto model = discrete(problem);
-    const Index count = std::max<Index>(20, samples * 200 / (200 + elements));
-    VectorXd state = problem.start.mean, next, read;
-    const Index first = layout(problem.description, problem.equations.system.size()).unknowns;
-    MatrixXd directions = problem.start.factor, jacobian, seen;
-    double seconds[4] = {};
-    for (Index k = 0; k < count; ++k) {
-      const double stiffer = 1.0 + 1e-9 * static_cast<double>(k % 7);
-      state[first] = problem.start.mean[first] * stiffer;  // as a filter changes it at every sample
-      double from = processor_seconds();
-      model->transition(state, {}, next);
-      seconds[0] += processor_seconds() - from;
-      state[first] = problem.start.mean[first] * stiffer * (1.0 + 1e-10);
-      from = processor_seconds();
-      model->move(state, {}, next, directions);
-      seconds[1] += processor_seconds() - from;
-      from = processor_seconds();
-      model->output(state, {}, read);
-      model->output_jacobian(state, {}, jacobian);
-      seconds[2] += processor_seconds() - from;
-      from = processor_seconds();
-      seen.noalias() = jacobian * directions;
-      seconds[3] += processor_seconds() - from;
-      state.swap(next);
-    }
-    std::printf("%7ld %3ld", static_cast<long>(problem.equations.system.size()),
-                static_cast<long>(directions.cols()));
-    for (const double spent : seconds) std::printf(" %10.2f", 1e6 * spent / static_cast<double>(count));
-    std::printf("\n");
-    std::fflush(stdout);
-  }
+  std::printf(cost_columns);
+  for (const int elements : meshes)
+    print_cost(make_problem(elements), interval, {}, std::max<Index>(20, samples * 200 / (200 + elements)));
 }
 
 void record(int elements, double length) {
   const Problem problem = make_problem(elements);
   const auto samples = static_cast<Index>(length / interval);
-  auto source = discrete(problem);
+  auto source = discrete(problem, interval);
   double from = processor_seconds();
   const VectorXd history = readings(problem, *source, samples);
   std::printf("%ld coordinates, %ld samples; simulated in %.2f s\n",
               static_cast<long>(problem.equations.system.size()), static_cast<long>(samples),
               processor_seconds() - from);
-  auto filter = filters::filter_registry().make("low_rank_ekf", {}, discrete(problem));
+  auto filter = filters::filter_registry().make("low_rank_ekf", {}, discrete(problem, interval));
   filter->reset(problem.start);
   from = processor_seconds();
   for (Index k = 0; k < samples; ++k) {
@@ -212,10 +130,11 @@ void print_errors(const Problem& problem, bool assembled, int steps) {
   BandedStep step(equations, interval);
   step.watch_growth(true);
   step.factor(equations);
-  BandedFactor factor(n, equations.width());
   const Complex lambda{3.0 / interval, std::numbers::sqrt3 / interval};
-  equations.assemble(lambda, factor);
-  factor.factor();
+  std::vector<Complex> entries;
+  equations.assemble(lambda, entries);
+  StepFactor factor(equations.pattern());
+  factor.factor(entries);
   const fem::SparseMatrix stiffness = system.stiffness.assembled();
   std::vector<Complex> d(static_cast<std::size_t>(n));
 
@@ -235,7 +154,7 @@ void print_errors(const Problem& problem, bool assembled, int steps) {
         next_rate[i] = rate[i] + 12.0 / interval * (d[i].re + std::numbers::sqrt3 * d[i].im);
       }
     } else {
-      step.advance(equations, q.data(), rate.data(), zero, next.data(), next_rate.data());
+      step.advance(equations, q.data(), rate.data(), {zero, zero}, next.data(), next_rate.data());
     }
     q.swap(next);
     rate.swap(next_rate);
@@ -257,7 +176,7 @@ void acceleration_error(double tip_mass, int elements, int steps) {
   const fem::StructuralSystem& system = problem.equations.system;
   problem.modes = fem::modes(system, 1);
   problem.description.observations = {{Quantity::acceleration}};
-  const auto model = discrete(problem);
+  const auto model = discrete(problem, interval);
   const Index n = system.size();
   const double omega = problem.modes.angular_frequency[0];
   const std::complex<double> z(0.0, omega * interval);

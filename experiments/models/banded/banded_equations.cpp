@@ -1,6 +1,5 @@
 #include "experiments/models/banded/banded_equations.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -9,23 +8,6 @@ namespace beamid::experiments::banded {
 using Eigen::Index, Eigen::VectorXd;
 
 namespace {
-
-int half_width(const fem::SparseMatrix& matrix) {
-  int width = 0;
-  for (int j = 0; j < matrix.outerSize(); ++j)
-    for (fem::SparseMatrix::InnerIterator it(matrix, j); it; ++it)
-      width = std::max(width, std::abs(static_cast<int>(it.row()) - j));
-  return width;
-}
-
-// Rows first .. second - 1 of the lower triangle, width + 1 entries each.
-std::vector<double> lower_band(const fem::SparseMatrix& matrix, int width, std::pair<Index, Index> rows) {
-  std::vector<double> band(static_cast<std::size_t>(rows.second - rows.first) * (width + 1), 0.0);
-  for (int j = 0; j < matrix.outerSize(); ++j)
-    for (fem::SparseMatrix::InnerIterator it(matrix, j); it; ++it)
-      if (it.row() >= j) band[(it.row() - rows.first) * (width + 1) + width + j - it.row()] = it.value();
-  return band;
-}
 
 fem::SparseMatrix chosen_columns(const fem::SparseMatrix& matrix, const std::vector<Index>& columns) {
   fem::SparseMatrix chosen(matrix.rows(), static_cast<Index>(columns.size()));
@@ -38,38 +20,72 @@ fem::SparseMatrix chosen_columns(const fem::SparseMatrix& matrix, const std::vec
   return chosen;
 }
 
-BEAMID_WIDE_CLONE void add_scaled(double factor, const double* x, std::size_t count, double* y) {
-  for (std::size_t i = 0; i < count; ++i) y[i] += factor * x[i];
+std::vector<const fem::SparseMatrix*> slopes_of(const std::vector<fem::SparseMatrix>& matrices) {
+  std::vector<const fem::SparseMatrix*> slopes;
+  for (std::size_t j = 1; j < matrices.size(); ++j) slopes.push_back(&matrices[j]);
+  return slopes;
+}
+
+// S from its parts, entry by entry.
+BEAMID_WIDE_CLONE void sum_up(const double* stiffness, const double* mass, const double* dashpots,
+                              std::size_t count, Complex by_stiffness, Complex by_mass, Complex by_dashpots,
+                              Complex* sum) {
+  for (std::size_t k = 0; k < count; ++k)
+    sum[k] = stiffness[k] * by_stiffness + mass[k] * by_mass + dashpots[k] * by_dashpots;
 }
 
 }  // namespace
 
+BandedEquations::Assembled::Assembled(const fem::ParametricSystem& equations)
+    : stiffness{assembled_stiffness(equations.system.stiffness.strain, equations.system.stiffness.rigidity)},
+      mass{equations.system.mass},
+      dashpots{equations.system.damping} {
+  for (const auto& derivative : equations.derivatives) {
+    stiffness.push_back(assembled_stiffness(equations.strain, derivative.rigidity));
+    mass.push_back(derivative.mass);
+    dashpots.push_back(derivative.damping);
+  }
+}
+
+SymmetricPattern BandedEquations::Assembled::pattern() const {
+  std::vector<const fem::SparseMatrix*> all;
+  for (const auto* const kind : {&stiffness, &mass, &dashpots})
+    for (const fem::SparseMatrix& matrix : *kind) all.push_back(&matrix);
+  return {mass.front().rows(), all};
+}
+
+BandedEquations::Entries::Entries(const SymmetricPattern& pattern,
+                                  const std::vector<fem::SparseMatrix>& matrices)
+    : reference(pattern.values(matrices.front())), now(reference) {
+  for (const fem::SparseMatrix* slope : slopes_of(matrices)) slopes.push_back(pattern.part(*slope));
+}
+
+void BandedEquations::Entries::set(const VectorXd& change) {
+  now = reference;
+  for (std::size_t j = 0; j < slopes.size(); ++j) slopes[j].add(change[static_cast<Index>(j)], now);
+}
+
 BandedEquations::BandedEquations(const fem::ParametricSystem& equations, const MotionDescription& description)
+    : BandedEquations(equations, description, Assembled(equations)) {}
+
+BandedEquations::BandedEquations(const fem::ParametricSystem& equations, const MotionDescription& description,
+                                 const Assembled& assembled)
     : description_(description),
       size_(equations.system.size()),
       stiffness_(equations),
       mass_(equations),
-      width_(mass_.width()),
-      dashpots_(equations.system.damping),
+      pattern_(assembled.pattern()),
+      stiffness_entries_(pattern_, assembled.stiffness),
+      mass_entries_(pattern_, assembled.mass),
+      dashpot_entries_(pattern_, assembled.dashpots),
+      dashpots_(assembled.dashpots.front(), slopes_of(assembled.dashpots)),
       force_(chosen_columns(equations.system.inputs, description.forces)) {
-  const fem::StrainFactors& factors = equations.system.stiffness;
   if (static_cast<Index>(equations.derivatives.size()) != description.properties())
     throw std::invalid_argument("the description drives " + std::to_string(description.properties()) +
                                 " properties; expected the " + std::to_string(equations.derivatives.size()) +
                                 " of the equations");
-  std::vector<fem::SparseMatrix> assembled{factors.assembled()};
-  for (const auto& derivative : equations.derivatives) {
-    assembled.push_back(factors.strain.transpose() * derivative.rigidity * factors.strain);
+  for (const auto& derivative : equations.derivatives)
     force_slopes_.push_back(chosen_columns(derivative.inputs, description.forces));
-  }
-  for (const auto& matrix : assembled) width_ = std::max(width_, half_width(matrix));
-  width_ = BandedFactor(0, std::max(width_, half_width(dashpots_))).width();
-  stiffness_band_ = lower_band(assembled[0], width_, {0, size_});
-  for (std::size_t j = 0; j < equations.derivatives.size(); ++j)
-    stiffness_slopes_.push_back(
-        lower_band(assembled[j + 1], width_, stiffness_.reach(static_cast<Index>(j))));
-  if (dashpots_.nonZeros() > 0) dashpot_band_ = lower_band(dashpots_, width_, {0, size_});
-  band_ = stiffness_band_;
   change_.setZero(properties());
 }
 
@@ -89,10 +105,8 @@ bool BandedEquations::set(const PhysicalValues& values) {
   change_ = values.change;
   stiffness_.set(change_);
   mass_.set(change_);
-  band_ = stiffness_band_;
-  for (std::size_t j = 0; j < stiffness_slopes_.size(); ++j)
-    add_scaled(change_[static_cast<Index>(j)], stiffness_slopes_[j].data(), stiffness_slopes_[j].size(),
-               band_.data() + stiffness_.reach(static_cast<Index>(j)).first * (width_ + 1));
+  dashpots_.set(change_);
+  for (Entries* entries : {&stiffness_entries_, &mass_entries_, &dashpot_entries_}) entries->set(change_);
   return true;
 }
 
@@ -108,20 +122,11 @@ VectorXd BandedEquations::force_slope(Index j, const VectorXd& input) const {
   return force_slopes_[j] * input.head(force_.cols());
 }
 
-void BandedEquations::assemble(const Complex& lambda, BandedFactor& factor) const {
-  const Complex square = lambda * lambda;
+void BandedEquations::assemble(const Complex& lambda, std::vector<Complex>& entries) const {
+  entries.resize(pattern_.entries());
   const Complex by_stiffness{1.0 + lambda.re * stiffness_damping_, lambda.im * stiffness_damping_};
-  const Complex by_mass = square + mass_damping_ * lambda;
-  const int across = mass_.width();
-  for (Index i = 0; i < size_; ++i) {
-    Complex* const row = factor.row(i);
-    const double* const stiffness = &band_[i * (width_ + 1)];
-    const double* const mass = mass_.row(i) + across - width_;
-    for (int k = 0; k < width_ - across; ++k) row[k] = stiffness[k] * by_stiffness;
-    for (int k = width_ - across; k <= width_; ++k) row[k] = stiffness[k] * by_stiffness + mass[k] * by_mass;
-    if (dashpot_band_.empty()) continue;
-    for (int k = 0; k <= width_; ++k) row[k] += dashpot_band_[i * (width_ + 1) + k] * lambda;
-  }
+  sum_up(stiffness_entries_.now.data(), mass_entries_.now.data(), dashpot_entries_.now.data(), entries.size(),
+         by_stiffness, lambda * lambda + mass_damping_ * lambda, lambda, entries.data());
 }
 
 }  // namespace beamid::experiments::banded

@@ -1,28 +1,31 @@
-// The equations of motion of the whole mesh as narrow bands, at given values of the unknowns.
+// The equations of motion of the whole mesh, sparse, at given values of the unknowns.
 #pragma once
 
 #include <Eigen/Core>
-#include <utility>
 #include <vector>
 
-#include "experiments/models/banded/banded_factor.hpp"
 #include "experiments/models/banded/banded_mass.hpp"
 #include "experiments/models/banded/banded_stiffness.hpp"
+#include "experiments/models/banded/parametric_rows.hpp"
+#include "experiments/models/banded/symmetric_pattern.hpp"
 #include "experiments/models/motion/parametric_motion.hpp"
 
 namespace beamid::experiments::banded {
 
 /// M(p), C(p), K(p), E(p) f and their derivatives, each applied in O(n),
 ///
-///     C = C_0 + alpha M + beta K + sum_i c_i g_i g_i^T.
+///     C = C_0 + sum_j (p_j - p_0j) C_j + alpha M + beta K + sum_i c_i g_i g_i^T,
+///
+/// whatever the structure: along a beam all matrices are narrow bands, of frames and of a user's own matrices
+/// they are sparse.
 class BandedEquations {
  public:
-  /// @throws std::invalid_argument when sizes do not fit, or bands are wider than BandedFactor::widest.
+  /// @throws std::invalid_argument when sizes do not fit.
   BandedEquations(const fem::ParametricSystem& equations, const MotionDescription& description);
 
   Eigen::Index size() const { return size_; }                                                  ///< n
   Eigen::Index properties() const { return static_cast<Eigen::Index>(force_slopes_.size()); }  ///< a
-  int width() const { return width_; }  ///< of S, as BandedFactor stores it
+  const SymmetricPattern& pattern() const { return pattern_; }                                 ///< of S
 
   /// Takes the values of the unknowns. @return whether anything is other than before.
   bool set(const PhysicalValues& values);
@@ -40,33 +43,49 @@ class BandedEquations {
   /// E_j f (n)
   Eigen::VectorXd force_slope(Eigen::Index j, const Eigen::VectorXd& input) const;
   bool force_depends_on(Eigen::Index j) const { return force_slopes_[j].nonZeros() > 0; }
-  /// y += C_0 v
-  template <class Entry>
-  void add_dashpots(const Entry* v, Entry* y) const {
-    for (int j = 0; j < dashpots_.outerSize(); ++j)
-      for (fem::SparseMatrix::InnerIterator it(dashpots_, j); it; ++it) y[it.row()] += it.value() * v[j];
-  }
 
-  /// Row by row S = (1 + lambda beta) K + lambda C_0 + (lambda alpha + lambda^2) M, single modes left out.
-  void assemble(const Complex& lambda, BandedFactor& factor) const;
+  /// C_0 + sum_j change_j C_j, and C_j.
+  const ParametricRows& dashpots() const { return dashpots_; }
+
+  /// S = (1 + lambda beta) K + lambda C_0 + (lambda alpha + lambda^2) M on the pattern, single modes left
+  /// out.
+  void assemble(const Complex& lambda, std::vector<Complex>& entries) const;
+  /// M on the pattern.
+  const std::vector<double>& mass_entries() const { return mass_entries_.now; }
 
  private:
+  /// K, M or C on the pattern: at p_0, its derivatives, and at p.
+  struct Entries {
+    std::vector<double> reference, now;
+    std::vector<EntryList> slopes;
+
+    Entries(const SymmetricPattern& pattern, const std::vector<fem::SparseMatrix>& matrices);
+    void set(const Eigen::VectorXd& change);
+  };
+  /// Each of them and its derivatives (1 + a).
+  struct Assembled {
+    std::vector<fem::SparseMatrix> stiffness, mass, dashpots;
+
+    explicit Assembled(const fem::ParametricSystem& equations);
+    SymmetricPattern pattern() const;
+  };
+  BandedEquations(const fem::ParametricSystem& equations, const MotionDescription& description,
+                  const Assembled& assembled);
+
   MotionDescription description_;
   Eigen::Index size_;
   BandedStiffness stiffness_;
   BandedMass mass_;
-  int width_;
-  // Lower triangles, width_ + 1 entries per row, of K_0 and K_j over the rows that K_j reaches, and of C_0.
-  std::vector<double> stiffness_band_, dashpot_band_;
-  std::vector<std::vector<double>> stiffness_slopes_;
-  fem::SparseMatrix dashpots_, force_;
+  SymmetricPattern pattern_;
+  Entries stiffness_entries_, mass_entries_, dashpot_entries_;
+  ParametricRows dashpots_;
+  fem::SparseMatrix force_;
   std::vector<fem::SparseMatrix> force_slopes_;
 
   bool is_set_ = false;
   Eigen::VectorXd change_, ratios_;
   double mass_damping_ = 0.0, stiffness_damping_ = 0.0;
   std::vector<ModeDamping> mode_dampings_;
-  std::vector<double> band_;  // K(p)
 };
 
 }  // namespace beamid::experiments::banded

@@ -101,6 +101,11 @@ double magnitude(const Complex& z) {
 BandedFactor::BandedFactor(Index size, int width)
     : size_(size), width_(stored_width(width)), rows_(static_cast<std::size_t>(size) * (width_ + 1)) {}
 
+void BandedFactor::fill(const std::vector<Complex>& entries, const std::vector<std::size_t>& places) {
+  std::fill(rows_.begin(), rows_.end(), Complex{});
+  for (std::size_t k = 0; k < places.size(); ++k) rows_[places[k]] = entries[k];
+}
+
 void BandedFactor::factor() {
   Complex* const rows = rows_.data();
   if (width_ == 3) factor_3(rows, size_);

@@ -28,6 +28,10 @@ class BandedFactor {
   /// stay zero. factor() replaces it.
   Complex* row(Eigen::Index i) { return &rows_[static_cast<std::size_t>(i) * (width_ + 1)]; }
 
+  /// The lower triangle from its entries; the rest of the rows becomes zero.
+  /// @param places of the entries, row(i)[k] being at i (width() + 1) + k
+  void fill(const std::vector<Complex>& entries, const std::vector<std::size_t>& places);
+
   /// @throws std::runtime_error when a pivot is zero or not a number.
   void factor();
 

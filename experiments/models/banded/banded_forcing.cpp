@@ -25,6 +25,13 @@ void BandedStep::by_property(const BandedEquations& equations, Index j, const do
       point_[i] = Complex{q[i], 0.0} - shrink * solution_[i];
     equations.stiffness().add_slope_product(j, point_.data(), forcing.rows.data());
   }
+  const auto [dashpots_from, dashpots_to] = equations.dashpots().reach(j);
+  if (dashpots_from != dashpots_to) {
+    include(dashpots_from);
+    include(dashpots_to - 1);
+    for (Index i = dashpots_from; i < dashpots_to; ++i) point_[i] = -1.0 * (lambda_ * solution_[i]);
+    equations.dashpots().slope(j).add_product(point_.data(), forcing.rows.data());
+  }
   const Complex shifted = lambda_ + Complex{equations.mass_damping(), 0.0};
   for (const BandedMass::Entry& entry : equations.mass().slope(j)) {
     const Complex moving = lambda_ * (Complex{rate[entry.column], 0.0} + shifted * solution_[entry.column]);

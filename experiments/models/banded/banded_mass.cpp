@@ -65,26 +65,30 @@ BandedMass::BandedMass(const fem::ParametricSystem& equations) : size_(equations
     });
   }
   support_.assign(touched.begin(), touched.end());
+  if (!is_band()) {
+    std::vector<const fem::SparseMatrix*> slopes;
+    for (const auto& derivative : equations.derivatives) slopes.push_back(&derivative.mass);
+    rows_ = ParametricRows(equations.system.mass, slopes);
+    return;
+  }
   reference_.assign(static_cast<std::size_t>(size_) * (2 * width_ + 1), 0.0);
-  visit(equations.system.mass,
-        [&](Index i, Index j, double value) { reference_[i * (2 * width_ + 1) + width_ + j - i] = value; });
+  visit(equations.system.mass, [&](Index i, Index j, double value) { reference_[place(i, j)] = value; });
   band_ = reference_;
 }
 
 void BandedMass::set(const Eigen::VectorXd& change) {
-  const Index stride = 2 * width_ + 1;
+  if (is_constant()) return;
+  if (!is_band()) return rows_.set(change);
   for (const auto& slope : slopes_)
-    for (const Entry& entry : slope) {
-      const Index place = entry.row * stride + width_ + entry.column - entry.row;
-      band_[place] = reference_[place];
-    }
+    for (const Entry& entry : slope)
+      band_[place(entry.row, entry.column)] = reference_[place(entry.row, entry.column)];
   for (std::size_t j = 0; j < slopes_.size(); ++j)
     for (const Entry& entry : slopes_[j])
-      band_[entry.row * stride + width_ + entry.column - entry.row] +=
-          change[static_cast<Index>(j)] * entry.value;
+      band_[place(entry.row, entry.column)] += change[static_cast<Index>(j)] * entry.value;
 }
 
 void BandedMass::multiply(const double* x, double* y) const {
+  if (!is_band()) return rows_.now().multiply(x, y);
   const auto set = [y](Index i, double sum) { y[i] = sum; };
   if (width_ == plain_width)
     multiply_band(band_.data(), size_, plain_width, x, set);
@@ -93,6 +97,7 @@ void BandedMass::multiply(const double* x, double* y) const {
 }
 
 void BandedMass::take_off(const Complex* x, Complex* y) const {
+  if (!is_band()) return rows_.now().add_product(x, y, -1.0);
   const auto subtract = [y](Index i, const Complex& sum) { y[i] -= sum; };
   if (width_ == plain_width)
     multiply_band(band_.data(), size_, plain_width, x, subtract);
@@ -101,7 +106,10 @@ void BandedMass::take_off(const Complex* x, Complex* y) const {
 }
 
 void BandedMass::multiply(const Lanes* x, Lanes* y) const {
-  multiply_lanes(band_.data(), size_, width_, x, y);
+  if (is_band())
+    multiply_lanes(band_.data(), size_, width_, x, y);
+  else
+    rows_.now().multiply(x, y);
 }
 
 }  // namespace beamid::experiments::banded

@@ -1,10 +1,12 @@
-// M(p) = M_0 + sum_j (p_j - p_0j) M_j as a band.
+// M(p) = M_0 + sum_j (p_j - p_0j) M_j as a band, or row by row.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "experiments/models/banded/banded_lanes.hpp"
+#include "experiments/models/banded/parametric_rows.hpp"
+#include "experiments/models/banded/symmetric_pattern.hpp"
 #include "fem/parametric_system.hpp"
 
 namespace beamid::experiments::banded {
@@ -21,12 +23,7 @@ class BandedMass {
   void multiply(const Lanes* x, Lanes* y) const;
   /// y -= M x
   void take_off(const Complex* x, Complex* y) const;
-  /// Entries beside the diagonal.
-  int width() const { return width_; }
-  /// Row i from column i - width() on; zero beyond the matrix.
-  const double* row(Eigen::Index i) const { return &band_[static_cast<std::size_t>(i) * (2 * width_ + 1)]; }
-
-  /// M_j is small or nothing: its entries. Both triangles are there.
+  /// Entries of M_j, of both triangles.
   struct Entry {
     Eigen::Index row, column;
     double value;
@@ -37,9 +34,15 @@ class BandedMass {
   const std::vector<Eigen::Index>& support() const { return support_; }
 
  private:
+  bool is_band() const { return width_ <= narrow_band; }
+  std::size_t place(Eigen::Index row, Eigen::Index column) const {
+    return static_cast<std::size_t>(row * (2 * width_ + 1) + width_ + column - row);
+  }
+
   Eigen::Index size_;
-  int width_ = 0;
+  int width_ = 0;  // entries beside the diagonal
   std::vector<double> reference_, band_;
+  ParametricRows rows_;  // where it is no band
   std::vector<std::vector<Entry>> slopes_;
   std::vector<Eigen::Index> support_;
 };

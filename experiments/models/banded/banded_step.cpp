@@ -14,7 +14,7 @@ BandedStep::BandedStep(const BandedEquations& equations, double interval)
     : size_(equations.size()),
       interval_(interval),
       lambda_{3.0 / interval, sqrt3 / interval},
-      factor_(size_, equations.width()),
+      factor_(equations.pattern()),
       correction_(size_),
       solution_(size_),
       right_(size_),
@@ -29,14 +29,9 @@ BandedStep::BandedStep(const BandedEquations& equations, double interval)
       block_(size_) {}
 
 void BandedStep::factor(const BandedEquations& equations) {
-  equations.assemble(lambda_, factor_);
-  if (watches_growth_) {
-    const std::vector<Complex> unfactored = factor_.rows();
-    factor_.factor();
-    growth_ = factor_.growth(unfactored);
-  } else {
-    factor_.factor();
-  }
+  equations.assemble(lambda_, entries_);
+  factor_.factor(entries_);
+  if (watches_growth_) growth_ = factor_.growth(entries_);
   is_new_ = true;
 }
 
@@ -78,7 +73,7 @@ void BandedStep::refine(const BandedEquations& equations) {
   for (Index i = 0; i < size_; ++i) point_[i] = by_mass * solution_[i];
   equations.mass().take_off(point_.data(), right_.data());
   for (Index i = 0; i < size_; ++i) point_[i] = -1.0 * (lambda_ * solution_[i]);
-  equations.add_dashpots(point_.data(), right_.data());
+  equations.dashpots().now().add_product(point_.data(), right_.data());
   for (const ModeDamping& mode : equations.mode_dampings()) {
     const Complex seen = mode.factor * inner(mode.momentum.data(), point_.data(), size_);
     for (Index i = 0; i < size_; ++i) right_[i] += mode.momentum[i] * seen;

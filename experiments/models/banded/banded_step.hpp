@@ -1,4 +1,4 @@
-// One step of the scheme `pade` on banded equations of motion, and its tangent.
+// One step of the scheme `pade` on sparse equations of motion, and its tangent.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,6 +6,7 @@
 
 #include "experiments/models/banded/banded_equations.hpp"
 #include "experiments/models/banded/modal_correction.hpp"
+#include "experiments/models/banded/step_factor.hpp"
 
 namespace beamid::experiments::banded {
 
@@ -62,6 +63,8 @@ class BandedStep {
   void move(const BandedEquations& equations, const std::vector<Forcing>& forcings,
             const Eigen::MatrixXd& parts, Eigen::MatrixXd& directions);
 
+  /// Whether S is kept as a band.
+  bool is_band() const { return factor_.is_band(); }
   /// The largest entry that eliminating S met over the largest of S.
   double growth() const { return growth_; }
   /// Whether growth() is to be found by each factor(): it takes as long again.
@@ -75,7 +78,8 @@ class BandedStep {
   Eigen::Index size_;
   double interval_;
   Complex lambda_;
-  BandedFactor factor_;
+  StepFactor factor_;
+  std::vector<Complex> entries_;  // S
   ModalCorrection correction_;
   std::vector<Complex> solution_, right_;  // d (n), and the right side it belongs to
   std::vector<double> work_, work_rate_, zeros_, nowhere_;

@@ -44,7 +44,7 @@ void ContinuumMotion::rate(const VectorXd& state, const VectorXd& input, VectorX
   equations.stiffness().add_product(q, force.data());
   equations.stiffness().add_product(speed, product.data());
   force += equations.stiffness_damping() * product;
-  equations.add_dashpots(speed, force.data());
+  equations.dashpots().now().add_product(speed, force.data());
   for (const ModeDamping& mode : equations.mode_dampings())
     force += mode.factor * mode.momentum.dot(state.segment(n, n)) * mode.momentum;
   force = equations.force(input) - force;
@@ -102,22 +102,25 @@ bool is_zero(const fem::SparseMatrix& matrix) {
 }  // namespace
 
 bool keeps_mode_shapes(const fem::ParametricSystem& equations) {
-  const fem::SparseMatrix& rigidity = equations.system.stiffness.rigidity;
-  for (const auto& derivative : equations.derivatives) {
-    if (!is_zero(derivative.mass)) return false;
-    if (derivative.rigidity.rows() != rigidity.rows())
-      return false;  // an axial load, about none: other strains
-    // s with D_j = s D, to the rounding of both
-    const double share = derivative.rigidity.cwiseProduct(rigidity).sum() / rigidity.squaredNorm();
+  const fem::StrainFactors& own = equations.system.stiffness;
+  const bool same_strains = equations.strain.rows() == own.strain.rows() &&
+                            fem::SparseMatrix(equations.strain - own.strain).squaredNorm() == 0.0;
+  const fem::SparseMatrix all = same_strains ? own.rigidity : own.assembled();
+  for (std::size_t j = 0; j < equations.derivatives.size(); ++j) {
+    if (!is_zero(equations.derivatives[j].mass)) return false;
+    const fem::SparseMatrix part =
+        same_strains ? equations.derivatives[j].rigidity : equations.stiffness_derivative(j);
+    // s with D_j = s D, or K_j = s K, to the rounding of both
+    const double share = part.cwiseProduct(all).sum() / all.squaredNorm();
     constexpr double rounding = 1e-12;
-    if (fem::SparseMatrix(derivative.rigidity - share * rigidity).norm() >
-        rounding * derivative.rigidity.norm())
-      return false;
+    if (fem::SparseMatrix(part - share * all).norm() > rounding * part.norm()) return false;
   }
   return true;
 }
 
 bool keeps_mode_shapes(const fem::ParametricSystem& equations, const MotionDescription& description) {
+  for (const auto& derivative : equations.derivatives)
+    if (!is_zero(derivative.damping)) return false;
   return description.forces.empty() && equations.system.nonlinear_forces.empty() &&
          is_zero(equations.system.damping) && keeps_mode_shapes(equations);
 }

@@ -12,19 +12,6 @@ namespace beamid::experiments::banded {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-namespace {
-
-int half_width(const fem::SparseMatrix& a, const fem::SparseMatrix& b) {
-  int width = 0;
-  for (const fem::SparseMatrix* matrix : {&a, &b})
-    for (int j = 0; j < matrix->outerSize(); ++j)
-      for (fem::SparseMatrix::InnerIterator it(*matrix, j); it; ++it)
-        width = std::max(width, std::abs(static_cast<int>(it.row()) - j));
-  return width;
-}
-
-}  // namespace
-
 ContinuumSensors::ContinuumSensors(const fem::ParametricSystem& equations,
                                    const MotionDescription& description, const StateLayout& layout)
     : description_(description),
@@ -41,7 +28,9 @@ ContinuumSensors::ContinuumSensors(const fem::ParametricSystem& equations,
   smooth(equations.system);
 
   const BandedMass mass(equations);
-  const auto k = static_cast<Index>(sensors_.size()), s = static_cast<Index>(mass.support().size());
+  mass_changes_everywhere_ = mass.support().size() > most_entries;
+  const auto k = static_cast<Index>(sensors_.size());
+  const auto s = mass_changes_everywhere_ ? 0 : static_cast<Index>(mass.support().size());
   MatrixXd right = MatrixXd::Zero(size_, k + s);
   for (Index i = 0; i < k; ++i) right.col(i) = rows_.col(sensors_[i]);
   for (Index i = 0; i < s; ++i) right(mass.support()[i], k + i) = 1.0;
@@ -64,48 +53,53 @@ void ContinuumSensors::smooth(const fem::StructuralSystem& system) {
   const double cut = cut_off * modes.angular_frequency[modes.rigid], spare = 10.0;
   if (!(highest > spare * spare * cut * cut)) return;
   smooths_ = true;
-  BandedFactor factor(size_, half_width(stiffness, system.mass));
-  const auto add = [&](const fem::SparseMatrix& matrix, const Complex& weight) {
-    for (int j = 0; j < matrix.outerSize(); ++j)
-      for (fem::SparseMatrix::InnerIterator it(matrix, j); it; ++it)
-        if (it.row() >= j) factor.row(it.row())[factor.width() + j - it.row()] += it.value() * weight;
-  };
-  add(system.mass, {1.0, 0.0});
-  add(stiffness, {0.0, 1.0 / (cut * cut)});
-  factor.factor();
-  std::vector<Complex> response(size_);
-  for (const Index sensor : sensors_) {
-    for (Index i = 0; i < size_; ++i) response[i] = {rows_(i, sensor), 0.0};
-    factor.solve(response.data());
-    for (Index i = 0; i < size_; ++i) rows_(i, sensor) = response[i].re;
-    rows_.col(sensor) = system.mass * rows_.col(sensor);
+  const SymmetricPattern pattern(size_, {&stiffness, &system.mass});
+  const std::vector<double> masses = pattern.values(system.mass), rigidities = pattern.values(stiffness);
+  std::vector<Complex> entries(pattern.entries());
+  for (std::size_t e = 0; e < entries.size(); ++e) entries[e] = {masses[e], rigidities[e] / (cut * cut)};
+  StepFactor factor(pattern);
+  factor.factor(entries);
+  for (const Index sensor : sensors_)
+    rows_.col(sensor) = system.mass * factor.real_part_solved(rows_.col(sensor));
+}
+
+// g of every sensor at M(p).
+void ContinuumSensors::take_mass(const BandedEquations& equations) {
+  const auto k = static_cast<Index>(sensors_.size());
+  if (mass_changes_everywhere_) {
+    if (!mass_factor_) mass_factor_.emplace(equations.pattern());
+    mass_entries_.clear();
+    for (const double entry : equations.mass_entries()) mass_entries_.push_back({entry, 0.0});
+    mass_factor_->factor(mass_entries_);
+    for (Index i = 0; i < k; ++i) receptance_.col(i) = mass_factor_->real_part_solved(rows_.col(sensors_[i]));
+    return;
   }
+  const std::vector<Index>& support = equations.mass().support();
+  const auto s = static_cast<Index>(support.size());
+  if (s == 0) return;
+  MatrixXd added = MatrixXd::Zero(s, s), seen(s, k + s);
+  const auto place = [&](Index i) {
+    return std::lower_bound(support.begin(), support.end(), i) - support.begin();
+  };
+  for (Index j = 0; j < equations.properties(); ++j)
+    for (const BandedMass::Entry& entry : equations.mass().slope(j))
+      added(place(entry.row), place(entry.column)) += equations.change()[j] * entry.value;
+  for (Index i = 0; i < s; ++i) seen.row(i) = reference_.row(support[i]);
+  const MatrixXd system = MatrixXd::Identity(s, s) + added * seen.rightCols(s);
+  receptance_ = reference_ - reference_.rightCols(s) * system.partialPivLu().solve(added * seen);
 }
 
 void ContinuumSensors::set(const BandedEquations& equations) {
   if (sensors_.empty()) return;
   const auto k = static_cast<Index>(sensors_.size());
-  const std::vector<Index>& support = equations.mass().support();
-  const auto s = static_cast<Index>(support.size());
-  if (s > 0) {
-    MatrixXd added = MatrixXd::Zero(s, s), seen(s, k + s);
-    const auto place = [&](Index i) {
-      return std::lower_bound(support.begin(), support.end(), i) - support.begin();
-    };
-    for (Index j = 0; j < equations.properties(); ++j)
-      for (const BandedMass::Entry& entry : equations.mass().slope(j))
-        added(place(entry.row), place(entry.column)) += equations.change()[j] * entry.value;
-    for (Index i = 0; i < s; ++i) seen.row(i) = reference_.row(support[i]);
-    const MatrixXd system = MatrixXd::Identity(s, s) + added * seen.rightCols(s);
-    receptance_ = reference_ - reference_.rightCols(s) * system.partialPivLu().solve(added * seen);
-  }
+  take_mass(equations);
   by_motion_.setZero(size_, k);
   for (Index i = 0; i < k; ++i)
     equations.stiffness().add_product(receptance_.col(i).data(), by_motion_.col(i).data());
   by_rate_ = equations.stiffness_damping() * by_motion_;
   for (Index i = 0; i < k; ++i) {
     by_rate_.col(i) += equations.mass_damping() * rows_.col(sensors_[i]);
-    equations.add_dashpots(receptance_.col(i).data(), by_rate_.col(i).data());
+    equations.dashpots().now().add_product(receptance_.col(i).data(), by_rate_.col(i).data());
     for (const ModeDamping& mode : equations.mode_dampings())
       by_rate_.col(i) += mode.factor * mode.momentum.dot(receptance_.col(i)) * mode.momentum;
   }

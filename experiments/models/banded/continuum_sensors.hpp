@@ -2,9 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "experiments/models/banded/banded_equations.hpp"
+#include "experiments/models/banded/step_factor.hpp"
 
 namespace beamid::experiments::banded {
 
@@ -12,7 +14,8 @@ namespace beamid::experiments::banded {
 ///
 ///     y = g^T (E f - C q' - K q) + base acceleration + bias,    M(p) g = h
 ///
-/// with g from M(p_0)^-1 by the few entries that M(p) - M(p_0) has [woodbury1950].
+/// with g from M(p_0)^-1 by the few entries that M(p) - M(p_0) has [woodbury1950], and by a factor of M(p)
+/// where it has more.
 ///
 /// An acceleration read at a point takes the rounding errors of q times the square of the mesh's highest
 /// frequency, which grows with the fourth power of the number of elements. On meshes finer than that allows,
@@ -41,8 +44,13 @@ class ContinuumSensors {
 
  private:
   void smooth(const fem::StructuralSystem& system);
+  void take_mass(const BandedEquations& equations);
+  struct Motion;  // a state, and its accelerations once they are asked for
   double by_drive(const BandedEquations& equations, Eigen::Index unknown, Eigen::Index sensor,
-                  const double* q, const double* rate, const Eigen::VectorXd& input) const;
+                  Motion& motion) const;
+  const Eigen::VectorXd& accelerations(const BandedEquations& equations, Motion& motion) const;
+
+  static constexpr std::size_t most_entries = 24;  // that M(p) - M(p_0) may have rows
 
   MotionDescription description_;
   StateLayout layout_;
@@ -50,8 +58,11 @@ class ContinuumSensors {
   Eigen::MatrixXd rows_;               // h (n x p)
   std::vector<Eigen::Index> sensors_;  // of acceleration: observations (k)
   bool smooths_ = false;
+  bool mass_changes_everywhere_ = false;
   Eigen::MatrixXd reference_;   // M(p_0)^-1 [h, unit vectors of the entries that M_j touch] (n x (k + s))
   Eigen::MatrixXd receptance_;  // the same at p
+  std::optional<StepFactor> mass_factor_;  // of M(p), instead of the unit vectors; s = 0
+  std::vector<Complex> mass_entries_;
   Eigen::MatrixXd by_motion_, by_rate_;  // -K g and -C g (n x k)
 };
 

@@ -92,7 +92,7 @@ Complex inner(const double* g, const Complex* x, Index size) {
   return sum;
 }
 
-void ModalCorrection::factor(const BandedFactor& band, const std::vector<ModeDamping>& modes,
+void ModalCorrection::factor(const StepFactor& factored, const std::vector<ModeDamping>& modes,
                              const Complex& lambda, Complex* b) {
   const auto count = static_cast<Index>(modes.size());
   Eigen::MatrixXcd overlaps(count, count + 1);
@@ -109,7 +109,7 @@ void ModalCorrection::factor(const BandedFactor& band, const std::vector<ModeDam
         block_[i].re.values[own] = b[i].re;
         block_[i].im.values[own] = b[i].im;
       }
-    band.solve(block_.data());
+    factored.solve(block_.data());
     for (Index mode = 0; mode < count; ++mode) {
       const double* const g = modes[mode].momentum.data();
       ComplexLanes seen;

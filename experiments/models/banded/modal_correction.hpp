@@ -1,15 +1,15 @@
-// Damping of single modes in a banded system: a term of low rank.
+// Damping of single modes in a sparse system: a term of low rank.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "experiments/models/banded/banded_factor.hpp"
+#include "experiments/models/banded/step_factor.hpp"
 #include "experiments/models/motion/parametric_motion.hpp"
 
 namespace beamid::experiments::banded {
 
-/// With the band S_b of K + lambda C + lambda^2 M, k damped modes and G = [g_1 ... g_k] (n x k) the inverse
+/// With S_b, K + lambda C + lambda^2 M without them, k damped modes and G = [g_1 ... g_k] (n x k) the inverse
 /// is [woodbury1950]
 ///
 ///     (S_b + lambda G c G^T)^-1 b = y - Z (I + lambda c G^T Z)^-1 lambda c G^T y,
@@ -20,9 +20,9 @@ class ModalCorrection {
  public:
   explicit ModalCorrection(Eigen::Index size) : size_(size), zeros_(size), lanes_(size), block_(size) {}
 
-  /// Z and the k x k system; b (n), a right side, goes through the factored band beside G and comes out
+  /// Z and the k x k system; b (n), a right side, goes through the factor beside G and comes out
   /// solved, correction included.
-  void factor(const BandedFactor& band, const std::vector<ModeDamping>& modes, const Complex& lambda,
+  void factor(const StepFactor& factored, const std::vector<ModeDamping>& modes, const Complex& lambda,
               Complex* b);
 
   /// y (n), of the same modes, corrected in place; likewise four columns.

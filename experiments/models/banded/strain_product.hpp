@@ -21,6 +21,7 @@ namespace beamid::experiments::banded {
 /// hand their common node on in registers; whatever else D consists of is taken row by row.
 class StrainProduct {
  public:
+  StrainProduct() = default;  ///< of nothing
   /// @param rigidity D (s x s), whose blocks may be smaller than those that `starts` names
   /// @param starts first strain of each block that no rigidity reaches out of, and s
   /// @throws std::invalid_argument when a block has more than `largest_block` strains.

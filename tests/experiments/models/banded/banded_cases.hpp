@@ -1,4 +1,4 @@
-// Beams whose whole mesh moves in bands and, as the oracle, as dense matrices.
+// Structures whose whole mesh moves as bands or sparse and, as the oracle, as dense matrices.
 #pragma once
 
 #include <memory>
@@ -25,6 +25,10 @@ struct BandedCase {
 
 /// Beams that reach every branch: tip body, springs, dashpots, axial load, absorber, shear, regions.
 std::vector<BandedCase> banded_cases();
+/// Structures that are no bands: a plane frame, a space frame, matrices whose masses, stiffness and damping
+/// are unknown, of few coordinates and of many.
+std::vector<BandedCase> sparse_cases();
+std::vector<BandedCase> all_cases();  ///< both
 
 /// A state with nothing zero, unknowns near their guess.
 Eigen::VectorXd banded_state(const BandedCase& given, unsigned seed);

@@ -1,4 +1,5 @@
-// What filters estimate from the mesh in bands and from the same as dense matrices (dense_continuum.hpp).
+// What filters estimate from the mesh, banded or sparse, and from the same as dense matrices
+// (dense_continuum.hpp).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,7 +93,7 @@ void expect_equal_estimates(const BandedCase& given, const std::string& oracle) 
 
 TEST(ContinuumMotion, EstimatesAreThoseOfTheDenseMatrices) {
   // Oracle: the same filter on the dense scheme `pade`.
-  for (const BandedCase& given : banded_cases()) {
+  for (const BandedCase& given : all_cases()) {
     SCOPED_TRACE(given.name);
     expect_equal_estimates(given, "low_rank_ekf");
   }
@@ -102,7 +103,7 @@ TEST(ContinuumMotion, EstimatesAreThoseOfTheFilterThatCarriesTheWholeCovariance)
   // Oracle: `ekf` on the dense scheme. It observes displacement and velocity: an acceleration is a small
   // difference of the coordinates, by which a covariance of all of them loses twice as many digits as its
   // factor.
-  for (BandedCase given : banded_cases()) {
+  for (BandedCase given : all_cases()) {
     SCOPED_TRACE(given.name);
     given.description.observations = {{Quantity::displacement}, {Quantity::velocity}};
     given.equations.system.outputs = fem::SparseMatrix(given.equations.system.outputs.topRows(2));

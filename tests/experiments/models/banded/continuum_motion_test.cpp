@@ -1,4 +1,4 @@
-// The whole mesh in bands against the same as dense matrices (dense_continuum.hpp).
+// The whole mesh, banded or sparse, against the same as dense matrices (dense_continuum.hpp).
 #include "experiments/models/banded/continuum_motion.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ double difference(const MatrixXd& a, const MatrixXd& b) {
 
 TEST(ContinuumMotion, StepsAndTangentsAreThoseOfTheDenseMatrices) {
   // Oracle: the dense scheme `pade` with dense matrices and their derivatives, itself tested by differences.
-  for (const BandedCase& given : banded_cases()) {
+  for (const BandedCase& given : all_cases()) {
     SCOPED_TRACE(given.name);
     const auto [banded, dense] = banded_and_dense(given);
     const VectorXd state = banded_state(given, 4);
@@ -51,7 +51,7 @@ TEST(ContinuumMotion, StepsAndTangentsAreThoseOfTheDenseMatrices) {
 
 TEST(ContinuumMotion, ReadingsAndTheirDerivativesAreThoseOfTheDenseMatrices) {
   // Oracle: y and dy/dz from the dense A and B, and from their derivatives.
-  for (const BandedCase& given : banded_cases()) {
+  for (const BandedCase& given : all_cases()) {
     SCOPED_TRACE(given.name);
     const auto [banded, dense] = banded_and_dense(given);
     const VectorXd state = banded_state(given, 5), input = VectorXd::LinSpaced(2, -3.0, 5.0);
@@ -75,7 +75,7 @@ TEST(ContinuumMotion, ReadingsAndTheirDerivativesAreThoseOfTheDenseMatrices) {
 
 TEST(ContinuumMotion, MovesContinuouslyAsTheDenseMatricesDo) {
   // Oracle: A x + B u.
-  for (const BandedCase& given : banded_cases()) {
+  for (const BandedCase& given : all_cases()) {
     SCOPED_TRACE(given.name);
     const ContinuumMotion banded(given.equations, given.description);
     const test::DenseContinuum dense(given.equations, given.description);

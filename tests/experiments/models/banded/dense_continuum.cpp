@@ -14,7 +14,7 @@ std::vector<filters::Label> DenseContinuum::output_labels() const {
 
 DenseContinuum::Matrices DenseContinuum::matrices(const Eigen::VectorXd& state) const {
   const PhysicalValues at = physical_values(description_, layout_, state);
-  const fem::SparseMatrix& b = equations_.system.stiffness.strain;
+  const fem::SparseMatrix& b = equations_.strain;
   Matrices m{equations_.system.mass, equations_.system.damping,
              Eigen::MatrixXd(equations_.system.stiffness.assembled()), chosen(equations_.system.inputs)};
   for (Eigen::Index j = 0; j < at.change.size(); ++j) {
@@ -22,6 +22,7 @@ DenseContinuum::Matrices DenseContinuum::matrices(const Eigen::VectorXd& state) 
     m.mass += at.change[j] * Eigen::MatrixXd(slope.mass);
     m.stiffness += at.change[j] * Eigen::MatrixXd(b.transpose() * slope.rigidity * b);
     m.inputs += at.change[j] * chosen(slope.inputs);
+    if (slope.damping.nonZeros() > 0) m.damping += at.change[j] * Eigen::MatrixXd(slope.damping);
   }
   m.damping += at.mass_damping * m.mass + at.stiffness_damping * m.stiffness;
   for (std::size_t i = 0; i < description_.damped_modes.size(); ++i) {
@@ -42,12 +43,13 @@ DenseContinuum::Matrices DenseContinuum::slopes(const Eigen::VectorXd& state, Ei
   if (drive.kind == Drive::Kind::mass_damping) d.damping = m.mass;
   if (drive.kind == Drive::Kind::stiffness_damping) d.damping = m.stiffness;
   if (drive.kind == Drive::Kind::property) {
-    const fem::SparseMatrix& b = equations_.system.stiffness.strain;
+    const fem::SparseMatrix& b = equations_.strain;
     const auto& slope = equations_.derivatives[static_cast<std::size_t>(drive.index)];
     d.mass = Eigen::MatrixXd(slope.mass);
     d.stiffness = Eigen::MatrixXd(b.transpose() * slope.rigidity * b);
     d.inputs = chosen(slope.inputs);
     d.damping = at.mass_damping * d.mass + at.stiffness_damping * d.stiffness;
+    if (slope.damping.nonZeros() > 0) d.damping += Eigen::MatrixXd(slope.damping);
   }
   for (std::size_t i = 0; i < description_.damped_modes.size(); ++i) {
     const DampedMode& damped = description_.damped_modes[i];
@@ -157,7 +159,7 @@ std::vector<DampedMode> damped_modes(const fem::ParametricSystem& equations,
   const fem::Modes modes = fem::modes(system, static_cast<Eigen::Index>(ratios.size()));
   std::vector<DampedMode> result;
   for (Eigen::Index i = 0; i < modes.size(); ++i) {
-    const Eigen::VectorXd phi = modes.shape.col(i), strain = system.stiffness.strain * phi;
+    const Eigen::VectorXd phi = modes.shape.col(i), strain = equations.strain * phi;
     DampedMode mode{system.mass * phi,
                     Eigen::MatrixXd(system.size(), a),
                     Eigen::VectorXd(a),

@@ -1,0 +1,45 @@
+// Where symmetric matrices that are added up have entries.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "experiments/models/banded/entry_list.hpp"
+#include "fem/structural_system.hpp"
+
+namespace beamid::experiments::banded {
+
+/// Entries beside the diagonal up to which a band is kept as one: its loops, without indices, take less time
+/// per entry than those of a sparse matrix, and a wider one is mostly zeros.
+inline constexpr int narrow_band = 8;
+
+/// The lower triangle of the union of several matrices (n x n): row after row, columns ascending, with every
+/// diagonal entry. Entries are numbered in this order, so that sums of the matrices are sums of arrays.
+class SymmetricPattern {
+ public:
+  SymmetricPattern(Eigen::Index size, const std::vector<const fem::SparseMatrix*>& matrices);
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(start_.size()) - 1; }  ///< n
+  std::size_t entries() const { return column_.size(); }
+  int start(Eigen::Index row) const { return start_[static_cast<std::size_t>(row)]; }  ///< its first entry
+  int column(int entry) const { return column_[static_cast<std::size_t>(entry)]; }
+  /// The most places between the diagonal and an entry.
+  int half_width() const;
+
+  /// The lower triangle of a matrix that has no other entries (entries); zero where it has none.
+  std::vector<double> values(const fem::SparseMatrix& matrix) const;
+
+  /// Those that one matrix has.
+  EntryList part(const fem::SparseMatrix& matrix) const;
+
+ private:
+  std::vector<int> start_, column_;  // n + 1; entries
+
+  int entry_at(int row, int column) const;
+};
+
+/// B^T D B (n x n) without entries that rounding alone has left: those below 1e-14 of the two diagonal ones,
+/// which would be taken for coupling.
+fem::SparseMatrix assembled_stiffness(const fem::SparseMatrix& strain, const fem::SparseMatrix& rigidity);
+
+}  // namespace beamid::experiments::banded
