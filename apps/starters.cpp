@@ -254,7 +254,7 @@ name = "k1"
 quantity = "damping_ratio"
 
 [reduction]
-method = "none"                     # more than 30 unknowns need one: modal_truncation, craig_bampton, ...
+method = "none"                     # many unknowns take less time with one: modal_truncation, craig_bampton, ...
 )toml";
 
 constexpr const char* tail = R"toml(

@@ -32,6 +32,20 @@ using Vector = Lanes::Vector;
   }
 }
 
+// Several at a time: what is added to is read and written once.
+template <int count>
+[[gnu::always_inline]] inline void add_some(const double* const* g, const ComplexLanes* factors, Index size,
+                                            ComplexLanes* right) {
+  ComplexLanes by[count];
+  for (int k = 0; k < count; ++k) by[k] = factors[k];
+  for (Index i = 0; i < size; ++i) {
+    ComplexLanes sum = right[i];
+#pragma GCC unroll 4
+    for (int k = 0; k < count; ++k) sum += g[k][i] * by[k];
+    right[i] = sum;
+  }
+}
+
 }  // namespace
 
 BEAMID_WIDE_CLONE void gather(const double* const* columns, Index size, Lanes* block) {
@@ -64,6 +78,16 @@ BEAMID_WIDE_CLONE void add_forcing(const Complex* forcing, const Lanes& part, In
     right[i].re += forcing[i].re * factor;
     right[i].im += forcing[i].im * factor;
   }
+}
+
+BEAMID_WIDE_CLONE void add_multiples(const double* const* g, const ComplexLanes* factors, int count,
+                                     Index size, ComplexLanes* right) {
+  if (count >= 3) {
+    add_some<3>(g, factors, size, right);
+    return add_multiples(g + 3, factors + 3, count - 3, size, right);
+  }
+  if (count == 2) add_some<2>(g, factors, size, right);
+  if (count == 1) add_some<1>(g, factors, size, right);
 }
 
 BEAMID_WIDE_CLONE void scatter(const ComplexLanes* change, double interval, Index size,

@@ -18,6 +18,10 @@ void right_side(const Lanes* stiff, const Lanes* momentum, double interval, Eige
 void add_forcing(const Complex* forcing, const Lanes& part, Eigen::Index first, Eigen::Index last,
                  ComplexLanes* right);
 
+/// right += sum_i factor_i g_i, of `count` vectors g_i (n) with a factor of each direction.
+void add_multiples(const double* const* g, const ComplexLanes* factors, int count, Eigen::Index size,
+                   ComplexLanes* right);
+
 /// What the solution d (n) adds to q and q', into four columns each: 4 sqrt3 Im d and
 /// (12 / dt) (Re d + sqrt3 Im d).
 void scatter(const ComplexLanes* change, double interval, Eigen::Index size, double* const* columns,

@@ -57,10 +57,14 @@ SymmetricPattern BandedEquations::Assembled::pattern() const {
 BandedEquations::Entries::Entries(const SymmetricPattern& pattern,
                                   const std::vector<fem::SparseMatrix>& matrices)
     : reference(pattern.values(matrices.front())), now(reference) {
-  for (const fem::SparseMatrix* slope : slopes_of(matrices)) slopes.push_back(pattern.part(*slope));
+  for (const fem::SparseMatrix* slope : slopes_of(matrices)) {
+    slopes.push_back(pattern.part(*slope));
+    is_constant = is_constant && slopes.back().place.empty();
+  }
 }
 
 void BandedEquations::Entries::set(const VectorXd& change) {
+  if (is_constant) return;
   now = reference;
   for (std::size_t j = 0; j < slopes.size(); ++j) slopes[j].add(change[static_cast<Index>(j)], now);
 }

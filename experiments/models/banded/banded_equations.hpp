@@ -58,6 +58,7 @@ class BandedEquations {
   struct Entries {
     std::vector<double> reference, now;
     std::vector<EntryList> slopes;
+    bool is_constant = true;
 
     Entries(const SymmetricPattern& pattern, const std::vector<fem::SparseMatrix>& matrices);
     void set(const Eigen::VectorXd& change);

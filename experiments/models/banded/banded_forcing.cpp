@@ -42,21 +42,22 @@ void BandedStep::by_property(const BandedEquations& equations, Index j, const do
     for (Index i = 0; i < size_; ++i)
       if (force_slope.re[i] != 0.0 || force_slope.im[i] != 0.0)
         forcing.rows[i] -= Complex{force_slope.re[i], force_slope.im[i]}, include(i);
+  forcing.along.resize(equations.mode_dampings().size());
   for (std::size_t k = 0; k < equations.mode_dampings().size(); ++k) {
     const ModeDamping& mode = equations.mode_dampings()[k];
+    forcing.along[k] = lambda_ * (mode.by_property[j] * modes_seen_[k]);
+    if (equations.mass().slope(j).empty()) continue;  // nor does the momentum change then
     const double* const slope = equations.damped_modes()[k].momentum_slopes.col(j).data();
-    const Complex seen = inner(mode.momentum.data(), solution_.data(), size_);
-    const Complex seen_slope = inner(slope, solution_.data(), size_);
-    const Complex along = lambda_ * (mode.by_property[j] * seen + mode.factor * seen_slope);
-    const Complex along_slope = lambda_ * (mode.factor * seen);
-    for (Index i = 0; i < size_; ++i) forcing.rows[i] -= mode.momentum[i] * along + slope[i] * along_slope;
+    forcing.along[k] += lambda_ * (mode.factor * inner(slope, solution_.data(), size_));
+    const Complex along_slope = lambda_ * (mode.factor * modes_seen_[k]);
+    for (Index i = 0; i < size_; ++i) forcing.rows[i] -= slope[i] * along_slope;
     forcing.first = 0;
     forcing.last = size_;
   }
 }
 
 void BandedStep::by_mass_damping(const BandedEquations& equations, Forcing& forcing) const {
-  forcing = {std::vector<Complex>(size_), 0, size_};
+  forcing = {std::vector<Complex>(size_), 0, size_, {}};
   std::vector<double> part(size_), product(size_);
   for (const bool imaginary : {false, true}) {
     for (Index i = 0; i < size_; ++i) {
@@ -69,19 +70,16 @@ void BandedStep::by_mass_damping(const BandedEquations& equations, Forcing& forc
 }
 
 void BandedStep::by_stiffness_damping(const BandedEquations& equations, Forcing& forcing) const {
-  forcing = {std::vector<Complex>(size_), 0, size_};
+  forcing = {std::vector<Complex>(size_), 0, size_, {}};
   for (Index i = 0; i < size_; ++i) point_[i] = -1.0 * (lambda_ * solution_[i]);
   equations.stiffness().add_product(point_.data(), forcing.rows.data());
 }
 
 void BandedStep::by_ratio(const BandedEquations& equations, const std::vector<Index>& modes,
                           Forcing& forcing) const {
-  forcing = {std::vector<Complex>(size_), 0, size_};
-  for (const Index k : modes) {
-    const ModeDamping& mode = equations.mode_dampings()[k];
-    const Complex along = mode.by_ratio * (lambda_ * inner(mode.momentum.data(), solution_.data(), size_));
-    for (Index i = 0; i < size_; ++i) forcing.rows[i] -= mode.momentum[i] * along;
-  }
+  forcing = {{}, 0, 0, std::vector<Complex>(equations.mode_dampings().size())};
+  for (const Index k : modes)
+    forcing.along[k] = equations.mode_dampings()[k].by_ratio * (lambda_ * modes_seen_[k]);
 }
 
 }  // namespace beamid::experiments::banded

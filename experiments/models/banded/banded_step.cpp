@@ -55,6 +55,9 @@ void BandedStep::advance(const BandedEquations& equations, const double* q, cons
     solve(equations, solution_.data());
   is_new_ = false;
   refine(equations);
+  modes_seen_.clear();
+  for (const ModeDamping& mode : equations.mode_dampings())
+    modes_seen_.push_back(inner(mode.momentum.data(), solution_.data(), size_));
   const double step = 4.0 * sqrt3, pace = 12.0 / interval_;
   for (Index i = 0; i < size_; ++i) {
     next[i] = q[i] + step * solution_[i].im;
@@ -100,18 +103,37 @@ void BandedStep::move(const BandedEquations& equations, const std::vector<Forcin
     equations.stiffness().add_product(lanes_.data(), lanes_work_.data());
     equations.mass().multiply(lanes_rate_.data(), lanes_.data());
     right_side(lanes_work_.data(), lanes_.data(), interval_, size_, block_.data());
-    for (std::size_t u = 0; u < forcings.size(); ++u) {
-      Lanes part;
-      bool any = false;
-      for (int k = 0; k < count; ++k) {
-        part.values[k] = parts(static_cast<Index>(u), first + k);
-        any = any || part.values[k] != 0.0;
-      }
-      if (any) add_forcing(forcings[u].rows.data(), part, forcings[u].first, forcings[u].last, block_.data());
-    }
+    add_forcings(equations, forcings, parts, first, count);
     solve(equations, block_.data());
     scatter(block_.data(), interval_, size_, to, to_rates);
   }
+}
+
+// On the block of directions first, first + 1, ...
+void BandedStep::add_forcings(const BandedEquations& equations, const std::vector<Forcing>& forcings,
+                              const MatrixXd& parts, Index first, int count) {
+  const std::vector<ModeDamping>& modes = equations.mode_dampings();
+  std::vector<ComplexLanes> along(modes.size());
+  bool any_along = false;
+  for (std::size_t u = 0; u < forcings.size(); ++u) {
+    Lanes part;
+    bool any = false;
+    for (int k = 0; k < count; ++k) {
+      part.values[k] = parts(static_cast<Index>(u), first + k);
+      any = any || part.values[k] != 0.0;
+    }
+    if (!any) continue;
+    const Forcing& forcing = forcings[u];
+    add_forcing(forcing.rows.data(), part, forcing.first, forcing.last, block_.data());
+    for (std::size_t i = 0; i < forcing.along.size(); ++i) {
+      along[i] -= {forcing.along[i].re * part, forcing.along[i].im * part};
+      any_along = true;
+    }
+  }
+  if (!any_along) return;
+  std::vector<const double*> momenta;
+  for (const ModeDamping& mode : modes) momenta.push_back(mode.momentum.data());
+  add_multiples(momenta.data(), along.data(), static_cast<int>(modes.size()), size_, block_.data());
 }
 
 }  // namespace beamid::experiments::banded

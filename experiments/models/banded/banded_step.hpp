@@ -44,10 +44,12 @@ class BandedStep {
   void advance(const BandedEquations& equations, const double* q, const double* rate, const StepForce& force,
                double* next, double* next_rate);
 
-  /// dF/du - dS/du d (n) for one unknown, over the rows it reaches.
+  /// dF/du - dS/du d (n) for one unknown: the rows it reaches and, of the damping of single modes, multiples
+  /// of their momenta g_i, rows - sum_i along_i g_i.
   struct Forcing {
     std::vector<Complex> rows;  ///< n, zero outside [first, last)
     Eigen::Index first = 0, last = 0;
+    std::vector<Complex> along;  ///< of each damped mode
   };
   /// @param force_slope E_j f
   void by_property(const BandedEquations& equations, Eigen::Index j, const double* q, const double* rate,
@@ -74,6 +76,8 @@ class BandedStep {
   template <class Real>
   void solve(const BandedEquations& equations, ComplexOf<Real>* b) const;
   void refine(const BandedEquations& equations);
+  void add_forcings(const BandedEquations& equations, const std::vector<Forcing>& forcings,
+                    const Eigen::MatrixXd& parts, Eigen::Index first, int count);
 
   Eigen::Index size_;
   double interval_;
@@ -81,6 +85,7 @@ class BandedStep {
   StepFactor factor_;
   std::vector<Complex> entries_;  // S
   ModalCorrection correction_;
+  std::vector<Complex> modes_seen_;        // g_i^T d of the damped modes
   std::vector<Complex> solution_, right_;  // d (n), and the right side it belongs to
   std::vector<double> work_, work_rate_, zeros_, nowhere_;
   mutable std::vector<Complex> point_;

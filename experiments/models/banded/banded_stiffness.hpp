@@ -35,9 +35,12 @@ class BandedStiffness {
     else
       slopes_[j](x, y);
   }
-  /// x^T K_j y, through the strains of both.
-  double slope_form(Eigen::Index j, const double* x, const double* y) const {
-    return form_ == Form::rows ? rows_.slope(j).form(x, y) : slopes_[j].form(x, y);
+  /// total += x^T K_j y for four x at a time, through the strains of all.
+  void add_slope_form(Eigen::Index j, const Lanes* x, const double* y, Lanes& total) const {
+    if (form_ == Form::rows)
+      rows_.slope(j).add_form(x, y, total);
+    else
+      slopes_[j].add_form(x, y, total);
   }
 
   /// Coordinates [first, second) that K_j touches.

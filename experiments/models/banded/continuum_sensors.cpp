@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "experiments/models/banded/banded_blocks.hpp"
 #include "fem/modes.hpp"
 
 namespace beamid::experiments::banded {
@@ -40,6 +41,7 @@ ContinuumSensors::ContinuumSensors(const fem::ParametricSystem& equations,
         "the mass matrix is not positive definite: some coordinate has no mass, and its "
         "acceleration is not determined");
   reference_ = receptance_ = factor.solve(right);
+  gather_receptance();
 }
 
 void ContinuumSensors::smooth(const fem::StructuralSystem& system) {
@@ -72,7 +74,7 @@ void ContinuumSensors::take_mass(const BandedEquations& equations) {
     for (const double entry : equations.mass_entries()) mass_entries_.push_back({entry, 0.0});
     mass_factor_->factor(mass_entries_);
     for (Index i = 0; i < k; ++i) receptance_.col(i) = mass_factor_->real_part_solved(rows_.col(sensors_[i]));
-    return;
+    return gather_receptance();
   }
   const std::vector<Index>& support = equations.mass().support();
   const auto s = static_cast<Index>(support.size());
@@ -87,24 +89,53 @@ void ContinuumSensors::take_mass(const BandedEquations& equations) {
   for (Index i = 0; i < s; ++i) seen.row(i) = reference_.row(support[i]);
   const MatrixXd system = MatrixXd::Identity(s, s) + added * seen.rightCols(s);
   receptance_ = reference_ - reference_.rightCols(s) * system.partialPivLu().solve(added * seen);
+  gather_receptance();
+}
+
+void ContinuumSensors::gather_receptance() {
+  const auto k = static_cast<Index>(sensors_.size());
+  const VectorXd zero = VectorXd::Zero(size_);
+  receptance_lanes_.resize(static_cast<std::size_t>((k + Lanes::count - 1) / Lanes::count));
+  for (std::size_t b = 0; b < receptance_lanes_.size(); ++b) {
+    const double* columns[Lanes::count];
+    for (int l = 0; l < Lanes::count; ++l) {
+      const Index i = static_cast<Index>(b) * Lanes::count + l;
+      columns[l] = i < k ? receptance_.col(i).data() : zero.data();
+    }
+    receptance_lanes_[b].resize(static_cast<std::size_t>(size_));
+    gather(columns, size_, receptance_lanes_[b].data());
+  }
 }
 
 void ContinuumSensors::set(const BandedEquations& equations) {
   if (sensors_.empty()) return;
   const auto k = static_cast<Index>(sensors_.size());
   take_mass(equations);
-  by_motion_.setZero(size_, k);
-  for (Index i = 0; i < k; ++i)
-    equations.stiffness().add_product(receptance_.col(i).data(), by_motion_.col(i).data());
-  by_rate_ = equations.stiffness_damping() * by_motion_;
-  for (Index i = 0; i < k; ++i) {
-    by_rate_.col(i) += equations.mass_damping() * rows_.col(sensors_[i]);
-    equations.dashpots().now().add_product(receptance_.col(i).data(), by_rate_.col(i).data());
-    for (const ModeDamping& mode : equations.mode_dampings())
-      by_rate_.col(i) += mode.factor * mode.momentum.dot(receptance_.col(i)) * mode.momentum;
+  by_motion_.resize(size_, k);
+  by_rate_.setZero(size_, k);
+  std::vector<Lanes> product(static_cast<std::size_t>(size_));
+  const auto multiply = [&](const auto& add_product, MatrixXd& columns) {
+    for (std::size_t b = 0; b < receptance_lanes_.size(); ++b) {
+      std::fill(product.begin(), product.end(), Lanes{});
+      add_product(receptance_lanes_[b].data(), product.data());
+      const Index first = static_cast<Index>(b) * Lanes::count;
+      for (Index l = 0; l < std::min<Index>(Lanes::count, k - first); ++l)
+        for (Index i = 0; i < size_; ++i) columns(i, first + l) = -product[i].values[l];
+    }
+  };
+  multiply([&](const Lanes* x, Lanes* y) { equations.stiffness().add_product(x, y); }, by_motion_);
+  if (!equations.dashpots().now().is_empty())
+    multiply([&](const Lanes* x, Lanes* y) { equations.dashpots().now().add_product(x, y); }, by_rate_);
+  if (const double beta = equations.stiffness_damping(); beta != 0.0) by_rate_ += beta * by_motion_;
+  if (const double alpha = equations.mass_damping(); alpha != 0.0)
+    by_rate_ -= alpha * rows_(Eigen::all, sensors_);
+  modes_seen_.resize(static_cast<Index>(equations.mode_dampings().size()), k);
+  for (Index i = 0; i < modes_seen_.rows(); ++i) {
+    const ModeDamping& mode = equations.mode_dampings()[static_cast<std::size_t>(i)];
+    modes_seen_.row(i) = mode.momentum.transpose() * receptance_.leftCols(k);
+    for (Index sensor = 0; sensor < k; ++sensor)
+      by_rate_.col(sensor) -= mode.factor * modes_seen_(i, sensor) * mode.momentum;
   }
-  by_motion_ = -by_motion_;
-  by_rate_ = -by_rate_;
 }
 
 void ContinuumSensors::output(const BandedEquations& equations, const VectorXd& state, const VectorXd& input,

@@ -45,9 +45,10 @@ class ContinuumSensors {
  private:
   void smooth(const fem::StructuralSystem& system);
   void take_mass(const BandedEquations& equations);
-  struct Motion;  // a state, and its accelerations once they are asked for
-  double by_drive(const BandedEquations& equations, Eigen::Index unknown, Eigen::Index sensor,
-                  Motion& motion) const;
+  void gather_receptance();
+  struct Motion;  // a state, and what is asked of it more than once
+  Eigen::VectorXd by_drive(const BandedEquations& equations, Eigen::Index unknown, Motion& motion) const;
+  Eigen::VectorXd by_property(const BandedEquations& equations, Eigen::Index j, Motion& motion) const;
   const Eigen::VectorXd& accelerations(const BandedEquations& equations, Motion& motion) const;
 
   static constexpr std::size_t most_entries = 24;  // that M(p) - M(p_0) may have rows
@@ -63,7 +64,9 @@ class ContinuumSensors {
   Eigen::MatrixXd receptance_;  // the same at p
   std::optional<StepFactor> mass_factor_;  // of M(p), instead of the unit vectors; s = 0
   std::vector<Complex> mass_entries_;
-  Eigen::MatrixXd by_motion_, by_rate_;  // -K g and -C g (n x k)
+  Eigen::MatrixXd by_motion_, by_rate_;               // -K g and -C g (n x k)
+  Eigen::MatrixXd modes_seen_;                        // g_i^T g of the damped modes (modes x k)
+  std::vector<std::vector<Lanes>> receptance_lanes_;  // g, four sensors at a time
 };
 
 }  // namespace beamid::experiments::banded

@@ -23,6 +23,8 @@ ParametricRows::ParametricRows(const fem::SparseMatrix& reference,
 }
 
 void ParametricRows::set(const Eigen::VectorXd& change) {
+  if (std::all_of(entries_.begin(), entries_.end(), [](const EntryList& one) { return one.place.empty(); }))
+    return;
   now_.values() = reference_.values();
   for (std::size_t j = 0; j < entries_.size(); ++j)
     entries_[j].add(change[static_cast<Index>(j)], now_.values());

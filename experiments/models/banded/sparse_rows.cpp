@@ -62,11 +62,9 @@ template void SparseRows::add_product(const double* x, double* y, double factor)
 template void SparseRows::add_product(const Complex* x, Complex* y, double factor) const;
 template void SparseRows::add_product(const Lanes* x, Lanes* y, double factor) const;
 
-double SparseRows::form(const double* x, const double* y) const {
-  double total = 0.0;
+void SparseRows::add_form(const Lanes* x, const double* y, Lanes& total) const {
   multiply_rows(start_, column_.data(), value_.data(), y,
-                [x, &total](std::size_t i, double sum) { total += x[i] * sum; });
-  return total;
+                [x, &total](std::size_t i, double sum) { total += sum * x[i]; });
 }
 
 EntryList SparseRows::entries_of(const fem::SparseMatrix& matrix) const {

@@ -22,8 +22,8 @@ class SparseRows {
   template <class Entry>
   void add_product(const Entry* x, Entry* y, double factor = 1.0) const;
 
-  /// x^T A y
-  double form(const double* x, const double* y) const;
+  /// total += x^T A y for four x at a time.
+  void add_form(const Lanes* x, const double* y, Lanes& total) const;
 
   /// The values, row after row, columns ascending, to be changed.
   std::vector<double>& values() { return value_; }

@@ -139,29 +139,32 @@ BEAMID_WIDE_CLONE void StrainProduct::operator()(const Lanes* x, Lanes* y) const
   multiply(x, y);
 }
 
-double StrainProduct::form(const double* x, const double* y) const {
-  double sum = 0.0;
+BEAMID_WIDE_CLONE void StrainProduct::add_form(const Lanes* x, const double* y, Lanes& total) const {
+  Lanes sum{};
   for (const Run& run : runs_) {
-    const double *left = x + run.coordinate, *right = y + run.coordinate;
+    const Lanes* left = x + run.coordinate;
+    const double* right = y + run.coordinate;
     for (const Element *e = &elements_[run.first], *end = e + (run.last - run.first); e != end; ++e) {
-      const double drift = left[0] - left[2] + e->a * left[1], bend = e->b * left[1] + e->c * left[3];
-      const double other_drift = right[0] - right[2] + e->a * right[1];
-      const double other_bend = e->b * right[1] + e->c * right[3];
-      sum += drift * (e->d11 * other_drift + e->d12 * other_bend) +
-             bend * (e->d12 * other_drift + e->d22 * other_bend);
+      const double drift = right[0] - right[2] + e->a * right[1], bend = e->b * right[1] + e->c * right[3];
+      const Lanes other_drift = left[0] - left[2] + e->a * left[1];
+      const Lanes other_bend = e->b * left[1] + e->c * left[3];
+      sum += (e->d11 * drift + e->d12 * bend) * other_drift + (e->d12 * drift + e->d22 * bend) * other_bend;
       left += 2;
       right += 2;
     }
   }
-  std::array<double, largest_block> one, other;
+  std::array<Lanes, largest_block> one;
+  std::array<double, largest_block> other;
   for (const Block& block : blocks_) {
     strains(block, x, one.data());
     strains(block, y, other.data());
-    for (int r = 0; r < block.size; ++r)
-      for (int c = 0; c < block.size; ++c)
-        sum += one[r] * rigidity_[block.rigidity + r * block.size + c] * other[c];
+    for (int r = 0; r < block.size; ++r) {
+      double force = 0.0;
+      for (int c = 0; c < block.size; ++c) force += rigidity_[block.rigidity + r * block.size + c] * other[c];
+      sum += force * one[r];
+    }
   }
-  return sum;
+  total += sum;
 }
 
 }  // namespace beamid::experiments::banded

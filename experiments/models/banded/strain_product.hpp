@@ -37,8 +37,8 @@ class StrainProduct {
   /// y += B^T D B x; entries are double, Complex or Lanes.
   template <class Entry>
   void operator()(const Entry* x, Entry* y) const;
-  /// x^T B^T D B y
-  double form(const double* x, const double* y) const;
+  /// total += x^T B^T D B y for four x at a time, through the strains of all.
+  void add_form(const Lanes* x, const double* y, Lanes& total) const;
 
   /// Coordinates [first, second) that it touches.
   std::pair<Eigen::Index, Eigen::Index> reach() const { return reach_; }
