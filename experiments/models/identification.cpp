@@ -42,6 +42,15 @@ void require_sample_memory(const IdentificationSettings& settings, Eigen::Index 
                      copies * sizeof(double) * static_cast<double>(states));
 }
 
+/// Of the beliefs before and after each sample, where they are kept.
+void require_belief_memory(const filters::Gaussian& initial, double samples, filters::Keep keep) {
+  if (keep != filters::Keep::all_beliefs) return;
+  const auto states = static_cast<double>(initial.mean.size());
+  const auto columns = static_cast<double>(std::max(initial.factor.cols(), initial.covariance.cols()) + 1);
+  require_memory(2.0 * samples, fmt::format("beliefs of {} states, of which compare keeps the last,", states),
+                 columns * states * sizeof(double));
+}
+
 filters::FilterRun filter_passes(filters::Filter& filter, const JointModel& model,
                                  const filters::Measurements& record, const IdentificationSettings& settings,
                                  filters::Keep keep, const filters::NoisyInputs* noisy = nullptr) {
@@ -89,6 +98,7 @@ filters::FilterRun filter_record(const JointModel& model, const filters::Measure
   const auto filter =
       filters::filter_registry().make(settings.filter, settings.filter_options, std::move(discrete));
   require_sample_memory(settings, settings.initial.mean.size());
+  require_belief_memory(settings.initial, static_cast<double>(record.outputs.cols()), keep);
   return filter_passes(*filter, model, record, settings, keep, noisy);
 }
 

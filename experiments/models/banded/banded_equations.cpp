@@ -1,5 +1,7 @@
 #include "experiments/models/banded/banded_equations.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -124,6 +126,16 @@ VectorXd BandedEquations::force(const VectorXd& input) const {
 
 VectorXd BandedEquations::force_slope(Index j, const VectorXd& input) const {
   return force_slopes_[j] * input.head(force_.cols());
+}
+
+double BandedEquations::highest_squared_frequency() const {
+  double highest = 0.0;
+  for (Index i = 0; i < size_; ++i) {
+    const auto diagonal = static_cast<std::size_t>(pattern_.start(i + 1) - 1);
+    highest = std::max(highest,
+                       std::abs(stiffness_entries_.reference[diagonal]) / mass_entries_.reference[diagonal]);
+  }
+  return highest;
 }
 
 void BandedEquations::assemble(const Complex& lambda, std::vector<Complex>& entries) const {

@@ -50,6 +50,9 @@ class BandedEquations {
   /// S = (1 + lambda beta) K + lambda C_0 + (lambda alpha + lambda^2) M on the pattern, single modes left
   /// out.
   void assemble(const Complex& lambda, std::vector<Complex>& entries) const;
+  /// The square of the highest natural frequency of the mesh, its order of magnitude: the largest K_ii / M_ii
+  /// at p_0 [1/s2].
+  double highest_squared_frequency() const;
   /// M on the pattern.
   const std::vector<double>& mass_entries() const { return mass_entries_.now; }
 

@@ -24,8 +24,8 @@ struct StepForce {
 ///     q+ = q + 4 sqrt3 Im d,    q'+ = q' + (12 / dt) (Re d + sqrt3 Im d).
 ///
 /// K meets q through the strain factors, and what elimination does to the assembled K is small beside
-/// lambda^2 M (docs/theory/continuum_filter.md). Derivatives are those of these equations: along a change of
-/// q, q' and the unknowns,
+/// lambda^2 M (docs/theory/continuum_filter.md); where it is not small enough, one residual of d takes it
+/// back. Derivatives are those of these equations: along a change of q, q' and the unknowns,
 ///
 ///     S d' = K q_' - lambda M q'_' + sum_u (dF/du - dS/du d) u',    S = K + lambda C + lambda^2 M,  F: right
 ///     side.
@@ -81,6 +81,7 @@ class BandedStep {
 
   Eigen::Index size_;
   double interval_;
+  bool refines_;
   Complex lambda_;
   StepFactor factor_;
   std::vector<Complex> entries_;  // S

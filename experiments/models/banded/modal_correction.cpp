@@ -110,12 +110,10 @@ void ModalCorrection::factor(const StepFactor& factored, const std::vector<ModeD
         block_[i].im.values[own] = b[i].im;
       }
     factored.solve(block_.data());
-    for (Index mode = 0; mode < count; ++mode) {
-      const double* const g = modes[mode].momentum.data();
-      ComplexLanes seen;
-      weighed(&g, 1, block_.data(), size_, &seen);
-      for (Index k = 0; k < columns; ++k) overlaps(mode, first + k) = {seen.re.values[k], seen.im.values[k]};
-    }
+    const std::vector<ComplexLanes> seen = overlaps_of(modes, block_.data());
+    for (Index mode = 0; mode < count; ++mode)
+      for (Index k = 0; k < columns; ++k)
+        overlaps(mode, first + k) = {seen[mode].re.values[k], seen[mode].im.values[k]};
     for (Index k = 0; k < columns; ++k) {
       Complex* to = b;
       if (first + k < count) {
@@ -155,7 +153,8 @@ void ModalCorrection::take_response_off(const ComplexOf<Real>* seen, ComplexOf<R
 }
 
 template <class Real>
-void ModalCorrection::correct(const std::vector<ModeDamping>& modes, ComplexOf<Real>* b) const {
+std::vector<ComplexOf<Real>> ModalCorrection::overlaps_of(const std::vector<ModeDamping>& modes,
+                                                          const ComplexOf<Real>* b) const {
   const std::size_t count = modes.size();
   std::vector<ComplexOf<Real>> seen(count);
   for (std::size_t first = 0; first < count; first += at_once) {
@@ -164,7 +163,12 @@ void ModalCorrection::correct(const std::vector<ModeDamping>& modes, ComplexOf<R
     for (int k = 0; k < now; ++k) g[k] = modes[first + k].momentum.data();
     weighed(g, now, b, size_, &seen[first]);
   }
-  if (count > 0) take_response_off(seen.data(), b);
+  return seen;
+}
+
+template <class Real>
+void ModalCorrection::correct(const std::vector<ModeDamping>& modes, ComplexOf<Real>* b) const {
+  if (!modes.empty()) take_response_off(overlaps_of(modes, b).data(), b);
 }
 
 void ModalCorrection::operator()(const std::vector<ModeDamping>& modes, Complex* b) const {

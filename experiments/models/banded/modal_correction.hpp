@@ -32,6 +32,10 @@ class ModalCorrection {
  private:
   template <class Real>
   void correct(const std::vector<ModeDamping>& modes, ComplexOf<Real>* b) const;
+  /// G^T b
+  template <class Real>
+  std::vector<ComplexOf<Real>> overlaps_of(const std::vector<ModeDamping>& modes,
+                                           const ComplexOf<Real>* b) const;
   template <class Real>
   void take_response_off(const ComplexOf<Real>* seen, ComplexOf<Real>* b) const;  ///< `seen`: G^T y
 

@@ -53,6 +53,7 @@ void SparseRows::multiply(const Entry* x, Entry* y) const {
 }
 template <class Entry>
 void SparseRows::add_product(const Entry* x, Entry* y, double factor) const {
+  if (is_empty()) return;
   add_rows(start_, column_.data(), value_.data(), x, y, factor);
 }
 template void SparseRows::multiply(const double* x, double* y) const;
@@ -63,6 +64,7 @@ template void SparseRows::add_product(const Complex* x, Complex* y, double facto
 template void SparseRows::add_product(const Lanes* x, Lanes* y, double factor) const;
 
 void SparseRows::add_form(const Lanes* x, const double* y, Lanes& total) const {
+  if (is_empty()) return;
   multiply_rows(start_, column_.data(), value_.data(), y,
                 [x, &total](std::size_t i, double sum) { total += sum * x[i]; });
 }
