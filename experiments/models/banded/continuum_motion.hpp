@@ -1,11 +1,11 @@
-// The joint state of the whole finite-element beam, at a cost per step that grows with its size and no
-// faster.
+// The joint state of a whole structure, every coordinate of its mesh, at a cost per step that grows with its
+// size and no faster.
 //
 //     z = [q, q', offsets that drift, eta, constant offsets],    M(p) q'' + C(p) q' + K(p) q = E(p) f
 //
-// With n coordinates in their order along the beam all matrices are narrow bands, damping of single modes
-// apart, which is of low rank. One step of the scheme `pade` is one complex banded system (banded_step.hpp);
-// a step with r directions costs O(n r).
+// All matrices are sparse, along a beam narrow bands, but for the damping of single modes, which is of low
+// rank. One step of the scheme `pade` is one complex symmetric system (banded_step.hpp); with r directions it
+// costs O(n r) of a beam, a chain or a frame, whose members are chains.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
 // A frame that nobody has reduced, shaken at its base, from its record to its estimates. Oracles: the frame
 // simulated, and the Cramer-Rao bound.
-#include <gmock/gmock.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
@@ -15,55 +16,80 @@ namespace beamid::experiments::whole_frame_test {
 namespace {
 
 const Progress silent = [](const std::string&) {};
-const std::filesystem::path folder = BEAMID_SOURCE_DIR "/docs/tutorials/17_any_structure";
 
 // Smooth motion of the ground below 14 Hz, from rest.
 std::string ground_file() {
-  const std::string name = testing::TempDir() + "whole_frame_ground.csv";
+  std::string name = (std::filesystem::temp_directory_path() / "whole_frame_ground.csv").string();
   std::ofstream file(name);
   file << "time_s,base_acceleration_m_per_s2\n";
-  for (int k = 0; k <= 3200; ++k) {
-    const double time = 0.0025 * k;
+  for (int k = 0; k <= 2400; ++k) {
+    const double time = 0.005 * k;
     double sum = 0.0;
-    for (int i = 0; i < 20; ++i)
-      sum += 0.15 * std::sin(2.0 * std::numbers::pi * (0.6 + 0.7 * i) * time + i * i);
+    for (int i = 0; i < 27; ++i)
+      sum += 0.1 * std::sin(2.0 * std::numbers::pi * (0.5 + 0.5 * i) * time + i * i);
     file << time << "," << std::pow(std::min(1.0, time), 3) * sum << "\n";
   }
   return name;
 }
 
-TEST(WholeFrame, IsIdentifiedOnAllItsCoordinates) {
-  // Two storeys of six members, 66 coordinates, the lower girder at 0.75 of the stiffness that is guessed.
-  // Damping is Rayleigh's, which damps what is above the modes of the start too.
-  // At 400 Hz the step turns a mode at 14 Hz by 3e-6 too fast.
-  Experiment truth = read_experiment(
-      TomlTable::read(folder / "damaged.toml", {{"simulation", "sampling_rate_hz", 400.0, "test"},
-                                                {"simulation", "duration_s", 8.0, "test"},
-                                                {"excitation", "file", ground_file(), "test"}}));
-  truth.damping = fem::RayleighDamping{{2.0, 0.015}, {10.0, 0.02}};
-  const ComparedRecord record = simulated_record(truth, folder, silent);
+// Six storeys of two bays in steel, accelerometers on four floors; Rayleigh's damping, which damps what is
+// above the modes of the start too.
+Experiment six_storeys(double lower, double upper, double girders, double ratio) {
+  std::string text = "[frame]\nelements_per_member = 1\njoints = [";
+  for (int joint = 0; joint < 21; ++joint)
+    text += fmt::format("{{ name = \"{}{}\", x_m = {}, y_m = {:.1f} }},", joint / 3, "abc"[joint % 3],
+                        5 * (joint % 3), 3.2 * (joint / 3));
+  text += "]\nsupports = [";
+  for (int joint = 1; joint <= 3; ++joint)
+    text += fmt::format("{{ joint = {}, kind = \"clamped\" }},", joint);
+  text += "]\nbodies = [";
+  for (int joint = 4; joint <= 21; ++joint) text += fmt::format("{{ joint = {}, mass_kg = 2000 }},", joint);
+  text += "]\n";
+  const auto member = [&](int first, int second, const char* group, const char* section, double factor) {
+    text += fmt::format(
+        "[[frame.members]]\nfirst = {}\nsecond = {}\ngroup = \"{}\"\n{}\nyoungs_modulus_pa = "
+        "2.1e11\ndensity_kg_per_m3 = 7850\nstiffness_factor = {}\n",
+        first, second, group, section, factor);
+  };
+  for (int top = 4; top <= 21; ++top) {
+    member(top - 3, top, top <= 12 ? "lower" : "upper", "width_m = 0.2\nheight_m = 0.2",
+           top <= 12 ? lower : upper);
+    if (top % 3 != 1) member(top - 1, top, "girders", "width_m = 0.15\nheight_m = 0.25", girders);
+  }
+  text += fmt::format(
+      "[damping]\nlaw = \"rayleigh\"\nanchors = [{{ frequency_hz = 1.2, ratio = {} }}, {{ frequency_hz = "
+      "8.0, ratio = 0.02 }}]\n[excitation]\nkind = \"base\"\nfile = \"{}\"\n[simulation]\nduration_s = "
+      "12\nsampling_rate_hz = 200\nsteps_per_sample = 4\n",
+      ratio, ground_file());
+  for (const char* floor : {"2a", "3a", "5a", "6a"})
+    text += fmt::format("[[sensors]]\nat = \"{}.x\"\nnoise_m_per_s2 = 0.02\n", floor);
+  text +=
+      "[model]\nname = \"beam\"\ncoordinates = \"mesh\"\nmodes = 3\nsensor_bias = false\n[compare]\npasses = "
+      "5\n";
+  for (const char* name : {"lower", "upper", "girders"})
+    text += fmt::format("[[parameters]]\nquantity = \"factor\"\nname = \"{}\"\n", name);
+  for (const char* quantity : {"mass_damping", "stiffness_damping"})
+    text += fmt::format("[[parameters]]\nquantity = \"{}\"\n", quantity);
+  Experiment e = read_experiment(TomlTable::parse(text, "test.toml"));
+  e.reductions = {parse_reduction("none", "test")};
+  e.filters = {e.filter};
+  e.discretisations = {e.discretisation};
+  return e;
+}
 
-  Experiment asked = read_experiment(TomlTable::read(folder / "frame.toml"));
-  asked.damping = fem::RayleighDamping{{2.0, 0.02}, {10.0, 0.02}};
-  asked.parameters.pop_back();  // the ratio of all modes
-  asked.parameters.push_back({"mass_damping"});
-  asked.parameters.push_back({"stiffness_damping"});
-  asked.model.options.set("coordinates", std::string("mesh"));
-  asked.model.options.set("modes", 3.0);
-  asked.model.options.set("sensor_bias", false);
-  asked.reductions = {parse_reduction("none", "test")};
-  asked.filters = {asked.filter};
-  asked.discretisations = {asked.discretisation};
-  const Comparison found = compare(asked, record, folder, silent);
+TEST(WholeFrame, IsIdentifiedOnAllItsCoordinates) {
+  // 54 coordinates, initial estimates 20 to 33 % off.
+  const ComparedRecord record = simulated_record(six_storeys(0.8, 1.25, 0.75, 0.015), {}, silent);
+  const Comparison found = compare(six_storeys(1.0, 1.0, 1.0, 0.02), record, {}, silent);
   const ComparedRun& run = found.runs[0];
   ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
-  EXPECT_EQ(run.coordinates, 66);
+  EXPECT_EQ(run.coordinates, 54);
   EXPECT_EQ(run.filter + " " + run.discretisation, "low_rank_ekf pade");
   ASSERT_EQ(run.parameters.size(), 5u);
   for (std::size_t j = 0; j < 3; ++j) {
     const ComparedParameter& p = run.parameters[j];
     EXPECT_LT(std::abs(p.estimate.value - *p.truth), 3.0 * p.estimate.deviation) << p.estimate.name;
-    EXPECT_LT(p.estimate.deviation, 0.01) << p.estimate.name;
+    EXPECT_LT(p.estimate.deviation, 1e-3) << p.estimate.name;
     EXPECT_NEAR(*p.bound_ratio(), 1.0, 0.1) << p.estimate.name;
   }
 }
