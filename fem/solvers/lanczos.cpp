@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <sstream>
 #include <stdexcept>
@@ -19,6 +20,7 @@ constexpr double tolerance =
     1e-10;  // of a Ritz pair, relative; one more inverse iteration follows (modes.cpp)
 constexpr double rounding = 1e-12;   // of a Ritz value, relative to the largest
 constexpr double same_theta = 1e-7;  // what is no larger than this, relative, is not missed
+constexpr double settled = 1e-3;     // error of a Ritz pair, relative, before it says what is largest
 constexpr Index steps_for_stability = 40;
 
 using RitzPairs = Eigen::SelfAdjointEigenSolver<MatrixXd>;
@@ -82,8 +84,9 @@ Found find_missed(const StructuralSystem& system, const StiffnessSolver& solver,
   for (bool more = true; more;) {
     more = basis.grow() && basis.steps() < most;
     const RitzPairs pairs = ritz_pairs(basis);
-    const double largest = pairs.eigenvalues()[basis.steps() - 1];
-    if (largest + errors(pairs, basis)[basis.steps() - 1] <= limit) return {};
+    const double largest = pairs.eigenvalues()[basis.steps() - 1],
+                 error = errors(pairs, basis)[basis.steps() - 1];
+    if (error <= settled * std::abs(largest) && largest + error <= limit) return {};
     if (largest > limit && have_converged(pairs, basis, 1))
       return {basis.combine(pairs.eigenvectors().rightCols(1)), pairs.eigenvalues().tail(1)};
   }

@@ -16,7 +16,9 @@ namespace beamid::fem {
 ///
 /// From one start such a space sees one copy of a repeated frequency only (equal spans between clamps,
 /// symmetric frames). A second one, started elsewhere in the complement of what was found, has to prove that
-/// nothing lower is left; what it finds is taken in, and the search goes on.
+/// nothing lower is left; what it finds is taken in, and the search goes on. Its largest Ritz value is an
+/// eigenvalue's to its own error, but which one's shows only once that pair has settled: what the start holds
+/// little of comes up late.
 ///
 /// Its Ritz values lie inside the spectrum, so a negative one proves a negative omega^2; where the rigidity
 /// is indefinite there are always enough steps to bring out one that is not buried between others.

@@ -88,7 +88,7 @@ TEST(NafemsSpaceFrames, CantileverWithOffCentreMasses) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(found[i], published[i], i < 3 ? 6e-4 : 1.2e-3) << i;
 }
 
-VectorXd deep_beam(double torsion_constant) {
+VectorXd deep_beam(double torsion_constant, int elements = 60) {
   const double side = 2.0, second_moment = rectangle_second_moment(side, side);
   SpaceFrame frame;
   frame.joints = {{{0, 0, 0}, ""}, {{10, 0, 0}, ""}};
@@ -97,7 +97,7 @@ VectorXd deep_beam(double torsion_constant) {
   s.rotary_inertia_y = s.rotary_inertia_z = density * second_moment;
   s.shear_stiffness_y = s.shear_stiffness_z = rectangle_shear_factor(0.3) * shear * side * side;
   frame.supports = {{0, true, true, true, true, false, false}, {1, false, true, true, false, false, false}};
-  return modes(assemble(frame, 60), 9).frequency_hz();
+  return modes(assemble(frame, elements), 9).frequency_hz();
 }
 
 TEST(NafemsSpaceFrames, DeepSimplySupportedBeam) {
@@ -107,6 +107,16 @@ TEST(NafemsSpaceFrames, DeepSimplySupportedBeam) {
   const double closed_form[] = {42.64490922, 42.64490922, 71.1960866,  125.0,      148.1493352,
                                 148.1493352, 213.5882599, 283.4683891, 283.4683891};
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(found[i] / closed_form[i], 1.0, 3e-4) << i;
+}
+
+// Modes 1 and 2, 5 and 6, 8 and 9 bend in the two planes of a square. Lanczos has to look for second copies
+// with as many starts as there are meshes: one that holds little of the copy once let the next mode pass for
+// it.
+TEST(NafemsSpaceFrames, NoCopyOfARepeatedFrequencyIsMissed) {
+  for (int elements = 24; elements <= 90; elements += 3) {
+    const VectorXd found = deep_beam(0.1405770 * 16, elements);
+    for (const int first : {0, 4, 7}) EXPECT_NEAR(found[first + 1] / found[first], 1.0, 1e-9) << elements;
+  }
 }
 
 TEST(NafemsSpaceFrames, DeepSimplySupportedBeamWithThePolarMomentInTorsion) {
