@@ -69,7 +69,8 @@ struct FramePoint {
 };
 
 /// Finite elements: each member is cut into `elements_per_member` equal ones, which bend as those of a beam
-/// do (elements/element.hpp) and stretch linearly, with the elongation as a third strain, of rigidity EA/h.
+/// do (elements/element.hpp) and stretch as rods do (elements/rod_element.hpp), the elongation being a third
+/// strain of rigidity EA/h; frequencies err by h^4, by h^2 with lumped mass.
 ///
 /// Coordinates of a node: u and v [m], its displacements along x (Coordinate::Kind::axial) and y
 /// (deflection), and the scaled rotation s theta [m], counterclockwise. The mesh's first nodes are the

@@ -5,8 +5,8 @@
 #include "fem/elements/element.hpp"
 #include "fem/elements/frame_element.hpp"
 #include "fem/frame.hpp"
+#include "fem/frame_equations.hpp"
 #include "fem/frame_graph.hpp"
-#include "fem/triplets.hpp"
 
 namespace beamid::fem {
 namespace {
@@ -57,26 +57,23 @@ class FrameAssembly {
     for (const Frame::Support& of_joint : held_)
       held.push_back(int{of_joint.x} + int{of_joint.y} + int{of_joint.rotation});
     for (const FrameStep& step : walk(held, member_ends(frame_))) add_member(step);
-    const auto n = static_cast<Eigen::Index>(system_.coordinates.size());
-    if (n == 0) throw std::invalid_argument("the supports hold every joint; expected some freedom");
     for (const Frame::Body& body : frame_.bodies) {
       const NodeCoordinates& node = nodes_[body.joint];
-      add_mass(node.u, node.u, body.mass, 0);
-      add_mass(node.v, node.v, body.mass, 1);
-      add_mass(node.turn.coordinate, node.turn.coordinate,
-               body.rotary_inertia / (node.turn.scale * node.turn.scale), 2);
+      equations_.add_mass(node.u, node.u, body.mass, 0);
+      equations_.add_mass(node.v, node.v, body.mass, 1);
+      equations_.add_mass(node.turn.coordinate, node.turn.coordinate,
+                          body.rotary_inertia / (node.turn.scale * node.turn.scale), -1);
     }
     for (const Frame::Dashpot& dashpot : frame_.dashpots) {
       const NodeCoordinates& node = nodes_[dashpot.joint];
-      add_damping(node.u, dashpot.x);
-      add_damping(node.v, dashpot.y);
-      add_damping(node.turn.coordinate, dashpot.rotational / (node.turn.scale * node.turn.scale));
+      equations_.add_damping(node.u, dashpot.x);
+      equations_.add_damping(node.v, dashpot.y);
+      equations_.add_damping(node.turn.coordinate, dashpot.rotational / (node.turn.scale * node.turn.scale));
     }
-    add_points(points, n);
-    system_.mass = sparse(n, n, mass_);
-    system_.damping = sparse(n, n, damping_);
-    system_.stiffness = {sparse(strains_, n, strain_), sparse(strains_, strains_, rigid_),
-                         sparse(strains_, strains_, flexible_)};
+    check_points(system_, points, frame_.joints.size());
+    for (const FramePoint& point : points)
+      equations_.add_point(point.name, {nodes_[point.joint].u, nodes_[point.joint].v});
+    equations_.put_into(system_);
     return std::move(system_);
   }
 
@@ -87,8 +84,7 @@ class FrameAssembly {
   std::vector<NodeCoordinates> nodes_;
   std::vector<Frame::Support> held_;
   std::vector<int> rigid_joints_;  // those whose rotation some member shares
-  Triplets mass_, damping_, strain_, rigid_, flexible_, base_;
-  int strains_ = 0;
+  FrameEquations equations_{"xy"};
 
   int add_coordinate(Kind kind, int node, double scale) {
     const bool nodal = kind != Kind::generalised;
@@ -144,8 +140,8 @@ class FrameAssembly {
       if (e == 0 || !member.section.is_uniform())
         matrices = frame_element_matrices(stiffened(member), element, direction, member.axial_load,
                                           frame_.mass_model);
-      const int inside = matrices.strain.cols() > 6 ? add_coordinate(Kind::generalised, node, 1.0) : -1;
-      if (inside >= 0) add_coordinate(Kind::generalised, node, 1.0);
+      const auto inside = static_cast<int>(system_.coordinates.size());
+      for (Eigen::Index i = 6; i < matrices.strain.cols(); ++i) add_coordinate(Kind::generalised, node, 1.0);
       const bool reaches = !nodes_[element.second].known;
       if (reaches) know(element.second, element.length, e + 1 == elements_ ? held_[step.to] : free());
       const Turn next =
@@ -172,80 +168,31 @@ class FrameAssembly {
                    const Turn& second, int inside) {
     system_.mesh.elements.push_back(element);
     const NodeCoordinates &one = nodes_[element.first], &two = nodes_[element.second];
-    const int at[8] = {one.u, one.v, first.coordinate, two.u, two.v, second.coordinate, inside, inside + 1};
     const double h = element.length;
-    const double ratio[8] = {1, 1, h / first.scale, 1, 1, h / second.scale, 1, 1};  // h theta per coordinate
     const auto strains = static_cast<int>(matrices.strain.rows());
     const auto coordinates = static_cast<int>(matrices.strain.cols());
+    std::vector<int> at{one.u, one.v, first.coordinate, two.u, two.v, second.coordinate};
+    std::vector<double> ratio{1, 1, h / first.scale, 1, 1, h / second.scale};  // h theta per coordinate
+    for (int i = 6; i < coordinates; ++i) at.push_back(inside + i - 6), ratio.push_back(1.0);
     for (int i = 0; i < coordinates; ++i)
       for (int j = 0; j < coordinates; ++j)
-        add_mass(at[i], at[j], ratio[i] * matrices.mass(i, j) * ratio[j], j < 6 ? j % 3 : 2);
+        equations_.add_mass(at[i], at[j], ratio[i] * matrices.mass(i, j) * ratio[j],
+                            j < 6 && j % 3 < 2 ? j % 3 : -1);
     for (int row = 0; row < strains; ++row)
       for (int j = 0; j < coordinates; ++j)
-        if (at[j] >= 0 && matrices.strain(row, j) != 0.0)
-          strain_.emplace_back(strains_ + row, at[j], matrices.strain(row, j) * ratio[j]);
-    for (int i = 0; i < strains; ++i)
-      for (int j = 0; j < strains; ++j) {
-        if (matrices.rigidity(i, j) != 0.0)
-          rigid_.emplace_back(strains_ + i, strains_ + j, matrices.rigidity(i, j));
-        if (matrices.flexibility(i, j) != 0.0)
-          flexible_.emplace_back(strains_ + i, strains_ + j, matrices.flexibility(i, j));
-      }
-    strains_ += strains;
-  }
-
-  // `direction` of the column: 0: x, 1: y, 2: a rotation.
-  void add_mass(int row, int column, double value, int direction) {
-    if (row < 0 || value == 0.0) return;
-    if (column >= 0) mass_.emplace_back(row, column, value);
-    if (direction < 2) base_.emplace_back(row, direction, -value);
-  }
-
-  void add_damping(int coordinate, double value) {
-    if (coordinate >= 0 && value != 0.0) damping_.emplace_back(coordinate, coordinate, value);
+        equations_.add_strain(equations_.strains() + row, at[j], matrices.strain(row, j) * ratio[j]);
+    equations_.add_rigidity(matrices.rigidity, matrices.flexibility);
   }
 
   void add_springs(int joint) {
-    const auto add = [&](int coordinate, double rigidity) {
-      if (coordinate < 0 || rigidity == 0.0) return;
-      strain_.emplace_back(strains_, coordinate, 1.0);
-      rigid_.emplace_back(strains_, strains_, rigidity);
-      flexible_.emplace_back(strains_, strains_, 1.0 / rigidity);
-      ++strains_;
-    };
     const NodeCoordinates& node = nodes_[joint];
     for (const Frame::Spring& spring : frame_.springs) {
       if (spring.joint != joint) continue;
-      add(node.u, spring.x);
-      add(node.v, spring.y);
-      add(node.turn.coordinate, spring.rotational / (node.turn.scale * node.turn.scale));
+      equations_.add_ground_spring(node.u, spring.x);
+      equations_.add_ground_spring(node.v, spring.y);
+      equations_.add_ground_spring(node.turn.coordinate,
+                                   spring.rotational / (node.turn.scale * node.turn.scale));
     }
-  }
-
-  void add_points(const std::vector<FramePoint>& points, Eigen::Index n) {
-    Triplets inputs, outputs;
-    int count = 0;
-    for (const FramePoint& point : points) {
-      if (point.joint < 0 || point.joint >= static_cast<int>(frame_.joints.size()))
-        throw std::invalid_argument("point '" + point.name + "' is at joint " + std::to_string(point.joint) +
-                                    "; expected 0 to " + std::to_string(frame_.joints.size() - 1));
-      const NodeCoordinates& node = nodes_[point.joint];
-      if (node.u < 0 && node.v < 0)
-        throw std::invalid_argument("point '" + point.name +
-                                    "' is held by a support; expected one that can move");
-      for (const auto& [coordinate, axis] : {std::pair{node.u, "_x"}, {node.v, "_y"}}) {
-        if (coordinate < 0) continue;
-        inputs.emplace_back(coordinate, count, 1.0);
-        outputs.emplace_back(count, coordinate, 1.0);
-        system_.input_names.push_back(point.name + "_force" + axis);
-        system_.output_names.push_back(point.name + "_displacement" + axis);
-        ++count;
-      }
-    }
-    for (const auto& entry : base_) inputs.emplace_back(entry.row(), count + entry.col(), entry.value());
-    system_.input_names.insert(system_.input_names.end(), {"base_acceleration_x", "base_acceleration_y"});
-    system_.inputs = sparse(n, count + 2, inputs);
-    system_.outputs = sparse(count, n, outputs);
   }
 };
 

@@ -5,9 +5,9 @@
 
 #include "fem/elements/released_ends.hpp"
 #include "fem/elements/space_frame_element.hpp"
+#include "fem/frame_equations.hpp"
 #include "fem/frame_graph.hpp"
 #include "fem/space_frame.hpp"
-#include "fem/triplets.hpp"
 
 namespace beamid::fem {
 namespace {
@@ -17,7 +17,6 @@ using Kind = Coordinate::Kind;
 
 constexpr std::array displacement_kinds{Kind::axial, Kind::deflection, Kind::lateral};
 constexpr std::array rotation_kinds{Kind::rotation_x, Kind::rotation_y, Kind::rotation};
-constexpr std::array axis_letters{"_x", "_y", "_z"};
 
 // A motion as a sum of coordinates; empty: held.
 struct Term {
@@ -84,14 +83,13 @@ class SpaceFrameAssembly {
     for (const SpaceFrame::Support& s : held_)
       held.push_back(int{s.x} + int{s.y} + int{s.z} + int{s.rx} + int{s.ry} + int{s.rz});
     for (const FrameStep& step : walk(held, member_ends(frame_))) add_member(step);
-    const auto n = static_cast<Eigen::Index>(system_.coordinates.size());
-    if (n == 0) throw std::invalid_argument("the supports hold every joint; expected some freedom");
     for (const SpaceFrame::Body& body : frame_.bodies) add_body(body);
-    add_points(points, n);
-    system_.mass = sparse(n, n, mass_);
-    system_.damping = SparseMatrix(n, n);
-    system_.stiffness = {sparse(strains_, n, strain_), sparse(strains_, strains_, rigid_),
-                         sparse(strains_, strains_, flexible_)};
+    check_points(system_, points, frame_.joints.size());
+    for (const SpaceFramePoint& point : points) {
+      const std::array<int, 3>& at = nodes_[point.joint].displacement;
+      equations_.add_point(point.name, {at.begin(), at.end()});
+    }
+    equations_.put_into(system_);
     return std::move(system_);
   }
 
@@ -103,8 +101,7 @@ class SpaceFrameAssembly {
   std::vector<SpaceNode> nodes_;
   std::vector<SpaceFrame::Support> held_;
   std::vector<std::vector<const SpaceFrame::Spring*>> springs_;  // of each joint
-  Triplets mass_, strain_, rigid_, flexible_, base_;
-  int strains_ = 0;
+  FrameEquations equations_{"xyz"};
 
   static SpaceFrame::Support free() { return {0, false, false, false, false, false, false}; }
 
@@ -159,7 +156,7 @@ class SpaceFrameAssembly {
     if (step.reversed) axes.leftCols<2>() *= -1.0;
     const SpaceFrameElementMatrices matrices = space_frame_element_matrices(
         stiffened(frame_.members[step.member]), element, axes, frame_.mass_model);
-    const auto inside = static_cast<int>(matrices.strain.rows()) - 6;
+    const auto inside = static_cast<int>(matrices.strain.cols()) - 12;
     element.first = step.from;
     SpaceMotion motion = end_motion(step.member, step.reversed, element.length);
     for (int e = 0; e < elements_; ++e) {
@@ -204,24 +201,17 @@ class SpaceFrameAssembly {
     for (int row = 0; row < strains; ++row)
       for (int j = 0; j < count; ++j)
         for (const Term& term : motions[j])
-          if (matrices.strain(row, j) != 0.0)
-            strain_.emplace_back(strains_ + row, term.coordinate, matrices.strain(row, j) * term.factor);
-    for (int i = 0; i < strains; ++i)
-      for (int j = 0; j < strains; ++j) {
-        if (matrices.rigidity(i, j) != 0.0)
-          rigid_.emplace_back(strains_ + i, strains_ + j, matrices.rigidity(i, j));
-        if (matrices.flexibility(i, j) != 0.0)
-          flexible_.emplace_back(strains_ + i, strains_ + j, matrices.flexibility(i, j));
-      }
-    strains_ += strains;
+          equations_.add_strain(equations_.strains() + row, term.coordinate,
+                                matrices.strain(row, j) * term.factor);
+    equations_.add_rigidity(matrices.rigidity, matrices.flexibility);
   }
 
   // @param direction of the base's motion by which `column` moves; -1: none
   void add_mass(const Terms& row, const Terms& column, double value, int direction) {
     for (const Term& a : row) {
       for (const Term& b : column)
-        mass_.emplace_back(a.coordinate, b.coordinate, a.factor * value * b.factor);
-      if (direction >= 0) base_.emplace_back(a.coordinate, direction, -a.factor * value);
+        equations_.add_mass(a.coordinate, b.coordinate, a.factor * value * b.factor, -1);
+      equations_.add_mass(a.coordinate, -1, a.factor * value, direction);
     }
   }
 
@@ -234,47 +224,12 @@ class SpaceFrameAssembly {
   }
 
   void add_springs(int joint) {
-    const auto add = [&](int coordinate, double rigidity) {
-      if (coordinate < 0 || rigidity == 0.0) return;
-      strain_.emplace_back(strains_, coordinate, 1.0);
-      rigid_.emplace_back(strains_, strains_, rigidity);
-      flexible_.emplace_back(strains_, strains_, 1.0 / rigidity);
-      ++strains_;
-    };
     const SpaceNode& node = nodes_[joint];
     for (const SpaceFrame::Spring* const spring : springs_[joint])
       for (int i = 0; i < 3; ++i) {
-        add(node.displacement[i], spring->translational[i]);
-        add(node.rotation[i], spring->rotational[i] / (node.scale * node.scale));
+        equations_.add_ground_spring(node.displacement[i], spring->translational[i]);
+        equations_.add_ground_spring(node.rotation[i], spring->rotational[i] / (node.scale * node.scale));
       }
-  }
-
-  void add_points(const std::vector<SpaceFramePoint>& points, Eigen::Index n) {
-    Triplets inputs, outputs;
-    int count = 0;
-    for (const SpaceFramePoint& point : points) {
-      if (point.joint < 0 || point.joint >= static_cast<int>(frame_.joints.size()))
-        throw std::invalid_argument("point '" + point.name + "' is at joint " + std::to_string(point.joint) +
-                                    "; expected 0 to " + std::to_string(frame_.joints.size() - 1));
-      const int before = count;
-      for (int i = 0; i < 3; ++i) {
-        const int coordinate = nodes_[point.joint].displacement[i];
-        if (coordinate < 0) continue;
-        inputs.emplace_back(coordinate, count, 1.0);
-        outputs.emplace_back(count, coordinate, 1.0);
-        system_.input_names.push_back(point.name + "_force" + axis_letters[i]);
-        system_.output_names.push_back(point.name + "_displacement" + axis_letters[i]);
-        ++count;
-      }
-      if (count == before)
-        throw std::invalid_argument("point '" + point.name +
-                                    "' is held by a support; expected one that can move");
-    }
-    for (const auto& entry : base_) inputs.emplace_back(entry.row(), count + entry.col(), entry.value());
-    for (const char* const axis : axis_letters)
-      system_.input_names.push_back(std::string("base_acceleration") + axis);
-    system_.inputs = sparse(n, count + 3, inputs);
-    system_.outputs = sparse(count, n, outputs);
   }
 };
 

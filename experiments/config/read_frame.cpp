@@ -30,7 +30,7 @@ const Schema<FrameExperiment>& frame_keys() {
           .choice(
               "mass_model", [](F& f) -> fem::MassModel& { return f.frame.mass_model; },
               {std::pair{"consistent", fem::MassModel::consistent}, {"lumped", fem::MassModel::lumped}},
-              "of the elements; frequencies of bending err by h^4 or by h^2, of stretching by h^2",
+              "of the elements; frequencies err by h^4 or by h^2",
               "\"lumped\"")
           .choice(
               "base_motion", [](F& f) -> char& { return f.frame.base_axis; },

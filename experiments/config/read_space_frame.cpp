@@ -56,8 +56,7 @@ const Schema<GivenSpaceFrame>& space_frame_keys() {
                "finite elements of each member, 1000000 in all at most", "20")
           .choice("mass_model", &F::mass_model,
                   {std::pair{"consistent", fem::MassModel::consistent}, {"lumped", fem::MassModel::lumped}},
-                  "of the elements; frequencies of bending err by h^4 or by h^2, of stretching and torsion "
-                  "by h^2",
+                  "of the elements; frequencies err by h^4 or by h^2",
                   "\"lumped\"")
           .key("base_direction", &F::base_direction,
                "in which all supports move together, where the base moves: x, y, z, of any length",

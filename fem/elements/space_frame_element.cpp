@@ -1,5 +1,7 @@
 #include "fem/elements/space_frame_element.hpp"
 
+#include <vector>
+
 #include "fem/elements/element.hpp"
 #include "fem/elements/rod_element.hpp"
 
@@ -51,6 +53,24 @@ BendingPlane bending_plane(const Section& section, const Mesh::Element& element,
   return plane;
 }
 
+// Where the rod's own strains and coordinates are among those of the element.
+struct RodPlace {
+  const RodMatrices& matrices;
+  Index strain, first, second, inside;
+  double scale;  // of the element's coordinates: they are `scale` times the rod's
+
+  void add(MatrixXd& rigidity, MatrixXd& flexibility, MatrixXd& mass) const {
+    const double square = scale * scale;
+    std::vector<Index> strains{strain}, coordinates{first, second};
+    if (matrices.inside() > 0) strains.push_back(6 + inside), coordinates.push_back(12 + inside);
+    for (std::size_t i = 0; i < strains.size(); ++i) {
+      rigidity(strains[i], strains[i]) += matrices.rigidity[static_cast<Index>(i)] / square;
+      flexibility(strains[i], strains[i]) += matrices.flexibility[static_cast<Index>(i)] * square;
+    }
+    mass(coordinates, coordinates) += matrices.mass / square;
+  }
+};
+
 // Each triple of rows along the member's axes turned into the frame's.
 MatrixXd turned_rows(const MatrixXd& local, const Eigen::Matrix3d& axes, Index triples) {
   MatrixXd result = local;
@@ -75,7 +95,9 @@ SpaceFrameElementMatrices space_frame_element_matrices(const SpaceSection& secti
                                        mass_model),
                     shaft = rod_matrices(in_y, element, section.torsional_stiffness,
                                          section.torsional_inertia, mass_model);
-  const Index inside = along_y.inside + along_z.inside, strains = 6 + inside, coordinates = 12 + inside;
+  const Index bent_inside = along_y.inside + along_z.inside,
+              inside = bent_inside + rod.inside() + shaft.inside(), strains = 6 + inside,
+              coordinates = 12 + inside;
 
   SpaceFrameElementMatrices result;
   result.strain = MatrixXd::Zero(strains, coordinates);
@@ -89,13 +111,8 @@ SpaceFrameElementMatrices space_frame_element_matrices(const SpaceSection& secti
 
   MatrixXd rigidity = MatrixXd::Zero(strains, strains), flexibility = rigidity,
            mass = MatrixXd::Zero(coordinates, coordinates);
-  rigidity(0, 0) = shaft.rigidity / (h * h), flexibility(0, 0) = shaft.flexibility * h * h;
-  rigidity(3, 3) = rod.rigidity, flexibility(3, 3) = rod.flexibility;
-  for (const int i : {0, 1})
-    for (const int j : {0, 1}) {
-      mass(6 * i, 6 * j) = rod.mass(i, j);
-      mass(3 + 6 * i, 3 + 6 * j) = shaft.mass(i, j) / (h * h);
-    }
+  RodPlace{rod, 3, 0, 6, bent_inside, 1.0}.add(rigidity, flexibility, mass);
+  RodPlace{shaft, 0, 3, 9, bent_inside + rod.inside(), h}.add(rigidity, flexibility, mass);
   for (const BendingPlane* const plane : {&along_y, &along_z}) {
     const MatrixXd to_strains = plane->strains(strains), to_own = plane->coordinates(coordinates);
     rigidity += to_strains * plane->part(false) * to_strains.transpose();

@@ -10,9 +10,10 @@ namespace beamid::fem {
 
 /// Matrices of one element between nodes 1 and 2 in the frame's axes.
 ///
-/// Coordinates: (d_1, h theta_1, d_2, h theta_2), each a vector along x, y and z, and two interior ones (see
-/// element.hpp) for bending in the plane of the member's x and y where it has shear deformation there, and
-/// for bending in that of x and z. The natural strains are, t being the direction of the element,
+/// Coordinates: (d_1, h theta_1, d_2, h theta_2), each a vector along x, y and z, and behind them interior
+/// ones: two (element.hpp) for bending in the plane of the member's x and y where it has shear deformation
+/// there, two for bending in that of x and z, one (rod_element.hpp) for stretching and one for twisting. The
+/// natural strains are, t being the direction of the element,
 ///
 ///     h theta_2 - h theta_1   and   d_2 - d_1 - h theta_1 x t   [m],
 ///
@@ -20,7 +21,7 @@ namespace beamid::fem {
 /// h (theta_2 - theta_1)_x of rigidity GJ/h^3, the elongation, and the strains of element.hpp of deflections
 /// along y, (-[d]_y, [theta]_z), and along z, (-[d]_z, -[theta]_y).
 struct SpaceFrameElementMatrices {
-  Eigen::MatrixXd strain;                 ///< (6 x 12), with interior coordinates up to (10 x 16)
+  Eigen::MatrixXd strain;                 ///< (6 x 12), with i interior ones (6 + i x 12 + i)
   Eigen::MatrixXd rigidity, flexibility;  ///< [N/m], [m/N], of the strains
   Eigen::MatrixXd mass;                   ///< [kg], of the coordinates
 };

@@ -51,7 +51,8 @@ TEST(Frame, FindsThePublishedFrequenciesOfThePinEndedCross) {
   EXPECT_EQ(found["configuration"]["frame"]["supports"][0]["kind"], "pinned");
 }
 
-// Against twice the elements. These modes bend more than they stretch, hence up to five times the error.
+// Against four times the elements. An order of 3.5 is taken for granted where it is 4: 15 / 10.3 of the
+// error.
 TEST(Frame, EstimatesAnErrorThatIsNotExceeded) {
   Workplace place;
   place.write("frame.toml", cross("pinned"));
@@ -62,7 +63,7 @@ TEST(Frame, EstimatesAnErrorThatIsNotExceeded) {
         1.0;
     const double estimate = coarse["modes"][i]["discretisation_error_estimate"];
     EXPECT_GT(estimate, error) << i + 1;
-    EXPECT_LT(estimate, 6.5 * error) << i + 1;
+    EXPECT_LT(estimate, 1.5 * error) << i + 1;
   }
 }
 
@@ -107,7 +108,7 @@ TEST(Validate, TakesAFrameToo) {
   EXPECT_THAT(
       place.run("validate frame.toml").out,
       StartsWith("frame.toml: valid\n  frame    Plane frame: 4 members between 5 joints, 2500 kg; pinned "
-                 "at 2, 3, 4, 5. 32 elements per member, 379 degrees of freedom. First mode predicted "
+                 "at 2, 3, 4, 5. 32 elements per member, 507 degrees of freedom. First mode predicted "
                  "at 11.3362 Hz.\n"));
 }
 

@@ -48,6 +48,10 @@ int frequencies_below(const Frame& frame, double w) {
     for (int p = 0; p < 2; ++p)
       for (int q = 0; q < 2; ++q) all.block<3, 3>(at[p], at[q]) += k.block<3, 3>(3 * p, 3 * q);
   }
+  for (const Frame::Body& body : frame.bodies) {
+    const Eigen::Vector3d inertia(body.mass, body.mass, body.rotary_inertia);
+    all.diagonal().segment<3>(3 * body.joint) -= w * w * inertia;
+  }
   std::vector<bool> held(static_cast<std::size_t>(3 * joints), false);
   for (const Frame::Support& support : frame.supports) {
     held[3 * support.joint] = held[3 * support.joint] || support.x;

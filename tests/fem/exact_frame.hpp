@@ -18,8 +18,8 @@ Eigen::Matrix<double, 6, 6> dynamic_stiffness(double length, double bending, dou
                                               double w);
 
 /// How many natural frequencies lie below w: those of the members with all ends held, and the negative
-/// eigenvalues of the frame's dynamic stiffness [wittrick1971]. Joints are rigid; bodies, springs and hinges
-/// are left out.
+/// eigenvalues of the frame's dynamic stiffness [wittrick1971]. Joints are rigid; springs, hinges and axial
+/// loads are left out.
 int frequencies_below(const Frame& frame, double w);
 
 /// Frequency [Hz] of mode i, from 1 on, by bisection on the count between 1e-3 Hz and 1e4 Hz.

@@ -59,6 +59,10 @@ int space_frequencies_below(const SpaceFrame& frame, double w) {
     for (int p = 0; p < 2; ++p)
       for (int q = 0; q < 2; ++q) all.block<6, 6>(at[p], at[q]) += k.block<6, 6>(6 * p, 6 * q);
   }
+  for (const SpaceFrame::Body& body : frame.bodies) {
+    all.diagonal().segment<3>(6 * body.joint).array() -= w * w * body.mass;
+    all.diagonal().segment<3>(6 * body.joint + 3) -= w * w * body.inertia;
+  }
   std::vector<bool> held(static_cast<std::size_t>(6 * joints), false);
   for (const SpaceFrame::Support& s : frame.supports) {
     const bool motions[6] = {s.x, s.y, s.z, s.rx, s.ry, s.rz};

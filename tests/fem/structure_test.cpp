@@ -120,14 +120,14 @@ TEST_P(AnyStructure, SolvesItsStaticsToRounding) {
 }
 
 // The base's column is - M r of the motion r that all take from the base, and a sensor sees r where it sits,
-// to the mass that elements at a support share with it.
+// to the mass that elements at a support share with it: of eight elements little is left beyond.
 TEST_P(AnyStructure, FollowsItsBase) {
-  const StructuralSystem found = system();
+  const StructuralSystem found = assemble(tested().structure, 8, tested().points);
   const VectorXd pull = found.inputs.col(found.inputs.cols() - 1);
   const VectorXd follows = -MatrixXd(found.mass).ldlt().solve(pull);
   const VectorXd seen = found.outputs * follows;
   const bool framed = tested().structure.frame() || tested().structure.space_frame();
-  const double shared = framed ? 1e-3 : 1e-9;
+  const double shared = framed ? 1e-4 : 1e-9;
   for (Index i = 0; i < seen.size(); ++i)
     EXPECT_NEAR(seen[i], found.base_shares.size() > 0 ? found.base_shares[i] : 1.0, shared) << i;
   EXPECT_EQ(found.input_names.back(), "base_acceleration");
