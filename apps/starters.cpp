@@ -134,6 +134,7 @@ height_m = 0.1
 youngs_modulus_pa = 2.1e11
 density_kg_per_m3 = 7850
 # stiffness_factor = 0.8            # of a member that has lost a fifth
+# axial_load_n = 5e4                # of compression, at rest, which softens it
 [[frame.members]]
 first = 4
 second = 3
@@ -189,6 +190,8 @@ supports = [                        # or holds = ["x", "z", "ry"], whichever mot
   { joint = 1, kind = "clamped" }, { joint = 2, kind = "clamped" }, { joint = 3, kind = "clamped" }, { joint = 4, kind = "clamped" },
 ]
 bodies = [{ joint = 5, mass_kg = 600 }, { joint = 6, mass_kg = 600 }, { joint = 7, mass_kg = 600 }, { joint = 8, mass_kg = 600 }]
+# dashpots = [{ joint = 5, translational_n_s_per_m = [150, 0, 0] }]    # against the ground; springs likewise
+# members also have axial_load_n = 5e4 (compression at rest, which softens), stiffness_factor = 0.8
 
 [[space_frame.sections]]
 name = "column"

@@ -5,6 +5,7 @@
 
 #include "fem/beam.hpp"
 #include "fem/frame.hpp"
+#include "fem/space_frame.hpp"
 
 namespace beamid::fem {
 
@@ -15,7 +16,9 @@ namespace beamid::fem {
 std::optional<double> buckling_load(const Beam& beam, int elements = 40);
 
 /// By how much all axial loads of a frame's members may grow together before it has lost its stiffness,
-/// likewise. Nothing where it can move without strain, or no growth does that, as under tension alone.
+/// likewise, by bending or in space by twisting. Nothing where it can move without strain, or no growth does
+/// that, as under tension alone.
 std::optional<double> buckling_factor(const Frame& frame, int elements_per_member = 4);
+std::optional<double> buckling_factor(const SpaceFrame& frame, int elements_per_member = 4);
 
 }  // namespace beamid::fem

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -17,11 +18,12 @@ constexpr double parallel = 1e-6;        // sine of the angle to the member
 
 const char* const axis_names[] = {"x", "y", "z"};
 
-void check_vector(const std::string& what, const Vector3d& value, bool positive_only,
-                  const std::string& unit) {
-  for (const int i : {0, 1, 2})
-    check_in_frame(what + (positive_only ? " about " : " along ") + axis_names[i], value[i], positive_only,
-                   unit);
+void check_vector(const std::string& what, const Vector3d& value, const std::string& unit) {
+  for (const int i : {0, 1, 2}) check_in_frame(what + " along " + axis_names[i], value[i], false, unit);
+}
+
+void check_coefficients(const std::string& what, const Vector3d& values, const std::string& unit) {
+  for (const int i : {0, 1, 2}) check_in_frame(what + axis_names[i], values[i], true, unit);
 }
 
 void check_space_section(const SpaceSection& section, const std::string& member) {
@@ -45,13 +47,21 @@ void check_space_member(const SpaceFrame& frame, std::size_t i) {
   const SpaceFrame::Member& member = frame.members[i];
   const std::string name = "member " + std::to_string(i);
   for (const SpaceFrame::End* const end : {&member.at_first, &member.at_second})
-    check_vector("offset of " + name, end->offset, false, "metres");
+    check_vector("offset of " + name, end->offset, "metres");
   if (!(frame.length(i) > 0.0))
     throw std::invalid_argument(name + " has no length; expected ends at different places");
   if (!(member.stiffness_factor > 0.0 && std::isfinite(member.stiffness_factor)))
     refuse_in_frame("stiffness factor of " + name, member.stiffness_factor, "a positive number");
   check_in_frame("roll of " + name, member.roll, false, "rad");
+  check_in_frame("axial load of " + name, member.axial_load, false, "N");
   check_space_section(member.section, name);
+  const double twisting = member.stiffness_factor * member.section.torsional_stiffness *
+                          member.section.mass_per_length / member.section.torsional_inertia;
+  if (!(member.axial_load < twisting)) {
+    std::ostringstream expected;
+    expected << "less than G J A / (I_y + I_z) = " << twisting << " N, at which it buckles by twisting";
+    refuse_in_frame("axial load of " + name, member.axial_load, expected.str());
+  }
   try {
     frame.axes(i);
   } catch (const std::invalid_argument& error) {
@@ -106,7 +116,7 @@ void validate(const SpaceFrame& frame) {
   const auto count = static_cast<int>(frame.joints.size());
   for (int joint = 0; joint < count; ++joint)
     check_vector("place of joint " + std::to_string(joint),
-                 frame.joints[static_cast<std::size_t>(joint)].place, false, "metres");
+                 frame.joints[static_cast<std::size_t>(joint)].place, "metres");
   for (std::size_t i = 0; i < frame.members.size(); ++i) {
     for (const int joint : {frame.members[i].first, frame.members[i].second})
       check_joint_in_frame("member " + std::to_string(i), joint, count);
@@ -118,15 +128,18 @@ void validate(const SpaceFrame& frame) {
   for (const SpaceFrame::Body& body : frame.bodies) {
     check_joint_in_frame("a body", body.joint, count);
     check_in_frame("body mass", body.mass, true, "kg");
-    check_vector("body inertia", body.inertia, true, "kg m2");
-    check_vector("body offset", body.offset, false, "metres");
+    check_coefficients("body inertia about ", body.inertia, "kg m2");
+    check_vector("body offset", body.offset, "metres");
   }
   for (const SpaceFrame::Spring& spring : frame.springs) {
     check_joint_in_frame("a spring", spring.joint, count);
-    for (const int i : {0, 1, 2})
-      check_in_frame(std::string("spring stiffness along ") + axis_names[i], spring.translational[i], true,
-                     "N/m");
-    check_vector("rotational spring stiffness", spring.rotational, true, "N m/rad");
+    check_coefficients("spring stiffness along ", spring.translational, "N/m");
+    check_coefficients("rotational spring stiffness about ", spring.rotational, "N m/rad");
+  }
+  for (const SpaceFrame::Dashpot& dashpot : frame.dashpots) {
+    check_joint_in_frame("a dashpot", dashpot.joint, count);
+    check_coefficients("damping along ", dashpot.translational, "N s/m");
+    check_coefficients("rotational damping about ", dashpot.rotational, "N m s/rad");
   }
   if (!(frame.base_direction.norm() > 0.0) || !frame.base_direction.allFinite())
     throw std::invalid_argument(

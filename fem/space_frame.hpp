@@ -53,6 +53,7 @@ struct SpaceFrame {
     End at_first = {}, at_second = {};
     double stiffness_factor = 1.0;  ///< of all its stiffnesses: damage, or what a group is found to have
     std::string group = {};         ///< whose members share an unknown factor; empty: none
+    double axial_load = 0.0;        ///< P [N], positive in compression, along the member as it stands at rest
   };
   /// What is held at zero: displacements and rotations.
   struct Support {
@@ -71,11 +72,18 @@ struct SpaceFrame {
     Eigen::Vector3d translational = Eigen::Vector3d::Zero();  ///< along x, y, z [N/m]
     Eigen::Vector3d rotational = Eigen::Vector3d::Zero();     ///< about x, y, z [N m/rad]
   };
+  /// Likewise, of the velocities.
+  struct Dashpot {
+    int joint = 0;
+    Eigen::Vector3d translational = Eigen::Vector3d::Zero();  ///< along x, y, z [N s/m]
+    Eigen::Vector3d rotational = Eigen::Vector3d::Zero();     ///< about x, y, z [N m s/rad]
+  };
   std::vector<Joint> joints;
   std::vector<Member> members;
   std::vector<Support> supports;
   std::vector<Body> bodies;
   std::vector<Spring> springs;
+  std::vector<Dashpot> dashpots = {};
   MassModel mass_model = MassModel::consistent;
   Eigen::Vector3d base_direction = Eigen::Vector3d::UnitX();  ///< along which the base moves; any length
 

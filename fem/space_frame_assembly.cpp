@@ -84,6 +84,13 @@ class SpaceFrameAssembly {
       held.push_back(int{s.x} + int{s.y} + int{s.z} + int{s.rx} + int{s.ry} + int{s.rz});
     for (const FrameStep& step : walk(held, member_ends(frame_))) add_member(step);
     for (const SpaceFrame::Body& body : frame_.bodies) add_body(body);
+    for (const SpaceFrame::Dashpot& dashpot : frame_.dashpots) {
+      const SpaceNode& node = nodes_[dashpot.joint];
+      for (int i = 0; i < 3; ++i) {
+        equations_.add_damping(node.displacement[i], dashpot.translational[i]);
+        equations_.add_damping(node.rotation[i], dashpot.rotational[i] / (node.scale * node.scale));
+      }
+    }
     check_points(system_, points, frame_.joints.size());
     for (const SpaceFramePoint& point : points) {
       const std::array<int, 3>& at = nodes_[point.joint].displacement;
@@ -154,8 +161,9 @@ class SpaceFrameAssembly {
     }
     Matrix3d axes = frame_.axes(step.member);
     if (step.reversed) axes.leftCols<2>() *= -1.0;
-    const SpaceFrameElementMatrices matrices = space_frame_element_matrices(
-        stiffened(frame_.members[step.member]), element, axes, frame_.mass_model);
+    const SpaceFrameElementMatrices matrices =
+        space_frame_element_matrices(stiffened(frame_.members[step.member]), element, axes,
+                                     frame_.members[step.member].axial_load, frame_.mass_model);
     const auto inside = static_cast<int>(matrices.strain.cols()) - 12;
     element.first = step.from;
     SpaceMotion motion = end_motion(step.member, step.reversed, element.length);

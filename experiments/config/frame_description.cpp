@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "experiments/config/beam_description.hpp"
-#include "experiments/config/read_frame.hpp"
+#include "experiments/config/frame_text.hpp"
+#include "experiments/config/read_frame_attachments.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -22,10 +21,6 @@ Json describe_member(const fem::Frame& frame, std::size_t i) {
   if (!member.group.empty()) json["group"] = member.group;
   if (member.axial_load != 0.0) json["axial_load_n"] = member.axial_load;
   return json;
-}
-
-std::string counted(std::size_t number, const char* what) {
-  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -80,18 +75,7 @@ std::string frame_text(const FrameExperiment& experiment, Eigen::Index coordinat
     if (!joints.empty()) held += fmt::format("; {} at {}", name, joints);
   }
   text += held.empty() ? "; nowhere held" : held;
-  if (!frame.bodies.empty())
-    text += fmt::format("; {}",
-                        frame.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", frame.bodies.size()));
-  if (!frame.springs.empty()) text += "; " + counted(frame.springs.size(), "spring");
-  if (!frame.dashpots.empty()) text += "; " + counted(frame.dashpots.size(), "dashpot");
-  const auto loaded = std::count_if(frame.members.begin(), frame.members.end(),
-                                    [](const auto& member) { return member.axial_load != 0.0; });
-  if (loaded > 0) text += "; axial load in " + counted(static_cast<std::size_t>(loaded), "member");
-  return text + fmt::format(". {} per member{}, {} degrees of freedom.",
-                            counted(static_cast<std::size_t>(experiment.elements_per_member), "element"),
-                            frame.mass_model == fem::MassModel::lumped ? " with lumped mass" : "",
-                            coordinates);
+  return text + attachments_text(frame) + mesh_text(frame, experiment.elements_per_member, coordinates);
 }
 
 double total_mass(const fem::Frame& frame) {

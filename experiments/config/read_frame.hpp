@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 
 #include "experiments/config/frame_description.hpp"
 #include "experiments/text/toml_table.hpp"
@@ -20,8 +19,5 @@ FrameExperiment read_frame(const TomlTable& root);
 
 /// The same of the table itself.
 FrameExperiment read_frame_table(const TomlTable& frame);
-
-/// What holds a frame and sits on it, in the keys of a file; joints by their number, from 1.
-void describe_frame_attachments(const fem::Frame& frame, nlohmann::ordered_json& json);
 
 }  // namespace beamid::experiments

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "experiments/config/frame_text.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -57,20 +59,13 @@ Json describe_space_member(const SpaceFrame& frame, std::size_t i) {
   }
   if (member.stiffness_factor != 1.0) json["stiffness_factor"] = member.stiffness_factor;
   if (!member.group.empty()) json["group"] = member.group;
+  if (member.axial_load != 0.0) json["axial_load_n"] = member.axial_load;
   return json;
 }
 
 std::string space_joint_name(const SpaceFrame& frame, int joint) {
   const std::string& name = frame.joints[static_cast<std::size_t>(joint)].name;
   return name.empty() ? fmt::format("{}", joint + 1) : name;
-}
-
-std::string count_of(std::size_t number, const char* what) {
-  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
-}
-
-std::string bodies_text(std::size_t number) {
-  return number == 1 ? "1 body" : fmt::format("{} bodies", number);
 }
 
 // "x y z rx ry rz at 1, 2", the joints of each kind of support together.
@@ -124,20 +119,19 @@ Json describe(const SpaceFrame& frame, int elements_per_member) {
     json["springs"].push_back({{"joint", spring.joint + 1},
                                {"translational_n_per_m", numbers_of(spring.translational)},
                                {"rotational_n_m_per_rad", numbers_of(spring.rotational)}});
+  for (const SpaceFrame::Dashpot& dashpot : frame.dashpots)
+    json["dashpots"].push_back({{"joint", dashpot.joint + 1},
+                                {"translational_n_s_per_m", numbers_of(dashpot.translational)},
+                                {"rotational_n_m_s_per_rad", numbers_of(dashpot.rotational)}});
   return json;
 }
 
 std::string space_frame_text(const SpaceFrame& frame, int elements_per_member, Eigen::Index coordinates) {
   std::string text =
-      fmt::format("Space frame: {} between {}, {:.6g} kg", count_of(frame.members.size(), "member"),
-                  count_of(frame.joints.size(), "joint"), total_mass(frame)) +
+      fmt::format("Space frame: {} between {}, {:.6g} kg", counted(frame.members.size(), "member"),
+                  counted(frame.joints.size(), "joint"), total_mass(frame)) +
       supports_text(frame);
-  if (!frame.bodies.empty()) text += "; " + bodies_text(frame.bodies.size());
-  if (!frame.springs.empty()) text += "; " + count_of(frame.springs.size(), "spring");
-  return text + fmt::format(". {} per member{}, {} degrees of freedom.",
-                            count_of(static_cast<std::size_t>(elements_per_member), "element"),
-                            frame.mass_model == fem::MassModel::lumped ? " with lumped mass" : "",
-                            coordinates);
+  return text + attachments_text(frame) + mesh_text(frame, elements_per_member, coordinates);
 }
 
 double total_mass(const SpaceFrame& frame) {

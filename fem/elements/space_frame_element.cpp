@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "fem/elements/chord.hpp"
 #include "fem/elements/element.hpp"
 #include "fem/elements/rod_element.hpp"
 
@@ -41,9 +42,9 @@ struct BendingPlane {
   }
 };
 
-BendingPlane bending_plane(const Section& section, const Mesh::Element& element, MassModel mass_model,
-                           int across, Index first_inside) {
-  BendingPlane plane{element_matrices(section, element, 0.0, 0.0, mass_model),
+BendingPlane bending_plane(const Section& section, const Mesh::Element& element, double axial_load,
+                           MassModel mass_model, int across, Index first_inside) {
+  BendingPlane plane{element_matrices(section, element, 0.0, axial_load, mass_model),
                      across,
                      across == 1 ? 2 : 1,
                      across == 1 ? 1.0 : -1.0,
@@ -51,6 +52,18 @@ BendingPlane bending_plane(const Section& section, const Mesh::Element& element,
                      first_inside};
   plane.inside = plane.matrices.interior ? 2 : 0;
   return plane;
+}
+
+// The section's torsional stiffness less what the load takes.
+RodMatrices shaft_matrices(const SpaceSection& section, const Mesh::Element& element, double axial_load,
+                           MassModel mass_model) {
+  RodMatrices shaft = rod_matrices(section.bending('y'), element, section.torsional_stiffness,
+                                   section.torsional_inertia, mass_model);
+  if (axial_load == 0.0) return shaft;
+  const double lost = axial_load * section.torsional_inertia / section.mass_per_length;
+  shaft.rigidity *= 1.0 - lost / section.torsional_stiffness;
+  shaft.flexibility = shaft.rigidity.cwiseInverse();
+  return shaft;
 }
 
 // Where the rod's own strains and coordinates are among those of the element.
@@ -86,15 +99,15 @@ MatrixXd turned(const MatrixXd& local, const Eigen::Matrix3d& axes, Index triple
 
 SpaceFrameElementMatrices space_frame_element_matrices(const SpaceSection& section,
                                                        const Mesh::Element& element,
-                                                       const Eigen::Matrix3d& axes, MassModel mass_model) {
+                                                       const Eigen::Matrix3d& axes, double axial_load,
+                                                       MassModel mass_model) {
   const double h = element.length;
   const Section in_y = section.bending('y'), in_z = section.bending('z');
-  const BendingPlane along_y = bending_plane(in_y, element, mass_model, 1, 0),
-                     along_z = bending_plane(in_z, element, mass_model, 2, along_y.inside);
+  const BendingPlane along_y = bending_plane(in_y, element, axial_load, mass_model, 1, 0),
+                     along_z = bending_plane(in_z, element, axial_load, mass_model, 2, along_y.inside);
   const RodMatrices rod = rod_matrices(in_y, element, section.axial_stiffness, section.mass_per_length,
                                        mass_model),
-                    shaft = rod_matrices(in_y, element, section.torsional_stiffness,
-                                         section.torsional_inertia, mass_model);
+                    shaft = shaft_matrices(section, element, axial_load, mass_model);
   const Index bent_inside = along_y.inside + along_z.inside,
               inside = bent_inside + rod.inside() + shaft.inside(), strains = 6 + inside,
               coordinates = 12 + inside;
@@ -122,6 +135,9 @@ SpaceFrameElementMatrices space_frame_element_matrices(const SpaceSection& secti
   result.rigidity = turned(rigidity, axes, 2);
   result.flexibility = turned(flexibility, axes, 2);
   result.mass = turned(mass, axes, 4);
+  if (axial_load != 0.0)
+    for (const Index across : {1, 2})
+      add_chord(axes.col(across), 6, axial_load / h, result.strain, result.rigidity, result.flexibility);
   return result;
 }
 

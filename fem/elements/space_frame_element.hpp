@@ -20,15 +20,23 @@ namespace beamid::fem {
 /// both zero in rigid motions, and the interior coordinates. Along the member's own axes they are the twist
 /// h (theta_2 - theta_1)_x of rigidity GJ/h^3, the elongation, and the strains of element.hpp of deflections
 /// along y, (-[d]_y, [theta]_z), and along z, (-[d]_z, -[theta]_y).
+///
+/// An axial load P adds the chords along the member's y and z, of rigidity -P/h, last, and takes P (I_y +
+/// I_z) / A from GJ: fibres at the distance r from the axis are inclined by r dtheta/dx where the member
+/// twists [timoshenko1961]. That is exact of a section that is symmetric about both axes; (I_y + I_z) / A is
+/// taken from its torsional inertia over its mass per length.
 struct SpaceFrameElementMatrices {
-  Eigen::MatrixXd strain;                 ///< (6 x 12), with i interior ones (6 + i x 12 + i)
+  Eigen::MatrixXd strain;                 ///< (6 x 12), with i interior ones (6 + i x 12 + i), two rows more
+                                          ///< with P
   Eigen::MatrixXd rigidity, flexibility;  ///< [N/m], [m/N], of the strains
   Eigen::MatrixXd mass;                   ///< [kg], of the coordinates
 };
 
 /// @param axes of the member, as columns: x along it, y, z (SpaceFrame::axes)
+/// @param axial_load P [N], positive in compression
 SpaceFrameElementMatrices space_frame_element_matrices(const SpaceSection& section,
                                                        const Mesh::Element& element,
-                                                       const Eigen::Matrix3d& axes, MassModel mass_model);
+                                                       const Eigen::Matrix3d& axes, double axial_load,
+                                                       MassModel mass_model);
 
 }  // namespace beamid::fem

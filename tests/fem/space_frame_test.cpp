@@ -246,6 +246,12 @@ TEST(SpaceFrame, RefusesTheImpossible) {
   frame.members[2].section.torsional_stiffness = 0.0;
   EXPECT_EQ(refusal(frame), "member 2: torsional stiffness is 0; expected a positive number of N m2");
   frame = stair();
+  frame.members[1].axial_load = std::nan("");
+  EXPECT_EQ(refusal(frame), "axial load of member 1 is nan; expected a finite number of N");
+  frame = stair();
+  frame.dashpots = {{2, {0.0, -3.0, 0.0}, Vector3d::Zero()}};
+  EXPECT_EQ(refusal(frame), "damping along y is -3; expected zero or a positive number of N s/m");
+  frame = stair();
   frame.joints.push_back({{9, 9, 9}, ""});
   EXPECT_EQ(refusal(frame), "joint 5 has no member; expected at least one");
   frame.joints.push_back({{9, 9, 8}, ""});

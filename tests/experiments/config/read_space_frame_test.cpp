@@ -130,6 +130,38 @@ TEST(ReadSpaceFrame, TakesWhatHoldsItAndWhatSitsOnIt) {
   EXPECT_EQ(frame.springs[0].translational, Eigen::Vector3d(4, 5, 6));
 }
 
+TEST(ReadSpaceFrame, TakesAxialLoadsAndDashpots) {
+  const fem::SpaceFrame frame = frame_of(
+      replaced(joints_and_members, "section = \"pipe\"\n", "section = \"pipe\"\naxial_load_n = -20\n") +
+      sections +
+      "[[space_frame.supports]]\njoint = 1\nkind = \"clamped\"\n[[space_frame.dashpots]]\njoint = 2\n"
+      "translational_n_s_per_m = [4, 5, 6]\n[[space_frame.dashpots]]\njoint = 3\n"
+      "rotational_n_m_s_per_rad = [1, 2, 3]\n");
+  EXPECT_EQ(frame.members[0].axial_load, 0.0);
+  EXPECT_EQ(frame.members[1].axial_load, -20.0);
+  ASSERT_EQ(frame.dashpots.size(), 2u);
+  EXPECT_EQ(frame.dashpots[0].joint, 1);
+  EXPECT_EQ(frame.dashpots[0].translational, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(frame.dashpots[1].rotational, Eigen::Vector3d(1, 2, 3));
+  const auto json = describe(fem::Structure(frame), 8)["space_frame"];
+  EXPECT_FALSE(json["members"][0].contains("axial_load_n"));
+  EXPECT_EQ(json["members"][1]["axial_load_n"], -20.0);
+  EXPECT_EQ(json["dashpots"][0]["translational_n_s_per_m"], (std::vector<double>{4, 5, 6}));
+}
+
+TEST(ReadSpaceFrame, RefusesLoadsBeyondBuckling) {
+  // Oracle: a cantilever of 5 m whose weaker E I is 2e11 0.2 0.1^3 / 12 N m2 buckles at pi^2 E I / (2 L)^2 =
+  // 328,986.8 N.
+  const std::string column =
+      "[space_frame]\njoints = [{ x_m = 0, y_m = 0, z_m = 0 }, { x_m = 0, y_m = 0, z_m = 5 }]\n"
+      "members = [{ first = 1, second = 2, section = \"bar\", axial_load_n = 4e5 }]\n"
+      "supports = [{ joint = 1, kind = \"clamped\" }]\n" +
+      sections;
+  EXPECT_THAT(error_of(column), testing::StartsWith("tower.toml:1:"));
+  EXPECT_THAT(error_of(column), testing::HasSubstr("the frame buckles at 0.822"));
+  EXPECT_EQ(error_of(replaced(column, "4e5", "3.2e5")), "no error");
+}
+
 TEST(ReadSpaceFrame, RefusesWhatCannotBe) {
   const std::string good = joints_and_members + sections;
   EXPECT_EQ(error_of(good), "no error");
