@@ -29,7 +29,7 @@ int run_substructures(const Values& values) {
     ComparedRecord record;
     PreparedRecord prepared;
     if (file.empty()) {
-      record = simulated_record(experiment, config.parent_path(), progress);
+      record = simulated_for_parts(experiment, config.parent_path(), progress);
     } else {
       prepared = read_and_prepare(file[0], experiment.format);
       record = measured_record(file[0].filename().string(), prepared.record);

@@ -232,14 +232,20 @@ class Assembly {
     Triplets inputs, outputs;
     const auto count = static_cast<int>(points.size());
     for (int i = 0; i < count; ++i) {
-      const int w = deflection_[mesh_.node_at(points[i].position)];
-      if (w < 0)
-        throw std::invalid_argument("point '" + points[i].name +
-                                    "' is held by a support; expected one that can move");
-      inputs.emplace_back(w, i, 1.0);
-      outputs.emplace_back(i, w, 1.0);
-      system_.input_names.push_back(points[i].name + "_force");
-      system_.output_names.push_back(points[i].name + "_deflection");
+      const int node = mesh_.node_at(points[i].position);
+      const bool rotates = points[i].rotates;
+      const int at = rotates ? rotation_[node] : deflection_[node];
+      if (at < 0)
+        throw std::invalid_argument("point '" + points[i].name + "' is held by a support" +
+                                    (rotates ? ", or does not rotate" : "") + "; expected one that can move");
+      const double share = rotates ? 1.0 / scale_[node] : 1.0;  // of the point's motion in the coordinate
+      inputs.emplace_back(at, i, share);
+      outputs.emplace_back(i, at, share);
+      system_.input_names.push_back(points[i].name + (rotates ? "_moment" : "_force"));
+      system_.output_names.push_back(points[i].name + (rotates ? "_rotation" : "_deflection"));
+      if (!rotates) continue;
+      if (system_.base_shares.size() == 0) system_.base_shares.setOnes(count);
+      system_.base_shares[i] = 0.0;
     }
     for (Eigen::Index i = 0; i < n; ++i)
       if (base_[i] != 0.0) inputs.emplace_back(static_cast<int>(i), count, base_[i]);

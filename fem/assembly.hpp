@@ -14,6 +14,7 @@ struct Point {
   std::string name;
   double position = 0.0;   ///< [m]
   std::string place = {};  ///< of a structure whose places have names and no positions
+  bool rotates = false;    ///< of a beam: observed is its rotation [rad], what acts a moment [N m]
 };
 
 /// Finite elements (elements/element.hpp) over the mesh that cut() makes.
@@ -21,7 +22,8 @@ struct Point {
 /// Coordinates, node after node from the root, those held by supports left out: deflection w [m] and scaled
 /// rotation s theta [m], s being the length of the element before the node; then the displacement [m] of each
 /// absorber there and the interior coordinates of the element beyond it. Each point is an input, a force [N]
-/// called NAME_force, and an output, a deflection [m] called NAME_deflection; the last input is
+/// called NAME_force, and an output, a deflection [m] called NAME_deflection, or a moment [N m], NAME_moment,
+/// and a rotation [rad], NAME_rotation, of which the base's motion has no share; the last input is
 /// base_acceleration [m/s2], the acceleration of all supports and grounded springs together, coordinates then
 /// being relative to the base.
 ///

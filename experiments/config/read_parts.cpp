@@ -24,7 +24,10 @@ const Schema<PartOfStructure>& part_keys() {
                "measured",
                "[\"u4\", \"u9\"]")
           .fallback("none")
-          .key("inside", &P::inside, "with `supports`: a place of the part", "\"u6\"");
+          .key("inside", &P::inside, "with `supports`: a place of the part", "\"u6\"")
+          .key("highest_hz", &P::highest_hz, positive,
+               "of a span of a beam: lines of the record's spectrum are used up to here", "40")
+          .fallback("0.6 of half the sampling rate");
   return keys;
 }
 

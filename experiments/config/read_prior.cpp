@@ -25,7 +25,7 @@ const Schema<PriorBelief>& prior_keys() {
 
 struct NoiseValues {
   std::string method = "residual";
-  std::optional<double> displacement, velocity, acceleration, strain, force, base, support;
+  std::optional<double> displacement, velocity, acceleration, strain, force, base, support, angular;
 };
 
 const Schema<NoiseValues>& noise_keys() {
@@ -56,7 +56,10 @@ const Schema<NoiseValues>& noise_keys() {
           .fallback("it is exact")
           .key("support_acceleration_m_per_s2", &N::support, positive,
                "noise of the accelerations that are imposed at places", "0.01")
-          .fallback("they are exact");
+          .fallback("they are exact")
+          .key("angular_acceleration_rad_per_s2", &N::angular, positive,
+               "noise of channels of angular acceleration", "0.01")
+          .fallback("estimated");
   return keys;
 }
 
@@ -80,6 +83,7 @@ void read_prior(const TomlTable& root, Experiment& experiment) {
   take(Quantity::force, noise.force);
   take(Quantity::base_acceleration, noise.base);
   take(Quantity::support_acceleration, noise.support);
+  take(Quantity::angular_acceleration, noise.angular);
   if (table->contains("method")) experiment.noise_method = {noise.method, {}, table->value_place("method")};
 }
 

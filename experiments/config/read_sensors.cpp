@@ -12,7 +12,7 @@ namespace beamid::experiments {
 namespace {
 
 constexpr Quantity sensed[] = {Quantity::displacement, Quantity::velocity, Quantity::acceleration,
-                               Quantity::strain};
+                               Quantity::strain, Quantity::angular_acceleration};
 
 /// A sensor as a file describes it.
 struct DescribedSensor : Sensor, SensorDefects {
@@ -39,7 +39,7 @@ Schema<DescribedSensor> make_sensor_keys() {
       .key("quantity", &S::quantity_name,
            "what it measures; a strain gauge needs its `position_m`, which may be a clamped root",
            "\"acceleration\"")
-      .one_of({"displacement", "velocity", "acceleration", "strain"})
+      .one_of({"displacement", "velocity", "acceleration", "strain", "angular_acceleration"})
       .key("distance_m", &S::given_distance, "of a strain gauge from the axis, c of the strain -c w''",
            "0.003")
       .values("number, not 0")
@@ -48,7 +48,8 @@ Schema<DescribedSensor> make_sensor_keys() {
       {"standard deviation of a displacement sensor's white noise", "1e-6"},
       {"of a velocity sensor's", "1e-5"},
       {"of an accelerometer's", "0.05"},
-      {"of a strain gauge's", "1e-7"}};
+      {"of a strain gauge's", "1e-7"},
+      {"of a sensor of angular acceleration's", "0.01"}};
   for (std::size_t i = 0; i < std::size(sensed); ++i)
     keys.key(
         noise_key(sensed[i]).c_str(), [i](S& s) -> double& { return s.deviation[i]; }, not_negative,

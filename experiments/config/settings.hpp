@@ -50,10 +50,11 @@ struct Sensor {
 /// A part of a structure between sections whose motion was measured.
 struct PartOfStructure {
   std::string name;
-  std::optional<double> from, to;     ///< sections [m]; absent: as far as the structure goes
-  std::vector<std::string> supports;  ///< in their place, where places have names
-  std::string inside;                 ///< a place of the part, which says on which side of them it is
-  Place place = {};                   ///< of the table, for messages
+  std::optional<double> from, to;         ///< sections [m]; absent: as far as the structure goes
+  std::vector<std::string> supports;      ///< in their place, where places have names
+  std::string inside;                     ///< a place of the part, which says on which side of them it is
+  std::optional<double> highest_hz = {};  ///< of a span: lines of the spectrum up to here [Hz]
+  Place place = {};                       ///< of the table, for messages
 };
 
 /// How the test is simulated: [simulation].

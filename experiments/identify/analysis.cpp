@@ -86,9 +86,8 @@ void take_complete_forces(RecordAnalysis& found) {
 }
 
 bool has_supports(const Record& record) {
-  return std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& channel) {
-    return channel.quantity == Quantity::support_acceleration;
-  });
+  return std::any_of(record.channels.begin(), record.channels.end(),
+                     [](const Channel& channel) { return is_imposed(channel.quantity); });
 }
 
 std::string aliased_text(double beam_hz, double rate, double shown) {

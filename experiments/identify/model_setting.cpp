@@ -83,16 +83,18 @@ ModelSetting model_setting(const Experiment& experiment, const Record& record, c
   std::vector<Index> rows;  // output of the system that a channel reads; a strain gauge has one of its own
   for (const Index i : channels) {
     const Channel& channel = record.channels[i];
-    rows.push_back(channel.quantity == Quantity::strain ? -1 : points.add(channel.position, channel.place));
+    rows.push_back(channel.quantity == Quantity::strain
+                       ? -1
+                       : points.add(channel.position, channel.place, is_angular(channel.quantity)));
     setting.observations.push_back({channel.quantity, channel.name});
   }
   const std::vector<Index> inputs = input_channels(record);
   for (const Index i : inputs) {
     const Channel& channel = record.channels[i];
-    if (channel.quantity == Quantity::support_acceleration)
-      setting.supports.push_back(static_cast<Index>(setting.forces.size()));
-    setting.forces.push_back(
-        channel.quantity == Quantity::base_acceleration ? -1 : points.add(channel.position, channel.place));
+    if (is_imposed(channel.quantity)) setting.supports.push_back(static_cast<Index>(setting.forces.size()));
+    setting.forces.push_back(channel.quantity == Quantity::base_acceleration
+                                 ? -1
+                                 : points.add(channel.position, channel.place, is_angular(channel.quantity)));
   }
   setting.system = fem::assemble(structure, experiment.elements, points.all());
   const Index base = setting.system.inputs.cols() - 1;

@@ -42,7 +42,7 @@ std::vector<Index> imposed_inputs(const Record& record) {
   const std::vector<Index> inputs = input_channels(record);
   std::vector<Index> imposed;
   for (std::size_t i = 0; i < inputs.size(); ++i)
-    if (record.channels[static_cast<std::size_t>(inputs[i])].quantity == Quantity::support_acceleration)
+    if (is_imposed(record.channels[static_cast<std::size_t>(inputs[i])].quantity))
       imposed.push_back(static_cast<Index>(i));
   return imposed;
 }

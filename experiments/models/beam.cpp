@@ -174,7 +174,7 @@ std::unique_ptr<JointModel> make_part(const ModelSetting& setting, MotionDescrip
   // zero, which then loses nothing.
   const bool sees_supports =
       std::any_of(description.observations.begin(), description.observations.end(),
-                  [](const Observation& one) { return one.quantity != Quantity::acceleration; });
+                  [](const Observation& one) { return reads(one.quantity) != Reads::accelerations; });
   const Index moved = sees_supports ? part.supports : 0;
   MatrixXd shapes = MatrixXd::Zero(n, inside + moved);
   shapes.topLeftCorner(inside, 1) = scale[0] * modes.shape.col(0);

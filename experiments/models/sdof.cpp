@@ -189,7 +189,8 @@ std::unique_ptr<JointModel> make_sdof(const ModelSetting& setting, const filters
   std::vector<Index> accelerometers;
   auto model = std::make_unique<JointModel>();
   for (const Observation& observation : setting.observations) {
-    if (is_input(observation.quantity) || observation.quantity == Quantity::strain)
+    if (is_input(observation.quantity) || observation.quantity == Quantity::strain ||
+        is_angular(observation.quantity))
       throw std::invalid_argument(
           std::string("model 'sdof' observes displacement, velocity or acceleration; found ") +
           to_string(observation.quantity));

@@ -16,7 +16,8 @@ constexpr double offset_share = 0.1;  // of the largest reading, what a sensor's
 
 // Reading per displacement of a motion at omega: 1, omega, omega^2; a strain reads the curvature.
 double reading(Quantity quantity, double omega) {
-  return quantity == Quantity::velocity ? omega : quantity == Quantity::acceleration ? omega * omega : 1.0;
+  if (quantity == Quantity::velocity) return omega;
+  return quantity == Quantity::acceleration || is_angular(quantity) ? omega * omega : 1.0;
 }
 
 Index state_size(const JointModel& model) {
@@ -49,7 +50,9 @@ StartScale start_scale(const JointModel& model, const std::vector<Observation>& 
     const double unit = observations[i].quantity == Quantity::velocity ? moving[i] : displaced[i];
     // A sensor near a node of the mode says nothing about its size.
     const double usual = reading(observations[i].quantity, omega);
-    if (observations[i].quantity != Quantity::strain && std::abs(unit) < 0.05 * usual) continue;
+    const bool deflects =
+        observations[i].quantity != Quantity::strain && !is_angular(observations[i].quantity);
+    if (deflects && std::abs(unit) < 0.05 * usual) continue;
     if (unit != 0.0)
       scale.displacement = std::max(scale.displacement, largest_measured(samples.row(i)) / std::abs(unit));
   }

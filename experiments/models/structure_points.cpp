@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 
 namespace beamid::experiments {
 namespace {
@@ -16,13 +17,19 @@ std::string name_of_place(double position, double length) {
   return position == 0.0 ? std::string("root") : fmt::format("x{:g}m", position);
 }
 
-Eigen::Index StructurePoints::add(const std::optional<double>& position, const std::string& place) {
+Eigen::Index StructurePoints::add(const std::optional<double>& position, const std::string& place,
+                                  bool rotates) {
+  if (rotates && !natural_.place.empty())
+    throw std::invalid_argument(fmt::format(
+        "angular_acceleration at '{}': it is of a beam; expected acceleration at a place that rotates",
+        place.empty() ? natural_.place : place));
   if (!natural_.place.empty()) return add_named(place.empty() ? natural_.place : place);
   const double where = position.value_or(natural_.position);
   for (std::size_t i = 0; i < points_.size(); ++i)
-    if (std::abs(points_[i].position - where) <= same_place * length_) return static_cast<Eigen::Index>(i);
+    if (points_[i].rotates == rotates && std::abs(points_[i].position - where) <= same_place * length_)
+      return static_cast<Eigen::Index>(i);
   const bool natural = std::abs(where - natural_.position) <= same_place * length_;
-  points_.push_back({natural ? natural_.name : name_of_place(where, length_), where});
+  points_.push_back({natural ? natural_.name : name_of_place(where, length_), where, {}, rotates});
   return static_cast<Eigen::Index>(points_.size()) - 1;
 }
 

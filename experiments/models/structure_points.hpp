@@ -19,8 +19,10 @@ class StructurePoints {
       : natural_(fem::natural_point(structure)), length_(structure.extent()) {}
 
   /// @param position [m]; absent: fem::natural_point(). @param place its name instead, where places have
-  /// names. @returns its number.
-  Eigen::Index add(const std::optional<double>& position, const std::string& place = {});
+  /// names. @param rotates whether its rotation is meant. @returns its number.
+  /// @throws std::invalid_argument for a rotation where places have names: a place is one motion there.
+  Eigen::Index add(const std::optional<double>& position, const std::string& place = {},
+                   bool rotates = false);
 
   const std::vector<fem::Point>& all() const { return points_; }
   const fem::Point& operator[](Eigen::Index number) const { return points_[number]; }

@@ -20,6 +20,9 @@ const char* si_unit(Quantity quantity) {
       return "N";
     case Quantity::strain:
       return "m/m";
+    case Quantity::angular_acceleration:
+    case Quantity::support_angular_acceleration:
+      return "rad/s2";
   }
   return "";
 }
@@ -40,6 +43,10 @@ const char* to_string(Quantity quantity) {
       return "base_acceleration";
     case Quantity::support_acceleration:
       return "support_acceleration";
+    case Quantity::angular_acceleration:
+      return "angular_acceleration";
+    case Quantity::support_angular_acceleration:
+      return "support_angular_acceleration";
   }
   return "";
 }

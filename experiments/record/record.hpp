@@ -16,21 +16,33 @@ enum class Quantity {
   force,
   strain,
   base_acceleration,
-  support_acceleration
+  support_acceleration,
+  angular_acceleration,
+  support_angular_acceleration  ///< of parts alone: no file names it
 };
 
 /// What drives the motion: a force, the acceleration of all supports together, or that of one point whose
 /// motion is taken as it was measured, whatever holds it.
 inline bool is_input(Quantity quantity) {
   return quantity == Quantity::force || quantity == Quantity::base_acceleration ||
-         quantity == Quantity::support_acceleration;
+         quantity == Quantity::support_acceleration || quantity == Quantity::support_angular_acceleration;
+}
+
+/// Whether it is of a point whose motion is taken as it was measured.
+inline bool is_imposed(Quantity quantity) {
+  return quantity == Quantity::support_acceleration || quantity == Quantity::support_angular_acceleration;
+}
+
+/// Whether it is of a rotation.
+inline bool is_angular(Quantity quantity) {
+  return quantity == Quantity::angular_acceleration || quantity == Quantity::support_angular_acceleration;
 }
 
 /// How a measured input runs between its samples: as an anti-aliased converter recorded it, straight from
 /// sample to sample, or constant until the next one (which is late by half an interval).
 enum class InputPath { band_limited, linear, held };
 
-/// SI unit of a quantity: m, m/s, m/s2, N, m/m, m/s2, m/s2.
+/// SI unit of a quantity: m, m/s, m/s2, N, m/m, rad/s2.
 const char* si_unit(Quantity quantity);
 const char* to_string(Quantity quantity);
 

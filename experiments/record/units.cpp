@@ -12,6 +12,7 @@ const std::vector<Unit>& units(Quantity quantity) {
       {"m/s2", "m_per_s2", 1}, {"mm/s2", "mm_per_s2", 1e-3}, {"g", "g", standard_gravity}};
   static const std::vector<Unit> force{{"N", "n", 1}, {"kN", "kn", 1e3}};
   static const std::vector<Unit> strain{{"m/m", "m_per_m", 1}, {"um/m", "um_per_m", 1e-6}};
+  static const std::vector<Unit> angular{{"rad/s2", "rad_per_s2", 1}, {"mrad/s2", "mrad_per_s2", 1e-3}};
   switch (quantity) {
     case Quantity::displacement:
       return displacement;
@@ -23,6 +24,9 @@ const std::vector<Unit>& units(Quantity quantity) {
       return acceleration;
     case Quantity::strain:
       return strain;
+    case Quantity::angular_acceleration:
+    case Quantity::support_angular_acceleration:
+      return angular;
     case Quantity::force:
       break;
   }

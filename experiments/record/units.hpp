@@ -26,9 +26,15 @@ const std::vector<Unit>& units(Quantity quantity);
 /// s, ms, us.
 const std::vector<Unit>& time_units();
 
-inline constexpr Quantity all_quantities[] = {
-    Quantity::displacement, Quantity::velocity,          Quantity::acceleration,        Quantity::force,
-    Quantity::strain,       Quantity::base_acceleration, Quantity::support_acceleration};
+/// Those that files name.
+inline constexpr Quantity all_quantities[] = {Quantity::displacement,
+                                              Quantity::velocity,
+                                              Quantity::acceleration,
+                                              Quantity::force,
+                                              Quantity::strain,
+                                              Quantity::base_acceleration,
+                                              Quantity::support_acceleration,
+                                              Quantity::angular_acceleration};
 
 /// The quantity of that name: "acceleration".
 std::optional<Quantity> find_quantity(std::string_view name);

@@ -239,7 +239,7 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
       if (sensor.name.empty()) sensor.name = name_of_place(*sensor.position, structure.extent());
       continue;
     }
-    outputs.push_back(points.add(sensor.position, sensor.place));
+    outputs.push_back(points.add(sensor.position, sensor.place, is_angular(sensor.quantity)));
     if (structure.has_positions()) sensor.position = points[outputs.back()].position;
     if (sensor.name.empty()) sensor.name = points[outputs.back()].name;
   }

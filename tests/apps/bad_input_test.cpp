@@ -109,8 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
             "velocity_mm_per_s, acceleration_m_per_s2, acceleration_mm_per_s2, acceleration_g, force_n, "
             "force_kn, strain_m_per_m, strain_um_per_m, base_acceleration_m_per_s2, "
             "base_acceleration_mm_per_s2, base_acceleration_g, support_acceleration_m_per_s2, "
-            "support_acceleration_mm_per_s2, support_acceleration_g), or record.channels in the "
-            "configuration"}),
+            "support_acceleration_mm_per_s2, support_acceleration_g, angular_acceleration_rad_per_s2, "
+            "angular_acceleration_mrad_per_s2), or record.channels in the configuration"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(

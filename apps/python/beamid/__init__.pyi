@@ -106,10 +106,11 @@ class Record:
         strain_um_per_m: npt.ArrayLike = ..., base_acceleration_m_per_s2: npt.ArrayLike = ...,
         base_acceleration_mm_per_s2: npt.ArrayLike = ..., base_acceleration_g: npt.ArrayLike = ...,
         support_acceleration_m_per_s2: npt.ArrayLike = ..., support_acceleration_mm_per_s2: npt.ArrayLike = ...,
-        support_acceleration_g: npt.ArrayLike = ..., reader: str = ..., separator: str = ..., decimal: str = ...,
-        header_lines: int = ..., malformed: str = ..., missing_input: str = ..., stamps: str = ..., input: str = ...,
-        own_clock: Sequence[str] = ..., sampling_rate_hz: _Number = ..., window_s: Sequence[_Number] = ...,
-        prepare: _Tables = ...) -> None: ...
+        support_acceleration_g: npt.ArrayLike = ..., angular_acceleration_rad_per_s2: npt.ArrayLike = ...,
+        angular_acceleration_mrad_per_s2: npt.ArrayLike = ..., reader: str = ..., separator: str = ...,
+        decimal: str = ..., header_lines: int = ..., malformed: str = ..., missing_input: str = ...,
+        stamps: str = ..., input: str = ..., own_clock: Sequence[str] = ..., sampling_rate_hz: _Number = ...,
+        window_s: Sequence[_Number] = ..., prepare: _Tables = ...) -> None: ...
     @property
     def numbers(self) -> int: ...
     @property

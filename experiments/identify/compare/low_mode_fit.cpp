@@ -142,8 +142,8 @@ bool is_stiffness(const Unknown& unknown) {
   return unknown.quantity.ends_with("stiffness") || unknown.quantity == "factor";
 }
 
-// What the state's unknowns change by where all stiffnesses are s times those of the guess (q); empty where a
-// form does not allow it.
+}  // namespace
+
 VectorXd scaled_stiffness(const JointModel& model, const FirstGuess& guess, double s) {
   const auto q = static_cast<Index>(model.unknown_places.size());
   VectorXd change = VectorXd::Zero(q);
@@ -159,6 +159,8 @@ VectorXd scaled_stiffness(const JointModel& model, const FirstGuess& guess, doub
   }
   return change;
 }
+
+namespace {
 
 // Many stiffnesses that are wrong together are beyond the reach of a descent in all of them: a mode of
 // another frequency has another phase after a few periods. All that are wrong by one factor are found first.

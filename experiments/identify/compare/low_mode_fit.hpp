@@ -16,6 +16,10 @@ struct FirstGuess {
 /// L with P = L L^T (q x q), whatever the rank of P.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance);
 
+/// What the state's unknowns change by where all stiffnesses are s times those of the guess (q); empty where
+/// a form does not allow it.
+Eigen::VectorXd scaled_stiffness(const JointModel& model, const FirstGuess& guess, double s);
+
 /// A record that holds the modes up to some frequency only, as decimation leaves it.
 struct LowRecord {
   filters::Measurements measurements;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "experiments/identify/compare/run_noise.hpp"
 #include "experiments/identify/model_setting.hpp"
@@ -66,7 +67,42 @@ bool stands_on_base(const PartOfStructure& part) {
 }
 
 bool is_accelerometer(const Channel& channel) {
-  return channel.quantity == Quantity::acceleration;
+  return channel.quantity == Quantity::acceleration || channel.quantity == Quantity::angular_acceleration;
+}
+
+void refuse_of_span(const PartOfStructure& part, const Channel& channel, const char* expected) {
+  throw InputError(part.place, fmt::format("substructure '{}': '{}' is of {}; expected {}", part.name,
+                                           channel.name, to_string(channel.quantity), expected));
+}
+
+// Of a span, rotations at its sections that no channel holds.
+void add_missing_rotations(const PartOfStructure& part, double length, Index inside, Record& record) {
+  std::vector<double> missing;
+  for (const auto& section : {part.from, part.to}) {
+    const auto turns = [&](const Channel& one) {
+      return one.quantity == Quantity::support_angular_acceleration &&
+             std::abs(*one.position - *section) < 1e-9 * length;
+    };
+    if (section && std::none_of(record.channels.begin(), record.channels.end(), turns))
+      missing.push_back(*section);
+  }
+  const auto count = static_cast<Index>(missing.size());
+  if (count > 0 && inside <= count)
+    throw InputError(
+        part.place,
+        fmt::format("substructure '{}': {} of the rotations at its sections {} not measured; expected "
+                    "angular_acceleration there, or more than {} channels inside in their place",
+                    part.name, count, count == 1 ? "is" : "are", count));
+  for (const double section : missing) {
+    record.channels.push_back({Quantity::support_angular_acceleration,
+                               fmt::format("rotation at {:g} m", section),
+                               section,
+                               0.0,
+                               {},
+                               std::numeric_limits<double>::infinity()});
+    record.samples.conservativeResize(record.samples.rows() + 1, Eigen::NoChange);
+    record.samples.bottomRows(1).setZero();
+  }
 }
 
 void require_sections(const PartOfStructure& part, Index found) {
@@ -79,7 +115,19 @@ void require_sections(const PartOfStructure& part, Index found) {
                                  part.name, found, wanted, found == 1 ? "has" : "have"));
 }
 
+// As many elements as a span's motion needs: 24 in it, unless the structure would have more than 400.
+int elements_of_span(const Experiment& experiment, const PartOfStructure& part) {
+  constexpr double in_span = 24.0, most = 400.0;
+  const double length = experiment.structure.extent(),
+               span = part.to.value_or(length) - part.from.value_or(0.0);
+  return std::max(experiment.elements, static_cast<int>(std::min(most, std::ceil(in_span * length / span))));
+}
+
 }  // namespace
+
+bool has_spans(const fem::Structure& structure) {
+  return structure.is_beam() && !structure.is_chain();
+}
 
 ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord& record,
                               const PartOfStructure& part, Sections sections) {
@@ -90,11 +138,13 @@ ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord
   result.record.remarks = record.record.remarks;
   result.record.warnings = record.record.warnings;
   result.record.input_path = record.record.input_path;
+  const bool spans = has_spans(experiment.structure);
   std::vector<Index> kept;
   Index found = 0, inside = 0;
   for (std::size_t i = 0; i < where.size(); ++i) {
     Channel channel = record.record.channels[i];
     if (channel.quantity == Quantity::base_acceleration) {
+      if (spans) refuse_of_span(part, channel, "a structure whose base is at rest where its parts are spans");
       if (!stands_on_base(part)) continue;
       if (sections == Sections::exact) channel.noise = 0.0;
     } else if (where[i] == Where::section) {
@@ -107,13 +157,16 @@ ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord
                         "not stated; expected noise in [[record.channels]] or [noise]",
                         part.name, channel.name));
       if (sections == Sections::exact) channel.noise = 0.0;
-      channel.quantity = Quantity::support_acceleration;
-      ++found;
+      found += is_angular(channel.quantity) ? 0 : 1;
+      channel.quantity = is_angular(channel.quantity) ? Quantity::support_angular_acceleration
+                                                      : Quantity::support_acceleration;
     } else if (where[i] == Where::outside) {
       continue;
     } else if (is_input(channel.quantity)) {
       if (sections == Sections::exact) channel.noise = 0.0;
     } else {
+      if (spans && !is_accelerometer(channel))
+        refuse_of_span(part, channel, "accelerations and forces inside a span");
       ++inside;
     }
     kept.push_back(static_cast<Index>(i));
@@ -126,6 +179,7 @@ ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord
         fmt::format("substructure '{}': no sensor sits inside it; expected at least one", part.name));
   result.record.samples = record.record.samples(kept, Eigen::all);
   if (record.sensor_noise.size() > 0) result.sensor_noise = record.sensor_noise(kept);
+  if (spans) add_missing_rotations(part, experiment.structure.extent(), inside, result.record);
   return result;
 }
 
@@ -138,6 +192,7 @@ Experiment experiment_of_part(const Experiment& experiment, const ComparedRecord
   own.reductions = {own.reduction};
   own.filters = {experiment.filter};
   own.discretisations = {experiment.discretisation};
+  if (has_spans(experiment.structure)) own.elements = elements_of_span(experiment, part);
   for (const Quantity input : {Quantity::force, Quantity::base_acceleration, Quantity::support_acceleration})
     if (const auto given = own.noise.find(input); given != own.noise.end()) {
       const bool counts =

@@ -11,6 +11,7 @@
 
 #include "experiments/config/channel_places.hpp"
 #include "experiments/identify/parts/cut_chain.hpp"
+#include "experiments/identify/parts/span.hpp"
 #include "experiments/identify/parts/widened_part.hpp"
 #include "reduction/reduction.hpp"
 
@@ -38,6 +39,7 @@ Comparison identify_part(const Experiment& experiment, const ComparedRecord& rec
                          const std::filesystem::path& folder) {
   CutChain own = cut_chain(experiment, record_of_part(experiment, record, part, sections), part);
   const Experiment asked = experiment_of_part(own.experiment, own.record, own.part);
+  if (has_spans(asked.structure)) return identify_span(asked, std::move(own.record), part.highest_hz);
   return compare(asked, std::move(own.record), folder, unwatched);
 }
 
@@ -140,6 +142,13 @@ std::vector<JoinedParameter> joined(const Experiment& experiment, const std::vec
 
 bool PartedIdentification::converged() const {
   return std::all_of(parts.begin(), parts.end(), [](const IdentifiedPart& one) { return one.converged(); });
+}
+
+ComparedRecord simulated_for_parts(Experiment truth, const std::filesystem::path& folder,
+                                   const Progress& progress) {
+  fem::ResponseMethod& method = truth.simulation.method;
+  if (has_spans(truth.structure) && method.name == "modal") method.options.try_emplace("modes", 0.0);
+  return simulated_record(truth, folder, progress);
 }
 
 PartedIdentification identify_parts(const Experiment& given, const ComparedRecord& record,

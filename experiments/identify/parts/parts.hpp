@@ -39,6 +39,11 @@ struct PartedIdentification {
   bool converged() const;  ///< every part, the noise at its sections counted
 };
 
+/// As simulated_record(); where parts are spans, the modal method has all modes unless the file says how
+/// many: with those below half the sampling rate alone, forces anywhere act in the span too.
+ComparedRecord simulated_for_parts(Experiment truth, const std::filesystem::path& folder,
+                                   const Progress& progress);
+
 /// Every part of the experiment on its share of the record, two at a time, and the whole beside them where it
 /// has no more than 30 coordinates.
 ///

@@ -19,9 +19,9 @@ std::vector<fem::Point> sensor_points(const Experiment& experiment, bool shapes)
   std::vector<fem::Point> points;
   for (const Sensor& sensor : experiment.sensors) {
     if (!shapes) break;
-    if (sensor.quantity == Quantity::strain)
-      throw std::invalid_argument("sensor '" + sensor.name +
-                                  "' reads a strain; expected displacement, velocity or acceleration where "
+    if (sensor.quantity == Quantity::strain || is_angular(sensor.quantity))
+      throw std::invalid_argument("sensor '" + sensor.name + "' reads " + to_string(sensor.quantity) +
+                                  "; expected displacement, velocity or acceleration where "
                                   "shapes are compared");
     points.push_back({fmt::format("sensor{}", points.size() + 1),
                       sensor.position ? *sensor.position : fem::natural_point(experiment.structure).position,

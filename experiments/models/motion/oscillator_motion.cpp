@@ -1,5 +1,7 @@
 #include "experiments/models/motion/oscillator_motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -234,9 +236,9 @@ std::unique_ptr<JointModel> make_oscillator(const std::string& name, const Model
   for (std::size_t j = 0; j < parts.unknowns.size(); ++j) model->unknown_places.push_back(place++);
   for (std::size_t i = 0; i < setting.observations.size(); ++i) {
     const Quantity quantity = setting.observations[i].quantity;
-    if (quantity == Quantity::strain)
-      throw std::invalid_argument("model '" + name +
-                                  "' observes displacement, velocity or acceleration; found strain");
+    if (quantity == Quantity::strain || is_angular(quantity))
+      throw std::invalid_argument(fmt::format(
+          "model '{}' observes displacement, velocity or acceleration; found {}", name, to_string(quantity)));
     ObservedChannel sensor{quantity, system.outputs.coeff(static_cast<Index>(i), 0) / first};
     if (quantity == Quantity::acceleration && sensors.sensor_bias) {
       sensor.bias = place++;

@@ -115,7 +115,8 @@ PhysicalValues physical_values(const MotionDescription& description, const State
 
 Reads reads(Quantity quantity) {
   if (quantity == Quantity::velocity) return Reads::rates;
-  if (quantity == Quantity::acceleration) return Reads::accelerations;
+  if (quantity == Quantity::acceleration || quantity == Quantity::angular_acceleration)
+    return Reads::accelerations;
   if (is_input(quantity))
     throw std::invalid_argument(
         "an input is no observation of the motion; expected displacement, velocity, acceleration or strain");

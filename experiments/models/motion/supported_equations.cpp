@@ -129,7 +129,8 @@ SupportedEquations supported_equations(const fem::ParametricSystem& equations,
                 : VectorXd::Zero(system.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i] < 0) continue;
-    part.inputs(rows[i], supports[i]) = 1.0;
+    const double share = system.inputs.coeff(places[i], forces[static_cast<std::size_t>(supports[i])]);
+    part.inputs(rows[i], supports[i]) = 1.0 / share;  // the coordinate of a rotation is scaled
     if (base >= 0) part.inputs(rows[i], base) = -moved_by_base[places[i]];
   }
   for (std::size_t j = 0; j < equations.derivatives.size(); ++j) {

@@ -13,6 +13,7 @@ namespace beamid::experiments {
 ///
 ///     M z'' + C z' + K z = E u,    rows of a support: z_s'' = a_s - share_s a_base
 ///
+/// a_s in units of its coordinate, of a beam's rotation s theta''.
 /// Coordinates are those of the structure, relative to its base. What lies beyond the supports has no part
 /// in it: it acts through their motion alone, which is what makes a substructure of a structure.
 struct SupportedEquations {
@@ -61,6 +62,7 @@ class SupportedMotion final : public SecondOrderMotion {
 
   void evaluate(const Eigen::VectorXd& state, SecondOrderForm& form,
                 std::vector<SecondOrderForm>* slopes) const override;
+  Eigen::Index supports() const { return equations_.supports; }
   bool decoupled() const override { return false; }
   bool has_modes_of_its_own() const override { return false; }
   Eigen::VectorXd frequencies() const override { return frequencies_; }

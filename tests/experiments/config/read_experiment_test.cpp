@@ -261,10 +261,12 @@ TEST(ReadExperiment, RefusesBadRecordTables) {
        {BEAM "[record]\nchannels = [3]\n", "bad.toml:6:13: record.channels[1] is 3; expected a table"},
        {BEAM "[record]\nchannels = [{ column = 1, unit = \"g\" }]\n",
         "bad.toml:6:13: record.channels[1].quantity is missing; expected one of displacement, velocity, "
-        "acceleration, force, strain, base_acceleration, support_acceleration"},
+        "acceleration, force, strain, base_acceleration, support_acceleration, "
+        "angular_acceleration"},
        {BEAM "[[record.channels]]\nquantity = \"torque\"\n",
         "bad.toml:6:12: record.channels[1].quantity is the text \"torque\"; expected one of displacement, "
-        "velocity, acceleration, force, strain, base_acceleration, support_acceleration"},
+        "velocity, acceleration, force, strain, base_acceleration, support_acceleration, "
+        "angular_acceleration"},
        {BEAM "[[record.channels]]\nquantity = \"acceleration\"\ncolumn = 2\nunit = \"kN\"\n",
         "bad.toml:8:8: record.channels[1].unit is the text \"kN\"; expected a unit of acceleration: m/s2, "
         "mm/s2, g"}});

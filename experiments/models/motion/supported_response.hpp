@@ -1,0 +1,45 @@
+// What the sensors inside a part show, frequency by frequency.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+
+#include "experiments/models/motion/second_order_motion.hpp"
+
+namespace beamid::experiments {
+
+/// A part between supports (supported_motion.hpp) at fixed unknowns, x inside, s its supports:
+///
+///     x'' + D_xx x' + W_xx x = B_x u - D_xs s' - W_xs s,    s'' = B_s u,    a = h x'' + h_s s''
+///
+/// in the eigenvectors of W_xx, where D_xx is diagonal unless dashpots couple them. Nothing is cut off: those
+/// far above the frequencies of a record follow statically by themselves.
+class SupportedResponse {
+ public:
+  /// @param form its W, D and B; @param rows what the sensors of acceleration read (p x n), supports last
+  /// @param supports b
+  /// @throws std::runtime_error where W_xx has no real eigenvalues, or one that is not positive.
+  SupportedResponse(const SecondOrderForm& form, const Eigen::MatrixXd& rows, Eigen::Index supports);
+
+  /// omega of its modes with the supports at rest, undamped, ascending [rad/s] (n - b).
+  const Eigen::VectorXd& frequencies() const { return frequencies_; }
+
+  /// a = G(omega) u of motion e^(i omega t) (p x m), omega > 0.
+  Eigen::MatrixXcd transfer(double omega) const;
+
+  /// Motion with u = 0: real and imaginary parts of h_j e^(lambda_j t).
+  struct FreeMotion {
+    Eigen::VectorXcd poles;   ///< lambda (k), none with a negative imaginary part [1/s]
+    Eigen::MatrixXcd shapes;  ///< h (p x k)
+  };
+  /// That of its lowest modes. @param count of them
+  FreeMotion free_motion(Eigen::Index count) const;
+
+ private:
+  Eigen::VectorXd frequencies_, stiffness_, damping_;  // stiffness_: omega^2
+  Eigen::MatrixXd coupled_;                            // of D_xx; empty where it is diagonal
+  Eigen::MatrixXd rows_, rows_of_supports_;            // (p x n - b), (p x m)
+  Eigen::MatrixXd pushed_, held_, dragged_;            // by u, s and s' of a unit s'' (n - b x m)
+};
+
+}  // namespace beamid::experiments
