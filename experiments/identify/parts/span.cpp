@@ -117,9 +117,12 @@ struct LinesLeft {
 
 LinesLeft lines_left(const LineProblem& problem, const LineFit& fit) {
   const Index lines = fit.squares.size(), spare = problem.output_noise.size() - problem.unmeasured;
+  // By what was read alone: what a fit leaves of a line must not decide where the line counts.
+  const MatrixXd read = problem.output_noise.cwiseInverse().asDiagonal() * problem.record.outputs.cwiseAbs();
+  const VectorXd power = read.colwise().squaredNorm();
   std::vector<Index> order(static_cast<std::size_t>(lines));
   std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return fit.readings[a] > fit.readings[b]; });
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return power[a] > power[b]; });
   const Index half = lines / 2;
   const VectorXd sorted = fit.squares(order);
   const double each = 1.0 / static_cast<double>(half * spare);
@@ -135,14 +138,16 @@ void judge_span(const LinesLeft& left, ComparedRun& run) {
   constexpr double many = 4.0, too_much = 2.0, whatever = 10.0;
   constexpr double chance = 4.0;  // deviations of the ratio
   run.misfit_percent = left.motion_percent;
+  if (!(left.strong > left.weak * (1.0 + chance * left.deviation))) return;
   const bool stands_out = left.strong > many * left.weak && left.motion_percent > too_much;
   if (!stands_out && !(left.motion_percent > whatever)) {
-    if (left.strong > left.weak * (1.0 + chance * left.deviation))
-      run.warnings.push_back(fmt::format(
-          "{:.2g} % of the motion inside is left that the sections do not make: lines are {:.3g} times the "
-          "noise stated where motion is strong, {:.3g} times where it is weak. Estimates may be off by more "
-          "than their intervals: a place, a gain, a mass, a force inside, or a simulation cut to few modes",
-          left.motion_percent, std::sqrt(left.strong), std::sqrt(left.weak)));
+    run.warnings.push_back(
+        fmt::format("{:.2g} % of the motion inside is left that the sections do not make: lines are {:.3g} "
+                    "times the noise "
+                    "stated where motion is strong, {:.3g} times where it is weak. Estimates may be off by "
+                    "more than their "
+                    "intervals: a place, a gain, a mass, a force inside, or a simulation cut to few modes",
+                    left.motion_percent, std::sqrt(left.strong), std::sqrt(left.weak)));
     return;
   }
   run.status = ComparedRun::Status::contradicted;
