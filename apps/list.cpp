@@ -8,6 +8,7 @@
 #include "apps/terminal.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "experiments/models/springs/spring_law.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/record_reader.hpp"
 #include "experiments/studies/study.hpp"
@@ -56,6 +57,7 @@ const std::vector<Kind>& kinds() {
       {"reductions", [] { return methods_of(reduction::reduction_registry()); }},
       {"responses", responses},
       {"smoothers", [] { return methods_of(filters::smoother_registry()); }},
+      {"springs", [] { return methods_of(experiments::spring_law_registry()); }},
       {"steps", [] { return methods_of(experiments::step_registry()); }},
       {"studies", [] { return methods_of(experiments::study_registry()); }}};
   return all;

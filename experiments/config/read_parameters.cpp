@@ -53,7 +53,7 @@ double example_guess(const std::string& suffix) {
       {"n_m2", 228.96},     {"kg", 1.437}, {"kg_m2", 0.001},   {"n_m_per_rad", 4000},
       {"n_per_m", 300000},  {"n", 10},     {"", 0.004},        {"per_s", 0.05},
       {"s", 1e-5},          {"hz", 4.1},   {"n_s_per_m", 0.4}, {"n_per_m3", 20000},
-      {"n_s2_per_m2", 0.6}, {"per_m", 4}};
+      {"n_s2_per_m2", 0.6}, {"per_m", 4},  {"m", 0.02}};
   const auto known = guesses.find(suffix);
   return known == guesses.end() ? 1.0 : known->second;
 }
@@ -76,20 +76,22 @@ void add_number_keys(Schema<DescribedParameter>& keys, const ParameterNumber& nu
 Schema<DescribedParameter> make_parameter_keys() {
   using P = DescribedParameter;
   Schema<P> keys("parameters");
-  keys.key(
-          "quantity", &P::quantity,
-          "model `beam`: `\"bending_stiffness\"`, `\"tip_mass\"` (of `tip_mass_kg`, or of the first body at "
-          "the tip: a sensor beside it keeps its own), `\"body_mass\"` (of the bodies between `from_m` and "
-          "`to_m`, all of them without), `\"tip_rotary_inertia\"`, `\"root_rotational_stiffness\"`, "
-          "`\"root_translational_stiffness\"`, `\"axial_load\"`, of a chain `\"storey_stiffness\"` and "
-          "`\"storey_damping\"` (of its dashpots), of a frame or a system `\"factor\"` (of the group of "
-          "members or the parameter that `name` names), `\"damping_ratio\"`, `\"mass_damping\"` and "
-          "`\"stiffness_damping\"` (alpha and beta of C = alpha M + beta K); `modal`: `\"frequency\"`, "
-          "`\"damping_ratio\"`; `sdof`: `\"stiffness\"`, `\"damping\"`, and `\"mass\"` where a force was "
-          "measured; the same and, only where named here or nothing is, `duffing`: `\"cubic_stiffness\"`; "
-          "`damped`: `\"coulomb_friction\"`, `\"quadratic_damping\"` (and `\"cubic_stiffness\"`, only where "
-          "named); `bouc_wen`: `\"post_yield_ratio\"` (alpha), `\"hysteresis_beta\"`, `\"hysteresis_gamma\"`",
-          "\"bending_stiffness\"")
+  keys.key("quantity", &P::quantity,
+           "model `beam`: `\"bending_stiffness\"`, `\"tip_mass\"` (of `tip_mass_kg`, or of the first body at "
+           "the tip: a sensor beside it keeps its own), `\"body_mass\"` (of the bodies between `from_m` and "
+           "`to_m`, all of them without), `\"tip_rotary_inertia\"`, `\"root_rotational_stiffness\"`, "
+           "`\"root_translational_stiffness\"`, `\"axial_load\"`, of a chain `\"storey_stiffness\"` and "
+           "`\"storey_damping\"` (of its dashpots), of a frame or a system `\"factor\"` (of the group of "
+           "members or the parameter that `name` names), `\"damping_ratio\"`, `\"mass_damping\"` and "
+           "`\"stiffness_damping\"` (alpha and beta of C = alpha M + beta K); `modal`: `\"frequency\"`, "
+           "`\"damping_ratio\"`; `sdof`: `\"stiffness\"`, `\"damping\"`, and `\"mass\"` where a force was "
+           "measured; the same and, only where named here or nothing is, `duffing`: `\"cubic_stiffness\"`; "
+           "`damped`: `\"coulomb_friction\"`, `\"quadratic_damping\"` (and `\"cubic_stiffness\"`, only where "
+           "named); `bouc_wen`: `\"post_yield_ratio\"` (alpha), `\"hysteresis_beta\"`, "
+           "`\"hysteresis_gamma\"`; "
+           "of storeys that follow laws, in model `beam`, the laws' (`beamid list springs`): these and "
+           "`\"reference_drift\"`",
+           "\"bending_stiffness\"")
       .one_of(quantity_names())
       .values("text")
       .required()

@@ -2,23 +2,13 @@
 //
 //     M x'' + C x' + K x + K3 x^3 = e f
 //
-// At the amplitude a it moves at omega^2 = (K + 3/4 K3 a^2) / M, to first order in K3.
+// The spring is that of springs/duffing.cpp. At the amplitude a it moves at omega^2 = (K + 3/4 K3 a^2) / M,
+// to first order in K3.
 #include "experiments/models/motion/oscillator_motion.hpp"
+#include "experiments/models/springs/spring_law.hpp"
 
 namespace beamid::experiments {
 namespace {
-
-class Duffing final : public OscillatorLaw {
- public:
-  // p = [K, C, K3]
-  void evaluate(double x, double v, double, const Eigen::VectorXd& p, OscillatorForce& force) const override {
-    const double cube = x * x * x;
-    force.value = p[0] * x + p[1] * v + p[2] * cube;
-    force.by_displacement = p[0] + 3.0 * p[2] * x * x;
-    force.by_velocity = p[1];
-    force.by_parameter << x, v, cube;
-  }
-};
 
 std::unique_ptr<JointModel> make_duffing(const ModelSetting& setting, const filters::Options& options) {
   constexpr double stiffness_doubt = 0.3;
@@ -26,7 +16,7 @@ std::unique_ptr<JointModel> make_duffing(const ModelSetting& setting, const filt
   // One per cent of K at the usual amplitude, and a hundred times as much in doubt: of either sign.
   const double cubic = 0.01 * beam.stiffness / (beam.amplitude * beam.amplitude);
   return make_oscillator(
-      "duffing", setting, std::make_shared<Duffing>(),
+      "duffing", setting, spring_and_dashpot(spring_law_registry().make("duffing", {})),
       {{"stiffness", beam.stiffness, stiffness_doubt * beam.stiffness, true},
        {"damping", beam.damping, beam.damping, true},
        {"cubic_stiffness", cubic, 100.0 * cubic, false, true, options.number("cubic_stiffness_n_per_m3")}},

@@ -7,10 +7,20 @@
 #include <map>
 #include <stdexcept>
 
+#include "experiments/models/springs/spring_law.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
 namespace {
+
+// Laws of springs bring theirs: a new law is one new file.
+void add_quantities_of_springs(std::vector<ParameterQuantity>& all) {
+  for (const auto& [name, entry] : spring_law_registry().entries())
+    for (const SpringParameter& parameter : spring_law_registry().make(name, {})->parameters())
+      if (std::none_of(all.begin(), all.end(),
+                       [&](const ParameterQuantity& known) { return known.name == parameter.quantity.name; }))
+        all.push_back(parameter.quantity);
+}
 
 // Whether two choices would move the same thing.
 bool meet(const ParameterChoice& a, const ParameterChoice& b) {
@@ -23,30 +33,29 @@ bool meet(const ParameterChoice& a, const ParameterChoice& b) {
 }  // namespace
 
 const std::vector<ParameterQuantity>& parameter_quantities() {
-  static const std::vector<ParameterQuantity> quantities{
-      {"bending_stiffness", "N m2", "n_m2"},
-      {"tip_mass", "kg", "kg"},
-      {"body_mass", "kg", "kg"},
-      {"tip_rotary_inertia", "kg m2", "kg_m2"},
-      {"root_rotational_stiffness", "N m/rad", "n_m_per_rad"},
-      {"root_translational_stiffness", "N/m", "n_per_m"},
-      {"axial_load", "N", "n"},
-      {"storey_stiffness", "N/m", "n_per_m"},
-      {"storey_damping", "N s/m", "n_s_per_m"},
-      {"factor", "", ""},
-      {"damping_ratio", "", ""},
-      {"mass_damping", "1/s", "per_s"},
-      {"stiffness_damping", "s", "s"},
-      {"frequency", "Hz", "hz"},
-      {"stiffness", "N/m", "n_per_m"},
-      {"damping", "N s/m", "n_s_per_m"},
-      {"mass", "kg", "kg"},
-      {"cubic_stiffness", "N/m3", "n_per_m3"},
-      {"coulomb_friction", "N", "n"},
-      {"quadratic_damping", "N s2/m2", "n_s2_per_m2"},
-      {"post_yield_ratio", "", ""},
-      {"hysteresis_beta", "1/m", "per_m"},
-      {"hysteresis_gamma", "1/m", "per_m"}};
+  static const std::vector<ParameterQuantity> quantities = [] {
+    std::vector<ParameterQuantity> all{{"bending_stiffness", "N m2", "n_m2"},
+                                       {"tip_mass", "kg", "kg"},
+                                       {"body_mass", "kg", "kg"},
+                                       {"tip_rotary_inertia", "kg m2", "kg_m2"},
+                                       {"root_rotational_stiffness", "N m/rad", "n_m_per_rad"},
+                                       {"root_translational_stiffness", "N/m", "n_per_m"},
+                                       {"axial_load", "N", "n"},
+                                       {"storey_stiffness", "N/m", "n_per_m"},
+                                       {"storey_damping", "N s/m", "n_s_per_m"},
+                                       {"factor", "", ""},
+                                       {"damping_ratio", "", ""},
+                                       {"mass_damping", "1/s", "per_s"},
+                                       {"stiffness_damping", "s", "s"},
+                                       {"frequency", "Hz", "hz"},
+                                       {"stiffness", "N/m", "n_per_m"},
+                                       {"damping", "N s/m", "n_s_per_m"},
+                                       {"mass", "kg", "kg"},
+                                       {"coulomb_friction", "N", "n"},
+                                       {"quadratic_damping", "N s2/m2", "n_s2_per_m2"}};
+    add_quantities_of_springs(all);
+    return all;
+  }();
   return quantities;
 }
 

@@ -99,6 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ListOf,
                                          Kind{"steps", {"band_pass", "event", "integrate", "resample"}},
                                          Kind{"studies", {"atlas", "budget", "noise", "paper"}},
                                          Kind{"smoothers", {"rts", "urts"}},
+                                         Kind{"springs", {"bouc_wen", "duffing", "hyperbolic", "linear"}},
                                          Kind{"responses",
                                               {"modal", "newmark", "hht_alpha", "generalised_alpha"}}),
                          [](const auto& tested) { return std::string(tested.param.name); });
@@ -163,7 +164,7 @@ TEST(List, RefusesUnknownKindsAndNames) {
   EXPECT_EQ(Workplace().run("list quaternions").first_error_line(),
             "beamid: list: unknown kind 'quaternions'; known: discretisations, filters, keys, modal_methods, "
             "models, "
-            "readers, reductions, responses, smoothers, steps, studies");
+            "readers, reductions, responses, smoothers, springs, steps, studies");
   EXPECT_EQ(Workplace().run("list filters quaternion").first_error_line(),
             "beamid: unknown filter 'quaternion'; known: adaptive_ekf, ckf, dual_ekf, dual_kf, ekf, enkf, "
             "gillijns_de_moor, iekf, kf, low_rank_ekf, "

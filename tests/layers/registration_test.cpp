@@ -7,6 +7,7 @@
 
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "experiments/models/springs/spring_law.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/record_reader.hpp"
 #include "experiments/studies/study.hpp"
@@ -45,14 +46,12 @@ TEST_P(ExtensionFolder, HasOneRegistrationPerFileUnderTheNameOfTheFile) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Project, ExtensionFolder,
-                         testing::Values("filters/methods", "filters/schemes", "filters/smoothers",
-                                         "reduction/methods", "experiments/modal/methods",
-                                         "experiments/models", "experiments/record/steps",
-                                         "experiments/record/files", "experiments/studies"),
-                         [](const auto& tested) {
-                           return std::regex_replace(std::string(tested.param), std::regex("/"), "_");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Project, ExtensionFolder,
+    testing::Values("filters/methods", "filters/schemes", "filters/smoothers", "reduction/methods",
+                    "experiments/modal/methods", "experiments/models", "experiments/models/springs",
+                    "experiments/record/steps", "experiments/record/files", "experiments/studies"),
+    [](const auto& tested) { return std::regex_replace(std::string(tested.param), std::regex("/"), "_"); });
 
 // A plain static archive drops files that nobody calls, and these files are called by nobody: each set is
 // compared with its folder, in a program linked as `beamid` is.
@@ -73,6 +72,9 @@ TEST(Registry, KnowsEveryModalMethodOfItsFolder) {
 }
 TEST(Registry, KnowsEveryModelOfItsFolder) {
   EXPECT_EQ(names_known_to(experiments::model_registry()), extensions_in("experiments/models"));
+}
+TEST(Registry, KnowsEverySpringLawOfItsFolder) {
+  EXPECT_EQ(names_known_to(experiments::spring_law_registry()), extensions_in("experiments/models/springs"));
 }
 TEST(Registry, KnowsEveryPreparationStepOfItsFolder) {
   EXPECT_EQ(names_known_to(experiments::step_registry()), extensions_in("experiments/record/steps"));

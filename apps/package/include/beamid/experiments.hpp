@@ -8,6 +8,7 @@
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/oscillator.hpp"
+#include "experiments/models/springs/spring_law.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/record/record_reader.hpp"
