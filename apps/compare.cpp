@@ -30,6 +30,8 @@ void complete_compare(const Values& values, Experiment& experiment) {
   if (!reductions.empty()) experiment.reductions.clear();
   for (const std::string& text : reductions)
     experiment.reductions.push_back(parse_reduction(text, "--reduction"));
+  if (experiment.reductions.empty() && !experiment.storey_springs.empty())  // which are not reduced
+    experiment.reductions = {experiment.reduction};
   if (experiment.reductions.empty())
     for (const char* text : {"none", "rayleigh", "modal_truncation", "modal_truncation:modes=3"})
       experiment.reductions.push_back(parse_reduction(text, "default reductions"));

@@ -17,7 +17,7 @@ void complete_identifiability(const Values& values, Experiment& experiment) {
   choose_model(values, experiment);
   if (values.has("reduction"))
     experiment.reduction = parse_reduction(values.text("reduction"), "--reduction");
-  else if (experiment.reduction.place.line == 0)
+  else if (experiment.reduction.place.line == 0 && experiment.storey_springs.empty())
     experiment.reduction = parse_reduction(
         experiment.model.name == "sdof" ? "rayleigh" : "modal_truncation:modes=3", "default reduction");
 }

@@ -7,6 +7,7 @@
 #include "apps/identify_request.hpp"
 #include "apps/record_options.hpp"
 #include "apps/sensed_record.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/joint_comparison.hpp"
 #include "experiments/identify/joint_identification.hpp"
@@ -54,10 +55,12 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
   const Experiment& experiment = one.experiment;
   const fs::path folder = config.parent_path();
   if (law.empty() && !experiment.unknown_forces.empty()) {
+    require_linear_storeys(experiment, "identify with [[unknown_forces]]");
     Results sensed = sensed_record(experiment, one.prepared, one.file, config, progress);
     sensed.command = "identify";
     return sensed;
   }
+  if (!law.empty()) require_linear_storeys(experiment, "identify --damping-law");
   const Record& record = one.prepared.record;
   const std::string name = one.file.filename().string();
   Results results;
@@ -90,6 +93,7 @@ void refuse_what_needs_one_record(const std::vector<IdentifyRequest>& requests) 
 /// Every record's damping law, and whether one holds for all.
 Results laws_of(const std::vector<IdentifyRequest>& requests, const std::string& law,
                 const fs::path& folder) {
+  require_linear_storeys(requests[0].experiment, "identify --damping-law");
   std::vector<StudiedRecord> studied;
   for (const IdentifyRequest& one : requests) {
     const Record& record = one.prepared.record;

@@ -1,4 +1,5 @@
 #include "apps/identify_family.hpp"
+#include "experiments/config/storey_laws.hpp"
 
 #include <fmt/format.h>
 
@@ -29,6 +30,7 @@ Results identify_family(const Values& values, const std::vector<fs::path>& confi
   for (std::size_t k = 0; k < configs.size(); ++k) {
     FamilyMember member{
         configs[k].filename().string(), read_experiment(configs[k]), configs[k].parent_path(), {}, {}};
+    require_linear_storeys(member.experiment, "a family of beams");
     const fs::path file =
         require_record_files(values, configs[k], member.experiment.record_file)[records.empty() ? 0 : k];
     member.record_name = file.filename().string();

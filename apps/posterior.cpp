@@ -6,6 +6,7 @@
 #include "apps/update_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/identify/sensing/sensing_record.hpp"
 #include "experiments/studies/posterior/report.hpp"
@@ -53,6 +54,7 @@ PosteriorStudy posterior_of_record(const Values& values, const Experiment& exper
 
 int run_posterior(const Values& values) {
   const Experiment experiment = read_experiment(values.text("config"));
+  require_linear_storeys(experiment, "posterior");
   const std::filesystem::path file = values.text("modes");
   std::optional<ModalData> modes;
   if (holds_modes(file)) modes = read_modal_data(file, experiment);

@@ -6,6 +6,7 @@
 #include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "experiments/config/read_reduction.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/studies/reduce/chosen_reductions.hpp"
 #include "experiments/studies/reduce/report.hpp"
 
@@ -58,6 +59,7 @@ std::vector<Choice> chosen(const BeamSource& source, const Values& values) {
 int run_reduce(const Values& values) {
   const ReductionComparisonSettings settings{values.whole("modes"), values.number("band")};
   const BeamSource source = read_beam(values);
+  require_linear_storeys(source.experiment, "reduce");
   const std::vector<Choice> choices = chosen(source, values);
   deliver(values, [&] {
     return blame_config(source, [&] {

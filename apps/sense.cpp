@@ -8,6 +8,7 @@
 #include "apps/sensed_record.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_sensing.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/models/structure_points.hpp"
 #include "experiments/studies/sensing/report.hpp"
@@ -50,6 +51,7 @@ int run_sense(const Values& values) {
   const fs::path config = values.text("config");
   if (config.empty()) throw UsageError("--config FILE is missing");
   Experiment experiment = read_experiment(config);
+  require_linear_storeys(experiment, "sense");
   for (const std::string& place : values.texts("at")) add_place(place, experiment);
   if (experiment.unknown_forces.empty())
     throw InputError({config.string()},

@@ -91,6 +91,11 @@ stiffnesses_n_per_m = [2.0e6, 1.6e6, 1.2e6]
 heights_m = [3, 3, 3]               # places are heights above the base
 # dashpots_n_s_per_m = [300, 240, 180]
 
+# [[chain.storeys]]                 # a storey that is not linear; laws: beamid list springs
+# storey = 1
+# law = "duffing"
+# cubic_stiffness_n_per_m3 = 5.0e8
+
 [[sensors]]                         # accelerations are absolute
 position_m = 3
 noise_m_per_s2 = 0.01

@@ -9,6 +9,7 @@
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/steps/published.hpp"
@@ -53,6 +54,7 @@ OptionGroup published_options() {
 /// The record as identify takes it, but with its higher modes: they are the same at all steps.
 IdentificationRequest steps_request(const Values& values, const fs::path& config) {
   Experiment experiment = read_experiment(config);
+  require_linear_storeys(experiment, "steps");
   if (const auto window = values.from_to("window")) {
     experiment.format.window = window;
     experiment.format.window_place = {"--window"};

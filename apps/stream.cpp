@@ -10,6 +10,7 @@
 #include "apps/method_options.hpp"
 #include "experiments/config/failure_response.hpp"
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/identify/stream/sample_line.hpp"
@@ -117,6 +118,7 @@ OptionGroup stream_options() {
 int run_stream(const Values& values) {
   const fs::path config = values.text("config");
   Experiment experiment = read_experiment(config);
+  require_linear_storeys(experiment, "stream");
   choose_failure_response(values, experiment);
   const Record earlier = earlier_record(values, experiment, config);
   StreamedIdentification stream =

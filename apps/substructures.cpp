@@ -5,6 +5,7 @@
 #include "apps/deliver.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/substructures/report.hpp"
 
@@ -18,6 +19,7 @@ int run_substructures(const Values& values) {
   const fs::path config = values.text("config");
   if (config.empty()) throw UsageError("--config FILE is missing");
   const Experiment experiment = read_experiment(config);
+  require_linear_storeys(experiment, "substructures");
   if (experiment.parts.empty())
     throw InputError({config.string()}, "no [[substructures]]; expected the parts to be identified");
   if (experiment.parameters.empty())

@@ -3,6 +3,7 @@
 #include "apps/update_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/twins/report.hpp"
 
@@ -13,6 +14,7 @@ using namespace experiments;
 
 int run_twins(const Values& values) {
   const Experiment experiment = read_experiment(values.text("config"));
+  require_linear_storeys(experiment, "twins");
   deliver(values, [&] {
     const ModalData data =
         values.has("modes") ? read_modal_data(values.text("modes"), experiment) : described_modes(experiment);

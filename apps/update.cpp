@@ -3,6 +3,7 @@
 #include "apps/update_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/update/report.hpp"
 
@@ -13,6 +14,7 @@ using namespace experiments;
 
 int run_update(const Values& values) {
   const Experiment experiment = read_experiment(values.text("config"));
+  require_linear_storeys(experiment, "update");
   const ModalData data = read_modal_data(values.text("modes"), experiment);
   deliver(values, [&] {
     Results results = report(experiment, studied_update(values, experiment, data));

@@ -129,6 +129,12 @@ Json describe(const fem::DampingLaw& law) {
 Json describe(const Experiment& experiment) {
   Json json{{"title", experiment.title}};
   json.update(describe(experiment.structure, experiment.elements));
+  for (const StoreySpring& spring : experiment.storey_springs) {
+    Json law{{"storey", spring.storey}, {"law", spring.law.name}};
+    for (const auto& [option, value] : spring.law.options.values())
+      std::visit([&](const auto& held) { law[option] = held; }, value);
+    json["storeys"].push_back(std::move(law));
+  }
   json["damping"] = describe(experiment.damping);
   return json;
 }

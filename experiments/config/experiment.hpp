@@ -13,6 +13,7 @@
 #include "experiments/config/settings.hpp"
 #include "experiments/models/parameter_choice.hpp"
 #include "experiments/models/prior.hpp"
+#include "experiments/models/springs/storey_spring.hpp"
 #include "experiments/record/record_format.hpp"
 #include "experiments/text/choice.hpp"
 #include "fem/damping.hpp"
@@ -26,7 +27,8 @@ namespace beamid::experiments {
 struct Experiment {
   std::string title;
   fem::Structure structure;
-  int elements = 40;  ///< of a beam, or of each member of a frame
+  std::vector<StoreySpring> storey_springs;  ///< of a chain, those that follow laws; the others are linear
+  int elements = 40;                         ///< of a beam, or of each member of a frame
   fem::DampingLaw damping;
   Excitation excitation;
   std::vector<Excitation> further_excitations;  ///< that act at the same time, forces and the base's motion

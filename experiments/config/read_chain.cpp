@@ -8,6 +8,7 @@
 
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/useless_keys.hpp"
+#include "experiments/models/springs/spring_law.hpp"
 #include "experiments/text/method_choice.hpp"
 #include "fem/shear_building.hpp"
 
@@ -33,7 +34,7 @@ const Schema<GivenChain>& chain_keys() {
           .key("heights_m", &C::heights, positive, "of the storeys; places are heights above the base",
                "[3, 3, 3]")
           .fallback("1 m each")
-          .tables({"layers"});
+          .tables({"layers", "storeys"});
   return keys;
 }
 
@@ -51,6 +52,25 @@ const Schema<fem::SoilLayer>& layer_keys() {
   return keys;
 }
 
+constexpr int most_storeys = 100000;
+
+const Schema<StoreySpring>& storey_keys() {
+  static const Schema<StoreySpring> keys =
+      Schema<StoreySpring>("chain.storeys")
+          .with_options()
+          .key("storey", &StoreySpring::storey, {1, most_storeys},
+               "whose spring follows the law, from the lowest, 1, up; of layers, the layer", "1")
+          .required()
+          .other("law", Key::Type::text,
+                 "a name from `beamid list springs`; its parameters stand beside it, and the stiffness at "
+                 "rest is "
+                 "that of the chain",
+                 "\"bouc_wen\"")
+          .required("a name from `beamid list springs`");
+  return keys;
+}
+
+const bool storey_keys_registered = register_keys([]() -> const KeyTable& { return storey_keys(); });
 const bool chain_keys_registered = register_keys([]() -> const KeyTable& { return chain_keys(); });
 const bool layer_keys_registered = register_keys([]() -> const KeyTable& { return layer_keys(); });
 
@@ -76,6 +96,24 @@ fem::Storeys storeys_of(const TomlTable& table) {
 
 fem::Beam read_chain(const TomlTable& table) {
   return at_place(table.place(), [&] { return fem::shear_building(storeys_of(table)); });
+}
+
+std::vector<StoreySpring> read_storey_springs(const TomlTable& table, const fem::Beam& chain) {
+  std::vector<StoreySpring> springs;
+  const int count = static_cast<int>(chain.segments.size());
+  for (const TomlTable& one : table.find_tables("storeys")) {
+    StoreySpring spring = storey_keys().read(one);
+    if (spring.storey > count) one.refuse("storey", fmt::format("a storey from 1 to {}", count));
+    for (const StoreySpring& other : springs)
+      if (other.storey == spring.storey) one.refuse("storey", "another one: this has a law already");
+    spring.law = read_choice(one, "law", "", spring_law_registry(), storey_keys().names());
+    for (const SpringParameter& parameter :
+         spring_law_registry().make(spring.law.name, spring.law.options)->parameters())
+      if (!one.contains(parameter.key()))
+        one.miss(parameter.key(), "the number of law '" + spring.law.name + "'");
+    if (spring.law.name != "linear") springs.push_back(spring);
+  }
+  return springs;
 }
 
 void check_places_on_chain(const TomlTable& root, const fem::Beam& chain) {

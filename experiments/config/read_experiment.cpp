@@ -68,6 +68,7 @@ void read_structure(const TomlTable& root, Experiment& experiment) {
   } else if (const auto chain = root.find_table("chain")) {
     experiment.structure = read_chain(*chain);
     experiment.elements = static_cast<int>(experiment.structure.beam().segments.size());
+    experiment.storey_springs = read_storey_springs(*chain, experiment.structure.beam());
     check_places_on_chain(root, experiment.structure.beam());
   } else {
     const TomlTable beam = root.table("beam");

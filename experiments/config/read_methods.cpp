@@ -1,4 +1,5 @@
 #include "experiments/config/read_methods.hpp"
+#include "experiments/config/storey_laws.hpp"
 
 #include "experiments/config/failure_response.hpp"
 #include "experiments/config/key_tables.hpp"
@@ -19,7 +20,7 @@ const Schema<Experiment>& model_keys() {
       Schema<Experiment>("model")
           .with_options()
           .other("name", Type::text, "a name from `beamid list models`", "\"sdof\"")
-          .fallback("`\"sdof\"`");
+          .fallback("`\"sdof\"`; with `[[chain.storeys]]` `\"beam\"`");
   return keys;
 }
 
@@ -120,12 +121,15 @@ void read_methods(const TomlTable& root, Experiment& experiment) {
   choose("reduction", "method", experiment.reduction, reduction::reduction_registry());
   experiment.reduction_is_stated = root.contains("reduction");
   if (const auto table = root.find_table("reduction")) read_shape_file(*table, experiment.reduction);
+  const bool laws = !experiment.storey_springs.empty();  // of storeys: model beam in its own coordinates
+  if (laws) experiment.model.name = "beam";
   choose("model", "name", experiment.model, model_registry());
+  require_model_of_storeys(experiment);
   // Static shapes are K and M of one coordinate; of a model of modes they would be an error of its own.
   const std::string& model = experiment.model.name;
+  const char* const natural = laws ? "none" : "modal_truncation";
   if (!root.contains("reduction") && (model == "beam" || model == "modal"))
-    experiment.reduction = {"modal_truncation",
-                            reduction::reduction_registry().completed("modal_truncation", {}),
+    experiment.reduction = {natural, reduction::reduction_registry().completed(natural, {}),
                             root.value_place("reduction")};
   choose("filter", "method", experiment.filter, filters::filter_registry());
   if (const auto table = root.find_table("filter")) read_filter(*table, experiment);

@@ -26,7 +26,8 @@ Schema<Choice> make_reduction_keys(const char* table, const char* fallback) {
 const KeyTable& reduction_keys() {
   static const Schema<Choice> keys = make_reduction_keys(
       "reduction",
-      "`\"rayleigh\"`; for the models `beam` and `modal` `\"modal_truncation\"`, one exact mode");
+      "`\"rayleigh\"`; for the models `beam` and `modal` `\"modal_truncation\"`, one exact mode; with "
+      "`[[chain.storeys]]` `\"none\"`");
   return keys;
 }
 

@@ -6,6 +6,7 @@
 #include "experiments/config/description.hpp"
 #include "experiments/config/frame_description.hpp"
 #include "experiments/config/space_frame_description.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
@@ -44,7 +45,9 @@ std::string structure_text(const Experiment& experiment, Eigen::Index elements, 
                        matrices->labels.front(), matrices->labels.back(),
                        matrices->damping.nonZeros() > 0 ? ", damping included" : "") +
            factors_text(structure);
-  return beam_text(structure.beam(), static_cast<int>(elements), coordinates);
+  const std::string laws = storey_laws_text(experiment.storey_springs);
+  return beam_text(structure.beam(), static_cast<int>(elements), coordinates) +
+         (laws.empty() ? "" : " Laws of storeys: " + laws + ".");
 }
 
 Json describe(const fem::Structure& structure, int elements) {

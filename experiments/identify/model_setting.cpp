@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_reduction.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/record_inputs.hpp"
 #include "experiments/models/structure_points.hpp"
 #include "experiments/text/method_choice.hpp"
@@ -76,6 +77,7 @@ filters::Measurements measurements(const Record& record) {
 
 ModelSetting model_setting(const Experiment& experiment, const Record& record, const Choice& reduction,
                            const std::filesystem::path& folder) {
+  require_model_of_storeys(experiment);
   ModelSetting setting;
   const fem::Structure structure = with_nodes_for(experiment, record);
   StructurePoints points(structure);
@@ -131,6 +133,7 @@ ModelSetting model_setting(const Experiment& experiment, const Record& record, c
   setting.damping = experiment.damping;
   setting.parameters = experiment.parameters;
   setting.prior = experiment.prior;
+  setting.storey_springs = experiment.storey_springs;
   setting.continuum = ModelSetting::Continuum{structure, experiment.elements, points.all()};
   at_place(reduction.place, [&] {
     setting.reduction = reduction::reduction_registry().make(reduction.name, reduction.options);

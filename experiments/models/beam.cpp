@@ -7,7 +7,7 @@
 // the same space, in coordinates in [m] that are independent at the guess. A mesh that nobody has reduced is
 // seen in its own coordinates, or, when it decays freely and its shapes depend on what is asked, in its
 // lowest modes as they follow the unknowns (following_motion.hpp). So is a reduction to the lowest modes
-// whose shapes depend on what is asked.
+// whose shapes depend on what is asked. A chain whose storeys follow laws is not linear (storeys.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +20,7 @@
 #include "experiments/models/motion/following_motion.hpp"
 #include "experiments/models/motion/sensor_options.hpp"
 #include "experiments/models/motion/supported_motion.hpp"
+#include "experiments/models/storeys.hpp"
 #include "fem/moved_mass.hpp"
 
 namespace beamid::experiments {
@@ -29,20 +30,6 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 // A mesh with more coordinates than this is not made into dense matrices.
 constexpr Index most_dense = 30;
-
-const std::vector<std::string> quantities{"bending_stiffness",
-                                          "tip_mass",
-                                          "body_mass",
-                                          "tip_rotary_inertia",
-                                          "root_rotational_stiffness",
-                                          "root_translational_stiffness",
-                                          "axial_load",
-                                          "storey_stiffness",
-                                          "storey_damping",
-                                          "factor",
-                                          "damping_ratio",
-                                          "mass_damping",
-                                          "stiffness_damping"};
 
 // What is asked where the file asks nothing: the stiffness of all, or each factor, and the damping.
 std::vector<ParameterChoice> own_choices(const ModelSetting& setting) {
@@ -58,25 +45,9 @@ std::vector<ParameterChoice> own_choices(const ModelSetting& setting) {
 
 std::vector<ParameterChoice> choices_of(const ModelSetting& setting) {
   if (setting.parameters.empty()) return own_choices(setting);
-  for (const ParameterChoice& choice : setting.parameters) require_quantity(choice, quantities, "beam");
+  for (const ParameterChoice& choice : setting.parameters)
+    require_quantity(choice, structure_quantities(), "beam");
   return setting.parameters;
-}
-
-void add_drives(const fem::ParametricSystem& equations, MotionDescription& description) {
-  description.reference = equations.values;
-  Index property = 0;
-  for (const Unknown& unknown : description.unknowns) {
-    Drive drive;
-    if (unknown.quantity == "damping_ratio")
-      drive.kind = Drive::Kind::damping_ratio;
-    else if (unknown.quantity == "mass_damping")
-      drive.kind = Drive::Kind::mass_damping;
-    else if (unknown.quantity == "stiffness_damping")
-      drive.kind = Drive::Kind::stiffness_damping;
-    else
-      drive.index = property++;
-    description.drives.push_back(drive);
-  }
 }
 
 bool asks_about_dashpots(const fem::ParametricSystem& equations) {
@@ -134,14 +105,6 @@ void place_unknowns(const StateLayout& places, JointModel& model) {
   for (Index j = 0; j < static_cast<Index>(model.unknowns.size()); ++j)
     model.unknown_places.push_back(places.unknowns + j);
   model.offsets = places.offsets;
-}
-
-std::vector<Unknown> properties_of(const std::vector<ParameterChoice>& choices,
-                                   const std::vector<ParameterDefault>& defaults) {
-  std::vector<Unknown> properties;
-  for (std::size_t j = 0; j < choices.size(); ++j)
-    if (beam_quantity(choices[j].quantity)) properties.push_back(unknown_of(choices[j], defaults[j]));
-  return properties;
 }
 
 // What lies between supports whose motion was measured (supported_motion.hpp). Its modes are those with the
@@ -204,6 +167,7 @@ std::unique_ptr<JointModel> make_part(const ModelSetting& setting, MotionDescrip
 }
 
 std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters::Options& options) {
+  if (!setting.storey_springs.empty()) return make_storeys(setting, options);
   MotionDescription description = describe_sensors("beam", setting, options);
   const std::vector<ParameterChoice> choices = choices_of(setting);
   if (!setting.continuum) beam_equations(setting, {});  // says what is missing

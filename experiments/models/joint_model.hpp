@@ -9,6 +9,7 @@
 
 #include "experiments/models/parameter_choice.hpp"
 #include "experiments/models/prior.hpp"
+#include "experiments/models/springs/storey_spring.hpp"
 #include "experiments/models/unknown.hpp"
 #include "experiments/record/record.hpp"
 #include "fem/damping.hpp"
@@ -33,9 +34,10 @@ struct ModelSetting {
   std::vector<Observation> observations;    ///< p
   std::vector<Eigen::Index> forces = {};    ///< inputs of the system that the record holds, in its order (m)
   std::vector<Eigen::Index> supports = {};  ///< which of these are accelerations imposed where they act
-  std::vector<ParameterChoice> parameters = {};  ///< none: what the model asks about by itself
-  fem::DampingLaw damping = {};                  ///< as described; guesses of damping ratios come from it
-  PriorBelief prior = {};                        ///< of one degree of freedom
+  std::vector<ParameterChoice> parameters = {};   ///< none: what the model asks about by itself
+  fem::DampingLaw damping = {};                   ///< as described; guesses of damping ratios come from it
+  PriorBelief prior = {};                         ///< of one degree of freedom
+  std::vector<StoreySpring> storey_springs = {};  ///< of a chain, those that follow laws
 
   /// What the system was assembled from, for models that ask about the beam itself.
   struct Continuum {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/rig/excitation_history.hpp"
+#include "experiments/rig/storey_response.hpp"
 #include "experiments/signal/cubic_spline.hpp"
 #include "experiments/signal/random.hpp"
 #include "fem/gauge_row.hpp"
@@ -273,10 +274,16 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   for (const Index sample : evenly_spread(affordable_frames(frames, test.system.size(), test.notes), samples))
     grid.frames.push_back(sample * steps);
   test.step = grid.interval;
-  progress("modes");
-  test.method = completed(settings, test);
-  progress("integrating");
-  test.response = fem::respond(test.system, experiment.damping, history.loading, grid, test.method);
+  if (experiment.storey_springs.empty()) {
+    progress("modes");
+    test.method = completed(settings, test);
+    progress("integrating");
+    test.response = fem::respond(test.system, experiment.damping, history.loading, grid, test.method);
+  } else {
+    progress("integrating");
+    test.method.name = "cvode";
+    test.response = storey_response(experiment, test.system, points.all(), history.loading, grid);
+  }
   for (const std::string& remark : test.response.remarks) test.notes.push_back(remark);
 
   const SampleClock clock = clock_of(acquisition, settings, samples);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/atlas/input_hold_report.hpp"
 #include "experiments/studies/atlas/report.hpp"
@@ -16,6 +17,7 @@ namespace {
 /// The first mode of the beam that an experiment file describes; its sampling rate, when it states one.
 AtlasSettings described(const std::string& file, AtlasSettings settings) {
   const Experiment experiment = read_experiment(file);
+  require_linear_storeys(experiment, "atlas");
   const fem::Modes modes = fem::modes(fem::assemble(experiment.structure, experiment.elements), 1);
   double ratio = settings.beam.damping_ratio();
   if (!std::holds_alternative<fem::Undamped>(experiment.damping))

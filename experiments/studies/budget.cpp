@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/budget/report.hpp"
 #include "experiments/studies/paper/beam_identification.hpp"
@@ -40,6 +41,7 @@ std::vector<Named> five_beams(const PipelineSettings& common) {
 /// The file's beam, damping, release, sampling rate and duration; 0.5 % where it states no damping.
 Named described(const std::string& file, PipelineSettings settings) {
   const Experiment experiment = read_experiment(file);
+  require_linear_storeys(experiment, "budget");
   const fem::Beam beam = at_place({file}, [&] { return experiment.structure.beam(); });
   settings.beam = beam;
   settings.elements = experiment.elements;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/noise/report.hpp"
 #include "experiments/studies/paper/test_beams.hpp"
@@ -37,6 +38,7 @@ std::vector<NoiseBeam> five_beams(int modes) {
 /// The file's beam and damping; 0.5 % where it states none.
 NoiseBeam described(const std::string& file, int modes) {
   const Experiment experiment = read_experiment(file);
+  require_linear_storeys(experiment, "noise");
   const fem::Beam beam = at_place({file}, [&] { return experiment.structure.beam(); });
   const Eigen::VectorXd frequencies =
       fem::modes(fem::assemble(beam, experiment.elements), modes).angular_frequency;

@@ -80,20 +80,22 @@ std::optional<filters::Gaussian> Passes::output_error(VectorXd state) {
 
 void Passes::mend_by_output_error() {
   constexpr double not_the_record = 2.0, much_better = 0.5;  // % that is left and no noise; of it
-  const double left = motion_.misfit_percent;
-  if (!context_.analysis.forced() || is_nonlinear(*run_.model) || nearest_with_own_scheme() ||
-      has_noise(run_.settings.input_noise) || run_.run.last.covariance.size() == 0 ||
-      !(left > not_the_record))
-    return;
+  // A filter, linearised from sample to sample, is surer of a storey's law than the record allows.
+  const bool laws = has_storey_laws(*run_.model);
+  const double left = laws ? motion_.response_error_percent : motion_.misfit_percent;
+  const bool asked = laws || (context_.analysis.forced() && !is_nonlinear(*run_.model) &&
+                              !nearest_with_own_scheme() && left > not_the_record);
+  if (!asked || has_noise(run_.settings.input_noise) || run_.run.last.covariance.size() == 0) return;
   const auto start = std::chrono::steady_clock::now();
   const VectorXd filtered = motion_.initial_state, noise = run_.noise;
   std::optional<filters::Gaussian> best;
-  double least = much_better * left;
+  double least = laws ? left * (1.0 + 1e-9) : much_better * left;
   for (const VectorXd& from : {filtered, started_.guess.mean}) {
     const std::optional<filters::Gaussian> found = output_error(from);
-    if (!found || !(motion_.misfit_percent < least)) continue;
+    const double now = laws ? motion_.response_error_percent : motion_.misfit_percent;
+    if (!found || !(now < least)) continue;
     best = found;
-    least = motion_.misfit_percent;
+    least = now;
   }
   run_.noise = noise;
   begin_at(filtered);
@@ -102,9 +104,13 @@ void Passes::mend_by_output_error() {
     filter_once();
     take_unknowns(*best);
     run_.remarks.push_back(
-        fmt::format("The filter settled where {:.3g} % of the record was left; the estimates are those of "
-                    "all samples at once (output error), which leave {:.2g} %.",
-                    left, motion_.misfit_percent));
+        laws ? std::string(
+                   "The estimates are those of all samples at once (output error): a filter is surer of the "
+                   "laws of storeys than the record allows.")
+             : fmt::format(
+                   "The filter settled where {:.3g} % of the record was left; the estimates are those of "
+                   "all samples at once (output error), which leave {:.2g} %.",
+                   left, motion_.misfit_percent));
   }
   run_.seconds += seconds_since(start);
 }

@@ -7,6 +7,7 @@
 #include "experiments/models/finest_discretisation.hpp"
 #include "experiments/models/motion/following_motion.hpp"
 #include "experiments/models/motion/reduced_motion.hpp"
+#include "experiments/models/motion/storey_motion.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
@@ -81,7 +82,9 @@ StartedModel started_model(JointModel first, const Choice& model, const ModelSet
 
 JointModel on_basis_at(const Choice& model, const ModelSetting& setting, const JointModel& from,
                        const Eigen::VectorXd& state) {
-  const auto* motion = dynamic_cast<const ReducedMotion*>(from.motion.get());
+  const auto* storeys = dynamic_cast<const StoreyMotion*>(from.motion.get());
+  const auto* motion = storeys ? static_cast<const SecondOrderMotion*>(&storeys->floors())
+                               : dynamic_cast<const ReducedMotion*>(from.motion.get());
   if (!motion || motion->description().properties() == 0) return from;
   ModelSetting there = setting;
   there.parameters = choices_at(from, state);

@@ -6,6 +6,7 @@
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/models/oscillator.hpp"
+#include "experiments/models/storeys.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "fem/structure.hpp"
@@ -48,6 +49,11 @@ std::optional<double> true_value(const Experiment& truth, double mass, const Unk
   if (const auto asked = beam_quantity(unknown.quantity)) return property(truth.structure, unknown, *asked);
   if (unknown.quantity == "mass_damping" || unknown.quantity == "stiffness_damping")
     return rayleigh_coefficient(truth.damping, unknown.quantity == "mass_damping");
+
+  if (truth.structure.is_chain())
+    if (const auto value =
+            law_value(truth.structure.beam(), truth.storey_springs, unknown.quantity, unknown.region))
+      return value;
 
   const int mode = unknown.mode.value_or(1);
   const fem::StructuralSystem system = fem::assemble(truth.structure, truth.elements);

@@ -65,6 +65,23 @@ std::optional<Property> beam_quantity(const std::string& name) {
   return std::nullopt;
 }
 
+const std::vector<std::string>& structure_quantities() {
+  static const std::vector<std::string> quantities{"bending_stiffness",
+                                                   "tip_mass",
+                                                   "body_mass",
+                                                   "tip_rotary_inertia",
+                                                   "root_rotational_stiffness",
+                                                   "root_translational_stiffness",
+                                                   "axial_load",
+                                                   "storey_stiffness",
+                                                   "storey_damping",
+                                                   "factor",
+                                                   "damping_ratio",
+                                                   "mass_damping",
+                                                   "stiffness_damping"};
+  return quantities;
+}
+
 std::vector<ParameterDefault> beam_defaults(const fem::Structure& structure,
                                             const std::vector<ParameterChoice>& choices) {
   std::vector<ParameterDefault> defaults(choices.size());
@@ -115,6 +132,31 @@ fem::ParametricSystem beam_equations(const ModelSetting& setting, const std::vec
   system.output_names = setting.system.output_names;
   system.base_shares = setting.system.base_shares;
   return equations;
+}
+
+std::vector<Unknown> properties_of(const std::vector<ParameterChoice>& choices,
+                                   const std::vector<ParameterDefault>& defaults) {
+  std::vector<Unknown> properties;
+  for (std::size_t j = 0; j < choices.size(); ++j)
+    if (beam_quantity(choices[j].quantity)) properties.push_back(unknown_of(choices[j], defaults[j]));
+  return properties;
+}
+
+void add_drives(const fem::ParametricSystem& equations, MotionDescription& description) {
+  description.reference = equations.values;
+  Index property = 0;
+  for (const Unknown& unknown : description.unknowns) {
+    Drive drive;
+    if (unknown.quantity == "damping_ratio")
+      drive.kind = Drive::Kind::damping_ratio;
+    else if (unknown.quantity == "mass_damping")
+      drive.kind = Drive::Kind::mass_damping;
+    else if (unknown.quantity == "stiffness_damping")
+      drive.kind = Drive::Kind::stiffness_damping;
+    else
+      drive.index = property++;
+    description.drives.push_back(drive);
+  }
 }
 
 VectorXd scale_of_modes(const fem::StructuralSystem& system, const std::vector<Observation>& observations,

@@ -13,6 +13,9 @@ namespace beamid::experiments {
 /// The quantity of the beam itself that a choice asks about; nothing for damping.
 std::optional<fem::BeamParameter::Quantity> beam_quantity(const std::string& name);
 
+/// What [[parameters]] may ask the structure itself about, its damping included.
+const std::vector<std::string>& structure_quantities();
+
 /// What the model believes of each choice about the structure by itself: the value described, stiffnesses,
 /// factors and the axial load to 30 %, masses to 10 %; of dampings nothing.
 /// @throws std::invalid_argument, or an InputError at a choice's place, when the structure has no such thing.
@@ -24,6 +27,13 @@ std::vector<ParameterDefault> beam_defaults(const fem::Structure& structure,
 /// @throws std::invalid_argument when the setting lacks the beam, or the system has nonlinear forces, or its
 /// mesh lacks nodes at the regions' ends where strain is observed.
 fem::ParametricSystem beam_equations(const ModelSetting& setting, const std::vector<Unknown>& unknowns);
+
+/// The unknowns that are about the structure itself, of those of all choices.
+std::vector<Unknown> properties_of(const std::vector<ParameterChoice>& choices,
+                                   const std::vector<ParameterDefault>& defaults);
+
+/// Fills in the reference and what each of the description's unknowns drives.
+void add_drives(const fem::ParametricSystem& equations, MotionDescription& description);
 
 /// Factors (k) by which modes become 1 at the output where they are largest; where the outputs see no
 /// displacement, 1 at the node where they are largest, and 1 without a mesh.

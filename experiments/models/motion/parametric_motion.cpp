@@ -53,6 +53,11 @@ StateLayout layout(const MotionDescription& description, Index coordinates) {
   return result;
 }
 
+filters::Label state_label(const Unknown& unknown) {
+  if (unknown.form == Form::linear) return {unknown.name, unknown.unit.empty() ? "1" : unknown.unit};
+  return {(unknown.form == Form::logarithmic ? "ln_" : "logit_") + unknown.name, "1"};
+}
+
 std::vector<filters::Label> state_labels(const MotionDescription& description, const StateLayout& layout,
                                          const std::string& name) {
   std::vector<filters::Label> labels(static_cast<std::size_t>(layout.size));
@@ -61,14 +66,8 @@ std::vector<filters::Label> state_labels(const MotionDescription& description, c
     labels[i] = {fmt::format("{}_{}", name, i + 1), "m"};
     labels[n + i] = {fmt::format("{}_{}_rate", name, i + 1), "m/s"};
   }
-  for (std::size_t j = 0; j < description.unknowns.size(); ++j) {
-    const Unknown& unknown = description.unknowns[j];
-    const std::string unit = unknown.unit.empty() ? "1" : unknown.unit;
-    labels[static_cast<std::size_t>(layout.unknowns) + j] =
-        unknown.form == Form::linear        ? filters::Label{unknown.name, unit}
-        : unknown.form == Form::logarithmic ? filters::Label{"ln_" + unknown.name, "1"}
-                                            : filters::Label{"logit_" + unknown.name, "1"};
-  }
+  for (std::size_t j = 0; j < description.unknowns.size(); ++j)
+    labels[static_cast<std::size_t>(layout.unknowns) + j] = state_label(description.unknowns[j]);
   const bool several = layout.offsets.size() > (description.sensor_drift ? 2u : 1u);
   for (const JointModel::Offset& offset : layout.offsets) {
     const std::string which = several ? fmt::format("_{}", offset.channel + 1) : "";

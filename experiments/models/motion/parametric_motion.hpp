@@ -88,6 +88,9 @@ struct StateLayout {
 };
 StateLayout layout(const MotionDescription& description, Eigen::Index coordinates);
 
+/// Of the entry that carries an unknown: its own name and unit where that is the unknown itself.
+filters::Label state_label(const Unknown& unknown);
+
 /// Labels of a state in this layout; those of coordinates are "NAME_1", "NAME_1_rate", ...
 std::vector<filters::Label> state_labels(const MotionDescription& description, const StateLayout& layout,
                                          const std::string& name);

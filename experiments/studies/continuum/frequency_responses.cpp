@@ -1,4 +1,5 @@
 #include "experiments/studies/continuum/frequency_responses.hpp"
+#include "experiments/config/storey_laws.hpp"
 
 #include <fmt/format.h>
 
@@ -174,6 +175,7 @@ FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Pr
   const Solver solver(experiment, all.system, all.method);
   const Eigen::MatrixXcd responses = solver(all.frequency_hz, numbers);
   const bool damped = is_damped(experiment.damping, all.system, natural.tail(natural.size() - rigid));
+  if (const std::string note = small_motion_note(experiment); !note.empty()) all.notes.push_back(note);
   if (!damped) all.notes.emplace_back("Without damping resonances are infinite, at the natural frequencies.");
   progress("resonances");
   for (std::size_t i = 0; i < numbers.size(); ++i) {

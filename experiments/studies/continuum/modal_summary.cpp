@@ -1,4 +1,5 @@
 #include "experiments/studies/continuum/modal_summary.hpp"
+#include "experiments/config/storey_laws.hpp"
 
 #include <fmt/format.h>
 
@@ -92,6 +93,7 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
   require_mesh_memory(experiment.elements, static_cast<double>(count));
   ModalSummary summary;
   summary.observed = fem::natural_point(experiment.structure);
+  if (const std::string note = small_motion_note(experiment); !note.empty()) summary.notes.push_back(note);
   progress("assembling");
   summary.system = fem::assemble(experiment.structure, experiment.elements, {summary.observed});
   summary.elements = static_cast<Index>(summary.system.mesh.elements.size());

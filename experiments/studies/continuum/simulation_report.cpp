@@ -130,7 +130,7 @@ Json simulation_values(const Experiment& experiment, const SimulatedTest& test) 
   Json json{{"samples", test.record.size()},
             {"sampling_rate_hz", settings.sampling_rate},
             {"duration_s", test.record.time[test.record.size() - 1]},
-            {"method", settings.method.name},
+            {"method", test.method.name},
             {"steps", test.response.time.size() - 1},
             {"time_step_s", test.step},
             {"elements", test.system.mesh.elements.size()},
@@ -187,7 +187,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   results.configuration["excitation"] = describe_excitation(test->excitations.front());
   for (std::size_t i = 1; i < test->excitations.size(); ++i)
     results.configuration["further_excitations"].push_back(describe_excitation(test->excitations[i]));
-  results.configuration["simulation"] = {{"method", settings.method.name},
+  results.configuration["simulation"] = {{"method", test->method.name},
                                          {"duration_s", settings.duration},
                                          {"sampling_rate_hz", settings.sampling_rate},
                                          {"steps_per_sample", settings.steps_per_sample}};
@@ -198,11 +198,10 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   results.heading(experiment.title.empty() ? "Simulated response" : experiment.title);
   results.paragraph(structure_text(experiment, static_cast<Eigen::Index>(test->system.mesh.elements.size()),
                                    test->system.size()));
-  results.paragraph(fmt::format("{} Damping: {}. Method {}: {} steps of {:g} s; {} samples at {:g} Hz.",
-                                excitations_text(test->excitations),
-                                damping_text(experiment.damping, test->system), settings.method.name,
-                                test->response.time.size() - 1, test->step, test->record.size(),
-                                settings.sampling_rate));
+  results.paragraph(fmt::format(
+      "{} Damping: {}. Method {}: {} steps of {:g} s; {} samples at {:g} Hz.",
+      excitations_text(test->excitations), damping_text(experiment.damping, test->system), test->method.name,
+      test->response.time.size() - 1, test->step, test->record.size(), settings.sampling_rate));
   results.table(sensor_table(*test));
   if (const std::string text = acquisition_text(*test); !text.empty()) results.paragraph(text);
   if (test->record.channels.size() > test->sensors.size())
