@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/springs/spring_law.hpp"
 
 namespace beamid::experiments {
 
@@ -33,9 +32,6 @@ class OscillatorLaw {
   virtual void evaluate(double displacement, double velocity, double slip, const Eigen::VectorXd& parameters,
                         OscillatorForce& force) const = 0;
 };
-
-/// A spring by its law, and a dashpot beside it: F = r + C x', p = [K, C, ...].
-std::shared_ptr<const OscillatorLaw> spring_and_dashpot(std::shared_ptr<const SpringLaw> spring);
 
 /// One parameter of a law: asked about or fixed.
 struct OscillatorTerm {
