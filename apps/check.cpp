@@ -1,12 +1,15 @@
-// beamid check: the finite-element prediction against what records show.
+// beamid check: the prediction of a structure against the modes of its records.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/read_modal_data.hpp"
 #include "experiments/identify/model_check/observed_modes.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
@@ -21,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace experiments;
 
-/// One experiment file and the records made of its beam.
+/// One experiment file and the records, or the modes, of its structure.
 struct Request {
   fs::path config;
   Experiment experiment;
@@ -38,11 +41,6 @@ std::vector<Request> requests_of(const Values& values) {
   std::vector<Request> requests;
   for (std::size_t k = 0; k < configs.size(); ++k) {
     Request request{configs[k], read_experiment(configs[k]), {}};
-    if (const fem::Structure& structure = request.experiment.structure;
-        !structure.is_beam() || structure.is_chain())
-      throw InputError({configs[k]}, fmt::format("check takes a beam; expected [beam] in place of [{}]. "
-                                                 "update fits any structure to modes, identify to a record",
-                                                 structure.kind()));
     request.records = require_record_files(values, request.config, request.experiment.record_file);
     if (configs.size() > 1 && !records.empty()) request.records = {request.records[k]};
     requests.push_back(std::move(request));
@@ -63,6 +61,7 @@ ModalStudySettings modal_settings(const Values& values) {
 ModelCheckSettings check_settings(const Values& values) {
   ModelCheckSettings settings;
   settings.model_error = values.number("model-error") / 100;
+  settings.shape_error = values.number("shape-error") / 100;
   settings.candidates = values.texts("candidate");
   return settings;
 }
@@ -74,9 +73,38 @@ struct UsedRecord {
   PreparedRecord prepared;
 };
 
-/// What the records of one beam show, merged.
+bool is_modes_file(const fs::path& file) {
+  return file.extension() == ".toml" || file.extension() == ".json";
+}
+
+/// What a file of modes says, as update reads it.
+CheckedStructure structure_of_modes(const Request& request) {
+  const Experiment& experiment = request.experiment;
+  if (request.records.size() > 1)
+    throw InputError({request.records[1].string()},
+                     "modes of one structure in several files; expected one file, or records");
+  const ModalData data = read_modal_data(request.records[0], experiment);
+  CheckedStructure structure{
+      request.config.stem().string(), experiment.structure, experiment.elements, experiment.damping, {}};
+  for (const MeasuredMode& mode : data.modes) {
+    ObservedMode observed{mode.frequency_hz, mode.deviation_hz, std::nan(""), std::nan("")};
+    observed.shape = mode.shape.cast<std::complex<double>>();
+    observed.shape_deviation = mode.shape_deviation;
+    observed.number = mode.number;
+    structure.modes.push_back(std::move(observed));
+  }
+  if (data.has_shapes())
+    for (const Sensor& sensor : experiment.sensors)
+      structure.channels.push_back({Quantity::displacement, sensor.name, sensor.position, 0.0, sensor.place});
+  structure.warnings = data.remarks;
+  return structure;
+}
+
+/// What the records of one structure show, merged.
 CheckedStructure structure_of(const Request& request, const ModalStudySettings& settings,
                               std::vector<UsedRecord>& used) {
+  if (std::any_of(request.records.begin(), request.records.end(), is_modes_file))
+    return structure_of_modes(request);
   std::vector<RecordModes> found;
   for (const fs::path& file : request.records) {
     const RecordFormat& format = request.experiment.format;
@@ -94,7 +122,7 @@ CheckedStructure structure_of(const Request& request, const ModalStudySettings& 
                        fmt::format("{} channels; expected {} as in {}", found.back().record.channels.size(),
                                    found[0].record.channels.size(), found[0].name));
   }
-  CheckedStructure structure{request.config.stem().string(), request.experiment.structure.beam(),
+  CheckedStructure structure{request.config.stem().string(), request.experiment.structure,
                              request.experiment.elements,    request.experiment.damping,
                              observed_modes(found),          found[0].record.channels};
   for (const RecordModes& one : found)
@@ -111,11 +139,12 @@ OptionGroup check_options() {
                          "tip_rotary_inertia",
                          "tip_offset",
                          "root_rotational_compliance",
-                         "root_translational_compliance"};
+                         "root_translational_compliance",
+                         "record_clock"};
   return {
       "Options",
-      {config_option("experiment file with beam and record; several, one for each record: beams that share "
-                     "what is wrong with them, such as one clamp under several tip masses")
+      {config_option("experiment file with structure and record; several, one for each record: structures "
+                     "that share what is wrong with them, such as one clamp under several tip masses")
            .several()
            .repeated()
            .needed(),
@@ -124,8 +153,13 @@ OptionGroup check_options() {
            .from(0.01)
            .up_to(20)
            .by_default("0.5"),
+       number("shape-error", "PERCENT", "the same of a component of a shape, of the largest component [%]")
+           .from(0.1)
+           .up_to(100)
+           .by_default("3"),
        text("candidate", "NAME...",
-            "what may be wrong: " + joined(candidates) + "; else all that the beam can have")
+            "what may be wrong, of a beam " + joined(candidates) +
+                ", of others a group, a body, a support, a parameter; else all that the structure can have")
            .several()
            .repeated()
            .such_as(candidates),
@@ -159,12 +193,13 @@ int run_check(const Values& values) {
 Command check_command() {
   return {"check",
           "[RECORD...] --config FILE... [--model-error PERCENT] [--out DIR]",
-          "a beam's predicted modes against those of records, and what would explain the difference",
+          "predicted modes against those of records, and what would explain the difference",
           {record_argument(true)},
           {check_options(), output_options()},
           "  beamid check tip_acceleration.csv --config cantilever.toml\n"
           "  beamid check run1.csv run2.csv --config cantilever.toml --model-error 1 --out results\n"
           "  beamid check light.csv heavy.csv --config light.toml heavy.toml --out results\n"
+          "  beamid check modes.toml --config portal.toml\n"
           "  beamid check --config cantilever.toml --candidate tip_mass root_rotational_compliance\n",
           run_check};
 }

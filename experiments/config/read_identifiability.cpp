@@ -10,8 +10,7 @@ const Schema<IdentifiabilitySettings>& identifiability_keys() {
   static const Schema<I> keys =
       Schema<I>("identifiability")
           .key("force_measured", &I::force_measured,
-               "whether the record holds the exciting force; without it the record begins when the force has "
-               "ended",
+               "whether the record holds the exciting forces; without them it begins when the last has ended",
                "false")
           .key("places", &I::places, {1, most_places},
                "parts of the beam between the places to which a sensor is moved, nodes of the mesh at most",

@@ -7,6 +7,7 @@
 #include <complex>
 #include <numbers>
 
+#include "experiments/modal/nearest_real.hpp"
 #include "experiments/text/json_file.hpp"
 
 namespace beamid::experiments {
@@ -44,12 +45,6 @@ std::vector<std::size_t> sensors_of_channels(const Json& shape, const std::vecto
   if (shape.size() != sensors.size()) return places;
   for (std::size_t i = 0; i < sensors.size(); ++i) places.push_back(i);
   return places;
-}
-
-/// The real shape nearest to a complex one: turned so that sum (Re)^2 is largest.
-Eigen::VectorXd nearest_real(const Eigen::VectorXcd& shape) {
-  const Complex square = shape.cwiseProduct(shape).sum();
-  return (shape * std::polar(1.0, -0.5 * std::arg(square))).real();
 }
 
 MeasuredMode measured_mode_of(const Json& json, const std::filesystem::path& file,

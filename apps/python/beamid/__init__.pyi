@@ -252,9 +252,9 @@ def stream(record: Record | RecordFile | _Path, *arguments: _Argument, config: _
     like: _Path | None = ..., on_failure: str | None = ..., resume: _Path | None = ...,
     save_state: _Path | None = ..., **keys: Any) -> dict[str, npt.NDArray[Any]]: ...
 def check(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
-    candidate: str | Sequence[str] | None = ..., method: str | None = ..., band: Sequence[_Number] | None = ...,
-    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
-    **keys: Any) -> Results: ...
+    shape_error: _Number | None = ..., candidate: str | Sequence[str] | None = ..., method: str | None = ...,
+    band: Sequence[_Number] | None = ..., out: _Path | None = ..., force: bool | None = ...,
+    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     window: Sequence[_Number] | None = ..., discretisation: str | Sequence[str] | None = ...,
     steps: int | None = ..., believed_xi: _Number | None = ..., scheme: str | None = ...,

@@ -119,21 +119,8 @@ MatrixXd silent_combinations(const filters::InformationReport& report) {
   return (rows.array().abs() < rounding).select(0.0, rows).transpose();
 }
 
-namespace {
-
-void require_one_excitation(const Experiment& experiment) {
-  if (!experiment.further_excitations.empty())
-    throw InputError(
-        experiment.further_excitations.front().place,
-        "identifiability takes one excitation; identify and compare print the bounds of a record "
-        "of several");
-}
-
-}  // namespace
-
 Identifiability find_identifiability(const Experiment& experiment, const std::filesystem::path& folder,
                                      const Progress& progress) {
-  require_one_excitation(experiment);
   const IdentifiabilitySettings& settings = experiment.identifiability;
   Identifiability result;
   const Experiment complete = completed(experiment, result.notes);

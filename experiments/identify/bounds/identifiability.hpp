@@ -51,7 +51,7 @@ struct Identifiability {
 /// 1, with as many zeros as can be (q x (q - rank)).
 Eigen::MatrixXd silent_combinations(const filters::InformationReport& report);
 
-/// The model of the experiment moves as described, from the excitation described, and is read by the sensors
+/// The model of the experiment moves as described, from all excitations described, and is read by the sensors
 /// described.
 /// @param folder in which the excitation's file is looked for.
 /// @throws InputError, std::invalid_argument as model_setting(), simulate() and the models.

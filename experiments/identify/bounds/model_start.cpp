@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "experiments/identify/nonlinear_reproduction.hpp"
+#include "experiments/identify/record_inputs.hpp"
 #include "experiments/identify/reproduction.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "filters/discrete_model.hpp"
@@ -47,11 +48,7 @@ SimulatedTest clean_test(const Experiment& experiment, const std::filesystem::pa
   clean.sensors = sensors;
   for (Sensor& sensor : clean.sensors) sensor.noise = 0.0;
   clean.simulation.duration = duration;
-  SimulatedTest test = simulate(clean, folder, 0, progress);
-  const std::size_t shown = test.sensors.size();  // a force is no channel here: it is known or not, as asked
-  test.record.channels.resize(shown);
-  test.record.samples.conservativeResize(static_cast<Index>(shown), Eigen::NoChange);
-  return test;
+  return simulate(clean, folder, 0, progress);
 }
 
 VectorXd model_start(const ObservedMotion& motion, Experiment experiment, const std::filesystem::path& folder,
@@ -70,10 +67,13 @@ VectorXd model_start(const ObservedMotion& motion, Experiment experiment, const 
     experiment.simulation.method.options["modes"] = static_cast<double>(motion.model.mode_shapes.cols());
   const Record record =
       clean_test(experiment, folder, sensors, static_cast<double>(begin + samples) / rate, progress).record;
-  const MatrixXd outputs = record.samples.middleCols(begin, samples);
+  const auto channels = static_cast<Index>(sensors.size());
+  const MatrixXd all = record.samples.middleCols(begin, samples), outputs = all.topRows(channels);
   const auto discrete = filters::discretise(motion.model.motion, motion.interval, motion.discretisation,
                                             {{}, weights(sensors, outputs)});
-  const filters::Measurements part{record.time.segment(begin, samples), outputs, {}};
+  filters::Measurements part{record.time.segment(begin, samples), outputs, {}};
+  if (motion.inputs.size() > 0)
+    take_inputs(all.bottomRows(all.rows() - channels), experiment.format.input, part);
   VectorXd state =
       (is_nonlinear(motion.model)
            ? reproduce_nonlinear(motion.model, *discrete, motion.initial_state, motion.directions, part)

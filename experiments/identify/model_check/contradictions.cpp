@@ -57,8 +57,8 @@ std::vector<std::string> contradictions_of(const std::vector<CheckedMode>& match
     const ObservedMode *few = &stray, *many = &mode->identified;
     if (few->records.size() > many->records.size()) std::swap(few, many);
     sentences.push_back(fmt::format(
-        "{} contradict{} {}: mode {} at {:.4g} Hz against {:.4g} Hz. One beam has it at one of them: "
-        "another beam, another mass or another clamping was recorded.",
+        "{} contradict{} {}: mode {} at {:.4g} Hz against {:.4g} Hz. One structure has it at one of them: "
+        "another one, another mass or another clamping was recorded.",
         joined(few->records), few->records.size() > 1 ? "" : "s", joined(many->records), mode->number,
         few->frequency_hz, many->frequency_hz));
     return true;
@@ -98,13 +98,11 @@ std::optional<Outlier> outlier_of(const ModelCheck& check) {
     ModelCheck others = check;
     std::erase_if(others.modes, [&](const CheckedMode& mode) { return mode.structure == s; });
     if (others.modes.size() == check.modes.size() || others.modes.size() < 2) continue;
-    const ChangedFrequencies frequencies(others);
-    const Eigen::VectorXd left = frequencies.left({}, Eigen::VectorXd());
-    const bool right = (left.array().square() / variances(others).array()).sum() <=
-                       chi_square_limit(static_cast<double>(left.size()));
+    const auto [chi_square, numbers] = described_fit(others);
+    const bool right = chi_square <= chi_square_limit(static_cast<double>(numbers));
     std::optional<Explanation> best;
     for (std::size_t c = 0; !right && c < check.candidates.size(); ++c) {
-      const Explanation one = explain(others, frequencies, {c});
+      const Explanation one = explain(others, {c});
       if (explains(one) && (!best || one.chi_square < best->chi_square)) best = one;
     }
     if (!right && !best) continue;

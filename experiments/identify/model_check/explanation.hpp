@@ -1,17 +1,15 @@
-// Least squares of one or two changes on the differences of frequencies.
+// What one change, or two together, make of the differences.
 #pragma once
 
-#include "experiments/identify/model_check/changed_frequencies.hpp"
+#include "experiments/identify/model_check/model_check.hpp"
 
 namespace beamid::experiments {
 
-/// (d_i / f_i)^2 + model_error^2 (n).
-Eigen::VectorXd variances(const ModelCheck& check);
+/// update (update/updating.hpp) of the changes alone: the same residual, search, intervals and limits. An
+/// interval does not leave what is possible; of one change that is held by a bound it begins there.
+Explanation explain(const ModelCheck& check, const std::vector<std::size_t>& which);
 
-/// Gauss-Newton within what is possible, of several changes from several places; a change at its limit that
-/// would go on is held there. Deviations from (J^T W J)^-1, times sqrt(chi^2 / freedom) where that is above
-/// one.
-Explanation explain(const ModelCheck& check, const ChangedFrequencies& frequencies,
-                    const std::vector<std::size_t>& which);
+/// Of the structures as described, without their shapes' scales: chi^2, and numbers that are independent.
+std::pair<double, Eigen::Index> described_fit(const ModelCheck& check);
 
 }  // namespace beamid::experiments

@@ -1,108 +1,94 @@
 #include "experiments/identify/model_check/model_check.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
-#include "experiments/identify/model_check/changed_frequencies.hpp"
 #include "experiments/identify/model_check/contradictions.hpp"
 #include "experiments/identify/model_check/explanation.hpp"
+#include "experiments/identify/model_check/matching.hpp"
+#include "experiments/identify/model_check/shared_residual.hpp"
 #include "experiments/signal/chi_square_limit.hpp"
 #include "experiments/text/spelling.hpp"
-#include "fem/assembly.hpp"
-#include "fem/modes.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::VectorXd;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double most_apart = 0.3;               // of identified and predicted frequency, relative
-constexpr double farthest = 0.6931471805599453;  // of the lowest mode, where nothing is nearer: a factor of 2
-constexpr double least_alike = 0.5;              // MAC
-constexpr Index most_checked_modes = 15;
-
-bool has_shapes(const CheckedStructure& structure) {
-  const auto& channels = structure.channels;
-  return channels.size() > 1 && channels[0].quantity != Quantity::strain &&
-         std::all_of(channels.begin(), channels.end(),
-                     [&](const Channel& c) { return c.quantity == channels[0].quantity; });
-}
-
-/// Predicted modes, each with the identified one nearest to it; an identified one belongs to one mode only.
-void match(const CheckedStructure& structure, std::size_t number, ModelCheck& check) {
-  const fem::Point natural = fem::natural_point(structure.beam);
-  std::vector<fem::Point> points;
-  if (has_shapes(structure))
-    for (const Channel& channel : structure.channels)
-      points.push_back({channel.name, channel.position.value_or(natural.position)});
-  else
-    points.push_back(natural);
-  const fem::StructuralSystem system = fem::assemble(structure.beam, structure.elements, points);
-  const fem::Modes modes = fem::modes(system, std::min(system.size(), most_checked_modes));
-  const VectorXd predicted = modes.frequency_hz();
-  const VectorXd damping = std::holds_alternative<fem::Undamped>(structure.damping)
-                               ? VectorXd::Constant(predicted.size(), CheckedMode::unknown)
-                               : fem::damping_ratios(structure.damping, modes.angular_frequency);
-  struct Couple {
-    double apart;
-    Index predicted;
-    std::size_t identified;
-    double assurance;
-  };
-  std::vector<Couple> couples;
-  for (Index m = modes.rigid; m < predicted.size(); ++m)
-    for (std::size_t i = 0; i < structure.modes.size(); ++i) {
-      const ObservedMode& mode = structure.modes[i];
-      Couple couple{std::abs(std::log(mode.frequency_hz / predicted[m])), m, i, CheckedMode::unknown};
-      if (has_shapes(structure) && mode.shape.size() == system.outputs.rows())
-        couple.assurance =
-            modal_assurance(mode.shape, (system.outputs * modes.shape.col(m)).cast<std::complex<double>>());
-      const bool far = m == modes.rigid && couple.apart < farthest &&
-                       (m + 1 >= predicted.size() ||
-                        std::abs(std::log(mode.frequency_hz / predicted[m + 1])) > 2 * couple.apart);
-      if ((couple.apart < most_apart || far) && !(couple.assurance < least_alike)) couples.push_back(couple);
-    }
-  std::sort(couples.begin(), couples.end(),
-            [](const Couple& a, const Couple& b) { return a.apart < b.apart; });
-  std::vector<bool> matched(predicted.size(), false), taken(structure.modes.size(), false);
-  std::vector<CheckedMode> found;
-  for (const Couple& couple : couples) {
-    if (matched[couple.predicted] || taken[couple.identified]) continue;
-    matched[couple.predicted] = taken[couple.identified] = true;
-    found.push_back({number, static_cast<int>(couple.predicted) + 1, predicted[couple.predicted],
-                     damping[couple.predicted], structure.modes[couple.identified], couple.assurance,
-                     couple.apart >= most_apart});
-  }
-  std::sort(found.begin(), found.end(),
-            [](const CheckedMode& a, const CheckedMode& b) { return a.number < b.number; });
-  check.modes.insert(check.modes.end(), found.begin(), found.end());
-  std::vector<ObservedMode> strays;
-  for (std::size_t i = 0; i < taken.size(); ++i)
-    if (!taken[i]) strays.push_back(structure.modes[i]);
-  std::vector<std::string> sentences = contradictions_of(found, strays);
-  check.contradictions.insert(check.contradictions.end(), sentences.begin(), sentences.end());
-  for (ObservedMode& stray : strays) check.strays.emplace_back(number, std::move(stray));
-}
+constexpr std::size_t most_fitted_pairs = 45;  // all of ten candidates
 
 std::vector<Candidate> chosen(const std::vector<std::string>& names, std::vector<Candidate> possible) {
   if (names.empty()) return possible;
   std::vector<Candidate> result;
   for (const std::string& name : names) {
-    const auto& known = candidate_names();
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw std::invalid_argument("unknown candidate '" + name + "'; known: " + joined(known));
     const auto at =
         std::find_if(possible.begin(), possible.end(), [&](const Candidate& c) { return c.name == name; });
     if (at == possible.end()) {
       std::vector<std::string> have;
       for (const Candidate& c : possible) have.push_back(c.name);
-      throw std::invalid_argument("candidate '" + name + "' is none of this beam's; it has " + joined(have));
+      throw std::invalid_argument("unknown candidate '" + name + "'; known: " + joined(have));
     }
     result.push_back(*at);
   }
   return result;
+}
+
+/// The residual as described and what each candidate does to it, in units of its scale.
+struct FirstOrder {
+  VectorXd residual;  ///< (r)
+  MatrixXd slopes;    ///< (r x c)
+};
+
+FirstOrder first_order(ModelCheck& check) {
+  FirstOrder result;
+  const auto count = static_cast<Index>(check.candidates.size());
+  check.effect.resize(static_cast<Index>(check.modes.size()), count);
+  for (Index c = 0; c < count; ++c) {
+    const SharedResidual residual(check, {static_cast<std::size_t>(c)});
+    const FitResidual::Value value = residual.at(VectorXd::Zero(1), true);
+    if (c == 0) result.slopes.resize(value.residual.size(), count), result.residual = value.residual;
+    result.slopes.col(c) = value.jacobian.col(0);
+    check.effect.col(c) =
+        residual.effect(value) * check.candidates[static_cast<std::size_t>(c)].plausible_upper;
+  }
+  const MatrixXd directions = result.slopes.colwise().normalized();
+  check.alike = directions.transpose() * directions;
+  return result;
+}
+
+/// Those that come nearest at first order; all where there are few.
+std::vector<std::vector<std::size_t>> pairs_to_fit(const FirstOrder& at, ModelCheck& check) {
+  std::vector<std::pair<double, std::vector<std::size_t>>> pairs;
+  for (std::size_t a = 0; a < check.candidates.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      MatrixXd both(at.residual.size(), 2);
+      both << at.slopes.col(static_cast<Index>(b)), at.slopes.col(static_cast<Index>(a));
+      const VectorXd left = at.residual - both * both.completeOrthogonalDecomposition().solve(at.residual);
+      pairs.push_back({left.squaredNorm(), {b, a}});
+    }
+  check.possible_pairs = pairs.size();
+  if (pairs.size() > most_fitted_pairs) {
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    pairs.resize(most_fitted_pairs);
+  }
+  std::vector<std::vector<std::size_t>> result;
+  for (auto& [left, pair] : pairs) result.push_back(std::move(pair));
+  return result;
+}
+
+std::vector<Explanation> explanations(const ModelCheck& check,
+                                      const std::vector<std::vector<std::size_t>>& causes) {
+  std::vector<Explanation> all(causes.size());
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i] = explain(check, causes[i]); });
+  std::stable_sort(all.begin(), all.end(), [](const Explanation& a, const Explanation& b) {
+    return std::pair(a.verdict, a.chi_square) < std::pair(b.verdict, b.chi_square);
+  });
+  return all;
 }
 
 }  // namespace
@@ -111,12 +97,16 @@ double CheckedMode::difference() const {
   return std::log(identified.frequency_hz / predicted_hz);
 }
 
+bool CheckedMode::paired_by_shape() const {
+  return std::isfinite(assurance) && !far && !identified.number;
+}
+
 ModelCheck check_model(std::vector<CheckedStructure> structures, const ModelCheckSettings& settings) {
-  ModelCheck check{std::move(structures), settings, {}, {}, {}, {}, 0, false, {}, {}, {}, {}};
-  std::vector<fem::Beam> beams;
+  ModelCheck check{std::move(structures), settings};
+  std::vector<fem::Structure> described;
   for (std::size_t s = 0; s < check.structures.size(); ++s) {
-    match(check.structures[s], s, check);
-    beams.push_back(check.structures[s].beam);
+    match_modes(check.structures[s], s, check);
+    described.push_back(check.structures[s].structure);
   }
   if (check.modes.empty())
     throw std::invalid_argument(fmt::format(
@@ -124,24 +114,17 @@ ModelCheck check_model(std::vector<CheckedStructure> structures, const ModelChec
         "the lowest; expected one at least",
         check.strays.size(), 100 * most_apart));
   set_far_structures_aside(check);
-  check.candidates = chosen(settings.candidates, candidates_of(beams));
-  const ChangedFrequencies frequencies(check);
-  const VectorXd variance = variances(check), differences = frequencies.left({}, VectorXd());
-  check.chi_square = (differences.array().square() / variance.array()).sum();
-  check.right = check.chi_square <= chi_square_limit(static_cast<double>(differences.size()));
-  check.effect.resize(differences.size(), static_cast<Index>(check.candidates.size()));
-  for (std::size_t c = 0; c < check.candidates.size(); ++c)
-    check.effect.col(static_cast<Index>(c)) =
-        frequencies.slope({c}, VectorXd::Zero(1)) * check.candidates[c].scale;
-  for (std::size_t a = 0; a < check.candidates.size(); ++a) {
-    check.single.push_back(explain(check, frequencies, {a}));
-    for (std::size_t b = 0; b < a; ++b)
-      if (differences.size() > 1) check.pairs.push_back(explain(check, frequencies, {b, a}));
-  }
-  for (auto* list : {&check.single, &check.pairs})
-    std::stable_sort(list->begin(), list->end(), [](const Explanation& a, const Explanation& b) {
-      return std::pair(a.verdict, a.chi_square) < std::pair(b.verdict, b.chi_square);
-    });
+  check.candidates = chosen(settings.candidates, candidates_of(described));
+  std::tie(check.chi_square, check.numbers) = described_fit(check);
+  check.right = check.chi_square <= chi_square_limit(static_cast<double>(check.numbers));
+  const FirstOrder at = first_order(check);
+  std::vector<std::vector<std::size_t>> alone;
+  for (std::size_t c = 0; c < check.candidates.size(); ++c) alone.push_back({c});
+  check.single = explanations(check, alone);
+  const std::vector<std::vector<std::size_t>> pairs = pairs_to_fit(at, check);
+  const bool explained = check.right || check.single.front().verdict == Explanation::Verdict::explains;
+  if (check.modes.size() > 1 && (!explained || pairs.size() == check.possible_pairs))
+    check.pairs = explanations(check, pairs);
   check.outlier = outlier_of(check);
   return check;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/identify/update/modal_model.hpp"
 #include "experiments/identify/update/updating.hpp"
 
 namespace beamid::experiments {

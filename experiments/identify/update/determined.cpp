@@ -13,6 +13,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double normal_quantile_95 = 1.959963985;
+constexpr double endless_deviation = 1e3 * open_deviation;  // of a direction that changes nothing
 
 /// In the parameter's own form: of p, of ln p, of the logit between bounds.
 void set_parameter_interval(const Unknown& unknown, double deviation, UpdatedParameter& parameter) {
@@ -32,7 +33,7 @@ void set_parameter_interval(const Unknown& unknown, double deviation, UpdatedPar
 
 }  // namespace
 
-void judge_parameters(const ModalResidual& residual, Updating& result) {
+void judge_parameters(const FitResidual& residual, Updating& result) {
   const ParameterSet& set = result.sets.front();
   const SearchSpace& space = residual.space();
   const Index q = space.size();
@@ -41,8 +42,8 @@ void judge_parameters(const ModalResidual& residual, Updating& result) {
     if (!set.fit.on_bound[static_cast<std::size_t>(j)]) free.push_back(j);
   const MatrixXd jacobian = set.fit.value.jacobian(Eigen::all, free);
   const auto count = static_cast<Index>(free.size());
-  MatrixXd covariance = MatrixXd::Zero(q, q);
-  MatrixXd open_share = VectorXd::Zero(q);
+  MatrixXd covariance = MatrixXd::Zero(q, q);  // of all directions that change anything
+  VectorXd open_share = VectorXd::Zero(q), open_variance = VectorXd::Zero(q);
   Index determined = 0;
   if (count > 0) {
     const Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(jacobian,
@@ -53,12 +54,14 @@ void judge_parameters(const ModalResidual& residual, Updating& result) {
           value > 1e-8 * svd.singularValues()[0] ? 1.0 / value : std::numeric_limits<double>::infinity();
       VectorXd weights = VectorXd::Zero(q);
       for (Index c = 0; c < count; ++c) weights[free[static_cast<std::size_t>(c)]] = svd.matrixV()(c, i);
+      if (std::isfinite(deviation)) covariance += deviation * deviation * weights * weights.transpose();
       if (deviation < open_deviation) {
-        covariance += deviation * deviation * weights * weights.transpose();
         ++determined;
         continue;
       }
       open_share += weights.cwiseAbs2();
+      open_variance += std::min(deviation, endless_deviation) * std::min(deviation, endless_deviation) *
+                       weights.cwiseAbs2();
       Index largest = 0;
       weights.cwiseAbs().maxCoeff(&largest);
       if (weights[largest] < 0.0) weights = -weights;
@@ -82,7 +85,7 @@ void judge_parameters(const ModalResidual& residual, Updating& result) {
         result.correlation(i, j) = covariance(i, j) / (deviation[i] * deviation[j]);
   for (Index j = 0; j < q; ++j) {
     UpdatedParameter parameter{set.values[j]};
-    parameter.determined = open_share(j) < 0.01;
+    parameter.determined = open_share[j] < 0.01 && open_variance[j] < open_deviation * open_deviation;
     const bool at_limit = set.fit.x[j] <= space.lower()[j] || set.fit.x[j] >= space.upper()[j];
     parameter.on_bound = at_limit && space.stated(j);
     parameter.at_search_limit = at_limit && !space.stated(j);

@@ -16,12 +16,11 @@ constexpr int most_iterations = 200;
 // Coordinates are logarithms, alike in scale: what hardly changes anything is damped as the others are, in
 // part.
 constexpr double least_scale = 1e-3, least_damping = 1e-10;
-constexpr double longest_step = 1.0, shortest_step = 1e-11, least_gain = 1e-15;
+constexpr double shortest_step = 1e-11, least_gain = 1e-15;
 
-std::optional<ModalResidual::Value> value_at(const ModalResidual& residual, const VectorXd& x,
-                                             bool jacobian) {
+std::optional<FitResidual::Value> value_at(const FitResidual& residual, const VectorXd& x, bool jacobian) {
   try {
-    ModalResidual::Value value = residual.at(x, jacobian);
+    FitResidual::Value value = residual.at(x, jacobian);
     if (value.residual.allFinite()) return value;
   } catch (const std::runtime_error&) {
   } catch (const std::invalid_argument&) {  // a value that the structure cannot have
@@ -54,7 +53,7 @@ VectorXd step_from(const MatrixXd& normal, const VectorXd& gradient, const std::
 
 }  // namespace
 
-std::optional<Fit> least_squares(const ModalResidual& residual, const VectorXd& start) {
+std::optional<Fit> least_squares(const FitResidual& residual, const VectorXd& start) {
   const SearchSpace& space = residual.space();
   VectorXd x = start.cwiseMax(space.lower()).cwiseMin(space.upper());
   auto value = value_at(residual, x, true);
@@ -73,7 +72,9 @@ std::optional<Fit> least_squares(const ModalResidual& residual, const VectorXd& 
     const double length = tried.cwiseAbs().maxCoeff();
     if (!std::isfinite(length)) return filters::TriedStep{};
     const VectorXd there =
-        (x + std::min(1.0, longest_step / length) * tried).cwiseMax(space.lower()).cwiseMin(space.upper());
+        (x + std::min(1.0, (space.longest_step().array() / tried.array().abs()).minCoeff()) * tried)
+            .cwiseMax(space.lower())
+            .cwiseMin(space.upper());
     auto next = value_at(residual, there, !slopes_apart);
     const double before = value->chi_square();
     if (!next || !(next->chi_square() <= before)) return filters::TriedStep{0.0, length < 1e-8};

@@ -1,16 +1,16 @@
-// Least squares of a modal residual within a box.
+// Least squares of a residual within a box.
 #pragma once
 
 #include <optional>
 
-#include "experiments/identify/update/modal_residual.hpp"
+#include "experiments/identify/update/fit_residual.hpp"
 
 namespace beamid::experiments {
 
 /// Where a search ended.
 struct Fit {
   Eigen::VectorXd x;
-  ModalResidual::Value value;  ///< with its Jacobian
+  FitResidual::Value value;    ///< with its Jacobian
   std::vector<bool> on_bound;  ///< held there against the residual's slope
   bool converged = false;
 
@@ -18,9 +18,9 @@ struct Fit {
 };
 
 /// Levenberg-Marquardt [marquardt1963] on the coordinates that are free: one on a bound that the residual
-/// would push beyond it stays there. A step is at most 1 in every coordinate. Points without modes count as
-/// infinitely far.
+/// would push beyond it stays there. A step is at most SearchSpace::longest_step(). Points without modes
+/// count as infinitely far.
 /// @return nothing when there are no modes at the start.
-std::optional<Fit> least_squares(const ModalResidual& residual, const Eigen::VectorXd& start);
+std::optional<Fit> least_squares(const FitResidual& residual, const Eigen::VectorXd& start);
 
 }  // namespace beamid::experiments

@@ -1,12 +1,7 @@
 #include "experiments/identify/update/modal_model.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
-
-#include "fem/modes.hpp"
-#include "fem/stiffness_solver.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -14,31 +9,6 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr Index most_dense_unknowns = 64;
-constexpr double close_modes = 0.01;  // relative distance of frequencies
-
-// First mode and number of those that follow each other closely, for each mode.
-std::vector<std::pair<Index, Index>> clusters_of(const VectorXd& frequency) {
-  std::vector<std::pair<Index, Index>> clusters(static_cast<std::size_t>(frequency.size()));
-  for (Index first = 0; first < frequency.size();) {
-    Index end = first + 1;
-    while (end < frequency.size() && frequency[end] < (1.0 + close_modes) * frequency[end - 1]) ++end;
-    for (Index i = first; i < end; ++i) clusters[static_cast<std::size_t>(i)] = {first, end - first};
-    first = end;
-  }
-  return clusters;
-}
-
-// First row and number of rows in which two symmetric matrices have entries.
-std::pair<Index, Index> touched_by(const fem::SparseMatrix& a, const fem::SparseMatrix& b) {
-  Index first = a.rows(), end = 0;
-  for (const fem::SparseMatrix* matrix : {&a, &b})
-    for (Index column = 0; column < matrix->outerSize(); ++column)
-      if (fem::SparseMatrix::InnerIterator(*matrix, column)) {
-        first = std::min(first, column);
-        end = std::max(end, column + 1);
-      }
-  return {std::min(first, end), std::max<Index>(0, end - first)};
-}
 
 }  // namespace
 
@@ -48,13 +18,13 @@ ModalModel::ModalModel(const fem::Structure& structure, int elements, std::vecto
   described_ = fem::assemble_parametric(structure_, elements_, points_, asked_.parameters);
   count_ = std::min(count, size());
   for (std::size_t j = 0; j < asked_.parameters.size(); ++j)
-    stiffness_slopes_.push_back(described_.stiffness_derivative(j));
+    slopes_.push_back({described_.stiffness_derivative(j), described_.derivatives[j].mass});
   if (!dense()) return;
   mass_0_ = described_.system.mass;
   stiffness_0_ = described_.system.stiffness.assembled();
   for (std::size_t j = 0; j < asked_.parameters.size(); ++j) {
-    mass_0_ -= described_.values[static_cast<Index>(j)] * described_.derivatives[j].mass;
-    stiffness_0_ -= described_.values[static_cast<Index>(j)] * stiffness_slopes_[j];
+    mass_0_ -= described_.values[static_cast<Index>(j)] * slopes_[j].mass;
+    stiffness_0_ -= described_.values[static_cast<Index>(j)] * slopes_[j].stiffness;
   }
 }
 
@@ -65,14 +35,14 @@ bool ModalModel::dense() const {
 std::pair<MatrixXd, MatrixXd> ModalModel::matrices(const VectorXd& values) const {
   if (!dense()) throw std::invalid_argument("the system is not small");
   MatrixXd mass = mass_0_, stiffness = stiffness_0_;
-  for (std::size_t j = 0; j < stiffness_slopes_.size(); ++j) {
-    mass += values[static_cast<Index>(j)] * described_.derivatives[j].mass;
-    stiffness += values[static_cast<Index>(j)] * stiffness_slopes_[j];
+  for (std::size_t j = 0; j < slopes_.size(); ++j) {
+    mass += values[static_cast<Index>(j)] * slopes_[j].mass;
+    stiffness += values[static_cast<Index>(j)] * slopes_[j].stiffness;
   }
   return {mass, stiffness};
 }
 
-ModalModel::Found ModalModel::found(const VectorXd& values, bool slopes) const {
+FoundModes ModalModel::found(const VectorXd& values, bool slopes) const {
   if (dense()) {
     const auto [mass, stiffness] = matrices(values);
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(stiffness, mass);
@@ -84,71 +54,17 @@ ModalModel::Found ModalModel::found(const VectorXd& values, bool slopes) const {
     if (fem::value_of(there, asked_.parameters[j]) != values[static_cast<Index>(j)])
       there = fem::with_value(there, asked_.parameters[j], values[static_cast<Index>(j)]);
   // A beam's mesh has nodes where its parameters begin and end; else the derivatives are not needed.
-  const fem::StructuralSystem system =
+  return lowest_found_modes(
       there.is_beam() ? fem::assemble_parametric(there, elements_, points_, asked_.parameters).system
-                      : fem::assemble(there, elements_, points_);
-  const fem::Modes modes = fem::modes(system, std::min(size(), slopes ? 2 * count_ + 6 : count_));
-  Found result{modes.angular_frequency.cwiseAbs2(), modes.shape, {}};
-  if (slopes && points_.size() > 1 && modes.rigid == 0)
-    result.compliance =
-        fem::StiffnessSolver(system.stiffness).solve(MatrixXd(system.outputs.transpose())).transpose();
-  return result;
+                      : fem::assemble(there, elements_, points_),
+      count_, slopes);
 }
 
 PredictedModes ModalModel::at(const VectorXd& values, bool slopes) const {
-  const Found all = found(values, slopes);
-  if (!(all.eigenvalues[0] > -1e-9 * std::abs(all.eigenvalues[count_ - 1])))
-    throw std::runtime_error("a mode has a negative stiffness");
-  PredictedModes modes;
-  modes.frequency_hz = all.eigenvalues.head(count_).cwiseMax(0.0).cwiseSqrt() / (2.0 * std::numbers::pi);
-  modes.shapes = described_.system.outputs * all.shapes.leftCols(count_);
-  modes.cluster = clusters_of(modes.frequency_hz);
-  if (slopes) add_slopes(all, modes);
+  const FoundModes all = found(values, slopes);
+  PredictedModes modes = seen_modes(all, described_.system.outputs, count_);
+  if (slopes) add_slopes(all, described_.system.outputs, slopes_, modes);
   return modes;
-}
-
-// With F = (K_j - lambda M_j - lambda' M) phi, which no mode near phi sees but phi itself:
-//
-//     S phi' = -sum_m s_m (phi_m^T F) / (lambda_m - lambda) - s (phi^T M_j phi) / 2
-//
-// over all modes outside the cluster. Of a large system, whose modes are the lowest only, the rest answers
-// statically: S K^-1 F less what these modes do of it.
-void ModalModel::add_slopes(const Found& all, PredictedModes& modes) const {
-  const Index k = count_, q = parameters(), m = all.shapes.cols();
-  const MatrixXd seen = described_.system.outputs * all.shapes;  // (p x m)
-  modes.frequency_slopes.resize(k, q);
-  if (seen.rows() > 1) modes.shape_slopes.assign(static_cast<std::size_t>(k), MatrixXd(seen.rows(), q));
-  for (Index j = 0; j < q; ++j) {
-    const auto& slope = described_.derivatives[static_cast<std::size_t>(j)];
-    const bool heavy = slope.mass.nonZeros() > 0;
-    const auto [from, rows] = touched_by(stiffness_slopes_[static_cast<std::size_t>(j)], slope.mass);
-    const MatrixXd lowest = all.shapes.leftCols(k);
-    MatrixXd loads = stiffness_slopes_[static_cast<std::size_t>(j)] * lowest;  // F but for lambda' M phi
-    const MatrixXd momenta = heavy ? MatrixXd(slope.mass * lowest) : MatrixXd();
-    if (heavy) loads -= momenta * all.eigenvalues.head(k).asDiagonal();
-    const MatrixXd work = all.shapes.middleRows(from, rows).transpose() * loads.middleRows(from, rows);
-    MatrixXd statics;
-    if (all.compliance.size() > 0)
-      statics = all.compliance.middleCols(from, rows) * loads.middleRows(from, rows);
-    for (Index i = 0; i < k; ++i) {
-      const double lambda = all.eigenvalues[i], f = modes.frequency_hz[i];
-      modes.frequency_slopes(i, j) =
-          f > 0.0 ? work(i, i) / (8.0 * std::numbers::pi * std::numbers::pi * f) : 0.0;
-      if (seen.rows() < 2) continue;  // no shape to compare
-      const auto [first, number] = modes.cluster[static_cast<std::size_t>(i)];
-      VectorXd change = VectorXd::Zero(seen.rows());
-      for (Index a = 0; a < m; ++a) {
-        const double mu = all.eigenvalues[a];
-        const bool near = a >= first && a < first + number;
-        double share = near ? 0.0 : 1.0 / (mu - lambda);
-        if (all.compliance.size() > 0) share -= 1.0 / mu;
-        change -= share * work(a, i) * seen.col(a);
-      }
-      if (all.compliance.size() > 0) change -= statics.col(i);
-      if (heavy) change -= 0.5 * lowest.col(i).dot(momenta.col(i)) * seen.col(i);
-      modes.shape_slopes[static_cast<std::size_t>(i)].col(j) = change;
-    }
-  }
 }
 
 }  // namespace beamid::experiments

@@ -20,7 +20,7 @@ bool has_shape(const MeasuredMode& mode) {
 
 }  // namespace
 
-ModalResidual::ModalResidual(const ModalModel& model, const SearchSpace& space, const ModalData& data,
+ModalResidual::ModalResidual(const ModesOfParameters& model, const SearchSpace& space, const ModalData& data,
                              ModelTrust trust)
     : model_(model), space_(space), data_(data), trust_(trust) {
   for (const MeasuredMode& mode : data_.modes) {
@@ -40,7 +40,7 @@ ModalResidual::ModalResidual(const ModalModel& model, const SearchSpace& space, 
   for (const bool prior : model.asked().has_prior) size_ += prior ? 1 : 0;
 }
 
-ModalResidual::Value ModalResidual::at(const VectorXd& x, bool jacobian) const {
+FitResidual::Value ModalResidual::at(const VectorXd& x, bool jacobian) const {
   Value value;
   const VectorXd values = space_.physical(x), slopes = space_.slope(x);
   value.modes = model_.at(values, jacobian);

@@ -4,8 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "experiments/identify/update/modal_model.hpp"
-#include "experiments/identify/update/search_space.hpp"
+#include "experiments/identify/update/fit_residual.hpp"
 #include "experiments/modal/modal_data.hpp"
 
 namespace beamid::experiments {
@@ -23,34 +22,26 @@ struct ModelTrust {
 /// S holds the predicted shape at the sensors; of close modes all of theirs, since only the space that they
 /// span is determined. The scale and sign of a shape do not matter: |r|^2 = |psi|^2 (1 - MAC) / s_psi^2. The
 /// prior is one of the parameter's own form: of p, of ln p.
-class ModalResidual {
+class ModalResidual final : public FitResidual {
  public:
   /// Both must outlive it. @throws std::invalid_argument when there are more modes than the model has.
-  ModalResidual(const ModalModel& model, const SearchSpace& space, const ModalData& data, ModelTrust trust);
+  ModalResidual(const ModesOfParameters& model, const SearchSpace& space, const ModalData& data,
+                ModelTrust trust);
 
-  struct Value {
-    Eigen::VectorXd residual;         ///< (r)
-    Eigen::MatrixXd jacobian;         ///< dr/dx (r x q); empty unless asked for
-    std::vector<Eigen::Index> pairs;  ///< the predicted mode of each measured one
-    PredictedModes modes;
-    double chi_square() const { return residual.squaredNorm(); }
-  };
-  /// @throws std::runtime_error when there are no such modes.
-  Value at(const Eigen::VectorXd& x, bool jacobian) const;
+  Value at(const Eigen::VectorXd& x, bool jacobian) const override;
+  Eigen::Index independent(const Value& value) const override;
 
   Eigen::Index size() const { return size_; }  ///< r
   Eigen::Index measured() const;               ///< the first of them, without priors
-  /// Numbers that are independent: a shape has as many as its components less those of the space.
-  Eigen::Index independent(const Value& value) const;
   double frequency_deviation(std::size_t mode) const { return frequency_deviation_[mode]; }  ///< [Hz]
   double shape_deviation(std::size_t mode) const { return shape_deviation_[mode]; }
   const ModalData& data() const { return data_; }
-  const ModalModel& model() const { return model_; }
-  const SearchSpace& space() const { return space_; }
+  const ModesOfParameters& model() const override { return model_; }
+  const SearchSpace& space() const override { return space_; }
   const ModelTrust& trust() const { return trust_; }
 
  private:
-  const ModalModel& model_;
+  const ModesOfParameters& model_;
   const SearchSpace& space_;
   ModalData data_;
   ModelTrust trust_;

@@ -74,6 +74,17 @@ MatrixXd modal_assurances(const ModalData& data, const PredictedModes& modes) {
   return assurance;
 }
 
+MatrixXd pairing_scores(const ModalData& data, const PredictedModes& modes, const MatrixXd& assurances) {
+  MatrixXd scores(assurances.rows(), assurances.cols());
+  for (Index i = 0; i < scores.rows(); ++i)
+    for (Index k = 0; k < scores.cols(); ++k) {
+      const double measured = data.modes[static_cast<std::size_t>(i)].frequency_hz;
+      scores(i, k) = -std::abs(std::log(measured / std::max(modes.frequency_hz[k], 1e-300)));
+      if (std::isfinite(assurances(i, k))) scores(i, k) += assurances(i, k);
+    }
+  return scores;
+}
+
 std::vector<Index> pair_modes(const ModalData& data, const PredictedModes& modes) {
   const auto count = static_cast<Index>(data.modes.size());
   const bool numbered = std::any_of(data.modes.begin(), data.modes.end(),
@@ -84,15 +95,10 @@ std::vector<Index> pair_modes(const ModalData& data, const PredictedModes& modes
     return pairs;
   }
   constexpr double certain = 1e6;
-  const MatrixXd assurance = modal_assurances(data, modes);
-  MatrixXd scores(count, assurance.cols());
+  MatrixXd scores = pairing_scores(data, modes, modal_assurances(data, modes));
   for (Index i = 0; i < count; ++i)
-    for (Index k = 0; k < scores.cols(); ++k) {
-      const MeasuredMode& mode = data.modes[static_cast<std::size_t>(i)];
-      scores(i, k) = -std::abs(std::log(mode.frequency_hz / std::max(modes.frequency_hz[k], 1e-300)));
-      if (std::isfinite(assurance(i, k))) scores(i, k) += assurance(i, k);
-      if (mode.number) scores(i, k) = *mode.number == k + 1 ? certain : -certain;
-    }
+    if (const std::optional<int>& number = data.modes[static_cast<std::size_t>(i)].number)
+      for (Index k = 0; k < scores.cols(); ++k) scores(i, k) = *number == k + 1 ? certain : -certain;
   return best_assignment(scores);
 }
 

@@ -23,6 +23,7 @@ SearchSpace::SearchSpace(const AskedParameters& asked) {
   upper_.resize(q);
   from_.resize(q);
   to_.resize(q);
+  longest_step_.setOnes(q);
   for (Index j = 0; j < q; ++j) {
     const Unknown& unknown = asked.unknowns[static_cast<std::size_t>(j)];
     const bool signed_quantity = unknown.quantity == "axial_load";
@@ -49,6 +50,18 @@ SearchSpace::SearchSpace(const AskedParameters& asked) {
       to_[j] = 3.0 * unknown.deviation / scale_[j];
     }
   }
+}
+
+SearchSpace::SearchSpace(const AskedParameters& asked, const std::vector<std::pair<double, double>>& likely)
+    : SearchSpace(asked) {
+  VectorXd from(size()), to(size());
+  for (Index j = 0; j < size(); ++j) {
+    from[j] = likely[static_cast<std::size_t>(j)].first;
+    to[j] = likely[static_cast<std::size_t>(j)].second;
+  }
+  from_ = place(from);
+  to_ = place(to);
+  longest_step_ = longest_step_.cwiseMax(0.2 * (upper_ - lower_));
 }
 
 VectorXd SearchSpace::physical(const VectorXd& x) const {

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
-#include "experiments/identify/update/modal_model.hpp"
+#include "experiments/identify/update/predicted_modes.hpp"
 
 namespace beamid::experiments {
 
@@ -14,12 +15,18 @@ namespace beamid::experiments {
 class SearchSpace {
  public:
   explicit SearchSpace(const AskedParameters& asked);
+  /// @param likely from, to (q): where the starts are drawn, in place of all that the bounds allow
+  SearchSpace(const AskedParameters& asked, const std::vector<std::pair<double, double>>& likely);
 
   Eigen::Index size() const { return lower_.size(); }
   const Eigen::VectorXd& lower() const { return lower_; }  ///< of x (q)
   const Eigen::VectorXd& upper() const { return upper_; }
   bool stated(Eigen::Index j) const { return stated_[static_cast<std::size_t>(j)]; }  ///< bounds of p_j
   bool logarithmic(Eigen::Index j) const { return logarithmic_[static_cast<std::size_t>(j)]; }
+
+  /// That a step is not to exceed (q): 1 of a logarithm; where bounds are much wider than what is likely, a
+  /// fifth of them.
+  const Eigen::VectorXd& longest_step() const { return longest_step_; }
 
   Eigen::VectorXd physical(const Eigen::VectorXd& x) const;
   Eigen::VectorXd slope(const Eigen::VectorXd& x) const;  ///< dp/dx (q)
@@ -30,7 +37,7 @@ class SearchSpace {
   Eigen::VectorXd start(std::size_t number) const;
 
  private:
-  Eigen::VectorXd guess_, scale_, lower_, upper_, from_, to_;
+  Eigen::VectorXd guess_, scale_, lower_, upper_, from_, to_, longest_step_;
   std::vector<bool> logarithmic_, stated_;
 };
 

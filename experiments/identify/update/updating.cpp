@@ -72,13 +72,13 @@ bool Updating::continuum() const {
                      [](const OpenDirection& direction) { return std::isinf(direction.deviation); });
 }
 
-int default_starts(const ModalModel& model) {
+int default_starts(const ModesOfParameters& model) {
   if (model.dense()) return model.size() <= 32 ? 300 : 100;
   const double work = static_cast<double>(model.size()) * static_cast<double>(model.parameters() + 10);
   return std::clamp(static_cast<int>(2e6 / work), 4, 48);
 }
 
-Updating update(const ModalResidual& residual, const UpdateSettings& settings,
+Updating update(const FitResidual& residual, const UpdateSettings& settings,
                 const std::vector<VectorXd>& known, const Progress& progress) {
   Updating result;
   const SearchSpace& space = residual.space();

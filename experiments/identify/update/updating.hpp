@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/identify/update/least_squares.hpp"
+#include "experiments/identify/update/modal_residual.hpp"
 #include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
@@ -60,7 +61,7 @@ inline constexpr double as_well_chi_square = 6.0;
 inline constexpr double open_deviation = 0.5;
 
 /// Several hundred where a start takes milliseconds, fewer of large systems: the same on any machine.
-int default_starts(const ModalModel& model);
+int default_starts(const ModesOfParameters& model);
 
 /// Least squares from many starts (search_space.hpp) and from the sets in `known`, on all cores; what they
 /// end at, told apart. Deviations are those of the linearised residual at the first set, over the directions
@@ -68,7 +69,7 @@ int default_starts(const ModalModel& model);
 /// sqrt(chi^2 / freedom) and the report says so.
 /// @param known values of twins (twins.hpp)
 /// @throws std::invalid_argument when no start has modes.
-Updating update(const ModalResidual& residual, const UpdateSettings& settings,
+Updating update(const FitResidual& residual, const UpdateSettings& settings,
                 const std::vector<Eigen::VectorXd>& known = {}, const Progress& progress = unwatched);
 
 }  // namespace beamid::experiments

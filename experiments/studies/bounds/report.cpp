@@ -8,6 +8,7 @@
 #include "experiments/config/structure_description.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/studies/update/report.hpp"
+#include "experiments/text/spelling.hpp"
 #include "fem/assembly.hpp"
 
 namespace beamid::experiments {
@@ -35,16 +36,30 @@ const char* words_of(Excitation::Kind kind) {
   return "";
 }
 
+/// "after a release, under a random force and under a motion of the base".
+std::string words_of_all(const Experiment& experiment) {
+  std::vector<std::string> all{words_of(experiment.excitation.kind)};
+  for (const Excitation& further : experiment.further_excitations) {
+    const std::string one = words_of(further.kind);
+    const std::string place =
+        further.kind == Excitation::Kind::base ? "" : at_place_text(further.position, further.at);
+    all.push_back(one + place);
+  }
+  return joined(all);
+}
+
 std::string test_text(const Experiment& experiment, const Identifiability& found) {
   const auto& frequencies = found.frequencies_hz;
+  const bool several = !experiment.further_excitations.empty();
   std::string text = fmt::format(
       "Model {}, reduction {}: {} coordinate{}, {:.4g} Hz{}. A record of {:g} s at {:g} Hz {}{}.",
       found.model, found.reduction, found.coordinates, found.coordinates == 1 ? "" : "s", frequencies.front(),
       frequencies.size() > 1 ? fmt::format(" to {:.4g} Hz", frequencies.back()) : "", found.duration,
-      found.sampling_rate, words_of(experiment.excitation.kind),
-      found.force_measured ? ", which is measured"
-      : found.begin > 0.0  ? fmt::format(", from {:g} s on, when that has ended", found.begin)
-                           : "");
+      found.sampling_rate, words_of_all(experiment),
+      found.force_measured ? (several ? ", all of which are measured" : ", which is measured")
+      : found.begin > 0.0
+          ? fmt::format(", from {:g} s on, when {} ended", found.begin, several ? "all have" : "that has")
+          : "");
   text += " Sensors:";
   for (std::size_t i = 0; i < found.sensors.size(); ++i) {
     const Sensor& sensor = found.sensors[i].sensor;
@@ -73,6 +88,8 @@ Results report(const Experiment& experiment, const Identifiability& found) {
   results.command = "identifiability";
   results.configuration = describe(experiment);
   results.configuration["excitation"] = to_string(experiment.excitation.kind);
+  for (const Excitation& further : experiment.further_excitations)
+    results.configuration["further_excitations"].push_back(to_string(further.kind));
   results.configuration["identifiability"] =
       to_json(identifiability_keys().values_of(experiment.identifiability));
   results.values = values(found);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/config/beam_description.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/forest_plot.hpp"
 
@@ -13,7 +12,6 @@ namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-using Json = nlohmann::ordered_json;
 
 constexpr Index most_shown = 6;  // modes with a column of their own
 constexpr std::size_t most_pairs = 8;
@@ -66,7 +64,8 @@ Table effect_table(const ModelCheck& check) {
     const Candidate& candidate = check.candidates[c];
     std::vector<Cell> row{
         candidate.name,
-        fmt::format("{:+.3g} {}", (candidate.unit == "%" ? 100 : 1) * candidate.scale, candidate.unit)};
+        fmt::format("{:+.3g} {}", (candidate.unit == "%" ? 100 : 1) * candidate.plausible_upper,
+                    candidate.unit)};
     for (Index i = 0; i < shown; ++i) row.emplace_back(100 * check.effect(i, static_cast<Index>(c)));
     table.row(std::move(row));
   }
@@ -74,14 +73,31 @@ Table effect_table(const ModelCheck& check) {
   return table;
 }
 
-/// Candidate, change and half of its 95 % interval.
+std::string change_number(const Candidate& c, double x) {
+  return fmt::format("{:+.3g}", (c.unit == "%" ? 100 : 1) * x + 0.0);
+}
+
+/// Candidate, change and its 95 % interval, with what update remarks of a parameter.
 std::vector<Cell> change_cells(const ModelCheck& check, const Explanation& e, std::size_t i) {
   const Candidate& c = check.candidates[e.candidates[i]];
-  const double shown = c.unit == "%" ? 100 : 1;
-  if (e.at_limit[i])
-    return {c.name, fmt::format("{:+.3g} {}", shown * e.change[i], c.unit), std::string("limit")};
-  return {c.name, fmt::format("{:+.3g} {}", shown * e.change[i], c.unit),
-          fmt::format("{:.2g}", 1.96 * shown * e.deviation[i])};
+  const bool interval = e.determined[i] && !(e.at_limit[i] && e.candidates.size() > 1);
+  return {c.name,
+          c.unit,
+          change_number(c, e.change[static_cast<Index>(i)]),
+          interval ? change_number(c, e.lower_95(i)) : "",
+          interval ? change_number(c, e.upper_95(i)) : "",
+          std::string(!e.determined[i] ? "not determined"
+                      : e.at_limit[i]  ? "on its bound"
+                                       : "")};
+}
+
+Table& add_change_columns(Table& table) {
+  return table.column({"candidate", "candidate"})
+      .column({"unit", "unit"})
+      .column({"change", "change"})
+      .column({"95 % from", "lower_95"})
+      .column({"to", "upper_95"})
+      .column({"remark", "remark"});
 }
 
 std::string verdict_text(const Explanation& e) {
@@ -96,7 +112,7 @@ double left_percent(const Explanation& e) {
 
 Table single_table(const ModelCheck& check) {
   Table table{"single_changes", "One change alone"};
-  table.column({"candidate", "candidate"}).column({"change", "change"}).column({"95 % +-", "half_interval"});
+  add_change_columns(table);
   if (check.structures.size() == 1) table.column({"would be", "value"});
   if (!check.right)
     table.column({"left [%]", "left_percent", "{:.2f}"})
@@ -107,22 +123,19 @@ Table single_table(const ModelCheck& check) {
     const Candidate& c = check.candidates[e.candidates[0]];
     if (check.structures.size() == 1)
       row.emplace_back(
-          fmt::format("{:.4g} {}", c.value(check.structures[0].beam, e.change[0]), c.value_unit));
+          fmt::format("{:.4g} {}", c.value(check.structures[0].structure, e.change[0]), c.value_unit));
     if (!check.right) row.insert(row.end(), {left_percent(e), e.chi_square, verdict_text(e)});
     table.row(std::move(row));
   }
-  table.note = check.right ? "limit: the best fit lies at the edge of the allowed range."
-                           : "left: root mean square of what remains; limit: the best fit lies at the edge "
-                             "of the allowed range.";
+  table.note = fmt::format("{}on its bound: the best fit lies at the edge of what is possible.",
+                           check.right ? "" : "left: root mean square of what remains of the frequencies; ");
   return table;
 }
 
 Table pair_table(const ModelCheck& check) {
   Table table{"pairs", "Two changes together"};
-  table.column({"pair", "pair", "{:.0f}"})
-      .column({"candidate", "candidate"})
-      .column({"change", "change"})
-      .column({"95 % +-", "half_interval"})
+  table.column({"pair", "pair", "{:.0f}"});
+  add_change_columns(table)
       .column({"left [%]", "left_percent", "{:.2f}"})
       .column({"correlation", "correlation", "{:+.3f}"})
       .column({"verdict", "verdict"});
@@ -138,6 +151,9 @@ Table pair_table(const ModelCheck& check) {
   if (check.pairs.size() > most_pairs)
     table.note =
         fmt::format("The {} best of {}; all of them in results.json.", most_pairs, check.pairs.size());
+  if (check.pairs.size() < check.possible_pairs)
+    table.note +=
+        fmt::format(" Fitted were those of {} pairs that come nearest at first order.", check.possible_pairs);
   return table;
 }
 
@@ -166,9 +182,8 @@ Figure figure_of(const ModelCheck& check) {
     described[static_cast<Index>(i)] = check.modes[i].difference();
   }
   const auto named = [&](const Explanation& e) {
-    std::string name = check.candidates[e.candidates[0]].name;
-    if (e.candidates.size() > 1) name += " and " + check.candidates[e.candidates[1]].name;
-    std::replace(name.begin(), name.end(), '_', ' ');
+    std::string name = check.candidates[e.candidates[0]].label;
+    if (e.candidates.size() > 1) name += " and " + check.candidates[e.candidates[1]].label;
     return name + " fitted";
   };
   plot.series.push_back(check_series(check, "as described", described, Colour::black));
@@ -185,56 +200,13 @@ Figure figure_of(const ModelCheck& check) {
   return figure;
 }
 
-Json model_check_values_of(const ModelCheck& check, const Explanation& e) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < e.candidates.size(); ++i) {
-    const Candidate& c = check.candidates[e.candidates[i]];
-    json["changes"].push_back({{"candidate", c.name},
-                               {"unit", c.unit == "%" ? "1" : c.unit},
-                               {"estimate", e.change[i]},
-                               {"standard_deviation", e.deviation[i]},
-                               {"lower_95", e.lower_95(i)},
-                               {"upper_95", e.upper_95(i)},
-                               {"at_limit", static_cast<bool>(e.at_limit[i])}});
-  }
-  if (e.candidates.size() > 1) json["correlation"] = e.correlation;
-  json["chi_square"] = e.chi_square;
-  json["left"] = std::vector<double>(e.left.begin(), e.left.end());
-  json["verdict"] = to_string(e.verdict);
-  return json;
-}
-
-void fill(const ModelCheck& check, Results& results) {
-  results.configuration["model_error"] = check.settings.model_error;
-  for (const CheckedStructure& structure : check.structures)
-    results.configuration["structures"].push_back(
-        {{"name", structure.name}, {"beam", describe(structure.beam, structure.elements)}});
-  Json& json = results.values;
-  json["status"] = check.right ? "agrees" : "differs";
-  json["chi_square"] = check.chi_square;
-  for (const CheckedMode& mode : check.modes)
-    json["modes"].push_back({{"structure", check.structures[mode.structure].name},
-                             {"mode", mode.number},
-                             {"predicted_hz", mode.predicted_hz},
-                             {"identified_hz", mode.identified.frequency_hz},
-                             {"identified_standard_deviation_hz", mode.identified.frequency_deviation_hz},
-                             {"predicted_damping_ratio", mode.predicted_damping_ratio},
-                             {"damping_ratio", mode.identified.damping_ratio},
-                             {"damping_ratio_standard_deviation", mode.identified.damping_ratio_deviation},
-                             {"mac", mode.assurance},
-                             {"far", mode.far}});
-  for (const Candidate& c : check.candidates) {
-    Json candidate{{"name", c.name},
-                   {"unit", c.unit == "%" ? "1" : c.unit},
-                   {"plausible", {c.plausible_lower, c.plausible_upper}}};
-    json["candidates"].push_back(candidate);
-  }
-  for (const Explanation& e : check.single) json["single_changes"].push_back(model_check_values_of(check, e));
-  for (const Explanation& e : check.pairs) json["pairs"].push_back(model_check_values_of(check, e));
-  json["contradictions"] = check.contradictions;
-  json["conclusions"] = conclusions(check);
-  for (const CheckedStructure& structure : check.structures)
-    for (const std::string& warning : structure.warnings) json["record_warnings"].push_back(warning);
+/// Where shapes are compared, what they are trusted to.
+std::string shapes_text(const ModelCheck& check) {
+  if (std::none_of(check.modes.begin(), check.modes.end(),
+                   [](const CheckedMode& mode) { return std::isfinite(mode.assurance); }))
+    return "";
+  return fmt::format(", each component of a predicted shape to {:.2g} % of the largest (--shape-error)",
+                     100 * check.settings.shape_error);
 }
 
 }  // namespace
@@ -242,11 +214,12 @@ void fill(const ModelCheck& check, Results& results) {
 Results report(const ModelCheck& check) {
   Results results;
   results.command = "check";
-  fill(check, results);
-  results.heading("The model against the modes identified");
+  fill_model_check_values(check, results);
   for (const CheckedStructure& structure : check.structures)
     for (const std::string& warning : structure.warnings) results.warning(warning);
   for (const std::string& sentence : check.contradictions) results.warning(sentence);
+  for (const std::string& sentence : conclusions(check)) results.paragraph(sentence);
+  results.heading("The model against the modes identified");
   for (const CheckedMode& mode : check.modes)
     if (mode.far)
       results.paragraph(fmt::format(
@@ -261,15 +234,14 @@ Results report(const ModelCheck& check) {
       text += fmt::format("{}{:.4g} Hz{}", text.empty() ? "" : ", ", mode.frequency_hz,
                           check.structures.size() > 1 ? " of " + check.structures[structure].name : "");
     results.paragraph("Identified modes without a predicted counterpart, left out: " + text +
-                      ". A neighbour of the beam, motion in another plane, or no mode at all.");
+                      ". A neighbour of the structure, motion in another plane, or no mode at all.");
   }
   results.paragraph(
       fmt::format("Each predicted frequency is trusted to {:.2g} % (one standard deviation, --model-error) "
                   "beside what the "
-                  "record leaves open.",
-                  100 * check.settings.model_error));
+                  "record leaves open{}.",
+                  100 * check.settings.model_error, shapes_text(check)));
   results.heading("What would explain the difference");
-  for (const std::string& sentence : conclusions(check)) results.paragraph(sentence);
   results.table(single_table(check));
   if (!check.right && !check.pairs.empty()) results.table(pair_table(check));
   results.table(effect_table(check));

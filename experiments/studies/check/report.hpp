@@ -9,6 +9,9 @@ namespace beamid::experiments {
 /// Tables of modes, of what candidates do, of what explains; words, a figure, results.json.
 Results report(const ModelCheck& check);
 
+/// Configuration and values of results.json.
+void fill_model_check_values(const ModelCheck& check, Results& results);
+
 /// "Neither ... alone": what the data say about the candidates, a sentence each.
 std::vector<std::string> conclusions(const ModelCheck& check);
 

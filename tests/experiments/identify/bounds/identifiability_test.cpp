@@ -8,6 +8,7 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_reduction.hpp"
+#include "experiments/identify/compare/comparison.hpp"
 #include "experiments/studies/bounds/report.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -158,6 +159,95 @@ duration_s = 0.02
   EXPECT_NEAR(without.begin, 0.02, 0.003);
   for (std::size_t j = 0; j < 2; ++j)
     EXPECT_GE(without.parameters[j].bound, 0.999 * with.parameters[j].bound);
+}
+
+// [[excitations]], one after the other.
+std::string excitations(const std::vector<std::string>& all) {
+  std::string text;
+  for (const std::string& one : all) text += "[[excitations]]\n" + one;
+  return text;
+}
+
+const std::string random_force = "kind = \"random\"\nposition_m = 0.55\namplitude_n = 2\nfrequency_hz = 40\n";
+const std::string base_motion = "kind = \"base\"\namplitude_m_per_s2 = 0.5\nfrequency_hz = 7\n";
+
+std::string sine_of(double amplitude) {
+  return "kind = \"harmonic\"\nposition_m = 1.1\nfrequency_hz = 11\namplitude_n = " +
+         std::to_string(amplitude) + "\n";
+}
+
+TEST(Identifiability, OfAListOfOneExcitationIsThatOfTheExcitation) {
+  const Identifiability one = found("[excitation]\n" + random_force, "beam", "modal_truncation:modes=2"),
+                        list = found(excitations({random_force}), "beam", "modal_truncation:modes=2");
+  EXPECT_TRUE(list.force_measured);
+  for (const auto sweep : {&Identifiability::lengths, &Identifiability::rates, &Identifiability::places,
+                           &Identifiability::numbers})
+    EXPECT_EQ((one.*sweep).percent, (list.*sweep).percent);
+}
+
+// 1 / bound^2 of the only unknown.
+double information_of_stiffness(const std::vector<std::string>& all) {
+  const Identifiability one = found("[[parameters]]\nquantity = \"bending_stiffness\"\n" + excitations(all),
+                                    "beam", "modal_truncation:modes=2");
+  return 1.0 / (one.parameters.at(0).bound * one.parameters.at(0).bound);
+}
+
+// Oracle: the motion, and with it the sensitivity to the stiffness, is linear in the forces; what the unknown
+// start takes off is a projection that does not depend on them. So the information is a square of the forces:
+// I(a + b) + I(a - b) = 2 I(a) + 2 I(b).
+TEST(Identifiability, OfSeveralExcitationsObeysTheParallelogramLaw) {
+  const double plus = information_of_stiffness({random_force, sine_of(0.5), base_motion}),
+               minus = information_of_stiffness({random_force, sine_of(-0.5), base_motion}),
+               without = information_of_stiffness({random_force, base_motion}),
+               alone = information_of_stiffness({sine_of(0.5)});
+  EXPECT_NEAR((plus + minus) / (2 * without + 2 * alone), 1.0, 1e-9);
+  EXPECT_GT(std::abs(plus - minus), 1e-3 * plus);  // they are not simply added
+}
+
+// The same law; the start is that of the model nearest to the continuum's.
+TEST(Identifiability, OfAStartWithForcesObeysTheParallelogramLaw) {
+  const std::string release = "kind = \"release\"\nposition_m = 0.55\ndeflection_m = 0.002\n";
+  const double plus = information_of_stiffness({release, sine_of(3.0)}),
+               minus = information_of_stiffness({release, sine_of(-3.0)}),
+               released = information_of_stiffness({release}),
+               driven = information_of_stiffness({sine_of(3.0)});
+  EXPECT_NEAR((plus + minus) / (2 * released + 2 * driven), 1.0, 1e-3);
+}
+
+// Oracle: the Cramer-Rao bound that compare works out from the record simulated with the same excitations,
+// at what it estimates.
+TEST(Identifiability, OfSeveralExcitationsIsTheBoundOfTheirRecord) {
+  Experiment experiment = read_experiment(TomlTable::parse(
+      std::string(beam_text) + excitations({random_force, sine_of(0.5), base_motion}), "test"));
+  experiment.model = {"beam", model_registry().completed("beam", {}), {"test"}};
+  experiment.reduction = parse_reduction("modal_truncation:modes=2", "test");
+  experiment.reductions = {experiment.reduction};
+  experiment.filters = {experiment.filter};
+  experiment.discretisations = {experiment.discretisation};
+  experiment.format.input = InputPath::linear;
+  experiment.simulation.method.options["modes"] = 2.0;
+  const auto silent = [](const std::string&) {};
+  const Comparison compared = compare(experiment, simulated_record(experiment, ".", silent), ".", silent);
+  const ComparedRun& run = compared.runs.at(0);
+  ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
+  const Identifiability test = find_identifiability(experiment, ".", silent);
+  ASSERT_EQ(test.parameters.size(), run.parameters.size());
+  for (std::size_t j = 0; j < test.parameters.size(); ++j)
+    EXPECT_NEAR(test.parameters[j].bound / run.parameters[j].bound.value(), 1.0, 0.03)
+        << test.parameters[j].name;
+}
+
+TEST(Identifiability, OfForcesNotMeasuredBeginsWhenTheLastHasEnded) {
+  const std::string blow = "kind = \"impulse\"\nposition_m = 0.55\nmomentum_n_s = 0.1\nduration_s = ";
+  Experiment experiment = read_experiment(
+      TomlTable::parse(std::string(beam_text) + excitations({blow + "0.1\n", blow + "0.02\n"}), "test"));
+  experiment.further_excitations[0].position = 0.8;
+  experiment.model = {"beam", model_registry().completed("beam", {}), {"test"}};
+  experiment.reduction = parse_reduction("modal_truncation:modes=2", "test");
+  experiment.identifiability.force_measured = false;
+  const Identifiability test = find_identifiability(experiment, ".", [](const std::string&) {});
+  EXPECT_FALSE(test.force_measured);
+  EXPECT_NEAR(test.begin, 0.1, 0.003);
 }
 
 TEST(Identifiability, RefusesSensorsThatShowNothing) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "experiments/identify/update/modal_model.hpp"
 #include "experiments/identify/update/mode_pairing.hpp"
 #include "filters/random.hpp"
 #include "tests/experiments/identify/update/update_cases.hpp"
