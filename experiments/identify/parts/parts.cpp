@@ -144,10 +144,14 @@ bool PartedIdentification::converged() const {
   return std::all_of(parts.begin(), parts.end(), [](const IdentifiedPart& one) { return one.converged(); });
 }
 
-ComparedRecord simulated_for_parts(Experiment truth, const std::filesystem::path& folder,
+ComparedRecord simulated_for_parts(const Experiment& truth, const std::filesystem::path& folder,
                                    const Progress& progress) {
-  fem::ResponseMethod& method = truth.simulation.method;
-  if (has_spans(truth.structure) && method.name == "modal") method.options.try_emplace("modes", 0.0);
+  if (has_spans(truth.structure))
+    throw InputError(
+        truth.parts.front().place,
+        "a span is identified from a RECORD without aliases; expected one, as of beamid simulate with "
+        "[simulation] modes far above and a rate several times that of [[record.prepare]] step = "
+        "\"decimate\"");
   return simulated_record(truth, folder, progress);
 }
 

@@ -39,9 +39,10 @@ struct PartedIdentification {
   bool converged() const;  ///< every part, the noise at its sections counted
 };
 
-/// As simulated_record(); where parts are spans, the modal method has all modes unless the file says how
-/// many: with those below half the sampling rate alone, forces anywhere act in the span too.
-ComparedRecord simulated_for_parts(Experiment truth, const std::filesystem::path& folder,
+/// As simulated_record(). @throws InputError at the first part where parts are spans: a simulated record is
+/// sampled without a filter against aliasing, and has the modes below half the sampling rate only or those
+/// above at other frequencies.
+ComparedRecord simulated_for_parts(const Experiment& truth, const std::filesystem::path& folder,
                                    const Progress& progress);
 
 /// Every part of the experiment on its share of the record, two at a time, and the whole beside them where it
