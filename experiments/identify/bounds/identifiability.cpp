@@ -17,14 +17,18 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double usual_test_ratio = 0.005;  // of every mode, where no damping is described
+constexpr double usual_test_ratio = 0.005;  // of every mode, where neither damping nor a dashpot is described
 constexpr Index fewest_test_samples = 16;   // of a record
 constexpr double usual_noise = 0.01;        // of the root mean square of what a sensor shows
+
+bool has_dashpots(const Experiment& experiment) {
+  return fem::assemble(experiment.structure, experiment.elements).damping.nonZeros() > 0;
+}
 
 /// The experiment with all that it leaves open.
 Experiment completed(const Experiment& experiment, std::vector<std::string>& notes) {
   Experiment complete = experiment;
-  if (std::holds_alternative<fem::Undamped>(complete.damping)) {
+  if (std::holds_alternative<fem::Undamped>(complete.damping) && !has_dashpots(experiment)) {
     complete.damping = fem::ModalDamping{{usual_test_ratio}};
     notes.push_back(
         fmt::format("No [damping] is described: every mode has the ratio {:g} %.", 100.0 * usual_test_ratio));
