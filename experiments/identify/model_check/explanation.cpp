@@ -59,7 +59,9 @@ void set_intervals(const ModelCheck& check, const SharedResidual& residual, cons
       e.deviation[i] = found.widening * std::abs(residual.space().slope(found.best().fit.x)[i]) / slope;
     e.lower[i] = std::max(c.lower, e.change[i] - interval_quantile * e.deviation[i]);
     e.upper[i] = std::min(c.upper, e.change[i] + interval_quantile * e.deviation[i]);
-    e.plausible = e.plausible && e.upper[i] >= c.plausible_lower && e.lower[i] <= c.plausible_upper;
+    const double most = one.determined ? e.upper[i] : e.change[i],
+                 least = one.determined ? e.lower[i] : e.change[i];
+    e.plausible = e.plausible && most >= c.plausible_lower && least <= c.plausible_upper;
   }
 }
 
