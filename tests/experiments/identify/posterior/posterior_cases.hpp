@@ -7,6 +7,7 @@
 
 #include "experiments/identify/posterior/modal_likelihood.hpp"
 #include "experiments/identify/posterior/posterior.hpp"
+#include "experiments/identify/update/modal_model.hpp"
 #include "tests/experiments/identify/update/update_cases.hpp"
 
 namespace beamid::experiments {
