@@ -85,8 +85,8 @@ Table mode_table(const FrameModes& found) {
                                                                     : ", ",
                           100.0 * found.effective_mass.col(axis).sum() / found.total_mass);
   table.note = fmt::format(
-      "mesh error: relative, estimated from half the elements assuming convergence with h^2; for modes of "
-      "pure bending a fifth of it. digits: significant digits on which solver and Rayleigh quotient agree. "
+      "mesh error: relative, estimated from half the elements; it falls with h^4, of lumped mass with h^2. "
+      "digits: significant digits on which solver and Rayleigh quotient agree. "
       "effect. mass: participating when all supports and springs move along {}, {} % of "
       "{:.6g} kg in these modes.",
       spatial ? "x, y or z" : "x or y", shares, found.total_mass);
