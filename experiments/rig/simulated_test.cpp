@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/rig/audible_modes.hpp"
 #include "experiments/rig/excitation_history.hpp"
+#include "experiments/rig/sample_clock.hpp"
 #include "experiments/rig/storey_response.hpp"
-#include "experiments/signal/cubic_spline.hpp"
 #include "experiments/signal/random.hpp"
 #include "fem/gauge_row.hpp"
-#include "fem/modes.hpp"
 #include "fem/parametric_system.hpp"
 
 namespace beamid::experiments {
@@ -78,57 +78,6 @@ void add_gauges(const fem::Beam& beam, SimulatedTest& test, std::vector<Index>& 
   }
 }
 
-// Modes below half the sampling rate: what an instrument's anti-aliasing filter lets through. One above
-// appears in the record at another frequency.
-struct Audible {
-  Index count = 0;       ///< 200 at most
-  double next_hz = 0.0;  ///< frequency of the first above; 0: there is none
-};
-
-Audible audible_modes(const fem::StructuralSystem& system, double limit_hz) {
-  constexpr Index most = 200;
-  for (Index few = std::min<Index>(system.size(), 25);;
-       few = std::min(2 * few, std::min(system.size(), most))) {
-    const VectorXd frequency = fem::modes(system, few).frequency_hz();
-    const Index below = (frequency.array() < limit_hz).count();
-    if (below < few) return {below, frequency[below]};
-    if (few == std::min(system.size(), most)) return {few, 0.0};
-  }
-}
-
-/// The modal method gets as many modes as the record can show, unless the file says how many; a note says
-/// what the others show.
-fem::ResponseMethod completed(const Simulation& settings, SimulatedTest& test) {
-  fem::ResponseMethod method = settings.method;
-  const double limit = 0.5 * settings.sampling_rate;
-  const Audible audible = audible_modes(test.system, limit);
-  if (audible.count == 0 && audible.next_hz > 0.0)
-    test.notes.push_back(fmt::format(
-        "ALIASED: no mode lies below half the sampling rate, {:g} Hz. The first, at {:.5g} Hz, appears in "
-        "the "
-        "record at {:.5g} Hz.",
-        limit, audible.next_hz, std::abs(std::remainder(audible.next_hz, settings.sampling_rate))));
-  if (method.name == "modal" && !method.options.contains("modes") && audible.count > 0) {
-    method.options["modes"] = static_cast<double>(audible.count);
-    test.notes.push_back(fmt::format("{} of {} modes {} used: {}. simulation.modes sets another number.",
-                                     audible.count, test.system.size(), audible.count == 1 ? "is" : "are",
-                                     audible.next_hz > 0.0
-                                         ? fmt::format("{} below {:g} Hz, half the sampling rate",
-                                                       audible.count == 1 ? "the one" : "those", limit)
-                                         : "the lowest"));
-  } else if (method.name == "modal" && !method.options.contains("modes")) {
-    method.options["modes"] = 1.0;
-  } else if (audible.count > 0 && audible.next_hz > 0.0 &&
-             (method.name != "modal" || method.options["modes"] == 0.0 ||
-              method.options["modes"] > static_cast<double>(audible.count))) {
-    test.notes.push_back(fmt::format(
-        "Half the sampling rate is {:g} Hz, the frequency of mode {} is {:.5g} Hz: this mode and those "
-        "above it appear in the record at other frequencies.",
-        limit, audible.count + 1, audible.next_hz));
-  }
-  return method;
-}
-
 // A field of so many numbers at all frames together fits into the memory of any machine.
 int affordable_frames(int frames, Index coordinates, std::vector<std::string>& notes) {
   constexpr double most_numbers = 2e7;
@@ -138,41 +87,6 @@ int affordable_frames(int frames, Index coordinates, std::vector<std::string>& n
       fmt::format("{} of the {} pictures of the whole beam are kept: more would not fit into memory.",
                   affordable, frames));
   return affordable;
-}
-
-/// When the logger samples: `count` samples during the motion, and those before it.
-struct SampleClock {
-  VectorXd time;       ///< (N) [s], from 0
-  double event = 0.0;  ///< the motion's t = 0 on this clock [s]
-  Index before = 0;    ///< samples before it
-  bool even = true;
-};
-
-SampleClock clock_of(const Acquisition& acquisition, const Simulation& settings, Index count) {
-  SampleClock clock;
-  clock.before = static_cast<Index>(std::llround(acquisition.pretrigger * settings.sampling_rate));
-  clock.event = static_cast<double>(clock.before) / settings.sampling_rate;
-  clock.time = sample_instants(acquisition, clock.before + count, settings.sampling_rate, settings.seed);
-  clock.even = !(acquisition.jitter > 0);
-  return clock;
-}
-
-/// True readings (N) at the clock's instants from those at the steps of the integration. Before the motion
-/// the beam is held where it starts: only displacements and strains show that.
-VectorXd readings_at(const SampleClock& clock, const VectorXd& step_time, const VectorXd& values, Index steps,
-                     Quantity quantity) {
-  const bool held = quantity == Quantity::displacement || quantity == Quantity::strain;
-  VectorXd readings = VectorXd::Constant(clock.time.size(), held ? values[0] : 0.0);
-  if (clock.even) {
-    const Index count = clock.time.size() - clock.before;
-    readings.tail(count) = values(Eigen::seqN(Index{0}, count, steps));
-    return readings;
-  }
-  const CubicSpline spline(step_time, values);
-  const double last = step_time[step_time.size() - 1];
-  for (Index k = 0; k < readings.size(); ++k)
-    if (const double t = clock.time[k] - clock.event; t >= 0) readings[k] = spline(std::min(t, last));
-  return readings;
 }
 
 // What the straight line between the samples (every `steps`-th value) misses, as a sentence.
@@ -276,7 +190,7 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   test.step = grid.interval;
   if (experiment.storey_springs.empty()) {
     progress("modes");
-    test.method = completed(settings, test);
+    test.method = audible_method(settings, test.system, test.notes);
     progress("integrating");
     test.response = fem::respond(test.system, experiment.damping, history.loading, grid, test.method);
   } else {
