@@ -143,7 +143,7 @@ TEST(ReadExperiment, RefusesBadTablesOfTheContinuum) {
        "bad.toml:3:14: excitation.position_m is 5; expected a number from 0 to the beam's length, 2"},
       {"[[sensors]]\nquantity = \"force\"\n",
        "bad.toml:3:12: sensors[1].quantity is the text \"force\"; expected one of displacement, velocity, "
-       "acceleration, strain"},
+       "acceleration, strain, angular_acceleration"},
       {"[[sensors]]\nnoise_m = 1e-6\n",
        "bad.toml:3:1: sensors[1].noise_m has no use for a sensor of acceleration; expected noise_m_per_s2, "
        "or no noise_m"},
