@@ -8,8 +8,10 @@
 #include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
+#include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/model_check/observed_modes.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
@@ -41,6 +43,7 @@ std::vector<Request> requests_of(const Values& values) {
   std::vector<Request> requests;
   for (std::size_t k = 0; k < configs.size(); ++k) {
     Request request{configs[k], read_experiment(configs[k]), {}};
+    require_linear_storeys(request.experiment, "check");
     request.records = require_record_files(values, request.config, request.experiment.record_file);
     if (configs.size() > 1 && !records.empty()) request.records = {request.records[k]};
     requests.push_back(std::move(request));
@@ -111,7 +114,7 @@ CheckedStructure structure_of(const Request& request, const ModalStudySettings& 
     used.push_back({file.filename().string(), &format, read_and_prepare(file, format)});
     try {
       Record& record = used.back().prepared.record;
-      record = made_analysable(record);
+      record = made_analysable(with_places(record, request.experiment));
       found.push_back(
           find_modes(used.back().name, record, request.experiment.format.window.has_value(), settings));
     } catch (const std::invalid_argument& error) {

@@ -1,5 +1,7 @@
 #include "experiments/rig/storey_response.hpp"
 
+#include <fmt/format.h>
+
 #include <numeric>
 #include <stdexcept>
 
@@ -73,7 +75,16 @@ fem::Response storey_response(const Experiment& experiment, const fem::Structura
     if (k + 1 == grid.samples) break;
     VectorXd path(2 * inputs);
     path << input, input_at(k + 1) - input;
-    step->transition(state, path, next);
+    try {
+      step->transition(state, path, next);
+    } catch (const std::runtime_error& error) {
+      throw InputError(
+          experiment.storey_springs.front().law.place,
+          fmt::format("the motion of storeys that follow laws cannot be followed beyond {:.4g} s ({}): "
+                      "a spring that softens lets go where the motion is large. Expected a smaller "
+                      "excitation, or a law that pushes back",
+                      response.time[k], error.what()));
+    }
     state.swap(next);
   }
   return response;

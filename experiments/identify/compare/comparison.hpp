@@ -62,7 +62,8 @@ struct ComparedRun {
   enum class Status {
     converged,
     contradicted,  ///< the modal analysis of the same record has less than half or more than twice the
-                   ///< damping; or the motion that the measured input makes of the model is not the record's
+                   ///< damping; or the motion that the measured input makes of the model is not the record's;
+                   ///< or the last pass still moved an unknown by many of its deviations
     diverged,      ///< the filter failed, or its motion is not the record's
     refused        ///< the model cannot be made this way
   };
@@ -84,6 +85,7 @@ struct ComparedRun {
   std::optional<FoundMode> mode;             ///< likewise, where its equations tell it
   std::optional<NoiseNearMode> near_mode;    ///< of the first output, at the record's mode
   std::vector<NoiseInEstimate> noise_in;  ///< how much of it reaches each unknown (q); empty: by `near_mode`
+  double last_move = 0.0;                 ///< of an unknown by the last pass, in its standard deviations
   double interval_factor = 1;             ///< of deviations, the largest: what counts is not R; 1 at least
   double noise_ratio = 1;                 ///< deviation of the noise that counts over that assumed
   double noise_freedom = 1e9;             ///< degrees of freedom that this ratio is known with

@@ -91,7 +91,8 @@ void Passes::begin() {
 void Passes::finish() {
   const SteadyClock::time_point start = SteadyClock::now();
   run_.unknowns = run_.model->unknowns;
-  if (last_move_ > settled_move) run_.remarks.push_back(unsettled_text(last_move_));
+  run_.last_move = last_move_;
+  if (!has_settled()) run_.remarks.push_back(unsettled_text(last_move_));
   const MatrixXd noise =
       noise_of_bound(context_.compared, known_, run_.noise_left, run_.noise).cwiseAbs2().asDiagonal();
   const auto discrete = finest(*run_.model, dt_, noise);
@@ -144,6 +145,10 @@ void Passes::judge_motion() {
 // One linear mode: a scheme sees K and C of its own in a record, with which the exact motion misses it.
 bool Passes::nearest_with_own_scheme() const {
   return run_.coordinates == 1 && !is_nonlinear(*run_.model);
+}
+
+bool Passes::has_settled() const {
+  return !(last_move_ > settled_move);
 }
 
 // What one mode leaves of the record, of a model that has no more: known without a discretisation.

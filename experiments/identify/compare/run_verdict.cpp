@@ -8,6 +8,7 @@
 #include "experiments/identify/compare/widened_interval.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
 #include "experiments/identify/record_identification.hpp"
+#include "experiments/models/finest_discretisation.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -128,18 +129,34 @@ bool has_another_damping(const ModalEstimate& modal, const ComparedRun& run) {
 }
 
 // A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
-// that started otherwise.
+// that started otherwise. Nor is it where storeys follow laws, which no mode beside them can stand in for.
 void judge_driven_motion(const RunContext& context, ComparedRun& run) {
   // A sensor a storey off leaves 40, a mass off by half 20, no defect 0.4.
   constexpr double too_much = 10.0;
-  if (!context.analysis.forced() || !(run.misfit_percent > too_much)) return;
+  const bool forced = context.analysis.forced();
+  if (!(forced || has_storey_laws(*run.model)) || !(run.misfit_percent > too_much)) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format(
-      "the measured input does not make the record's motion of this model: {:.3g} % of it is left, and is no "
-      "noise. A sensor's place, a sign, a unit or a clock is wrong, an input is missing, a mass or the "
-      "damping is not as described, or the filter has settled on a wrong answer",
-      run.misfit_percent);
+      "{}: {:.3g} % of it is left, and is no noise. A sensor's place, a sign, a unit or a clock is wrong, an "
+      "input is missing, a mass or the damping is not as described, or the {} on a wrong answer",
+      forced ? "the measured input does not make the record's motion of this model"
+             : "no start of this model makes the record's motion",
+      run.misfit_percent, forced ? "filter has settled" : "search has ended");
   run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
+}
+
+// Passes that still move by many deviations have found nothing yet, whatever the record is.
+void judge_settling(ComparedRun& run) {
+  constexpr double many = 5.0;
+  if (!(run.last_move > many)) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = fmt::format(
+      "the passes have not settled: the last one moved an unknown by {:.2g} of its standard deviations",
+      run.last_move);
+  run.warnings.insert(run.warnings.begin(),
+                      "NOT SETTLED: " + run.reason.substr(run.reason.find(": ") + 2) +
+                          ". The estimates are not to be relied on; expected more passes "
+                          "([compare] passes) or nearer initial estimates.");
 }
 
 // What the base moves beyond the model's coordinates is in the record, too.
@@ -162,6 +179,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
     run.mode->damping_ratio_deviation *= run.interval_factor;
     run.mode->frequency_deviation_hz *= run.interval_factor;
   }
+  judge_settling(run);
   judge_driven_motion(context, run);
   judge_moved_mass(run);
   // A model that has the mode's companions does not have its frequency alone, and an aliased one has another.
@@ -177,6 +195,13 @@ void judge_model(const RunContext& context, ComparedRun& run) {
                         100.0 * run.mode->damping_ratio, 100.0 * modal->damping_ratio);
       }
     }
+  constexpr double far_surer = 0.5;
+  if (std::any_of(run.parameters.begin(), run.parameters.end(),
+                  [](const ComparedParameter& p) { return p.overconfidence < far_surer; }))
+    run.warnings.emplace_back(
+        "DO NOT RELY on these estimates: the filter is more than twice as sure of them as the record allows, "
+        "so that they may lie many of its intervals away. A reduction, or `identify`, which asks all samples "
+        "at once, does not do that.");
   if (run.diagnostics && run.diagnostics->consistency)
     if (const std::string text = innovations_text(*run.diagnostics->consistency,
                                                   context.analysis.forced() ? run.misfit_percent : 0.0);

@@ -6,9 +6,10 @@
 // beta and gamma are in 1/m whatever n is; l, of no effect at n = 1, is the displacement at which an exponent
 // above one yields as n = 1 does. Under monotonic motion h tends to 1 / (beta + gamma) at n = 1: the drift at
 // which the storey yields.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include "experiments/models/springs/spring_law.hpp"
 
@@ -19,13 +20,21 @@ struct BoucWenValues {
   double ratio, beta, gamma, exponent, length;
 };
 
+void require(bool met, const char* name, double value, const char* expected) {
+  if (!met) throw std::invalid_argument(fmt::format("{} is {:g}; expected {}", name, value, expected));
+}
+
 class BoucWenSpring final : public SpringLaw {
  public:
   explicit BoucWenSpring(const BoucWenValues& values) : values_(values) {
-    if (!(values.exponent >= 1.0 && values.length > 0.0))
-      throw std::invalid_argument("exponent is " + std::to_string(values.exponent) +
-                                  " and reference_length_m " + std::to_string(values.length) +
-                                  "; expected at least 1, and more than 0");
+    require(values.ratio >= 0.0 && values.ratio <= 1.0, "post_yield_ratio", values.ratio,
+            "a number from 0 to 1");
+    require(values.beta >= 0.0, "hysteresis_beta", values.beta,
+            "zero or more: below it the spring gives energy");
+    require(values.beta + values.gamma >= 0.0, "hysteresis_gamma", values.gamma,
+            "at least -hysteresis_beta: below it nothing ends the slip");
+    require(values.exponent >= 1.0, "exponent", values.exponent, "at least 1");
+    require(values.length > 0.0, "reference_length_m", values.length, "more than 0");
   }
 
   bool slips() const override { return true; }

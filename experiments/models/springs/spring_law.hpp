@@ -40,6 +40,8 @@ struct SpringParameter {
   }
 };
 
+/// The restoring force of a storey by its drift, the drift's rate and, where it slips, what has slipped; p_1
+/// = k.
 class SpringLaw {
  public:
   virtual ~SpringLaw() = default;

@@ -5,6 +5,7 @@
 
 namespace beamid::experiments {
 
+/// A storey whose spring follows a law that is not linear.
 struct StoreySpring {
   int storey = 1;  ///< from the lowest up
   Choice law;      ///< of spring_law_registry()
