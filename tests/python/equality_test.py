@@ -50,6 +50,7 @@ def as_call(command):
 
 class Equality(unittest.TestCase):
     def test_every_golden_command_gives_the_same_bytes(self):
+        named = set()
         for folder, case in cases():
             with self.subTest(case["name"]), copy_of_tutorials() as root:
                 for file in case.get("data", []):
@@ -62,7 +63,10 @@ class Equality(unittest.TestCase):
                 found = getattr(beamid, name)(*arguments, **keywords)
                 self.assertEqual(found.json.encode(), expected.stdout)
                 self.assertEqual(found.code, expected.returncode)
-                # The command that it names is the same again, and so is its report.
+                # The command that it names is the same again, and so is its report: once for each command.
+                if name in named:
+                    continue
+                named.add(name)
                 self.assertEqual(shell(found.command + " --json", ".").stdout, expected.stdout)
                 text = shell(found.command, ".").stdout.decode()
                 self.assertTrue(text.startswith(found.report), found.command)

@@ -129,12 +129,14 @@ bool has_another_damping(const ModalEstimate& modal, const ComparedRun& run) {
 }
 
 // A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
-// that started otherwise. Nor is it where storeys follow laws, which no mode beside them can stand in for.
-void judge_driven_motion(const RunContext& context, ComparedRun& run) {
+// that started otherwise. Nor is it where storeys follow laws, which no mode beside them can stand in for. A
+// free decay may hold modes that the model lacks, but not for the greater part.
+void judge_motion_left(const RunContext& context, ComparedRun& run) {
   // A sensor a storey off leaves 40, a mass off by half 20, no defect 0.4.
-  constexpr double too_much = 10.0;
+  constexpr double too_much_driven = 10.0, too_much_free = 50.0;
   const bool forced = context.analysis.forced();
-  if (!(forced || has_storey_laws(*run.model)) || !(run.misfit_percent > too_much)) return;
+  const double too_much = forced || has_storey_laws(*run.model) ? too_much_driven : too_much_free;
+  if (!(run.misfit_percent > too_much)) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format(
       "{}: {:.3g} % of it is left, and is no noise. A sensor's place, a sign, a unit or a clock is wrong, an "
@@ -180,7 +182,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
     run.mode->frequency_deviation_hz *= run.interval_factor;
   }
   judge_settling(run);
-  judge_driven_motion(context, run);
+  judge_motion_left(context, run);
   judge_moved_mass(run);
   // A model that has the mode's companions does not have its frequency alone, and an aliased one has another.
   const bool one_mode =
