@@ -141,7 +141,7 @@ class Beam(_Structure):
 class Chain(_Structure):
     def __init__(self, *, masses_kg: npt.ArrayLike | None = ..., stiffnesses_n_per_m: npt.ArrayLike | None = ...,
         dashpots_n_s_per_m: npt.ArrayLike | None = ..., heights_m: npt.ArrayLike | None = ...,
-        layers: _Tables | None = ...) -> None: ...
+        layers: _Tables | None = ..., storeys: _Tables | None = ...) -> None: ...
 
 class Frame(_Structure):
     def __init__(self, *, elements_per_member: int | None = ..., mass_model: str | None = ...,
@@ -153,7 +153,7 @@ class SpaceFrame(_Structure):
     def __init__(self, *, elements_per_member: int | None = ..., mass_model: str | None = ...,
         base_direction: npt.ArrayLike | None = ..., joints: _Tables | None = ..., sections: _Tables | None = ...,
         members: _Tables | None = ..., supports: _Tables | None = ..., bodies: _Tables | None = ...,
-        springs: _Tables | None = ...) -> None: ...
+        springs: _Tables | None = ..., dashpots: _Tables | None = ...) -> None: ...
 
 class System(_Structure):
     def __init__(self, *, mass: Any | None = ..., stiffness: Any | None = ..., damping: Any | None = ...,
