@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "filters/central_differences.hpp"
+#include "filters/timed_model.hpp"
 
 namespace beamid::filters {
 
@@ -40,32 +41,24 @@ void require_positive(double dt) {
     throw std::invalid_argument("interval is " + std::to_string(dt) + " s; expected more than 0");
 }
 
-class Discretised final : public DiscreteModel {
+class Discretised final : public TimedModel {
  public:
   Discretised(std::shared_ptr<const ContinuousModel> model, double dt, std::unique_ptr<Scheme> scheme,
               Noise noise)
-      : model_(std::move(model)), dt_(dt), scheme_(std::move(scheme)), noise_(std::move(noise)) {}
+      : TimedModel(dt, std::move(noise)), model_(std::move(model)), scheme_(std::move(scheme)) {}
 
   std::vector<Label> state_labels() const override { return model_->state_labels(); }
   std::vector<Label> output_labels() const override { return model_->output_labels(); }
-  const MatrixXd& process_noise() const override { return noise_.process; }
-  double interval() const override { return dt_; }
-  void set_interval(double dt) override {
-    if (dt == dt_) return;
-    rescale(noise_, dt_, dt);
-    dt_ = dt;
-  }
-  const MatrixXd& output_noise() const override { return noise_.output; }
 
   void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
-    scheme_->step(*model_, state, input, dt_, next, nullptr);
+    scheme_->step(*model_, state, input, interval(), next, nullptr);
   }
   void linearised_transition(const VectorXd& state, const VectorXd& input, VectorXd& next,
                              MatrixXd& jacobian) override {
-    scheme_->step(*model_, state, input, dt_, next, &jacobian);
+    scheme_->step(*model_, state, input, interval(), next, &jacobian);
   }
   void move(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd& directions) override {
-    scheme_->step(*model_, state, input, dt_, next, &tangent_);
+    scheme_->step(*model_, state, input, interval(), next, &tangent_);
     moved_.noalias() = tangent_ * directions;
     directions.swap(moved_);
   }
@@ -78,9 +71,7 @@ class Discretised final : public DiscreteModel {
 
  private:
   std::shared_ptr<const ContinuousModel> model_;
-  double dt_;
   std::unique_ptr<Scheme> scheme_;
-  Noise noise_;
   MatrixXd tangent_, moved_;
   VectorXd now_;
 

@@ -4,6 +4,7 @@
 
 #include "experiments/models/banded/banded_step.hpp"
 #include "filters/step_input.hpp"
+#include "filters/timed_model.hpp"
 
 namespace beamid::experiments {
 
@@ -12,12 +13,11 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-class ContinuumStep final : public filters::DiscreteModel {
+class ContinuumStep final : public filters::TimedModel {
  public:
   ContinuumStep(std::shared_ptr<const ContinuumMotion::Parts> parts, double dt, filters::Noise noise)
-      : parts_(std::move(parts)),
-        noise_(std::move(noise)),
-        dt_(dt),
+      : TimedModel(dt, std::move(noise)),
+        parts_(std::move(parts)),
         equations_(parts_->equations),
         sensors_(parts_->sensors),
         step_(equations_, dt),
@@ -28,16 +28,6 @@ class ContinuumStep final : public filters::DiscreteModel {
   }
   std::vector<filters::Label> output_labels() const override {
     return experiments::output_labels(parts_->description);
-  }
-  const MatrixXd& process_noise() const override { return noise_.process; }
-  const MatrixXd& output_noise() const override { return noise_.output; }
-  double interval() const override { return dt_; }
-  void set_interval(double dt) override {
-    if (dt == dt_) return;
-    filters::rescale(noise_, dt_, dt);
-    dt_ = dt;
-    step_ = BandedStep(equations_, dt);
-    factored_ = false;
   }
 
   void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
@@ -51,7 +41,7 @@ class ContinuumStep final : public filters::DiscreteModel {
                   {equations_.force(real_), equations_.force(imaginary_)}, next.data(), next.data() + n);
     const StateLayout& places = parts_->layout;
     for (std::size_t i = 0; i < places.drifts.size(); ++i)
-      if (places.drifts[i] >= 0) next[places.biases[i]] += dt_ * state[places.drifts[i]];
+      if (places.drifts[i] >= 0) next[places.biases[i]] += interval() * state[places.drifts[i]];
   }
 
   void move(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd& directions) override {
@@ -64,7 +54,8 @@ class ContinuumStep final : public filters::DiscreteModel {
     }
     step_.move(equations_, forcings_, parts_of_unknowns_, directions);
     for (std::size_t i = 0; i < places.drifts.size(); ++i)
-      if (places.drifts[i] >= 0) directions.row(places.biases[i]) += dt_ * directions.row(places.drifts[i]);
+      if (places.drifts[i] >= 0)
+        directions.row(places.biases[i]) += interval() * directions.row(places.drifts[i]);
   }
 
   void linearised_transition(const VectorXd& state, const VectorXd& input, VectorXd& next,
@@ -83,6 +74,11 @@ class ContinuumStep final : public filters::DiscreteModel {
   }
 
  private:
+  void interval_changed() override {
+    step_ = BandedStep(equations_, interval());
+    factored_ = false;
+  }
+
   void set(const VectorXd& state) {
     values_ = physical_values(parts_->description, parts_->layout, state);
     if (!equations_.set(values_)) return;
@@ -126,8 +122,6 @@ class ContinuumStep final : public filters::DiscreteModel {
   }
 
   std::shared_ptr<const ContinuumMotion::Parts> parts_;
-  filters::Noise noise_;
-  double dt_;
   BandedEquations equations_;
   ContinuumSensors sensors_;
   BandedStep step_;

@@ -5,34 +5,25 @@
 #include "experiments/models/motion/rational_step.hpp"
 #include "filters/schemes/forced_oscillator.hpp"
 #include "filters/schemes/matrix_exponential.hpp"
+#include "filters/timed_model.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::Matrix2d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
 
-class SecondOrderStep final : public filters::DiscreteModel {
+class SecondOrderStep final : public filters::TimedModel {
  public:
   SecondOrderStep(std::shared_ptr<const SecondOrderMotion> motion, double dt, const std::string& scheme,
                   filters::Noise noise)
-      : motion_(std::move(motion)),
-        dt_(dt),
-        noise_(std::move(noise)),
+      : TimedModel(dt, std::move(noise)),
+        motion_(std::move(motion)),
         scheme_(scheme == "exponential" ? RationalStep::Scheme::exponential : RationalStep::Scheme::pade) {
     prepare();
   }
 
   std::vector<filters::Label> state_labels() const override { return motion_->state_labels(); }
   std::vector<filters::Label> output_labels() const override { return motion_->output_labels(); }
-  const MatrixXd& process_noise() const override { return noise_.process; }
-  const MatrixXd& output_noise() const override { return noise_.output; }
-  double interval() const override { return dt_; }
-  void set_interval(double dt) override {
-    if (dt == dt_) return;
-    filters::rescale(noise_, dt_, dt);
-    dt_ = dt;
-    prepare();
-  }
 
   void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
     step(state, input, next, nullptr);
@@ -59,8 +50,6 @@ class SecondOrderStep final : public filters::DiscreteModel {
 
  private:
   std::shared_ptr<const SecondOrderMotion> motion_;
-  double dt_;
-  filters::Noise noise_;
   RationalStep::Scheme scheme_;
   bool apart_ = false;                    // oscillators in closed form
   std::optional<RationalStep> rational_;  // all coordinates together; absent where it is never needed
@@ -71,16 +60,17 @@ class SecondOrderStep final : public filters::DiscreteModel {
   std::vector<SecondOrderForm> slopes_;
   MatrixXd tangent_, moved_;
 
+  void interval_changed() override { prepare(); }
   void prepare() {
     is_set_ = false;
     apart_ = scheme_ == RationalStep::Scheme::exponential && motion_->decoupled();
-    if (!apart_ || motion_->input_size() > 0) rational_.emplace(scheme_, dt_, motion_->frequencies());
+    if (!apart_ || motion_->input_size() > 0) rational_.emplace(scheme_, interval(), motion_->frequencies());
   }
 
   // dt A of oscillator i, or its change along an unknown
   Matrix2d turn(const SecondOrderForm& form, Index i, double rate) const {
     Matrix2d z;
-    z << 0.0, dt_ * rate, -dt_ * form.stiffness(i, i), -dt_ * form.damping(i, i);
+    z << 0.0, interval() * rate, -interval() * form.stiffness(i, i), -interval() * form.damping(i, i);
     return z;
   }
 
@@ -90,7 +80,7 @@ class SecondOrderStep final : public filters::DiscreteModel {
     const Index m = form.inputs.cols(), count = m > 0 ? input.size() / m : 0;
     filters::ForcedOscillator::Pushes found(2, count);
     found.row(0).setZero();
-    if (count > 0) found.row(1).noalias() = dt_ * (form.inputs.row(i) * input.reshaped(m, count));
+    if (count > 0) found.row(1).noalias() = interval() * (form.inputs.row(i) * input.reshaped(m, count));
     return found;
   }
 
@@ -122,8 +112,8 @@ class SecondOrderStep final : public filters::DiscreteModel {
     if (tangent) tangent->setIdentity(at.size, at.size);
     for (std::size_t i = 0; i < at.drifts.size(); ++i) {
       if (at.drifts[i] < 0) continue;
-      next[at.biases[i]] += dt_ * state[at.drifts[i]];
-      if (tangent) (*tangent)(at.biases[i], at.drifts[i]) = dt_;
+      next[at.biases[i]] += interval() * state[at.drifts[i]];
+      if (tangent) (*tangent)(at.biases[i], at.drifts[i]) = interval();
     }
     if (moves_apart(input))
       step_apart(state, input, next, tangent);

@@ -3,30 +3,22 @@
 #include <cmath>
 
 #include "filters/step_input.hpp"
+#include "filters/timed_model.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-class StoreyStep final : public filters::DiscreteModel {
+class StoreyStep final : public filters::TimedModel {
  public:
   StoreyStep(std::shared_ptr<const StoreyMotion> motion, double dt, filters::Noise noise)
-      : motion_(std::move(motion)), dt_(dt), noise_(std::move(noise)) {
+      : TimedModel(dt, std::move(noise)), motion_(std::move(motion)) {
     prepare();
   }
 
   std::vector<filters::Label> state_labels() const override { return motion_->state_labels(); }
   std::vector<filters::Label> output_labels() const override { return motion_->output_labels(); }
-  const MatrixXd& process_noise() const override { return noise_.process; }
-  const MatrixXd& output_noise() const override { return noise_.output; }
-  double interval() const override { return dt_; }
-  void set_interval(double dt) override {
-    if (dt == dt_) return;
-    filters::rescale(noise_, dt_, dt);
-    dt_ = dt;
-    prepare();
-  }
 
   void transition(const VectorXd& state, const VectorXd& input, VectorXd& next) override {
     step(state, input, next, nullptr);
@@ -48,17 +40,16 @@ class StoreyStep final : public filters::DiscreteModel {
 
  private:
   std::shared_ptr<const StoreyMotion> motion_;
-  double dt_;
-  filters::Noise noise_;
   int parts_ = 1;
   StoreyMotion::Equations equations_;
   VectorXd rate_, point_;
   MatrixXd jacobian_, slope_, point_directions_;
 
+  void interval_changed() override { prepare(); }
   void prepare() {
     constexpr double largest_turn = 0.15;  // [rad]
-    parts_ = std::max(
-        1, static_cast<int>(std::ceil(motion_->floors().frequencies().maxCoeff() * dt_ / largest_turn)));
+    parts_ = std::max(1, static_cast<int>(std::ceil(motion_->floors().frequencies().maxCoeff() * interval() /
+                                                    largest_turn)));
   }
 
   VectorXd now(const VectorXd& path) const { return path.head(std::min(path.size(), motion_->input_size())); }
@@ -75,7 +66,7 @@ class StoreyStep final : public filters::DiscreteModel {
   void part(const filters::StepInput& path, int number, VectorXd& z, MatrixXd* directions) {
     constexpr double node[4] = {0.0, 0.5, 0.5, 1.0};
     constexpr double weight[4] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
-    const double h = dt_ / parts_;
+    const double h = interval() / parts_;
     const Index motion = motion_->floors().layout().motion, slips_at = motion_->slips_at(),
                 slips = motion_->slips();
     const VectorXd begin = z;
