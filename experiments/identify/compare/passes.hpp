@@ -35,7 +35,7 @@ class Passes {
   /// Of noisy inputs, the unknowns once more by the likelihood of the innovations.
   void fit_inputs_noise();
   /// Of a driven record that the filter's end does not make, or makes with passes that have not settled or
-  /// are surer than the record allows, the unknowns by all samples at once, where these leave less.
+  /// are overconfident, the unknowns by all samples at once, where these leave less.
   void mend_by_output_error();
   /// Estimates, the motion that they make of the record, their bounds; what else was asked for.
   void finish();
@@ -47,7 +47,7 @@ class Passes {
  private:
   bool nearest_with_own_scheme() const;
   bool has_settled() const;
-  bool is_surer_than_record() const;
+  bool is_overconfident() const;
   const Eigen::VectorXd& noise_shown() const;
   FirstGuess working_guess() const;
   void begin_at(const Eigen::VectorXd& state);

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <cmath>
 #include <optional>
 
 #include "experiments/identify/compare/known_prior.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/compare/passes.hpp"
 #include "experiments/identify/compare/run_bound.hpp"
+#include "experiments/identify/compare/widened_interval.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "filters/batch_estimator.hpp"
@@ -83,15 +83,13 @@ std::optional<filters::Gaussian> Passes::output_error(VectorXd state) {
 
 // Every change of an unknown within a pass sets the fast modes of a mesh moving, and turns their phases by
 // more than a linearisation holds: their absence from the record passes for knowledge.
-bool Passes::is_surer_than_record() const {
-  constexpr double clearly = 0.8;  // as in run_verdict.cpp
+bool Passes::is_overconfident() const {
   const auto discrete = finest(*run_.model, dt_, run_.noise.cwiseAbs2().asDiagonal());
   const VectorXd bound = run_bounds(*discrete, *run_.model, motion_.initial_state, directions_, record_);
   const std::vector<Estimate> found = estimates(*run_.model, run_.run.last);
-  for (std::size_t j = 0; j < found.size(); ++j) {
-    const double least = 1.0 / std::hypot(1.0 / bound[static_cast<Index>(j)], 1.0 / found[j].prior_deviation);
-    if (found[j].deviation < clearly * least) return true;
-  }
+  for (std::size_t j = 0; j < found.size(); ++j)
+    if (overconfidence(found[j].deviation, bound[static_cast<Index>(j)], found[j].prior_deviation) < 1.0)
+      return true;
   return false;
 }
 
@@ -101,9 +99,10 @@ void Passes::mend_by_output_error() {
   const bool laws = has_storey_laws(*run_.model);
   if (has_noise(run_.settings.input_noise) || run_.run.last.covariance.size() == 0) return;
   const bool driven = context_.analysis.forced() && !is_nonlinear(*run_.model) && !nearest_with_own_scheme();
-  const bool astray = driven && (!has_settled() || is_surer_than_record());
+  const bool astray = driven && (!has_settled() || is_overconfident());
   const bool any_less = laws || astray;
-  const double left = any_less ? motion_.response_error_percent : motion_.misfit_percent;
+  const double& now_left = any_less ? motion_.response_error_percent : motion_.misfit_percent;  // of motion_
+  const double left = now_left;
   if (!any_less && !(driven && left > not_the_record)) return;
   const auto start = std::chrono::steady_clock::now();
   const VectorXd filtered = motion_.initial_state, noise = run_.noise;
@@ -111,10 +110,9 @@ void Passes::mend_by_output_error() {
   double least = any_less ? left * (1.0 + 1e-9) : much_better * left;
   for (const VectorXd& from : {filtered, started_.guess.mean}) {
     const std::optional<filters::Gaussian> found = output_error(from);
-    const double now = any_less ? motion_.response_error_percent : motion_.misfit_percent;
-    if (!found || !(now < least)) continue;
+    if (!found || !(now_left < least)) continue;
     best = found;
-    least = now;
+    least = now_left;
   }
   run_.noise = noise;
   begin_at(filtered);
@@ -131,11 +129,11 @@ void Passes::mend_by_output_error() {
             ? fmt::format(
                   "The filter had not settled, or was surer than the record allows, and left {:.3g} %; the "
                   "estimates are those of all samples at once (output error), which leave {:.3g} %.",
-                  left, motion_.response_error_percent)
+                  left, now_left)
             : fmt::format(
                   "The filter settled where {:.3g} % of the record was left; the estimates are those of "
                   "all samples at once (output error), which leave {:.2g} %.",
-                  left, motion_.misfit_percent));
+                  left, now_left));
   }
   run_.seconds += seconds_since(start);
 }

@@ -78,12 +78,10 @@ std::vector<double> by_influence(ComparedRun& run) {
 // A filter that is surer than record and prior allow has been linearised elsewhere, or has lost its spread:
 // its deviation becomes the least there is.
 double to_bound(ComparedParameter& p, double factor) {
-  constexpr double clearly = 0.8;
   if (!p.bound) return factor;
-  const double least = 1.0 / std::hypot(1.0 / *p.bound, 1.0 / p.estimate.prior_deviation);
-  const double part = factor * p.estimate.deviation / least;
-  if (!(part < clearly && part > 0.0)) return factor;
-  p.overconfidence = part;
+  const double part = overconfidence(factor * p.estimate.deviation, *p.bound, p.estimate.prior_deviation);
+  if (!(part > 0.0)) return factor;
+  if (part < 1.0) p.overconfidence = part;
   return factor / part;
 }
 
@@ -151,12 +149,12 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
 void judge_settling(ComparedRun& run) {
   constexpr double many = 5.0;
   if (!(run.last_move > many)) return;
+  const std::string moved =
+      fmt::format("the last one moved an unknown by {:.2g} of its standard deviations", run.last_move);
   run.status = ComparedRun::Status::contradicted;
-  run.reason = fmt::format(
-      "the passes have not settled: the last one moved an unknown by {:.2g} of its standard deviations",
-      run.last_move);
+  run.reason = "the passes have not settled: " + moved;
   run.warnings.insert(run.warnings.begin(),
-                      "NOT SETTLED: " + run.reason.substr(run.reason.find(": ") + 2) +
+                      "NOT SETTLED: " + moved +
                           ". The estimates are not to be relied on; expected more passes "
                           "([compare] passes) or nearer initial estimates.");
 }

@@ -13,4 +13,10 @@ void set_interval(ComparedRun& run, std::size_t j, double spread) {
   run.parameters[j].estimate.upper_95 = unknown.to_physical(mean + half);
 }
 
+double overconfidence(double deviation, double bound, double prior_deviation) {
+  constexpr double clearly = 0.8;
+  const double least = 1.0 / std::hypot(1.0 / bound, 1.0 / prior_deviation), part = deviation / least;
+  return part < clearly ? part : 1.0;
+}
+
 }  // namespace beamid::experiments

@@ -9,4 +9,9 @@ namespace beamid::experiments {
 /// lopsided.
 void set_interval(ComparedRun& run, std::size_t j, double spread);
 
+/// A standard deviation over the least there is, that of the Cramer-Rao bound and what was known beforehand;
+/// 1 where it is not clearly below that, as chance and linearisation allow. Below 1 a filter is
+/// overconfident.
+double overconfidence(double deviation, double bound, double prior_deviation);
+
 }  // namespace beamid::experiments
