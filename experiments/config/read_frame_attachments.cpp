@@ -77,18 +77,15 @@ void read_frame_attachments(const TomlTable& table, Frame& frame) {
       if (kind == name) frame.supports.push_back(support);
     frame.supports.back().joint = read_joint(one, "joint", frame.joints.size());
   }
-  for (const TomlTable& one : table.find_tables("bodies")) {
-    frame.bodies.push_back(frame_body_keys().read(one));
-    frame.bodies.back().joint = read_joint(one, "joint", frame.joints.size());
-  }
-  for (const TomlTable& one : table.find_tables("springs")) {
-    frame.springs.push_back(frame_spring_keys().read(one));
-    frame.springs.back().joint = read_joint(one, "joint", frame.joints.size());
-  }
-  for (const TomlTable& one : table.find_tables("dashpots")) {
-    frame.dashpots.push_back(frame_dashpot_keys().read(one));
-    frame.dashpots.back().joint = read_joint(one, "joint", frame.joints.size());
-  }
+  const auto read = [&](const char* name, const auto& keys, auto& attachments) {
+    for (const TomlTable& one : table.find_tables(name)) {
+      attachments.push_back(keys.read(one));
+      attachments.back().joint = read_joint(one, "joint", frame.joints.size());
+    }
+  };
+  read("bodies", frame_body_keys(), frame.bodies);
+  read("springs", frame_spring_keys(), frame.springs);
+  read("dashpots", frame_dashpot_keys(), frame.dashpots);
 }
 
 void describe_frame_attachments(const Frame& frame, nlohmann::ordered_json& json) {

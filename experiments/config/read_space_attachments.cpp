@@ -18,10 +18,7 @@ struct GivenSpaceBody {
   double mass = 0.0;
   std::vector<double> inertia, offset;
 };
-struct GivenSpaceSpring {
-  std::vector<double> translational, rotational;
-};
-struct GivenSpaceDashpot {
+struct GivenSpaceCoefficients {
   std::vector<double> translational, rotational;
 };
 
@@ -54,29 +51,36 @@ const Schema<GivenSpaceBody>& space_body_keys() {
   return keys;
 }
 
-const Schema<GivenSpaceSpring>& space_spring_keys() {
-  using S = GivenSpaceSpring;
-  static const Schema<S> keys = at_joint(Schema<S>("space_frame.springs"), "where", "3")
-                                    .key("translational_n_per_m", &S::translational, not_negative,
-                                         "k of forces along x, y and z", "[2e5, 2e5, 0]")
-                                    .fallback("none")
-                                    .key("rotational_n_m_per_rad", &S::rotational, not_negative,
-                                         "k of moments about x, y and z", "[0, 0, 1e4]")
-                                    .fallback("none")
-                                    .at_least_one({"translational_n_per_m", "rotational_n_m_per_rad"});
+struct CoefficientKey {
+  const char *name, *meaning, *example;
+};
+
+/// Of springs or dashpots against the ground.
+Schema<GivenSpaceCoefficients> coefficient_keys(const char* table, const char* joint,
+                                                const CoefficientKey& translational,
+                                                const CoefficientKey& rotational) {
+  using G = GivenSpaceCoefficients;
+  return at_joint(Schema<G>(table), joint, "3")
+      .key(translational.name, &G::translational, not_negative, translational.meaning, translational.example)
+      .fallback("none")
+      .key(rotational.name, &G::rotational, not_negative, rotational.meaning, rotational.example)
+      .fallback("none")
+      .at_least_one({translational.name, rotational.name});
+}
+
+const Schema<GivenSpaceCoefficients>& space_spring_keys() {
+  static const auto keys =
+      coefficient_keys("space_frame.springs", "where",
+                       {"translational_n_per_m", "k of forces along x, y and z", "[2e5, 2e5, 0]"},
+                       {"rotational_n_m_per_rad", "k of moments about x, y and z", "[0, 0, 1e4]"});
   return keys;
 }
 
-const Schema<GivenSpaceDashpot>& space_dashpot_keys() {
-  using D = GivenSpaceDashpot;
-  static const Schema<D> keys = at_joint(Schema<D>("space_frame.dashpots"), "where, against the ground", "3")
-                                    .key("translational_n_s_per_m", &D::translational, not_negative,
-                                         "c of velocities along x, y and z", "[150, 150, 0]")
-                                    .fallback("none")
-                                    .key("rotational_n_m_s_per_rad", &D::rotational, not_negative,
-                                         "c of turning about x, y and z", "[0, 0, 20]")
-                                    .fallback("none")
-                                    .at_least_one({"translational_n_s_per_m", "rotational_n_m_s_per_rad"});
+const Schema<GivenSpaceCoefficients>& space_dashpot_keys() {
+  static const auto keys =
+      coefficient_keys("space_frame.dashpots", "where, against the ground",
+                       {"translational_n_s_per_m", "c of velocities along x, y and z", "[150, 150, 0]"},
+                       {"rotational_n_m_s_per_rad", "c of turning about x, y and z", "[0, 0, 20]"});
   return keys;
 }
 
@@ -113,13 +117,13 @@ void read_space_attachments(const TomlTable& table, SpaceFrame& frame) {
                             vector_of(one, "offset_m", given.offset)});
   }
   for (const TomlTable& one : table.find_tables("springs")) {
-    const GivenSpaceSpring given = space_spring_keys().read(one);
+    const GivenSpaceCoefficients given = space_spring_keys().read(one);
     frame.springs.push_back({read_joint(one, "joint", frame.joints.size()),
                              vector_of(one, "translational_n_per_m", given.translational),
                              vector_of(one, "rotational_n_m_per_rad", given.rotational)});
   }
   for (const TomlTable& one : table.find_tables("dashpots")) {
-    const GivenSpaceDashpot given = space_dashpot_keys().read(one);
+    const GivenSpaceCoefficients given = space_dashpot_keys().read(one);
     frame.dashpots.push_back({read_joint(one, "joint", frame.joints.size()),
                               vector_of(one, "translational_n_s_per_m", given.translational),
                               vector_of(one, "rotational_n_m_s_per_rad", given.rotational)});
