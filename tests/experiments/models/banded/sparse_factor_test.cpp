@@ -5,9 +5,12 @@
 #include <Eigen/Dense>
 #include <complex>
 #include <random>
+#include "tests/experiments/models/banded/solved_lanes.hpp"
 
 namespace beamid::experiments::banded::sparse_factor_test {
 namespace {
+
+using test::expect_solved;
 
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd;
 
@@ -91,25 +94,7 @@ TEST(SparseFactor, SolvesLikeADenseMatrixOfAnyStructure) {
     SparseFactor factor(pattern);
     factor.factor(entries_of(coupled(size, couplings, 8), pattern));  // leaves nothing behind
     factor.factor(entries_of(matrix, pattern));
-    const MatrixXcd right = MatrixXcd::Random(size, 4);
-    std::vector<ComplexLanes> block(static_cast<std::size_t>(size));
-    std::vector<Complex> single(static_cast<std::size_t>(size));
-    for (Index i = 0; i < size; ++i) {
-      for (int k = 0; k < 4; ++k) {
-        block[i].re.values[k] = right(i, k).real();
-        block[i].im.values[k] = right(i, k).imag();
-      }
-      single[i] = {right(i, 2).real(), right(i, 2).imag()};
-    }
-    factor.solve(block.data());
-    factor.solve(single.data());
-    MatrixXcd found(size, 4);
-    for (Index i = 0; i < size; ++i) {
-      for (int k = 0; k < 4; ++k) found(i, k) = {block[i].re.values[k], block[i].im.values[k]};
-      EXPECT_EQ(single[i].re, found(i, 2).real());  // columns do not know of each other
-      EXPECT_EQ(single[i].im, found(i, 2).imag());
-    }
-    EXPECT_LT((matrix * found - right).norm(), 1e-14 * matrix.norm() * found.norm()) << size;
+    const auto [right, found] = expect_solved(matrix, factor, std::to_string(size));
     const MatrixXcd expected = matrix.partialPivLu().solve(right);
     EXPECT_LT((found - expected).norm(), 1e-11 * expected.norm()) << size;
   }
