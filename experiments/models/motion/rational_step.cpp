@@ -37,26 +37,23 @@ RationalStep::RationalStep(Scheme scheme, double dt, const VectorXd& frequencies
   scale_.head(r_) = frequencies;
 }
 
-void RationalStep::take(const VectorXd& input, Index inputs) {
+MatrixXd RationalStep::chain_of(const VectorXd& input, Index inputs) const {
   const filters::StepInput path(input, inputs);
-  if (path.size() == 0) {
-    chain_.resize(0, 0);
-  } else if (path.degree() == 0) {
-    chain_ = path.coefficient(0);
-  } else if (scheme_ == Scheme::pade) {
-    chain_.resize(path.size(), 2);
-    chain_.col(1) = path.slope();
-    chain_.col(0) = path.mean() - 0.5 * chain_.col(1);
-  } else {
-    chain_.resize(path.size(), path.degree() + 1);
-    double factorial = 1.0;
-    for (Index j = 0; j < chain_.cols(); ++j) {
-      if (j > 1) factorial *= static_cast<double>(j);
-      chain_.col(j) = factorial * path.coefficient(j);
-    }
+  if (path.size() == 0) return {};
+  if (path.degree() == 0) return path.coefficient(0);
+  if (scheme_ == Scheme::pade) {
+    MatrixXd chain(path.size(), 2);
+    chain.col(1) = path.slope();
+    chain.col(0) = path.mean() - 0.5 * chain.col(1);
+    return chain;
   }
-  size_ = 2 * r_ + chain_.cols();
-  if (scale_.size() < size_) scale_.conservativeResize(size_);
+  MatrixXd chain(path.size(), path.degree() + 1);
+  double factorial = 1.0;
+  for (Index j = 0; j < chain.cols(); ++j) {
+    if (j > 1) factorial *= static_cast<double>(j);
+    chain.col(j) = factorial * path.coefficient(j);
+  }
+  return chain;
 }
 
 void RationalStep::choose_degree(double norm) {
@@ -79,8 +76,11 @@ void RationalStep::choose_degree(double norm) {
   squarings_ = static_cast<int>(halvings);
 }
 
-void RationalStep::set(const SecondOrderForm& form, const VectorXd& input) {
-  take(input, form.inputs.cols());
+void RationalStep::set(const SecondOrderForm& form, MatrixXd chain_of_inputs) {
+  chain_ = std::move(chain_of_inputs);
+  has_whole_slopes_ = false;
+  size_ = 2 * r_ + chain_.cols();
+  if (scale_.size() < size_) scale_.conservativeResize(size_);
   const auto scale = scale_.head(r_);
   x_.setZero(size_, size_);
   x_.block(0, r_, r_, r_).diagonal() = dt_ * scale;
@@ -157,34 +157,26 @@ void RationalStep::tangent(Eigen::Ref<MatrixXd> matrix) const {
   matrix = scale.cwiseInverse().asDiagonal() * whole_.topLeftCorner(2 * r_, 2 * r_) * scale.asDiagonal();
 }
 
-void RationalStep::tangent_by_unknowns(const VectorXd& state, const std::vector<SecondOrderForm>& slopes,
-                                       Eigen::Ref<MatrixXd> matrix) {
-  const auto q = static_cast<Index>(slopes.size());
-  if (q == 0) return;
-  const Index substeps = Index{1} << squarings_;
+// Of v in n columns and w = R v: dR v for every slope, one block of columns after another, in moved_.
+void RationalStep::derive(const Eigen::Ref<const MatrixXd>& v, const Eigen::Ref<const MatrixXd>& w,
+                          const std::vector<SecondOrderForm>& slopes) {
+  const auto q = static_cast<Index>(slopes.size()), n = v.cols();
   const auto degree = static_cast<Index>(coefficients_.size()) - 1;
-  states_.resize(size_, substeps + 1);
-  states_.col(0).setZero();
-  states_.col(0).head(2 * r_) = scale_.head(2 * r_).cwiseProduct(state.head(2 * r_));
-  if (size_ > 2 * r_) states_(2 * r_, 0) = scale_[2 * r_];
-  for (Index k = 0; k < substeps; ++k) states_.col(k + 1).noalias() = step_ * states_.col(k);
-
   // c_i, a block of columns each
-  const auto v = states_.leftCols(substeps), w = states_.rightCols(substeps);
-  terms_.resize(size_, degree * substeps);
+  terms_.resize(size_, degree * n);
   for (Index i = degree; i > 0; --i) {
-    auto c = terms_.middleCols((i - 1) * substeps, substeps);
+    auto c = terms_.middleCols((i - 1) * n, n);
     const double b = coefficients_[static_cast<std::size_t>(i)];
     if (i % 2 == 1)
       c = b * (v + w);
     else
       c = b * (v - w);
-    if (i < degree) c.noalias() += x_ * terms_.middleCols(i * substeps, substeps);
+    if (i < degree) c.noalias() += x_ * terms_.middleCols(i * n, n);
   }
 
   // dX c_i has entries in the rows of z'' only
   const double h = dt_ * std::ldexp(1.0, -squarings_);
-  forced_.resize(r_, q * degree * substeps);
+  forced_.resize(r_, q * degree * n);
   slope_.resize(r_, size_);
   for (Index j = 0; j < q; ++j) {
     const SecondOrderForm& form = slopes[static_cast<std::size_t>(j)];
@@ -193,24 +185,59 @@ void RationalStep::tangent_by_unknowns(const VectorXd& state, const std::vector<
     if (size_ > 2 * r_)
       slope_.rightCols(chain_.cols()).noalias() =
           h * (form.inputs * chain_) * scale_.segment(2 * r_, chain_.cols()).cwiseInverse().asDiagonal();
-    forced_.middleCols(j * degree * substeps, degree * substeps).noalias() = slope_ * terms_;
+    forced_.middleCols(j * degree * n, degree * n).noalias() = slope_ * terms_;
   }
-  moved_.setZero(size_, q * substeps);
+  moved_.setZero(size_, q * n);
   for (Index i = degree - 1; i >= 0; --i) {
     if (i < degree - 1) {
       spare_.noalias() = x_ * moved_;
       moved_.swap(spare_);
     }
     for (Index j = 0; j < q; ++j)
-      moved_.block(r_, j * substeps, r_, substeps) +=
-          forced_.middleCols((j * degree + i) * substeps, substeps);
+      moved_.block(r_, j * n, r_, n) += forced_.middleCols((j * degree + i) * n, n);
   }
   moved_ = factor_.solve(moved_);
+}
+
+void RationalStep::tangent_by_unknowns(const VectorXd& state, const std::vector<SecondOrderForm>& slopes,
+                                       Eigen::Ref<MatrixXd> matrix) {
+  const auto q = static_cast<Index>(slopes.size());
+  if (q == 0) return;
+  const Index substeps = Index{1} << squarings_;
+  VectorXd scaled = VectorXd::Zero(size_);
+  scaled.head(2 * r_) = scale_.head(2 * r_).cwiseProduct(state.head(2 * r_));
+  if (size_ > 2 * r_) scaled[2 * r_] = scale_[2 * r_];
+  if (substeps > size_) {  // fewer columns are all of dR, which are squared along with R
+    derive_whole(slopes);
+    for (Index j = 0; j < q; ++j)
+      matrix.col(j) = (whole_slopes_.middleCols(j * size_, size_).topRows(2 * r_) * scaled)
+                          .cwiseQuotient(scale_.head(2 * r_));
+    return;
+  }
+  states_.resize(size_, substeps + 1);
+  states_.col(0) = scaled;
+  for (Index k = 0; k < substeps; ++k) states_.col(k + 1).noalias() = step_ * states_.col(k);
+  derive(states_.leftCols(substeps), states_.rightCols(substeps), slopes);
   for (Index j = 0; j < q; ++j) {
     for (Index k = 1; k < substeps; ++k)
       moved_.col(j * substeps + k) += step_ * moved_.col(j * substeps + k - 1);
     matrix.col(j) = moved_.col((j + 1) * substeps - 1).head(2 * r_).cwiseQuotient(scale_.head(2 * r_));
   }
+}
+
+void RationalStep::derive_whole(const std::vector<SecondOrderForm>& slopes) {
+  if (has_whole_slopes_) return;
+  derive(MatrixXd::Identity(size_, size_), step_, slopes);
+  MatrixXd power = step_;
+  for (int k = 0; k < squarings_; ++k) {  // d(R R) = R dR + dR R
+    spare_.noalias() = power * moved_;
+    for (Index j = 0; j < static_cast<Index>(slopes.size()); ++j)
+      spare_.middleCols(j * size_, size_).noalias() += moved_.middleCols(j * size_, size_) * power;
+    moved_.swap(spare_);
+    power = (power * power).eval();
+  }
+  whole_slopes_ = moved_;
+  has_whole_slopes_ = true;
 }
 
 }  // namespace beamid::experiments

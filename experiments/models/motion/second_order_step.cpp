@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "experiments/models/motion/held_step.hpp"
 #include "experiments/models/motion/rational_step.hpp"
 #include "filters/schemes/forced_oscillator.hpp"
 #include "filters/schemes/matrix_exponential.hpp"
@@ -56,6 +57,8 @@ class SecondOrderStep final : public filters::TimedModel {
   // The equations at unknowns_, and what is known of them: a step and the outputs after it share them.
   VectorXd unknowns_, held_input_;
   bool has_form_ = false, has_slopes_ = false, is_set_ = false;
+  Index tangents_ = 0;            // asked for at these unknowns
+  std::optional<HeldStep> held_;  // once as many as it costs
   SecondOrderForm form_;
   std::vector<SecondOrderForm> slopes_;
   MatrixXd tangent_, moved_;
@@ -63,8 +66,14 @@ class SecondOrderStep final : public filters::TimedModel {
   void interval_changed() override { prepare(); }
   void prepare() {
     is_set_ = false;
+    forget_held_step();
     apart_ = scheme_ == RationalStep::Scheme::exponential && motion_->decoupled();
     if (!apart_ || motion_->input_size() > 0) rational_.emplace(scheme_, interval(), motion_->frequencies());
+  }
+
+  void forget_held_step() {
+    tangents_ = 0;
+    held_.reset();
   }
 
   // dt A of oscillator i, or its change along an unknown
@@ -97,6 +106,7 @@ class SecondOrderStep final : public filters::TimedModel {
         state.segment(at.unknowns, static_cast<Index>(motion_->description().unknowns.size()));
     if (!has_form_ || unknowns != unknowns_) {
       has_form_ = has_slopes_ = is_set_ = false;
+      forget_held_step();
       unknowns_ = unknowns;
     }
     if (has_slopes_ || (has_form_ && !slopes)) return;
@@ -122,18 +132,38 @@ class SecondOrderStep final : public filters::TimedModel {
   }
 
   void step_together(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
+    const MatrixXd chain = rational_->chain_of(input, form_.inputs.cols());
+    if (tangent && (held_ ? held_->takes(chain) : is_worth_holding(chain.cols()))) {
+      if (!held_) held_.emplace(*rational_, form_, slopes_, chain.cols()), is_set_ = false;
+      held_->step(state, chain, next, by_motion(*tangent), by_unknowns(*tangent));
+      return;
+    }
     if (!is_set_ || held_input_.size() != input.size() || held_input_ != input) {
-      rational_->set(form_, input);
+      rational_->set(form_, chain);
       held_input_ = input;
       is_set_ = true;
     }
     rational_->apply(state, next);
     if (!tangent) return;
+    ++tangents_;
+    rational_->tangent(by_motion(*tangent));
+    rational_->tangent_by_unknowns(state, slopes_, by_unknowns(*tangent));
+  }
+
+  // Where the record is walked at one set of unknowns; a filter moves them with every sample.
+  bool is_worth_holding(Index powers) const {
+    constexpr Index most_entries = 2'000'000;
+    const Index columns = HeldStep::columns(form_, powers), q = static_cast<Index>(slopes_.size());
+    return q > 0 && tangents_ >= columns && form_.stiffness.rows() * 2 * q * columns <= most_entries;
+  }
+
+  Eigen::Block<MatrixXd> by_motion(MatrixXd& tangent) const {
+    const Index moving = 2 * motion_->layout().coordinates;
+    return tangent.topLeftCorner(moving, moving);
+  }
+  Eigen::Block<MatrixXd> by_unknowns(MatrixXd& tangent) const {
     const StateLayout& at = motion_->layout();
-    const Index moving = 2 * at.coordinates;
-    rational_->tangent(tangent->topLeftCorner(moving, moving));
-    rational_->tangent_by_unknowns(
-        state, slopes_, tangent->block(0, at.unknowns, moving, static_cast<Index>(slopes_.size())));
+    return tangent.block(0, at.unknowns, 2 * at.coordinates, static_cast<Index>(slopes_.size()));
   }
 
   void step_apart(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {

@@ -169,6 +169,48 @@ TEST_P(OwnStep, MovesDirectionsByItsTangent) {
   expect_near(directions, expected, 1e-14);
 }
 
+TEST_P(OwnStep, MovesAlikeHoweverOftenTheUnknownsStay) {
+  // Oracle: its first step, which holds nothing yet.
+  const Index m = input_.size();
+  const VectorXd path = VectorXd::LinSpaced(2 * m, 1.5, -2.5);
+  VectorXd first, next;
+  MatrixXd tangent, later;
+  step_->linearised_transition(state_, path, first, tangent);
+  const double digits = std::get<0>(GetParam()).modes > 4 ? 1e-11 : 1e-13;
+  for (int k = 0; k < 40; ++k) {
+    step_->linearised_transition(state_, path, next, later);
+    expect_near(next, first, digits);
+    expect_near(later, tangent, digits);
+  }
+  // A path of another degree, and other unknowns, behind it.
+  step_->linearised_transition(state_, input_, next, later);
+  step_->transition(state_, input_, first);
+  expect_near(next, first, digits);
+  for (const Index place : model_->unknown_places) state_[place] *= 1.01;
+  step_->linearised_transition(state_, path, next, later);
+  step_->transition(state_, path, first);
+  EXPECT_EQ(next, first);
+}
+
+TEST_P(OwnStep, OfManySubstepsIsSoManyShortSteps) {
+  // Oracle: the tangent of 256 steps of this length is the product of theirs.
+  if (std::get<1>(GetParam()) != "exponential") GTEST_SKIP();
+  constexpr int steps = 256;
+  const auto outputs = static_cast<Index>(model_->motion->output_labels().size());
+  const auto whole =
+      model_->motion->structured(steps * dt, "exponential", {{}, MatrixXd::Identity(outputs, outputs)});
+  VectorXd now = state_, next;
+  MatrixXd product = MatrixXd::Identity(state_.size(), state_.size()), tangent;
+  for (int k = 0; k < steps; ++k) {
+    step_->linearised_transition(now, input_, next, tangent);
+    product = tangent * product;
+    now = next;
+  }
+  whole->linearised_transition(state_, input_, next, tangent);
+  expect_near(next, now, 1e-9);
+  expect_near(tangent, product, 1e-9);
+}
+
 TEST_P(OwnStep, RemembersNothingOfTheUnknownsBefore) {
   // Oracle: a step that was never used with other unknowns.
   VectorXd other = state_, next, expected;
