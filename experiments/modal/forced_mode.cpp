@@ -10,6 +10,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
+#include "experiments/signal/fast_length.hpp"
 #include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
@@ -20,16 +21,6 @@ using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::
 
 constexpr double lowest_ratio = 0.7, highest_ratio = 1.4;  // of the expected frequency
 constexpr Index powers = 3;                                // of s, in every numerator
-
-/// Longest length, at most so many samples, that transforms fast: no prime factor above 7.
-Index fast_length(Index samples) {
-  for (;; --samples) {
-    Index left = samples;
-    for (const Index prime : {2, 3, 5, 7})
-      while (left % prime == 0) left /= prime;
-    if (left == 1) return samples;
-  }
-}
 
 /// Lines first .. first + count - 1 of the transform of a signal.
 VectorXcd lines_of(const VectorXd& signal, Index first, Index count) {
@@ -52,7 +43,7 @@ MatrixXd real_rows(const MatrixXcd& rows) {
 ForcedMode forced_mode(const VectorXd& output, const MatrixXd& inputs, double interval, double expected_hz) {
   constexpr int iterations = 20;
   constexpr double largest_ratio = 0.3, explained = 0.5;
-  const Index length = fast_length(output.size());
+  const Index length = fast_length_within(output.size());
   const double line = 1 / (interval * static_cast<double>(length));  // [Hz]
   const auto first = static_cast<Index>(std::ceil(lowest_ratio * expected_hz / line)),
              last = std::min(length / 2 - 1, static_cast<Index>(highest_ratio * expected_hz / line));
