@@ -54,6 +54,7 @@ class Passes {
   void weigh_noise();
   void take_clocks(filters::DiscreteModel& discrete);
   std::optional<filters::Gaussian> output_error(Eigen::VectorXd state);
+  std::vector<Eigen::VectorXd> further_starts() const;
   void take_unknowns(const filters::Gaussian& unknowns);
   bool filter_once();
   void score(const Eigen::VectorXd& bound);
