@@ -103,6 +103,8 @@ Excitation read_with(const Schema<DescribedExcitation>& keys, const TomlTable& t
     for (const char* const key : {"amplitude_m_per_s2", "frequency_hz"})
       if (!table.contains(key)) table.miss(key, keys.find(key)->expected() + ", or a file");
   read.amplitude = read.force_amplitude ? *read.force_amplitude : read.acceleration_amplitude.value_or(0.0);
+  if (read.kind == Kind::random && read.amplitude < 0.0)
+    table.refuse("amplitude_n", "a root mean square: not negative");
   read.place = table.place();
   return read;
 }

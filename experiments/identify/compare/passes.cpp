@@ -8,6 +8,7 @@
 #include "experiments/identify/compare/known_prior.hpp"
 #include "experiments/identify/compare/run_bound.hpp"
 #include "experiments/identify/compare/run_mode.hpp"
+#include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/compare/true_value.hpp"
 #include "experiments/identify/noise_source.hpp"
 #include "experiments/identify/nonlinear_reproduction.hpp"
@@ -22,8 +23,6 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using SteadyClock = std::chrono::steady_clock;
-
-constexpr double settled_move = 1.0;  // of a last pass, in standard deviations
 
 std::string unsettled_text(double moved) {
   return fmt::format(

@@ -182,6 +182,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
   judge_settling(run);
   judge_motion_left(context, run);
   judge_moved_mass(run);
+  judge_what_is_said(run);
   // A model that has the mode's companions does not have its frequency alone, and an aliased one has another.
   const bool one_mode =
       !context.analysis.aliased && (run.coordinates == 1 || (modal && modal->companions.empty()));
@@ -231,6 +232,20 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
 }
 
 }  // namespace
+
+void judge_what_is_said(ComparedRun& run) {
+  constexpr double next_to_nothing =
+      0.7;  // of the deviation believed: half of the information is the belief's
+  std::string text;
+  for (const ComparedParameter& p : run.parameters)
+    if (const double share = p.estimate.deviation / p.estimate.prior_deviation;
+        !p.estimate.nuisance && share > next_to_nothing)
+      text += fmt::format("{}{} ({:.2g})", text.empty() ? "" : ", ", p.estimate.name, share);
+  if (!text.empty())
+    run.warnings.push_back("NOT DETERMINED: the record says next to nothing of " + text +
+                           "; what is printed is what was believed beforehand, in brackets the deviation "
+                           "over the one believed.");
+}
 
 void judge_run(const RunContext& context, ComparedRun& run) {
   if (run.status == ComparedRun::Status::refused || context.compared.has_open_clocks()) return;

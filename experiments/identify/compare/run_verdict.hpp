@@ -5,6 +5,8 @@
 
 namespace beamid::experiments {
 
+constexpr double settled_move = 1.0;  ///< of an unknown by the last pass, at most, in standard deviations
+
 /// Status, intervals and warnings of a run, the same whatever command asked for it.
 ///
 /// - Intervals are widened where the noise at the record's mode is denser than white noise of the deviation
@@ -18,5 +20,9 @@ namespace beamid::experiments {
 /// Records driven by a measured force have no modal analysis, models that are not linear no mode: of the
 /// three, the last.
 void judge_run(const RunContext& context, ComparedRun& run);
+
+/// A warning where the deviation of a parameter asked about, no nuisance, is nearly the one believed
+/// beforehand.
+void judge_what_is_said(ComparedRun& run);
 
 }  // namespace beamid::experiments

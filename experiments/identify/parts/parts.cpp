@@ -40,6 +40,12 @@ Comparison identify_part(const Experiment& experiment, const ComparedRecord& rec
   CutChain own = cut_chain(experiment, record_of_part(experiment, record, part, sections), part);
   const Experiment asked = experiment_of_part(own.experiment, own.record, own.part);
   if (has_spans(asked.structure)) return identify_span(asked, std::move(own.record), part.highest_hz);
+  if (part.highest_hz)
+    throw InputError(
+        part.place,
+        fmt::format("substructure '{}': highest_hz is of spans of a beam, which are identified by "
+                    "the lines of the spectrum; this part is identified by a filter",
+                    part.name));
   return compare(asked, std::move(own.record), folder, unwatched);
 }
 

@@ -11,6 +11,7 @@
 #include "experiments/identify/compare/low_mode_fit.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/compare/run_noise.hpp"
+#include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/compare/true_value.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/parts/line_likelihood.hpp"
@@ -203,7 +204,7 @@ Comparison identify_span(const Experiment& experiment, ComparedRecord record,
   ComparedRun run;
   run.reduction = "none", run.filter = "lines of the spectrum";
   const ModelSetting setting = model_setting(experiment, comparison.compared.record, experiment.reduction);
-  run.model = std::move(model_registry().make("beam", experiment.model.options, setting));
+  run.model = model_registry().make("beam", experiment.model.options, setting);
   run.coordinates = run.model->motion_size();
   warn_of_ratios(experiment.damping, run);
   try {
@@ -211,9 +212,10 @@ Comparison identify_span(const Experiment& experiment, ComparedRecord record,
     run.noise = problem.output_noise;
     const LineFit fit = fit_lines(problem, scaled_starts(*run.model, problem.prior));
     take_fit(problem, fit, comparison.compared.truth, run);
-    if (fit.converged)
+    if (fit.converged) {
       judge_span(lines_left(problem, fit), run);
-    else
+      judge_what_is_said(run);
+    } else
       run.status = ComparedRun::Status::diverged, run.reason = "its likelihood has no maximum near the start";
   } catch (const InputError&) {
     throw;

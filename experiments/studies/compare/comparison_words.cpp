@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/studies/compare/comparison_figures.hpp"
 
@@ -117,7 +118,7 @@ std::string why_surer(const Comparison& comparison, const ComparedRun& run) {
     return "its particles have collapsed onto a few values, so that neither estimate nor deviation counts: "
            "use "
            "a filter of the Kalman family";
-  if (run.remarks.size() > run.run.remarks.size()) return "its estimate has not settled";
+  if (run.last_move > settled_move) return "its estimate has not settled";
   if (comparison.compared.sensor_noise.size() > 0)
     for (Eigen::Index i = 0; i < run.noise.size(); ++i)
       if (run.noise[i] < clearly * run.noise_left[i])

@@ -1,7 +1,7 @@
 // Oracles: the values written in the files themselves.
 #include "experiments/config/read_simulation.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "experiments/config/read_experiment.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
@@ -68,6 +68,15 @@ TEST(ReadExcitation, ReadsEveryKind) {
       experiment_of("excitation = { kind = \"none\", velocity_m_per_s = 1, mode = 2 }\n").excitation;
   EXPECT_EQ(free.kind, Kind::free);
   EXPECT_EQ(free.mode, 2);
+}
+
+TEST(ReadSimulation, RefusesARootMeanSquareBelowZero) {
+  try {
+    experiment_of("excitation = { kind = \"random\", amplitude_n = -2, frequency_hz = 3 }\n");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("not negative"));
+  }
 }
 
 TEST(ReadSimulation, ReadsSensorsAndMethod) {

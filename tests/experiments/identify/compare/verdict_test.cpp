@@ -153,6 +153,23 @@ TEST(Verdict, NoDeviationIsBelowTheBound) {
   EXPECT_TRUE(surer);
 }
 
+// A root as stiff as 1e9 N m/rad stores no energy: no record tells it from a stiffer one.
+TEST(Verdict, WhatTheRecordDoesNotTellIsNamed) {
+  const Comparison found = compared(
+      cantilever("[simulation]\nduration_s = 4\nsampling_rate_hz = 100\n" + sensor + ask_stiffness +
+                     "[[parameters]]\nquantity = \"root_rotational_stiffness\"\nform = \"logarithmic\"\n"
+                     "relative_deviation = 0.3\n",
+                 {"modal_truncation"}, "root_rotational_stiffness_n_m_per_rad = 1e9\n"));
+  const ComparedRun& run = found.runs[0];
+  ASSERT_TRUE(run.has_estimate()) << run.reason;
+  EXPECT_THAT(run.warnings, Contains(HasSubstr("NOT DETERMINED: the record says next to nothing of "
+                                               "root_rotational_stiffness (1)")));
+  const Comparison known =
+      compared(cantilever("[simulation]\nduration_s = 4\nsampling_rate_hz = 100\n" + sensor + ask_stiffness,
+                          {"modal_truncation"}));
+  EXPECT_THAT(known.runs[0].warnings, Not(Contains(HasSubstr("NOT DETERMINED"))));
+}
+
 TEST(Words, BlameCollapsedParticlesAndNoNestedShapes) {
   Comparison comparison;
   ComparedRun run;

@@ -257,6 +257,11 @@ TEST(Substructures, RefuseAPartWithoutASensorInside) {
   expect_refused("[[substructures]]\nname = \"one\"\nfrom_m = 4\nto_m = 5\n", "no sensor sits inside it");
 }
 
+TEST(Substructures, RefuseLinesOfTheSpectrumOfAPartThatIsNoSpan) {
+  expect_refused("[[substructures]]\nname = \"one\"\nfrom_m = 2\nto_m = 5\nhighest_hz = 20\n",
+                 "highest_hz is of spans of a beam");
+}
+
 TEST(Substructures, RefuseADampingRatioOfTheWhole) {
   expect_refused(
       "[[parameters]]\nquantity = \"damping_ratio\"\n[[substructures]]\nname = \"one\"\nfrom_m = 2\n"
