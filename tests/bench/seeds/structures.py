@@ -1,0 +1,110 @@
+"""Acceptance over many seeds of structures identified as a whole: table of docs/theory/frames.md.
+
+    python3 tests/bench/seeds/structures.py CASE [--seeds 300] [--jobs 2] [--beamid build/release/bin/beamid]
+
+CASE: building (stiffness and dashpot of each of twelve storeys, sensors on all floors), middle (the same, sensors on
+floors 4 to 9), portal (columns, girder and damping of a plane frame on a shaking ground). Initial estimates are half
+or half as much again of the truth; every seed has noise, forces and initial estimates of its own.
+"""
+import argparse, concurrent.futures, json, math, pathlib, random, tempfile
+
+from three_systems import ROOT, parameter, record_of, rms_noise, run, summary
+
+MODEL = '[model]\nname = "beam"\nsensor_bias = false\n'
+
+
+def building(random_numbers, seed, noise, floors=range(1, 13)):
+    k = [2.0e6] * 4 + [1.6e6] * 4 + [1.2e6] * 4
+    beta = 0.006 / (2 * math.pi * 0.8387)
+    text = f"[chain]\nmasses_kg = {[1000.0] * 12}\nstiffnesses_n_per_m = {k}\ndashpots_n_s_per_m = {[beta * one for one in k]}\n"
+    for floor in (6, 12):
+        text += f'[[excitations]]\nkind = "random"\namplitude_n = 500\nfrequency_hz = 100\nposition_m = {floor}\n'
+    text += f"[simulation]\nduration_s = 20\nsampling_rate_hz = 200\nsteps_per_sample = 1\nseed = {seed}\n"
+    for i in floors:
+        text += f'[[sensors]]\nname = "a{i}"\nposition_m = {i}\nnoise_m_per_s2 = {noise[i - 1]!r}\n'
+    truth = {}
+    for i in range(12):
+        for letter, quantity, unit, value in (("k", "storey_stiffness", "n_per_m", k[i]), ("c", "storey_damping", "n_s_per_m", beta * k[i])):
+            truth[f"{letter}{i + 1}"] = value
+            text += parameter(f"{letter}{i + 1}", quantity, unit, value * random_numbers.choice((0.5, 1.5)),
+                              0.5 if letter == "k" else 1.0, (i, i + 1))
+    text += MODEL + '[filter]\ndiscretisation = "pade"\n[reduction]\nmethod = "none"\n'
+    forces = record_of([], [6, 12], "").replace("x12m", "tip")
+    return text + record_of([(i, noise[i - 1]) for i in floors], [], "a{:g}") + forces.split("\n", 3)[3], truth
+
+
+def middle(random_numbers, seed, noise):
+    return building(random_numbers, seed, noise, range(4, 10))
+
+
+def portal(random_numbers, seed, noise):
+    joints = (("foot_a", 0, 0), ("foot_b", 5, 0), ("a1", 0, 3.2), ("b1", 5, 3.2), ("a2", 0, 6.4), ("b2", 5, 6.4))
+    text = "[frame]\nelements_per_member = 4\njoints = [\n"
+    for name, x, y in joints:
+        text += f'  {{ name = "{name}", x_m = {x}, y_m = {y} }},\n'
+    text += ']\nsupports = [{ joint = 1, kind = "clamped" }, { joint = 2, kind = "clamped" }]\nbodies = [\n'
+    for joint, mass in ((3, 1500), (4, 1500), (5, 1200), (6, 1200)):
+        text += f"  {{ joint = {joint}, mass_kg = {mass} }},\n"
+    text += "]\n"
+    for first, second in ((1, 3), (2, 4), (3, 5), (4, 6), (3, 4), (5, 6)):
+        group, height = ("columns", 0.1) if second - first == 2 else ("girders", 0.12)
+        text += (f'[[frame.members]]\nfirst = {first}\nsecond = {second}\ngroup = "{group}"\nwidth_m = 0.1\nheight_m = {height}\n'
+                 "youngs_modulus_pa = 2.1e11\ndensity_kg_per_m3 = 7850\n")
+    ground = ROOT / "docs/tutorials/15_shear_building/ground.csv"
+    text += f'[damping]\nratio = 0.015\n[excitation]\nkind = "base"\nfile = "{ground}"\n'
+    text += f"[simulation]\nduration_s = 20\nsampling_rate_hz = 100\nsteps_per_sample = 4\nseed = {seed}\n"
+    for place, one in zip(("a1.x", "a2.x"), noise):
+        text += f'[[sensors]]\nat = "{place}"\nnoise_m_per_s2 = {one!r}\n'
+    truth = {"columns": 1.0, "girders": 1.0, "damping_ratio": 0.015}
+    for name in ("columns", "girders"):
+        text += (f'[[parameters]]\nquantity = "factor"\nname = "{name}"\nform = "logarithmic"\nrelative_deviation = 0.5\n'
+                 f"guess = {random_numbers.choice((0.5, 1.5))}\n")
+    text += '[[parameters]]\nquantity = "damping_ratio"\n'
+    return text + MODEL + '[reduction]\nmethod = "modal_truncation"\nmodes = 6\n[compare]\npasses = 8\n', truth
+
+
+CASES = {"building": (building, 12), "middle": (middle, 12), "portal": (portal, 2)}
+
+
+def one_seed(arguments):
+    beamid, case, seed, noise = arguments
+    with tempfile.TemporaryDirectory() as folder:
+        text, truth = CASES[case][0](random.Random(seed), seed, noise)
+        pathlib.Path(folder, "case.toml").write_text(text)
+        run(beamid, folder, "simulate", "--config", "case.toml", "--out", "shaken")
+        found = json.loads(run(beamid, folder, "identify", "shaken/record.csv", "--config", "case.toml", "--json"))["runs"][0]
+    return seed, found["status"], [
+        (name, one["estimate"] - truth[name], one["standard_deviation"], one["bound"], truth[name])
+        for name, one in found["parameters"].items() if name in truth and one["bound"]]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", choices=CASES)
+    parser.add_argument("--seeds", type=int, default=300)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--beamid", default=str(ROOT / "build/release/bin/beamid"))
+    parser.add_argument("--keep", help="file of the seeds that are done: what is there is not done again")
+    given = parser.parse_args()
+    keep = pathlib.Path(given.keep) if given.keep else None
+    make, channels = CASES[given.case]
+    noise = rms_noise(given.beamid, building if channels == 12 else make, channels, 0.05)
+    done = {one[0]: one for one in map(json.loads, keep.read_text().splitlines())} if keep and keep.exists() else {}
+    tasks = [(given.beamid, given.case, seed, noise) for seed in range(1, given.seeds + 1) if seed not in done]
+    with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
+        for one in pool.map(one_seed, tasks):
+            done[one[0]] = one
+            if keep:
+                with keep.open("a") as file:
+                    file.write(json.dumps(one) + "\n")
+    rows = [row for _, status, row in done.values() if status == "converged"]
+    lost = [seed for seed, status, _ in done.values() if status != "converged"]
+    summary(given.case, rows)
+    squares = [(one[1] / one[3]) ** 2 for row in rows for one in row]
+    inside = [abs(one[1]) < 1.96 * one[2] for row in rows for one in row]
+    print(f"all: rms/bound {math.sqrt(sum(squares) / len(squares)):.3f}, inside 95 %: {100 * sum(inside) / len(inside):.1f} %; "
+          f"{len(rows)} runs, not converged: {lost}")
+
+
+if __name__ == "__main__":
+    main()
