@@ -132,7 +132,7 @@ Json describe(const Experiment& experiment) {
   for (const StoreySpring& spring : experiment.storey_springs) {
     Json law{{"storey", spring.storey}, {"law", spring.law.name}};
     for (const auto& [option, value] : spring.law.options.values())
-      std::visit([&](const auto& held) { law[option] = held; }, value);
+      std::visit([&, &option = option](const auto& held) { law[option] = held; }, value);
     json["storeys"].push_back(std::move(law));
   }
   json["damping"] = describe(experiment.damping);

@@ -52,6 +52,8 @@ double memory_left() {
 }
 
 void require_memory(double count, const std::string& what, double bytes) {
+  constexpr double always_there = 1e6;  // less is not worth the question, which reads five files
+  if (count * bytes <= always_there) return;
   const double left = memory_left();
   if (count * bytes <= left) return;
   throw std::invalid_argument(

@@ -29,12 +29,14 @@ std::optional<std::string> nearest(const std::string& word, const std::vector<st
   if (word.size() > longest) return std::nullopt;
   std::optional<std::string> best;
   std::size_t allowed = std::max<std::size_t>(2, word.size() / 3);
-  for (const std::string& candidate : candidates)
+  for (const std::string& candidate : candidates) {
+    if (std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size()) > allowed) continue;
     if (const std::size_t steps = distance(word, candidate); steps <= allowed && steps < candidate.size()) {
       if (best && steps == allowed) continue;
       best = candidate;
       allowed = steps;
     }
+  }
   return best;
 }
 

@@ -101,7 +101,8 @@ ForceHistories force_histories(const Experiment& experiment, const std::filesyst
     const ExcitationHistory history = excite(*all[i], system, inputs[i], grid, folder, settings.seed);
     const VectorXd fine = all[i]->kind == Kind::base ? history.base_acceleration
                                                      : VectorXd(history.loading.inputs.row(inputs[i]));
-    result.values.row(row) = fine(Eigen::seqN(Index{0}, samples, Index{steps})).transpose();
+    const VectorXd sampled = fine(Eigen::seqN(Index{0}, samples, Index{steps}));
+    result.values.row(row) = sampled.transpose();
     for (Index k = result.begin; k < samples; ++k)
       if (result.values(row, k) != 0.0) result.begin = k + 1, result.last = all[i];
     ++row;
