@@ -81,7 +81,11 @@ Descent descend(OutputError& error, const VectorXd& start, Index samples, double
   const auto take = [&](const VectorXd& x) {
     const double predicted = 0.5 * (at.q.squaredNorm() - (at.q - at.a * x).squaredNorm());
     const VectorXd trial = result.coefficients + at.unit.cwiseProduct(x);
-    OutputErrorPass pass = error.pass(trial, samples);
+    OutputErrorPass pass;
+    try {
+      pass = error.pass(trial, samples);
+    } catch (const std::runtime_error&) {  // no such motion: a step too far
+    }
     ++result.passes;
     const double fall = pass.finite ? result.last.cost - pass.cost : -1.0;
     if (!(fall > 0.0)) return TriedStep{0.0, converged};

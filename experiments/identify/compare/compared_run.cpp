@@ -52,15 +52,23 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
     return refuse(
         "the modes of a mesh far above the sampling rate do not follow forces that are held, and its "
         "accelerations come out wrong; expected input = \"band_limited\" or \"linear\", or a reduction");
+  // `identify` answers; a comparison shows what each filter does.
+  const bool answers = settings.keep == filters::Keep::all_beliefs;
   try {
     passes.begin();
     bool whole = passes.filter();
+    if (!whole && answers)
+      if (const auto nearer = passes.start_by_output_error())
+        return run_once(context, setting, *nearer, settings);
     if (whole && context.experiment.noise_method.name == "likelihood")
       whole = passes.filter_with_likeliest_noise();
     if (whole) passes.fit_inputs_noise();
-    // `identify` answers; a comparison shows what each filter does.
-    if (whole && settings.keep == filters::Keep::all_beliefs) passes.mend_by_output_error();
+    if (whole && answers) passes.mend_by_output_error();
     if (whole) passes.finish();
+    if (started.by_output_error)
+      run.remarks.emplace_back(
+          "From the initial estimates the filter loses its way; it starts from those of all samples at once "
+          "(output error).");
   } catch (const std::invalid_argument& error) {  // a scheme or a filter that such a model cannot have
     run.refused_at = settings.filter.place;
     return refuse(error.what());

@@ -18,9 +18,9 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr double guess_samples_per_period = 8.0;
 constexpr Index fewest_guess_samples = 64;  // samples that are worth a first guess
 constexpr double guess_noise = 0.3;      // noise of it, of a channel's root mean square: neighbours leak in
-constexpr Index longest_guess = 1024;    // samples at the full rate, which filters take up well
 constexpr double level_ratio = 3.0;      // of the rates of successive levels
 constexpr double guess_widening = 30.0;  // of the deviations found
+constexpr double well_left = 0.25;  // of the variance of guess_noise, where the levels have led somewhere
 
 // Covariance of the unknowns alone.
 MatrixXd covariance_of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
@@ -43,13 +43,14 @@ filters::Measurements decimated(const filters::Measurements& record, Index input
 }
 
 // The guess after a record that holds the low modes only.
-FirstGuess hear(const JointModel& model, const std::vector<Observation>& observations, const LowRecord& low,
-                const FirstGuess& guess) {
-  const FirstGuess found = fit_low_modes(model, observations, low, guess, guess_noise);
+LowModeGuess hear(const JointModel& model, const std::vector<Observation>& observations, const LowRecord& low,
+                  const FirstGuess& guess) {
+  LowModeGuess found = fit_low_modes(model, observations, low, guess, guess_noise);
   const MatrixXd& p = guess.unknowns;
-  const MatrixXd wide = guess_widening * guess_widening * found.unknowns;
+  const MatrixXd wide = guess_widening * guess_widening * found.guess.unknowns;
   // The product of both densities, P (P + F)^-1 F.
-  return {found.mean, p * (p + wide).ldlt().solve(wide)};
+  found.guess.unknowns = p * (p + wide).ldlt().solve(wide);
+  return found;
 }
 
 }  // namespace
@@ -76,17 +77,25 @@ FirstGuess own_guess(const JointModel& model, const std::vector<Observation>& ob
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
                        const filters::Measurements& record, double frequency_hz) {
   const double dt = record.interval();
-  FirstGuess guess = own_guess(model, observations, record.outputs);
+  const FirstGuess own = own_guess(model, observations, record.outputs);
+  LowModeGuess found{own, 0.0};
+  int levels = 0;
+  const auto take = [&](const LowRecord& level) {
+    found = hear(model, observations, level, found.guess);
+    ++levels;
+  };
   for (double factor = 1.0 / (guess_samples_per_period * frequency_hz * dt); factor >= 2.0;
        factor /= level_ratio) {
     const int whole = static_cast<int>(factor);
     const filters::Measurements coarse = decimated(record, model.motion->input_size(), dt, whole);
-    if (coarse.size() > 0) guess = hear(model, observations, {coarse, 0.5 / (whole * dt)}, guess);
+    if (coarse.size() > 0) take({coarse, 0.5 / (whole * dt)});
   }
-  if (record.size() >= fewest_guess_samples)
-    guess = hear(model, observations, {beginning(record, std::min(longest_guess, record.size())), 0.5 / dt},
-                 guess);
-  return guess;
+  if (record.size() < fewest_guess_samples) return found.guess;
+  const LowRecord last{beginning(record, std::min(longest_guess, record.size())), 0.5 / dt};
+  take(last);
+  if (levels == 1 || model.motion->input_size() == 0 || found.square < well_left) return found.guess;
+  const LowModeGuess alone = hear(model, observations, last, own);
+  return alone.square < found.square ? alone.guess : found.guess;
 }
 
 }  // namespace beamid::experiments

@@ -12,6 +12,8 @@
 
 namespace beamid::experiments {
 
+constexpr Eigen::Index longest_guess = 1024;  ///< samples at the full rate, which filters take up well
+
 /// The constants of the state (unknowns, offsets) after the record has passed a low-pass, then
 /// through wider and wider ones.
 ///
@@ -24,6 +26,10 @@ namespace beamid::experiments {
 ///
 /// What a level finds, with deviations 30 times as large, bounds what the next starts from: near enough for
 /// its linearisation, while the record is counted twice in a thousandth of the information only.
+///
+/// Of many unknowns a low level may end in a minimum of its own. Where the inputs are measured and the last
+/// level leaves more than 15 % of the record's beginning, that beginning is asked alone: a few periods of the
+/// fastest mode under a known force, then twice as many.
 ///
 /// @param frequency_hz of the first mode, as the record shows it
 /// @returns the guesses and their own deviations where the record is too short for it, or no motion of the

@@ -196,8 +196,8 @@ filters::Measurements beginning(const filters::Measurements& record, Index sampl
   return part;
 }
 
-FirstGuess fit_low_modes(const JointModel& model, const std::vector<Observation>& observations,
-                         const LowRecord& record, const FirstGuess& guess, double noise) {
+LowModeGuess fit_low_modes(const JointModel& model, const std::vector<Observation>& observations,
+                           const LowRecord& record, const FirstGuess& guess, double noise) {
   const LowModeFit fit(model, observations, record.highest_hz, guess, noise);
   const Index samples = record.measurements.size(), q = fit.unknowns();
   const double period = 2.0 * std::numbers::pi / fit.low_modes(guess.mean).mode_frequencies.maxCoeff();
@@ -210,11 +210,13 @@ FirstGuess fit_low_modes(const JointModel& model, const std::vector<Observation>
     whole = part >= samples;
     found = descend(fit, beginning(record.measurements, std::min(part, samples)), c);
   }
-  if (!std::isfinite(found.cost)) return guess;
+  if (!std::isfinite(found.cost)) return {guess, found.cost};
   const MatrixXd& u = fit.root();
   const MatrixXd information = found.root.transpose() * found.root + MatrixXd::Identity(q, q);
-  return {next_start(model, {guess.mean, {}}, {found.state, {}}).mean,
-          u * information.ldlt().solve(u.transpose())};
+  const double readings = static_cast<double>(record.measurements.outputs.size());
+  return {{next_start(model, {guess.mean, {}}, {found.state, {}}).mean,
+           u * information.ldlt().solve(u.transpose())},
+          2.0 * found.cost / readings};
 }
 
 }  // namespace beamid::experiments

@@ -29,6 +29,11 @@ struct LowRecord {
 /// Its first samples, from time 0.
 filters::Measurements beginning(const filters::Measurements& record, Eigen::Index samples);
 
+struct LowModeGuess {
+  FirstGuess guess;
+  double square;  ///< mean of what is left of a reading, squared, in its noise; about 1 where that is all
+};
+
 /// Minimises, over the unknowns eta = guess + U c, cov(guess) = U U^T,
 ///
 ///     J(c) = min over a, b of 1/2 sum_k |L^-1 (y_k - h(z_k))|^2 + 1/2 |c|^2,   z_0 = [Phi(eta) a; Phi(eta)
@@ -40,7 +45,7 @@ filters::Measurements beginning(const filters::Measurements& record, Eigen::Inde
 ///
 /// @param noise of the record, a share of each channel's root mean square
 /// @returns the constants found, and their covariance; the guess itself where no motion is near the record.
-FirstGuess fit_low_modes(const JointModel& model, const std::vector<Observation>& observations,
-                         const LowRecord& record, const FirstGuess& guess, double noise);
+LowModeGuess fit_low_modes(const JointModel& model, const std::vector<Observation>& observations,
+                           const LowRecord& record, const FirstGuess& guess, double noise);
 
 }  // namespace beamid::experiments

@@ -65,9 +65,15 @@ Passes::Passes(const RunContext& context, const ModelSetting& setting, const Sta
 }
 
 bool Passes::filter() {
-  for (int pass = 1; pass <= settings_.passes; ++pass)
-    if (!filter_once()) return false;
-  return true;
+  try {
+    for (int pass = 1; pass <= settings_.passes; ++pass)
+      if (!filter_once()) return false;
+    return true;
+  } catch (const std::runtime_error& error) {  // no motion where a pass has ended
+    run_.status = ComparedRun::Status::diverged;
+    run_.reason = error.what();
+    return false;
+  }
 }
 
 bool Passes::filter_with_likeliest_noise() {

@@ -34,9 +34,13 @@ class Passes {
   bool filter_with_likeliest_noise();
   /// Of noisy inputs, the unknowns once more by the likelihood of the innovations.
   void fit_inputs_noise();
-  /// Of a driven record that the filter's end does not make, or makes with passes that have not settled or
-  /// are overconfident, the unknowns by all samples at once, where these leave less.
+  /// Of a driven record that the filter's end does not make, or makes with passes that have not settled, are
+  /// overconfident or lie half a deviation from what all samples at once say: the unknowns by these, where
+  /// they leave less.
   void mend_by_output_error();
+  /// Of a driven record that the filter has lost, a start from all samples at once; absent: none makes the
+  /// record.
+  std::optional<StartedModel> start_by_output_error();
   /// Estimates, the motion that they make of the record, their bounds; what else was asked for.
   void finish();
   /// The motion at the first guess that is nearest to the channels of the common clock.
@@ -47,13 +51,15 @@ class Passes {
  private:
   bool nearest_with_own_scheme() const;
   bool has_settled() const;
+  bool is_linear_and_driven() const;
   bool is_overconfident() const;
+  double distance_from_all_samples() const;
   const Eigen::VectorXd& noise_shown() const;
   FirstGuess working_guess() const;
   void begin_at(const Eigen::VectorXd& state);
   void weigh_noise();
   void take_clocks(filters::DiscreteModel& discrete);
-  std::optional<filters::Gaussian> output_error(Eigen::VectorXd state);
+  std::optional<filters::Gaussian> output_error(Eigen::VectorXd state, Eigen::Index first_samples = 0);
   std::vector<Eigen::VectorXd> further_starts() const;
   void take_unknowns(const filters::Gaussian& unknowns);
   bool filter_once();

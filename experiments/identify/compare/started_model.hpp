@@ -15,6 +15,7 @@ struct StartedModel {
   JointModel model;
   FirstGuess guess;                    ///< what counts as known before the record is filtered
   Eigen::VectorXd linearised_at = {};  ///< state of the first pass's motion (n); empty: the guess
+  bool by_output_error = false;        ///< all samples at once have said it, where a filter lost its way
 };
 
 /// K and C of one degree of freedom where the modal analysis has them, as a discretisation will see them
