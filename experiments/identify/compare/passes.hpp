@@ -63,6 +63,7 @@ class Passes {
   std::vector<Eigen::VectorXd> further_starts() const;
   void take_unknowns(const filters::Gaussian& unknowns);
   bool filter_once();
+  void filter_from_there();
   void score(const Eigen::VectorXd& bound);
 
   const RunContext& context_;
