@@ -6,9 +6,9 @@ CASE: building (stiffness and dashpot of each of twelve storeys, sensors on all 
 floors 4 to 9), portal (columns, girder and damping of a plane frame on a shaking ground). Initial estimates are half
 or half as much again of the truth; every seed has noise, forces and initial estimates of its own.
 """
-import argparse, concurrent.futures, json, math, pathlib, random, tempfile
+import json, math, pathlib, random, tempfile
 
-from three_systems import ROOT, parameter, record_of, rms_noise, run, summary
+from three_systems import ROOT, of_every_seed, options, parameter, record_of, rms_noise, run, summary
 
 MODEL = '[model]\nname = "beam"\nsensor_bias = false\n'
 
@@ -79,26 +79,12 @@ def one_seed(arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("case", choices=CASES)
-    parser.add_argument("--seeds", type=int, default=300)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--beamid", default=str(ROOT / "build/release/bin/beamid"))
-    parser.add_argument("--keep", help="file of the seeds that are done: what is there is not done again")
-    given = parser.parse_args()
-    keep = pathlib.Path(given.keep) if given.keep else None
+    given = options(__doc__, CASES)
     make, channels = CASES[given.case]
     noise = rms_noise(given.beamid, building if channels == 12 else make, channels, 0.05)
-    done = {one[0]: one for one in map(json.loads, keep.read_text().splitlines())} if keep and keep.exists() else {}
-    tasks = [(given.beamid, given.case, seed, noise) for seed in range(1, given.seeds + 1) if seed not in done]
-    with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
-        for one in pool.map(one_seed, tasks):
-            done[one[0]] = one
-            if keep:
-                with keep.open("a") as file:
-                    file.write(json.dumps(one) + "\n")
-    rows = [row for _, status, row in done.values() if status == "converged"]
-    lost = [seed for seed, status, _ in done.values() if status != "converged"]
+    done = of_every_seed(given, one_seed, noise)
+    rows = [row for _, status, row in done if status == "converged"]
+    lost = [seed for seed, status, _ in done if status != "converged"]
     summary(given.case, rows)
     squares = [(one[1] / one[3]) ** 2 for row in rows for one in row]
     inside = [abs(one[1]) < 1.96 * one[2] for row in rows for one in row]

@@ -156,32 +156,37 @@ def summary(title, rows):
         print(f"{name:8} {bias:10.2f} {rms:10.3f} {own:13.3f} {worst:9.3f} {sum(100 * b / one[4] for b, one in zip(bounds, errors)) / n:9.3f}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("case", choices=CASES)
+def options(doc, cases):
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", choices=cases)
     parser.add_argument("--seeds", type=int, default=300)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--beamid", default=str(ROOT / "build/release/bin/beamid"))
     parser.add_argument("--keep", help="file of the seeds that are done: what is there is not done again")
-    given = parser.parse_args()
-    make, channels = CASES[given.case]
-    noise = [0.021, 0.036, 0.051, 0.01] if given.case == "soil" else rms_noise(given.beamid, make, channels, 0.05)
-    tasks = [(given.beamid, given.case, seed, noise) for seed in range(1, given.seeds + 1)]
-    collected = {"sections with their noise": {}, "sections taken for exact": {}}
-    nees, lost, joint_rows, joint_lost = {key: {} for key in collected}, {key: 0 for key in collected}, [], 0
-    done = {}
-    if given.keep and pathlib.Path(given.keep).exists():
-        for line in pathlib.Path(given.keep).read_text().splitlines():
-            one = json.loads(line)
-            done[one[0]] = one
-    tasks = [task for task in tasks if task[2] not in done]
+    return parser.parse_args()
+
+
+def of_every_seed(given, one_seed, noise):
+    """What one_seed((beamid, case, seed, noise)) returns, the seed its first entry, by seed."""
+    keep = pathlib.Path(given.keep) if given.keep else None
+    done = {one[0]: one for one in map(json.loads, keep.read_text().splitlines())} if keep and keep.exists() else {}
+    tasks = [(given.beamid, given.case, seed, noise) for seed in range(1, given.seeds + 1) if seed not in done]
     with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
         for one in pool.map(one_seed, tasks):
             done[one[0]] = one
-            if given.keep:
-                with open(given.keep, "a") as file:
+            if keep:
+                with keep.open("a") as file:
                     file.write(json.dumps(one) + "\n")
-    for seed, truth, values, joint in (done[key] for key in sorted(done)):
+    return [done[seed] for seed in sorted(done)]
+
+
+def main():
+    given = options(__doc__, CASES)
+    make, channels = CASES[given.case]
+    noise = [0.021, 0.036, 0.051, 0.01] if given.case == "soil" else rms_noise(given.beamid, make, channels, 0.05)
+    collected = {"sections with their noise": {}, "sections taken for exact": {}}
+    nees, lost, joint_rows, joint_lost = {key: {} for key in collected}, {key: 0 for key in collected}, [], 0
+    for _, truth, values, joint in of_every_seed(given, one_seed, noise):
         for part in values["parts"]:
             for title, key, own in (("sections with their noise", "sections_noisy", "deviation"),
                                     ("sections taken for exact", "sections_exact", "own_deviation")):
