@@ -32,8 +32,8 @@ MatrixXd sensitivities(filters::DiscreteModel& model, const VectorXd& state, con
   return rows;
 }
 
-// |X_k|^2 / N of a signal (N), at the lines 0 ... M/2 of the length M that transforms fast, zeros behind it: the
-// lines of N themselves take N^2 where it is prime, as 4,001 is.
+// |X_k|^2 / N of a signal (N), at the lines 0 ... M/2 of the length M that transforms fast, zeros behind it:
+// the lines of N themselves take N^2 where it is prime, as 4,001 is.
 VectorXd power(const VectorXd& signal) {
   static thread_local Eigen::FFT<double> transform;
   std::vector<double> values(static_cast<std::size_t>(even_fast_length_around(signal.size())), 0.0);
