@@ -8,29 +8,16 @@ or half as much again of the truth; every seed has noise, forces and initial est
 """
 import json, math, pathlib, random, tempfile
 
-from three_systems import ROOT, of_every_seed, options, parameter, record_of, rms_noise, run, summary
+from three_systems import ROOT, asked_storeys, of_every_seed, options, record_of, rms_noise, run, summary, twelve_storeys
 
 MODEL = '[model]\nname = "beam"\nsensor_bias = false\n'
 
 
 def building(random_numbers, seed, noise, floors=range(1, 13)):
-    k = [2.0e6] * 4 + [1.6e6] * 4 + [1.2e6] * 4
-    beta = 0.006 / (2 * math.pi * 0.8387)
-    text = f"[chain]\nmasses_kg = {[1000.0] * 12}\nstiffnesses_n_per_m = {k}\ndashpots_n_s_per_m = {[beta * one for one in k]}\n"
-    for floor in (6, 12):
-        text += f'[[excitations]]\nkind = "random"\namplitude_n = 500\nfrequency_hz = 100\nposition_m = {floor}\n'
-    text += f"[simulation]\nduration_s = 20\nsampling_rate_hz = 200\nsteps_per_sample = 1\nseed = {seed}\n"
-    for i in floors:
-        text += f'[[sensors]]\nname = "a{i}"\nposition_m = {i}\nnoise_m_per_s2 = {noise[i - 1]!r}\n'
-    truth = {}
-    for i in range(12):
-        for letter, quantity, unit, value in (("k", "storey_stiffness", "n_per_m", k[i]), ("c", "storey_damping", "n_s_per_m", beta * k[i])):
-            truth[f"{letter}{i + 1}"] = value
-            text += parameter(f"{letter}{i + 1}", quantity, unit, value * random_numbers.choice((0.5, 1.5)),
-                              0.5 if letter == "k" else 1.0, (i, i + 1))
+    asked, truth = asked_storeys(random_numbers, range(12))
+    text = twelve_storeys(seed, noise, floors) + asked
     text += MODEL + '[filter]\ndiscretisation = "pade"\n[reduction]\nmethod = "none"\n'
-    forces = record_of([], [6, 12], "").replace("x12m", "tip")
-    return text + record_of([(i, noise[i - 1]) for i in floors], [], "a{:g}") + forces.split("\n", 3)[3], truth
+    return text + record_of([(i, noise[i - 1]) for i in floors], [6, 12], "a{:g}"), truth
 
 
 def middle(random_numbers, seed, noise):

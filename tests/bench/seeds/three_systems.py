@@ -19,21 +19,35 @@ def parameter(name, quantity, unit, guess, deviation, region=None):
     return text
 
 
-def building(random_numbers, seed, noise):
-    k = [2.0e6] * 4 + [1.6e6] * 4 + [1.2e6] * 4
-    beta = 0.006 / (2 * math.pi * 0.8387)
-    text = f"[chain]\nmasses_kg = {[1000.0] * 12}\nstiffnesses_n_per_m = {k}\ndashpots_n_s_per_m = {[beta * one for one in k]}\n"
+STIFFNESSES = [2.0e6] * 4 + [1.6e6] * 4 + [1.2e6] * 4
+DASHPOTS = [0.006 / (2 * math.pi * 0.8387) * one for one in STIFFNESSES]
+
+
+def twelve_storeys(seed, noise, floors):
+    """Forces on floors 6 and 12, sensors on `floors`."""
+    text = f"[chain]\nmasses_kg = {[1000.0] * 12}\nstiffnesses_n_per_m = {STIFFNESSES}\ndashpots_n_s_per_m = {DASHPOTS}\n"
     for floor in (6, 12):
         text += f'[[excitations]]\nkind = "random"\namplitude_n = 500\nfrequency_hz = 100\nposition_m = {floor}\n'
     text += f"[simulation]\nduration_s = 20\nsampling_rate_hz = 200\nsteps_per_sample = 1\nseed = {seed}\n"
-    for i in range(12):
-        text += f'[[sensors]]\nname = "a{i + 1}"\nposition_m = {i + 1}\nnoise_m_per_s2 = {noise[i]!r}\n'
-    truth = {}
-    for i in range(4, 9):
-        for letter, quantity, unit, value in (("k", "storey_stiffness", "n_per_m", k[i]), ("c", "storey_damping", "n_s_per_m", beta * k[i])):
+    for i in floors:
+        text += f'[[sensors]]\nname = "a{i}"\nposition_m = {i}\nnoise_m_per_s2 = {noise[i - 1]!r}\n'
+    return text
+
+
+def asked_storeys(random_numbers, storeys):
+    """Stiffness and dashpot of each, half or half as much again guessed; and the truth."""
+    text, truth = "", {}
+    for i in storeys:
+        for letter, quantity, unit, value in (("k", "storey_stiffness", "n_per_m", STIFFNESSES[i]), ("c", "storey_damping", "n_s_per_m", DASHPOTS[i])):
             truth[f"{letter}{i + 1}"] = value
             guess = value * random_numbers.choice((0.5, 1.5))
             text += parameter(f"{letter}{i + 1}", quantity, unit, guess, 0.5 if letter == "k" else 1.0, (i, i + 1))
+    return text, truth
+
+
+def building(random_numbers, seed, noise):
+    asked, truth = asked_storeys(random_numbers, range(4, 9))
+    text = twelve_storeys(seed, noise, range(1, 13)) + asked
     text += '[filter]\ndiscretisation = "pade"\n'
     text += '[[substructures]]\nname = "floors 5 to 8"\nfrom_m = 4\nto_m = 9\n'
     text += record_of([(i + 1, noise[i]) for i in range(12)], [6, 12], "a{:g}")
@@ -46,7 +60,7 @@ def record_of(sensors, forces, name):
         column = "acceleration_" + name.format(place).replace(".", "_") + "_m_per_s2"
         text += f'[[record.channels]]\ncolumn = "{column}"\nquantity = "acceleration"\nunit = "m/s2"\nposition_m = {place}\nnoise = {noise!r}\n'
     for place in forces:
-        tip = "tip" if (place == 12 and name == "a{:g}" and len(sensors) == 12) else f"x{place:g}m".replace(".", "_")
+        tip = "tip" if place == 12 else f"x{place:g}m".replace(".", "_")
         text += f'[[record.channels]]\ncolumn = "force_{tip}_n"\nquantity = "force"\nunit = "N"\nposition_m = {place}\n'
     return text
 
