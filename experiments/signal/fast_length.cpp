@@ -4,14 +4,14 @@ namespace beamid::experiments {
 
 using Eigen::Index;
 
-bool transforms_fast(Index length) {
-  for (const Index prime : {2, 3, 5, 7})
-    while (length % prime == 0) length /= prime;
+bool transforms_fast(Index length, Index largest_factor) {
+  for (Index factor = 2; factor <= largest_factor; ++factor)
+    while (length % factor == 0) length /= factor;
   return length == 1;
 }
 
-Index fast_length_within(Index samples) {
-  while (!transforms_fast(samples)) --samples;
+Index fast_length_within(Index samples, Index largest_factor) {
+  while (!transforms_fast(samples, largest_factor)) --samples;
   return samples;
 }
 

@@ -46,14 +46,17 @@ filters::Measurements decimated(const filters::Measurements& record, Index input
 LowModeGuess hear(const JointModel& model, const std::vector<Observation>& observations, const LowRecord& low,
                   const FirstGuess& guess) {
   LowModeGuess found = fit_low_modes(model, observations, low, guess, guess_noise);
-  const MatrixXd& p = guess.unknowns;
-  const MatrixXd wide = guess_widening * guess_widening * found.guess.unknowns;
-  // The product of both densities, P (P + F)^-1 F.
-  found.guess.unknowns = p * (p + wide).ldlt().solve(wide);
+  found.guess.unknowns = guess_covariance(guess.unknowns, found.guess.unknowns);
   return found;
 }
 
 }  // namespace
+
+MatrixXd guess_covariance(const MatrixXd& prior, const MatrixXd& found) {
+  const MatrixXd wide = guess_widening * guess_widening * found;
+  // The product of both densities, P (P + F)^-1 F.
+  return prior * (prior + wide).ldlt().solve(wide);
+}
 
 StartDirections with_guess(StartDirections directions, const JointModel& model, const FirstGuess& guess) {
   directions.unknowns.setZero();

@@ -37,6 +37,9 @@ constexpr Eigen::Index longest_guess = 1024;  ///< samples at the full rate, whi
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
                        const filters::Measurements& record, double frequency_hz);
 
+/// Of a guess (q x q) found within `prior`: 30 times the deviations found, and what was known before.
+Eigen::MatrixXd guess_covariance(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& found);
+
 /// What the model says of itself, at rest: where no record is to be looked at.
 /// @param outputs (p x N) whose size scales the motion
 FirstGuess own_guess(const JointModel& model, const std::vector<Observation>& observations,

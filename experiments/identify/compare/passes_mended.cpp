@@ -70,12 +70,12 @@ double Passes::distance_from_all_samples() const {
   std::iota(projected.begin(), projected.end(), Index{0});
   const MatrixXd root = pass.information.without(projected).root();
   const MatrixXd unit = directions_.unknowns(places, Eigen::all);
-  const MatrixXd known = unit.transpose() * started_.guess.unknowns.llt().solve(unit);
+  const Eigen::LLT<MatrixXd> prior(started_.guess.unknowns);
+  const MatrixXd known = unit.transpose() * prior.solve(unit);
   const MatrixXd a = root.topLeftCorner(q, q);
   const Eigen::LLT<MatrixXd> information(a.transpose() * a + known);
   const VectorXd before = started_.guess.mean(started_.model.unknown_places) - motion_.initial_state(places);
-  const VectorXd slope =
-      a.transpose() * root.col(q).head(q) + unit.transpose() * started_.guess.unknowns.llt().solve(before);
+  const VectorXd slope = a.transpose() * root.col(q).head(q) + unit.transpose() * prior.solve(before);
   const VectorXd step = unit * information.solve(slope);
   const MatrixXd covariance = unit * information.solve(unit.transpose());
   return step.cwiseQuotient(covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
@@ -98,11 +98,9 @@ bool Passes::is_linear_and_driven() const {
 }
 
 std::optional<StartedModel> Passes::start_by_output_error() {
-  constexpr double wider = 30.0;  // deviations than those found, as of a first guess
   if (!is_linear_and_driven() || started_.by_output_error) return {};
   std::optional<filters::Gaussian> found;
   try {
-    begin_at(started_.guess.mean);
     found = output_error(started_.guess.mean, longest_guess);
   } catch (const std::runtime_error&) {  // no motion there
   }
@@ -111,9 +109,7 @@ std::optional<StartedModel> Passes::start_by_output_error() {
   nearer.by_output_error = true;
   nearer.linearised_at = {};
   nearer.guess.mean(started_.model.unknown_places) = found->mean;
-  const MatrixXd& p = started_.guess.unknowns;
-  const MatrixXd wide = wider * wider * found->covariance;
-  nearer.guess.unknowns = p * (p + wide).ldlt().solve(wide);
+  nearer.guess.unknowns = guess_covariance(started_.guess.unknowns, found->covariance);
   return nearer;
 }
 
@@ -162,8 +158,7 @@ void Passes::mend_by_output_error() {
         : astray
             ? fmt::format(
                   "The filter had not settled, was surer than the record allows, or ended where all samples "
-                  "at "
-                  "once do not, and left {:.4g} %; the estimates are those of all samples at once (output "
+                  "at once do not, and left {:.4g} %; the estimates are those of all samples at once (output "
                   "error), which leave {:.4g} %.",
                   left, now_left)
             : fmt::format(

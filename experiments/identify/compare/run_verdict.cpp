@@ -234,8 +234,8 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
 }  // namespace
 
 void judge_what_is_said(ComparedRun& run) {
-  constexpr double next_to_nothing =
-      0.7;  // of the deviation believed: half of the information is the belief's
+  // Of the deviation believed: half of the information is the belief's.
+  constexpr double next_to_nothing = 0.7;
   std::string text;
   for (const ComparedParameter& p : run.parameters)
     if (const double share = p.estimate.deviation / p.estimate.prior_deviation;

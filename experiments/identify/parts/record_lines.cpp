@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
+#include "experiments/signal/fast_length.hpp"
 #include "filters/linear_gaussian.hpp"
 
 namespace beamid::experiments {
@@ -19,17 +20,6 @@ using std::numbers::pi;
 
 constexpr double usual_band = 0.6;  // of half the sampling rate
 constexpr Index fewest_lined_samples = 64, fewest_used_lines = 8;
-
-// The largest product of 2, 3 and 5 that is no more.
-Index quick_length(Index most) {
-  const auto is_quick = [](Index n) {
-    for (const Index factor : {2, 3, 5})
-      while (n % factor == 0) n /= factor;
-    return n == 1;
-  };
-  while (!is_quick(most)) --most;
-  return most;
-}
 
 MatrixXcd spectrum_lines(const MatrixXd& signals, Index samples, Index lines) {
   MatrixXcd found(signals.rows(), lines);
@@ -61,7 +51,7 @@ RecordLines record_lines(const filters::Measurements& record, const MatrixXd& in
     throw std::invalid_argument(
         fmt::format("{} samples; expected {} at least", record.size(), fewest_lined_samples));
   RecordLines found;
-  found.samples = quick_length(record.size());
+  found.samples = fast_length_within(record.size(), 5);
   found.interval = record.interval();
   const double half_rate = 0.5 / found.interval, highest = highest_hz.value_or(usual_band * half_rate),
                length = static_cast<double>(found.samples) * found.interval;
