@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
 
+#include "experiments/signal/fast_length.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {
@@ -128,14 +129,15 @@ bool descend(const BandLikelihood& cost, Vector4d& at, Curvature& last) {
 }  // namespace
 
 BandCoefficients fourier_coefficients(const MatrixXd& outputs, double interval) {
-  const Index samples = outputs.cols(), half = (samples - 1) / 2;
+  const Index samples = fast_length_within(outputs.cols()), half = (samples - 1) / 2;
   BandCoefficients all{
       VectorXd::LinSpaced(half, 1.0, static_cast<double>(half)) / (interval * static_cast<double>(samples)),
       MatrixXcd(outputs.rows(), half)};
   Eigen::FFT<double> transform;
   transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   for (Index i = 0; i < outputs.rows(); ++i) {
-    const VectorXd row = (outputs.row(i).array() - outputs.row(i).mean()).matrix().transpose();
+    const auto channel = outputs.row(i).head(samples);
+    const VectorXd row = (channel.array() - channel.mean()).matrix().transpose();
     VectorXcd spectrum;
     transform.fwd(spectrum, row);
     all.coefficients.row(i) =

@@ -10,7 +10,8 @@ namespace beamid::experiments {
 /// What the response's spectrum is of a force of flat spectrum.
 enum class ResponseKind { displacement, velocity, acceleration };
 
-/// Fourier coefficients of a band, F_k = sqrt(2 dt / N) sum_j y_j e^(-i 2 pi f_k t_j) for p channels.
+/// Fourier coefficients of a band, F_k = sqrt(2 dt / N) sum_j y_j e^(-i 2 pi f_k t_j) for p channels, of the
+/// N first samples that transform fast.
 struct BandCoefficients {
   Eigen::VectorXd frequency_hz;   ///< f_k (n)
   Eigen::MatrixXcd coefficients;  ///< (p x n)

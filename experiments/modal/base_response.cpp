@@ -11,6 +11,8 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
+#include "experiments/signal/fast_length.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -54,10 +56,11 @@ std::vector<double> tapered_ends(const VectorXd& signal) {
 Lines lines_of(const VectorXd& base, const VectorXd& response, double interval) {
   Eigen::FFT<double> transform;
   std::vector<Complex> u, y;
-  transform.fwd(u, tapered_ends(base));
-  transform.fwd(y, tapered_ends(response));
+  const Index length = fast_length_within(base.size());
+  transform.fwd(u, tapered_ends(base.head(length)));
+  transform.fwd(y, tapered_ends(response.head(length)));
   Lines lines;
-  const double duration = interval * static_cast<double>(base.size());
+  const double duration = interval * static_cast<double>(length);
   for (std::size_t k = 4; k < u.size() / 2; ++k) {
     lines.frequency.push_back(static_cast<double>(k) / duration);
     lines.base.push_back(u[k]);

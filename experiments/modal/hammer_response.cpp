@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
 
+#include "experiments/signal/fast_length.hpp"
 #include "experiments/signal/median.hpp"
 #include "experiments/signal/onsets.hpp"
 
@@ -158,6 +159,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
   for (const ForceBlock& block : blocks) length = std::min(length, block.length);
   if (length < 64)
     throw std::invalid_argument(fmt::format("{} samples behind a hit; expected 64 at least", length));
+  length = fast_length_within(length);
 
   found.averages = static_cast<int>(blocks.size());
   found.duration = interval * static_cast<double>(length);
