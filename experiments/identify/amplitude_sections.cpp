@@ -1,6 +1,7 @@
 #include "experiments/identify/amplitude_sections.hpp"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -146,13 +147,13 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
 
 double section_half_width(const SectionTrend& trend, double estimate, double deviation,
                           double deviation_where_it_varies) {
-  if (trend.possible.size() == 0) return quantile_95 * deviation;
+  if (trend.possible.size() == 0 || !std::isfinite(estimate + deviation)) return quantile_95 * deviation;
   const double least = 1e-12 * std::abs(estimate), s0 = std::max(deviation, least),
                s = std::max(std::hypot(deviation_where_it_varies, trend.scatter), least);
   const Eigen::ArrayXXd off = (trend.possible.array() - estimate).abs();
+  const auto above = [](double x) { return std::abs(x) < 6 ? std::erfc(x) : x > 0 ? 0.0 : 2.0; };  // to 2e-17
   const auto within = [&](double h, double d, double of) {
-    return 0.5 * (std::erfc((d - h) / (std::numbers::sqrt2 * of)) -
-                  std::erfc((d + h) / (std::numbers::sqrt2 * of)));
+    return 0.5 * (above((d - h) / (std::numbers::sqrt2 * of)) - above((d + h) / (std::numbers::sqrt2 * of)));
   };
   constexpr double negligible = 1e-5;
   const auto held = [&](double h) {
@@ -162,13 +163,11 @@ double section_half_width(const SectionTrend& trend, double estimate, double dev
         sum += trend.weight[i] * off.col(i).unaryExpr([&](double d) { return within(h, d, s); }).mean();
     return sum / (trend.constant + trend.weight.sum());
   };
-  double low = 0, high = off.maxCoeff() + 4 * std::max(s, s0);
-  constexpr int halvings = 30;
-  for (int i = 0; i < halvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (held(middle) < 0.95 ? low : high) = middle;
-  }
-  return high;
+  std::uintmax_t iterations = 60;
+  return boost::math::tools::toms748_solve([&](double h) { return held(h) - 0.95; }, 0.0,
+                                           off.maxCoeff() + 4 * std::max(s, s0),
+                                           boost::math::tools::eps_tolerance<double>(24), iterations)
+      .second;
 }
 
 }  // namespace beamid::experiments
