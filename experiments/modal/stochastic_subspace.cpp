@@ -1,12 +1,12 @@
 #include "experiments/modal/stochastic_subspace.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
 #include "experiments/modal/subspace_scatter.hpp"
+#include "reduction/bdc_svd.hpp"
 
 namespace beamid::experiments {
 namespace {

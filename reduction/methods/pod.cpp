@@ -5,12 +5,12 @@
 //
 // S falling. The motions are those given (training), spread over the mesh by least strain energy; or, where
 // none are given, a response that is computed here.
-#include <Eigen/SVD>
 #include <numbers>
 
 #include "fem/modes.hpp"
 #include "fem/response/response.hpp"
 #include "fem/stiffness_solver.hpp"
+#include "reduction/bdc_svd.hpp"
 #include "reduction/method_options.hpp"
 #include "reduction/orthonormal_basis.hpp"
 #include "reduction/places.hpp"

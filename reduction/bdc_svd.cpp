@@ -1,0 +1,3 @@
+#include "reduction/bdc_svd.hpp"
+
+template class Eigen::BDCSVD<Eigen::MatrixXd>;
