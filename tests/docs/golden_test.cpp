@@ -26,6 +26,13 @@ json comparable(const std::string& text) {
   return rounded(results);
 }
 
+/// For tests/python/equality_test.py, which need not run the command again.
+void keep(const std::string& name, const std::string& printed) {
+  const fs::path folder = BEAMID_GOLDEN_OUTPUT;
+  fs::create_directories(folder);
+  std::ofstream(folder / (name + ".json")) << printed;
+}
+
 class Golden : public testing::TestWithParam<GoldenCase> {
  protected:
   /// Measured records of tutorials 3, 10 and 12, put where the page says; false where they are not here.
@@ -55,7 +62,9 @@ TEST_P(Golden, OutputIsTheSame) {
     EXPECT_THAT(differences, IsEmpty()) << tested.name << ".txt\n" << first_ones(differences);
   }
   if (tested.text_only) return;
-  const json results = comparable(shell_.run(tested.command + " --json", tested.folder).out);
+  const std::string printed = shell_.run(tested.command + " --json", tested.folder).out;
+  keep(tested.name, printed);
+  const json results = comparable(printed);
   if (updating())
     std::ofstream(tested.file(".json")) << results.dump(1) << "\n";
   else {
