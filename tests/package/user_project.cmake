@@ -1,5 +1,5 @@
 # Configures, builds and runs a project as its reader does, against an installation or a build folder:
-# cmake -D PROJECT=FOLDER -D PACKAGE=... -D WORK=... -D COMPILER=... [-D LAUNCHER=...] -P ...
+# cmake -D PROJECT=FOLDER -D PACKAGE=... -D WORK=... -D COMPILER=... [-D LAUNCHER=...] [-D FLAGS=...] -P ...
 # Then every line of the project's expected.txt, COMMAND => PART OF WHAT IT PRINTS, must hold. With -D PAGE=FILE.md in
 # place of the folder, the project is what the page shows: CMakeLists.txt, main.cpp, and all that it prints.
 function(run)
@@ -37,6 +37,9 @@ endif()
 set(options -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_PREFIX_PATH=${PACKAGE})
 if(LAUNCHER)
   list(APPEND options -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
+endif()
+if(FLAGS)
+  list(APPEND options -D CMAKE_CXX_FLAGS=${FLAGS})
 endif()
 run(${CMAKE_COMMAND} -G Ninja -S ${PROJECT} -B ${WORK}/build ${options})
 run(${CMAKE_COMMAND} --build ${WORK}/build)

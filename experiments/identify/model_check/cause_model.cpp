@@ -34,9 +34,8 @@ fem::StructuralSystem CauseModel::assembled(const VectorXd& changes) const {
 }
 
 // Central differences, of a compliance near zero by as much as it is; one-sided at the limits.
-MatrixSlope CauseModel::slope(const VectorXd& changes, Index cause) const {
+MatrixSlope CauseModel::slope(const VectorXd& changes, Index cause, Index n) const {
   const Candidate& of = causes_[static_cast<std::size_t>(cause)];
-  const auto n = size();
   if (of.of_clock) return {fem::SparseMatrix(n, n), fem::SparseMatrix(n, n)};
   const double scale = of.scale(), x = changes[cause],
                step = 1e-3 * std::min(scale, std::max(x - of.lower, 1e-6 * scale));
@@ -44,7 +43,8 @@ MatrixSlope CauseModel::slope(const VectorXd& changes, Index cause) const {
   above[cause] = std::min(of.upper, x + step);
   below[cause] = std::max(of.lower, x - step);
   const fem::StructuralSystem more = assembled(above), less = assembled(below);
-  if (more.size() != less.size()) throw std::runtime_error("a change of " + of.label + " changes the mesh");
+  if (more.size() != n || less.size() != n)
+    throw std::runtime_error("a change of " + of.label + " changes the mesh");
   const double width = above[cause] - below[cause];
   return {(more.stiffness.assembled() - less.stiffness.assembled()) / width, (more.mass - less.mass) / width};
 }
@@ -55,7 +55,7 @@ PredictedModes CauseModel::at(const VectorXd& changes, bool slopes) const {
   PredictedModes modes = seen_modes(found, system.outputs, count_);
   if (slopes) {
     std::vector<MatrixSlope> changing;
-    for (Index q = 0; q < changes.size(); ++q) changing.push_back(slope(changes, q));
+    for (Index q = 0; q < changes.size(); ++q) changing.push_back(slope(changes, q, system.size()));
     add_slopes(found, system.outputs, changing, modes);
   }
   for (std::size_t q = 0; q < causes_.size(); ++q) {

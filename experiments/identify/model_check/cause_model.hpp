@@ -35,7 +35,8 @@ class CauseModel final : public ModesOfParameters {
   Eigen::Index count_;
 
   fem::StructuralSystem assembled(const Eigen::VectorXd& changes) const;
-  MatrixSlope slope(const Eigen::VectorXd& changes, Eigen::Index cause) const;
+  /// Of n coordinates, of which a support that gives way has more.
+  MatrixSlope slope(const Eigen::VectorXd& changes, Eigen::Index cause, Eigen::Index n) const;
 };
 
 }  // namespace beamid::experiments
