@@ -72,9 +72,9 @@ SpectralLines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal
 }  // namespace
 
 double student_factor(double freedom) {
-  constexpr double point = 0.975;
-  return boost::math::quantile(boost::math::students_t_distribution<double, InDouble>(freedom), point) /
-         quantile_95;
+  constexpr double point = 0.975, least = 0.1;  // freedom, where the factor is 1e12; less overflows
+  const boost::math::students_t_distribution<double, InDouble> law(std::max(least, freedom));
+  return boost::math::quantile(law, point) / quantile_95;
 }
 
 NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const ModalEstimate& modal) {
@@ -82,7 +82,7 @@ NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const Mod
   constexpr double settled = 1e-10, prior = 1 / (slope_deviation * slope_deviation);
   const double wanted = 1 / (interval * modal.frequency_hz * line_samples_per_cycle),
                most = static_cast<double>(signal.size() / kernel_and_more);
-  const int factor = static_cast<int>(std::max(1.0, std::min(wanted, most)));
+  const int factor = decimation_factor(std::min(wanted, most), signal.size());
   const DecimatedSignal coarse =
       decimate(with_mode_in_gaps(signal, interval, modal.rate()), interval, factor);
   const double measured =

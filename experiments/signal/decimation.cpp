@@ -1,5 +1,6 @@
 #include "experiments/signal/decimation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -30,6 +31,10 @@ std::complex<double> DecimatedSignal::response(std::complex<double> rate) const 
   for (Eigen::Index k = 0; k < kernel.size(); ++k)
     sum += kernel[k] * std::exp(step * static_cast<double>(k - half));
   return sum;
+}
+
+int decimation_factor(double wanted, Eigen::Index most) {
+  return static_cast<int>(std::clamp(wanted, 1.0, std::max(1.0, static_cast<double>(most))));
 }
 
 DecimatedSignal decimate(const Eigen::VectorXd& signal, double interval, int factor) {

@@ -18,6 +18,9 @@ struct DecimatedSignal {
   std::complex<double> response(std::complex<double> rate) const;
 };
 
+/// The whole number at or below `wanted`, from 1 to `most`.
+int decimation_factor(double wanted, Eigen::Index most);
+
 /// Low-pass by a symmetric finite impulse response (sinc under a Kaiser window, 60 dB [kaiser1974]) of
 /// 10 factor + 1 samples, where it lies wholly inside the signal (N), at every `factor`-th sample.
 ///

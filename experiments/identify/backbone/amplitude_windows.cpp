@@ -92,7 +92,8 @@ double first_frequency_hz(const VectorXd& signal, double interval,
 }
 
 DecimatedSignal decimated_decay(const VectorXd& signal, double interval, double frequency_hz) {
-  const int factor = std::max(1, static_cast<int>(1 / (window_samples_per_period * frequency_hz * interval)));
+  const int factor =
+      decimation_factor(1 / (window_samples_per_period * frequency_hz * interval), signal.size());
   if (signal.size() < 20 * factor + 24)
     throw std::invalid_argument(
         fmt::format("{} samples, {:.3g} cycles at {:.4g} Hz; expected ten cycles at least", signal.size(),

@@ -24,7 +24,7 @@ DecaySamples decay_samples(const VectorXd& signal, double interval, Quantity qua
                            double samples_per_period) {
   constexpr double steps_per_period = 48;
   DecaySamples result;
-  const int factor = static_cast<int>(1 / (samples_per_period * frequency_hz * interval));
+  const int factor = decimation_factor(1 / (samples_per_period * frequency_hz * interval), signal.size());
   result.factor = factor >= 4 ? factor : 1;  // a low-pass costs the first samples, the largest
   const DecimatedSignal kept = decimate(signal, interval, result.factor);
   if (result.factor > 1) result.whiteness = result.factor * kept.kernel.squaredNorm();

@@ -89,7 +89,7 @@ FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& 
   };
   for (double factor = 1.0 / (guess_samples_per_period * frequency_hz * dt); factor >= 2.0;
        factor /= level_ratio) {
-    const int whole = static_cast<int>(factor);
+    const int whole = decimation_factor(factor, record.size());
     const filters::Measurements coarse = decimated(record, model.motion->input_size(), dt, whole);
     if (coarse.size() > 0) take({coarse, 0.5 / (whole * dt)});
   }

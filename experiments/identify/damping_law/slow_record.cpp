@@ -30,9 +30,8 @@ SlowRecord slow_record(const filters::Measurements& record, Index inputs, double
   const Index all = record.size();
   const double dt = record.interval();
   SlowRecord slow;
-  const auto most = static_cast<int>(all / (fewest_slow_samples + 10));
-  slow.factor =
-      std::max(1, std::min(most, static_cast<int>(1.0 / (slow_samples_per_period * frequency_hz * dt))));
+  slow.factor = decimation_factor(1.0 / (slow_samples_per_period * frequency_hz * dt),
+                                  all / (fewest_slow_samples + 10));
   slow.interval = slow.factor * dt;
   slow.samples = decimate_channels(record.outputs, slow.factor);
   const double start = slow.factor == 1 ? 0.0 : 5 * slow.interval;

@@ -152,7 +152,7 @@ Tracking track(const VectorXd& signal, double start, double interval, const Trac
   };
   Tracking result;
   result.band_hz = settings.band_hz ? *settings.band_hz : track_band(signal, interval);
-  const int factor = std::max(1, static_cast<int>(0.3 / (result.band_hz.second * interval)));
+  const int factor = decimation_factor(0.3 / (result.band_hz.second * interval), signal.size());
   const DecimatedSignal low = decimate(signal, interval, factor);
   result.decimation = factor, result.interval = low.interval, result.signal = low.samples;
   const Index samples = low.samples.size();

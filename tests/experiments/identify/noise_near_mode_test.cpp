@@ -53,6 +53,13 @@ Means means(double keep, double true_variance) {
   return means;
 }
 
+// An interval by hardly any line of noise is wide beyond use, and no overflow.
+TEST(NoiseNearMode, HasAStudentFactorForAnyFreedom) {
+  EXPECT_NEAR(student_factor(1.0), 12.7062 / 1.95996, 1e-4);  // a table's
+  EXPECT_GT(student_factor(1e-9), 1e6);
+  EXPECT_LT(student_factor(1e-9), 1e15);
+}
+
 // Scatter of the mean of 100: sqrt(2 / 47 / 100) = 2.1 %.
 TEST(NoiseNearMode, IsThatOfWhiteNoise) {
   const Means found = means(0.0, deviation * deviation);

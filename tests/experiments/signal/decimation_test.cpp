@@ -45,6 +45,14 @@ TEST(Decimation, RefusesTooShortASignal) {
 }
 
 // Oracle: the sine's own frequency; a tenth of a bin is the parabola's error.
+// A frequency far below what the record can show asks for more than all samples, and more than an int holds.
+TEST(Decimation, LeavesASampleAtLeast) {
+  EXPECT_EQ(decimation_factor(7.9, 100), 7);
+  EXPECT_EQ(decimation_factor(0.2, 100), 1);
+  EXPECT_EQ(decimation_factor(1e30, 100), 100);
+  EXPECT_EQ(decimation_factor(1e30, 0), 1);
+}
+
 TEST(Spectrum, FindsTheStrongestFrequency) {
   Eigen::VectorXd signal =
       damped_oscillation(1, Complex(-0.1, 2 * std::numbers::pi * 13.37), interval, 5000) +
