@@ -44,10 +44,13 @@ Comparison identified(const IdentifyRequest& one, const fs::path& folder, const 
   return identify_with_model(one.experiment, compared_record(one), folder, progress);
 }
 
-/// K and C of a free decay have a report of their own. @throws where no mode is near the beam's
+/// K and C of a free decay have a report of their own. @throws where no mode is near the beam's, or the model
+/// has no motion
 const RecordIdentification& oscillator_in(const Comparison& found) {
   if (!found.analysis.modal_refusal.empty()) throw std::invalid_argument(found.analysis.modal_refusal);
-  return *found.runs.at(0).oscillator;
+  const ComparedRun& run = found.runs.at(0);
+  if (!run.oscillator) throw std::runtime_error("the filter cannot begin: " + run.reason);
+  return *run.oscillator;
 }
 
 Results identify_one(const IdentifyRequest& one, const std::string& law, const fs::path& config,

@@ -33,7 +33,8 @@ OutputError::OutputError(DiscreteModel& model, const VectorXd& state0, const Mat
                                 " entries and directions are " + shape(directions) + "; expected " +
                                 std::to_string(n) + " entries and rows, and a column at least");
   if (!state0.allFinite() || !directions.allFinite())
-    throw std::invalid_argument("initial state and directions must be finite");
+    throw std::invalid_argument(
+        "the motion to begin with is not finite: a structure whose frequencies are far from the record's?");
   if (prior_.size() > 0 && (prior_.cols() != directions.cols() || !prior_.allFinite()))
     throw std::invalid_argument("the prior factor is " + shape(prior_) + "; expected finite numbers in " +
                                 std::to_string(directions.cols()) + " columns");

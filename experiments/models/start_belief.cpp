@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "experiments/signal/missing_samples.hpp"
 
@@ -46,6 +47,7 @@ StartScale start_scale(const JointModel& model, const std::vector<Observation>& 
   model.motion->output(state, no_input, moving);
   displaced /= little;
   moving /= little;
+  std::vector<double> sizes;
   for (Index i = 0; i < samples.rows(); ++i) {
     const double unit = observations[i].quantity == Quantity::velocity ? moving[i] : displaced[i];
     // A sensor near a node of the mode says nothing about its size.
@@ -53,9 +55,14 @@ StartScale start_scale(const JointModel& model, const std::vector<Observation>& 
     const bool deflects =
         observations[i].quantity != Quantity::strain && !is_angular(observations[i].quantity);
     if (deflects && std::abs(unit) < 0.05 * usual) continue;
-    if (unit != 0.0)
-      scale.displacement = std::max(scale.displacement, largest_measured(samples.row(i)) / std::abs(unit));
+    if (const double largest = largest_measured(samples.row(i)); unit != 0.0 && largest > 0.0)
+      sizes.push_back(largest / std::abs(unit));
   }
+  // A gauge that the mode hardly strains, at a free end, reads noise: no size of a motion.
+  constexpr double far_above = 1e3;
+  for (const double size : sizes)
+    if (size <= far_above * *std::min_element(sizes.begin(), sizes.end()))
+      scale.displacement = std::max(scale.displacement, size);
   return scale;
 }
 

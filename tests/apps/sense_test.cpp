@@ -23,5 +23,21 @@ TEST(UnknownForce, IsNoObstacleToIdentify) {
   EXPECT_THAT(compared.err, HasSubstr("[[unknown_forces]] are followed by beamid identify"));
 }
 
+// A strain gauge at the free end reads noise alone. Oracle: the record without it.
+TEST(UnknownForce, IsFoundBesideAGaugeThatNothingStrains) {
+  Workplace place;
+  std::string mast = contents(source("docs/tutorials/24_virtual_sensing/mast.toml"));
+  const std::string gauge = "position_m = 0.5\n";
+  mast.replace(mast.find(gauge), gauge.size(), "position_m = 2.0\n");
+  place.write("mast.toml", mast);
+  place.write("without.toml", contents(source("docs/tutorials/24_virtual_sensing/accelerometers.toml")));
+  const json with = json_of(place.run("sense --config mast.toml --json"))["tables"]["sensed"],
+             without = json_of(place.run("sense --config without.toml --json"))["tables"]["sensed"];
+  ASSERT_EQ(with.size(), 3);
+  for (std::size_t i = 0; i < with.size(); ++i)
+    for (const char* const of : {"root_mean_square", "reported_error"})
+      EXPECT_NEAR(with[i][of].get<double>() / without[i][of].get<double>(), 1.0, 1e-5) << with[i]["name"];
+}
+
 }  // namespace
 }  // namespace beamid::apps::sense_test

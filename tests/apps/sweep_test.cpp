@@ -65,6 +65,12 @@ class Sweep : public testing::Test {
   Workplace place_;
 };
 
+TEST_F(Sweep, CountsBeamsWithoutAMotionAsDiverged) {
+  const Outcome outcome = sweep("--seeds 2 --vary beam.height_m=1e12");
+  expect_success(outcome);
+  EXPECT_THAT(outcome.out, HasSubstr("cases diverged; the first, case 0: the reproduced motion grows"));
+}
+
 TEST_F(Sweep, IsTheSameOnAnyNumberOfThreads) {
   expect_success(sweep("--seeds 8 --threads 1 --out one"));
   expect_success(sweep("--seeds 8 --threads 3 --out three"));

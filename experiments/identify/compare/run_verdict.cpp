@@ -249,6 +249,7 @@ void judge_what_is_said(ComparedRun& run) {
 
 void judge_run(const RunContext& context, ComparedRun& run) {
   if (run.status == ComparedRun::Status::refused || context.compared.has_open_clocks()) return;
+  if (run.noise.size() == 0) return;  // no pass has begun: there was no motion to filter about
   if (asks_free_oscillator(context.experiment, context.analysis.record))
     judge_oscillator(context, run);
   else if (run.status == ComparedRun::Status::converged)
