@@ -91,7 +91,7 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
   const double wanted = 1 / (interval * modal.frequency_hz * section_samples_per_cycle),
                possible = static_cast<double>(signal.size()) / kernel_and_more;
   const DecimatedSignal coarse = decimate(bridged_straight(signal), interval,
-                                          static_cast<int>(std::max(1.0, std::min(wanted, possible))));
+                                          decimation_factor(std::min(wanted, possible), signal.size()));
   const double periods = coarse.interval * static_cast<double>(coarse.samples.size()) * modal.frequency_hz;
   if (periods < fewest_sections * fewest_periods) return result;
   const int count = std::clamp(static_cast<int>(periods / wished_periods), fewest_sections, most_sections);
@@ -163,10 +163,12 @@ double section_half_width(const SectionTrend& trend, double estimate, double dev
         sum += trend.weight[i] * off.col(i).unaryExpr([&](double d) { return within(h, d, s); }).mean();
     return sum / (trend.constant + trend.weight.sum());
   };
-  std::uintmax_t iterations = 60;
-  return boost::math::tools::toms748_solve([&](double h) { return held(h) - 0.95; }, 0.0,
+  constexpr double wanted =
+      0.95 - 1e-9;  // where as much is held over a stretch, between two values: its beginning
+  std::uintmax_t iterations = 200;
+  return boost::math::tools::toms748_solve([&](double h) { return held(h) - wanted; }, 0.0,
                                            off.maxCoeff() + 4 * std::max(s, s0),
-                                           boost::math::tools::eps_tolerance<double>(24), iterations)
+                                           boost::math::tools::eps_tolerance<double>(32), iterations)
       .second;
 }
 
