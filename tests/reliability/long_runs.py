@@ -96,7 +96,6 @@ def latency(options, folder):
         process.stdin.flush()
         process.stdout.readline()
         times.append(time.perf_counter() - begun)
-    process.stdin.close()
     process.communicate()
     times.sort()
     at = {share: 1e6 * times[int(share * (len(times) - 1))] for share in (0.5, 0.99, 0.999, 0.9999, 1.0)}
