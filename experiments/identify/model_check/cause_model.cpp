@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace beamid::experiments {
 
 using Eigen::Index, Eigen::VectorXd;
 
-CauseModel::CauseModel(const fem::Structure& structure, int elements, std::vector<fem::Point> points,
+CauseModel::CauseModel(fem::Structure structure, int elements, std::vector<fem::Point> points,
                        std::vector<Candidate> causes, Index count)
-    : structure_(structure), elements_(elements), points_(std::move(points)), causes_(std::move(causes)) {
+    : structure_(std::move(structure)),
+      elements_(elements),
+      points_(std::move(points)),
+      causes_(std::move(causes)) {
   for (const Candidate& cause : causes_) {
     Unknown unknown{cause.name, cause.unit, 0.0, cause.scale(), Form::bounded, cause.lower, cause.upper};
     unknown.quantity = cause.name;

@@ -15,7 +15,7 @@ class CauseModel final : public ModesOfParameters {
  public:
   /// @param points sensors; of a beam they move with its length
   /// @param causes q; their changes are the parameters, 0 as described, within what is possible
-  CauseModel(const fem::Structure& structure, int elements, std::vector<fem::Point> points,
+  CauseModel(fem::Structure structure, int elements, std::vector<fem::Point> points,
              std::vector<Candidate> causes, Eigen::Index count);
 
   PredictedModes at(const Eigen::VectorXd& changes, bool slopes) const override;
