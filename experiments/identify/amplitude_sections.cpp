@@ -88,10 +88,9 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
   if (!modal.companions.empty() ||
       measured < (1 - largest_share_missing) * static_cast<double>(signal.size()))
     return result;
-  const double wanted = 1 / (interval * modal.frequency_hz * section_samples_per_cycle),
-               possible = static_cast<double>(signal.size()) / kernel_and_more;
-  const DecimatedSignal coarse = decimate(bridged_straight(signal), interval,
-                                          decimation_factor(std::min(wanted, possible), signal.size()));
+  const int factor = decimation_factor(1 / (interval * modal.frequency_hz * section_samples_per_cycle),
+                                       signal.size() / kernel_and_more);
+  const DecimatedSignal coarse = decimate(bridged_straight(signal), interval, factor);
   const double periods = coarse.interval * static_cast<double>(coarse.samples.size()) * modal.frequency_hz;
   if (periods < fewest_sections * fewest_periods) return result;
   const int count = std::clamp(static_cast<int>(periods / wished_periods), fewest_sections, most_sections);
@@ -163,8 +162,8 @@ double section_half_width(const SectionTrend& trend, double estimate, double dev
         sum += trend.weight[i] * off.col(i).unaryExpr([&](double d) { return within(h, d, s); }).mean();
     return sum / (trend.constant + trend.weight.sum());
   };
-  constexpr double wanted =
-      0.95 - 1e-9;  // where as much is held over a stretch, between two values: its beginning
+  // Where as much is held over a stretch, between two values: its beginning.
+  constexpr double wanted = 0.95 - 1e-9;
   std::uintmax_t iterations = 200;
   return boost::math::tools::toms748_solve([&](double h) { return held(h) - wanted; }, 0.0,
                                            off.maxCoeff() + 4 * std::max(s, s0),

@@ -11,6 +11,7 @@
 #include "experiments/identify/analysis.hpp"
 #include "experiments/modal/shape_fit.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
+#include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -44,9 +45,8 @@ std::optional<Choice> step_against_higher_modes(const Experiment& experiment, co
   if (!found.modal ||
       !(largest_line(found.even.record, *found.modal) > too_large * found.near_mode->deviation))
     return {};
-  const auto factor =
-      static_cast<int>(std::min(1 / (samples_per_cycle * found.modal->frequency_hz * record.interval()),
-                                static_cast<double>(record.size() / enough)));
+  const int factor = decimation_factor(
+      1 / (samples_per_cycle * found.modal->frequency_hz * record.interval()), record.size() / enough);
   constexpr int least = 2, most = 1000;  // of the step
   if (factor < least || factor > most) return {};
   filters::Options options;

@@ -80,9 +80,8 @@ double student_factor(double freedom) {
 NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const ModalEstimate& modal) {
   constexpr int most_steps = 100;
   constexpr double settled = 1e-10, prior = 1 / (slope_deviation * slope_deviation);
-  const double wanted = 1 / (interval * modal.frequency_hz * line_samples_per_cycle),
-               most = static_cast<double>(signal.size() / kernel_and_more);
-  const int factor = decimation_factor(std::min(wanted, most), signal.size());
+  const int factor = decimation_factor(1 / (interval * modal.frequency_hz * line_samples_per_cycle),
+                                       signal.size() / kernel_and_more);
   const DecimatedSignal coarse =
       decimate(with_mode_in_gaps(signal, interval, modal.rate()), interval, factor);
   const double measured =

@@ -38,11 +38,9 @@ void check_dominant_mode(const Eigen::VectorXd& signal, double interval,
 }
 
 /// As many samples per cycle as asked for, but enough of them for the realisation.
-int decimation_factor(Eigen::Index count, double interval, double frequency_hz, double samples_per_cycle) {
+int factor_for_cycles(Eigen::Index count, double interval, double frequency_hz, double samples_per_cycle) {
   constexpr Eigen::Index enough = 50;  // of which the decimation's kernel takes 10
-  const Eigen::Index most = count / enough;
-  const double wanted = 1 / (interval * frequency_hz * samples_per_cycle);
-  return static_cast<int>(std::max(1.0, std::min(wanted, static_cast<double>(most))));
+  return decimation_factor(1 / (interval * frequency_hz * samples_per_cycle), count / enough);
 }
 
 const IdentifiedMode& strongest_near(const EigensystemRealisation& realisation, double frequency_hz,
@@ -214,7 +212,7 @@ ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
   const double expected = settings.expected_frequency_hz
                               ? *settings.expected_frequency_hz
                               : strongest_frequency(bridged_straight(signal), interval);
-  const int factor = decimation_factor(signal.size(), interval, expected, settings.samples_per_cycle);
+  const int factor = factor_for_cycles(signal.size(), interval, expected, settings.samples_per_cycle);
   const bool whole = signal.allFinite();
   DecimatedSignal coarse =
       decimate(whole ? signal : filled_by_one_sine(signal, interval, expected, settings.frequency_tolerance),

@@ -60,9 +60,10 @@ StartScale start_scale(const JointModel& model, const std::vector<Observation>& 
   }
   // A gauge that the mode hardly strains, at a free end, reads noise: no size of a motion.
   constexpr double far_above = 1e3;
+  if (sizes.empty()) return scale;
+  const double least = *std::min_element(sizes.begin(), sizes.end());
   for (const double size : sizes)
-    if (size <= far_above * *std::min_element(sizes.begin(), sizes.end()))
-      scale.displacement = std::max(scale.displacement, size);
+    if (size <= far_above * least) scale.displacement = std::max(scale.displacement, size);
   return scale;
 }
 

@@ -1,6 +1,5 @@
 #include "experiments/identify/compare/nonlinear_guess.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,10 +12,9 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr Index longest_nonlinear_guess = 4096;    // samples
-constexpr double nonlinear_guess_noise = 0.05;     // noise of it, of a channel's root mean square
-constexpr double nonlinear_guess_widening = 30.0;  // of the deviations found
-constexpr double periods = 1.5;                    // that are taken up first
+constexpr Index longest_nonlinear_guess = 4096;  // samples
+constexpr double nonlinear_guess_noise = 0.05;   // noise of it, of a channel's root mean square
+constexpr double periods = 1.5;                  // that are taken up first
 constexpr double far_frequency = 2.0;
 
 // The stiffness of the oscillator at the record's frequency, where it is asked about.
@@ -55,12 +53,9 @@ FirstGuess nonlinear_guess(const JointModel& model, const std::vector<Observatio
   state = nearest_phase(*discrete, state, directions, part, settings.first_samples);
   const filters::BatchEstimate found = filters::estimate_batch(*discrete, state, all, part, settings);
   if (found.status == filters::BatchStatus::failed || found.covariance.size() == 0) return known;
-  const MatrixXd wide = nonlinear_guess_widening * nonlinear_guess_widening * unknowns *
-                        found.covariance.bottomRightCorner(unknowns.cols(), unknowns.cols()) *
-                        unknowns.transpose();
-  // The product of both densities, P (P + F)^-1 F.
-  const MatrixXd& p = known.unknowns;
-  return {found.state, p * (p + wide).ldlt().solve(wide)};
+  const MatrixXd covariance =
+      unknowns * found.covariance.bottomRightCorner(unknowns.cols(), unknowns.cols()) * unknowns.transpose();
+  return {found.state, guess_covariance(known.unknowns, covariance)};
 }
 
 }  // namespace beamid::experiments

@@ -10,8 +10,7 @@ using Eigen::Index, Eigen::VectorXd;
 
 int factor_for(const Record& record, double highest_hz) {
   constexpr double passed = 0.3;  // of the new sampling rate, untouched by the decimation
-  return std::max(1, static_cast<int>(std::min(passed / (record.interval() * highest_hz),
-                                               static_cast<double>(record.size()) / 100)));
+  return decimation_factor(passed / (record.interval() * highest_hz), record.size() / 100);
 }
 
 /// Where a level that reaches up to `top` ends: at an eighth of it, away from any line, or at the band's own
