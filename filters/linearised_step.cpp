@@ -8,8 +8,7 @@ namespace beamid::filters {
 using Eigen::MatrixXd;
 
 void LinearisedStep::predict(Gaussian& belief, const MatrixXd& tangent, const MatrixXd& process_noise) {
-  work_.noalias() = tangent * belief.covariance;
-  belief.covariance.noalias() = work_ * tangent.transpose();
+  steps_.carry(tangent, belief.covariance);
   if (process_noise.size() > 0) belief.covariance += process_noise;
   symmetrise(belief.covariance);
   check_finite(belief);
@@ -22,13 +21,7 @@ void LinearisedStep::correct(Gaussian& belief, const MatrixXd& sensor, const Mat
   correction.innovation_covariance += noise;
   gain_ = weigh(correction, cross_, factor_);
   belief.mean.noalias() += gain_ * correction.innovation;
-  kept_.noalias() = -gain_ * sensor;
-  kept_.diagonal().array() += 1.0;
-  work_.noalias() = kept_ * belief.covariance;
-  belief.covariance.noalias() = work_ * kept_.transpose();
-  noise_.noalias() = gain_ * noise;
-  belief.covariance.noalias() += noise_ * gain_.transpose();
-  symmetrise(belief.covariance);
+  steps_.reduce(gain_, sensor, noise, belief.covariance);
   check_finite(belief);
 }
 

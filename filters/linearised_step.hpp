@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "filters/algorithms/covariance_steps.hpp"
 #include "filters/filter.hpp"
 
 namespace beamid::filters {
@@ -21,10 +22,10 @@ class LinearisedStep {
                Correction& correction);
 
   const Eigen::MatrixXd& gain() const { return gain_; }  ///< G of the last correction (n x p)
-  const Eigen::MatrixXd& kept() const { return kept_; }  ///< I - G H (n x n)
 
  private:
-  Eigen::MatrixXd cross_, gain_, kept_, noise_, work_;
+  algorithms::CovarianceSteps<double, Eigen::Dynamic, Eigen::Dynamic> steps_;
+  Eigen::MatrixXd cross_, gain_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 

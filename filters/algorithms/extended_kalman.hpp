@@ -4,11 +4,10 @@
 //     correct   S = H P H^T + R,        G = P H^T S^-1                     H = dh/dz at the predicted mean
 //               m += G (y - h(m)),      P = (I - G H) P (I - G H)^T + G R G^T
 //
-// The last line is Joseph's form [bucy1968]: positive for any gain, so that the gain's rounding costs its
-// square.
+// The last line is Joseph's form (covariance_steps.hpp).
 #pragma once
 
-#include "filters/algorithms/products.hpp"
+#include "filters/algorithms/covariance_steps.hpp"
 #include "filters/algorithms/weighing.hpp"
 
 namespace beamid::filters::algorithms {
@@ -25,7 +24,7 @@ class ExtendedKalman {
   void predict(Model& model) {
     model.linearised_transition(mean, next_, tangent_);
     mean.swap(next_);
-    congruence(tangent_, covariance, work_);
+    steps_.carry(tangent_, covariance);
     if (model.process_noise().size() > 0) covariance += model.process_noise();
     mirror(covariance);
   }
@@ -46,21 +45,16 @@ class ExtendedKalman {
   template <class Model>
   void update(Model& model) {
     mean.noalias() += seen.gain * seen.innovation;
-    multiply(seen.gain, sensor_, kept_);
-    kept_ *= -1.0;
-    kept_.diagonal().array() += 1.0;
-    congruence(kept_, covariance, work_);
-    multiply(seen.gain, model.output_noise(), cross_);
-    multiply_transposed<Into::old_sum>(cross_, seen.gain, covariance);
-    mirror(covariance);
+    steps_.reduce(seen.gain, sensor_, model.output_noise(), covariance);
   }
 
  private:
   Vector<Scalar, N> next_;
   Vector<Scalar, P> expected_;
-  Matrix<Scalar, N> tangent_, kept_, work_;
+  Matrix<Scalar, N> tangent_;
   Matrix<Scalar, P, N> sensor_;
   Matrix<Scalar, N, P> cross_;
+  CovarianceSteps<Scalar, N, P> steps_;
 };
 
 }  // namespace beamid::filters::algorithms

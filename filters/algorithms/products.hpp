@@ -60,11 +60,4 @@ void mirror(Square& a) {
     for (Eigen::Index i = 0; i < j; ++i) a(i, j) = a(j, i);
 }
 
-/// P becomes A P A^T; work = A P. Symmetric once mirrored.
-template <class A, class P, class Work>
-void congruence(const A& a, P& p, Work& work) {
-  multiply(a, p, work);
-  multiply_transposed(work, a, p);
-}
-
 }  // namespace beamid::filters::algorithms

@@ -73,7 +73,7 @@ class DualExtendedKalmanFilter final : public Filter {
     Correction given_parameters;
     given_parameters.innovation = correction_.innovation;
     step_.correct(states_, state_sensor, model_.output_noise(), given_parameters);
-    sensitivity_ = step_.kept() * sensitivity_ - step_.gain() * other;
+    sensitivity_.noalias() -= step_.gain() * through;
     step_.correct(parameters_, through, given_parameters.innovation_covariance, correction_);
     if (coupled_) states_.mean.noalias() += sensitivity_ * (step_.gain() * correction_.innovation);
     join();

@@ -4,6 +4,7 @@
 
 #include "experiments/models/motion/held_step.hpp"
 #include "experiments/models/motion/rational_step.hpp"
+#include "filters/nonzeros.hpp"
 #include "filters/schemes/forced_oscillator.hpp"
 #include "filters/schemes/matrix_exponential.hpp"
 #include "filters/timed_model.hpp"
@@ -37,7 +38,11 @@ class SecondOrderStep final : public filters::TimedModel {
   void move(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd& directions) override {
     step(state, input, next, &tangent_);
     const StateLayout& at = motion_->layout();
-    moved_.noalias() = tangent_.topRows(at.motion) * directions;
+    const auto moving = tangent_.topRows(at.motion);
+    if (entries_.take(moving))
+      entries_.from_left(directions, moved_);
+    else
+      moved_.noalias() = moving * directions;
     directions.topRows(at.motion) = moved_;
   }
   void output(const VectorXd& state, const VectorXd& input, VectorXd& output) override {
@@ -62,6 +67,7 @@ class SecondOrderStep final : public filters::TimedModel {
   SecondOrderForm form_;
   std::vector<SecondOrderForm> slopes_;
   MatrixXd tangent_, moved_;
+  filters::NonZeros entries_;  // of tangent_
 
   void interval_changed() override { prepare(); }
   void prepare() {
