@@ -1,7 +1,7 @@
 #include "filters/covariance_factor.hpp"
 
 #include <Eigen/Cholesky>
-#include <limits>
+#include <cmath>
 #include <vector>
 
 #include "filters/filter.hpp"
@@ -10,8 +10,34 @@ namespace beamid::filters {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+namespace {
+
+constexpr double unexplained = 1e-14;  // share of a variance that is rounding
+
+// By Cholesky's method, what is left of every diagonal compared before each column. Eigen's LDLT compares
+// what they were at first, which for correlations is 1: a dependent entry then stands before independent
+// ones.
+MatrixXd pivoted_root(MatrixXd left) {
+  const Index size = left.rows();
+  MatrixXd root(size, size);
+  Index rank = 0, largest = 0;
+  while (rank < size && left.diagonal().maxCoeff(&largest) > unexplained * static_cast<double>(size)) {
+    const VectorXd column = left.col(largest) / std::sqrt(left(largest, largest));
+    left.noalias() -= column * column.transpose();
+    left.row(largest).setZero();
+    left.col(largest).setZero();
+    root.col(rank++) = column;
+  }
+  // Nothing but rounding is left of what has no negative eigenvalue.
+  if (!left.allFinite() || left.cwiseAbs().maxCoeff() > 1e-10)
+    throw FilterFailure("the covariance has lost its positivity (pivot of its correlation matrix)",
+                        left.diagonal().minCoeff());
+  return root.leftCols(rank);
+}
+
+}  // namespace
+
 MatrixXd factor_of(const MatrixXd& covariance) {
-  constexpr double rounding = 1e-14;  // share of a variance that the others leave unexplained
   const Index n = covariance.rows();
   std::vector<Index> uncertain;
   for (Index i = 0; i < n; ++i)
@@ -21,23 +47,10 @@ MatrixXd factor_of(const MatrixXd& covariance) {
   const VectorXd scale = covariance.diagonal()(uncertain).cwiseSqrt();
   const VectorXd inverse = scale.cwiseInverse();
   const MatrixXd correlation = inverse.asDiagonal() * covariance(uncertain, uncertain) * inverse.asDiagonal();
-  const auto size = static_cast<Index>(uncertain.size());
-  MatrixXd factor;
   const Eigen::LLT<MatrixXd> plain(correlation);
-  if (plain.info() == Eigen::Success && plain.matrixLLT().diagonal().cwiseAbs2().minCoeff() > rounding) {
-    factor = plain.matrixL();
-  } else {
-    const Eigen::LDLT<MatrixXd> pivoted(correlation);
-    const VectorXd pivots = pivoted.vectorD();
-    if (!pivots.allFinite() || pivots.minCoeff() < -1e-10)
-      throw FilterFailure("the covariance has lost its positivity (pivot of its correlation matrix)",
-                          pivots.allFinite() ? pivots.minCoeff() : std::numeric_limits<double>::quiet_NaN());
-    Index rank = 0;  // pivots come largest first
-    while (rank < size && pivots[rank] > rounding * static_cast<double>(size)) ++rank;
-    const MatrixXd lower = pivoted.matrixL();
-    factor = pivoted.transpositionsP().transpose() *
-             MatrixXd(lower.leftCols(rank) * pivots.head(rank).cwiseSqrt().asDiagonal());
-  }
+  const bool full =
+      plain.info() == Eigen::Success && plain.matrixLLT().diagonal().cwiseAbs2().minCoeff() > unexplained;
+  const MatrixXd factor = full ? MatrixXd(plain.matrixL()) : pivoted_root(correlation);
   MatrixXd result = MatrixXd::Zero(n, factor.cols());
   result(uncertain, Eigen::all) = scale.asDiagonal() * factor;
   return result;

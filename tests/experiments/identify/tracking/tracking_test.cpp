@@ -88,6 +88,9 @@ TEST(Tracking, MeansOfPlateausCoverTheTruth) {
     ASSERT_EQ(found.plateaus.size(), 1u);
     const Plateau& plateau = found.plateaus[0];
     squares += std::pow((plateau.frequency_hz - 20) / plateau.frequency_deviation_hz, 2);
+    // Without a walk the whole history is one value, also where its integral depends on it entirely.
+    for (const VectorXd& history : {found.frequency_hz, found.damping_ratio})
+      EXPECT_LT(history.maxCoeff() - history.minCoeff(), 1e-8 * plateau.frequency_hz);
   }
   EXPECT_GT(squares, 6.1);   // chi-square of 24 degrees, 1e-4
   EXPECT_LT(squares, 61.1);  // and 1 - 5e-5
