@@ -116,16 +116,22 @@ bool is_missing(const RecordTable& table, std::size_t row, std::size_t column) {
   return text.empty() || text == "nan" || text == "na" || text == "null";
 }
 
-/// Refuses the first row in which a column that is used holds no finite number, or leaves all such rows out,
-/// or takes what is missing for missing.
+/// A column that is read, and what one of its unit is in that of the record.
+struct Used {
+  std::size_t index;
+  double factor;
+};
+
+/// Refuses the first row in which a column that is used holds no number that is finite in the record's unit,
+/// or leaves all such rows out, or takes what is missing for missing.
 /// @param time which of them is the stamps
-void check_rows(RecordTable& table, const std::vector<std::size_t>& used, std::optional<std::size_t> time,
+void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional<std::size_t> time,
                 MalformedRows malformed) {
   std::vector<bool> kept(table.rows(), true);
   std::vector<std::size_t> lines = table.skipped_lines;
   for (std::size_t row = 0; row < table.rows(); ++row)
-    for (const std::size_t column : used) {
-      if (std::isfinite(table.columns[column][row])) continue;
+    for (const auto& [column, factor] : used) {
+      if (std::isfinite(table.columns[column][row] * factor)) continue;
       if (malformed == MalformedRows::as_missing && column != time && is_missing(table, row, column))
         continue;
       if (malformed != MalformedRows::skip) throw table.fault(row, column);
@@ -143,9 +149,9 @@ void check_rows(RecordTable& table, const std::vector<std::size_t>& used, std::o
 Record read_record(const std::filesystem::path& file, const RecordFormat& format) {
   RecordTable table = read_table(file, format);
   const RecordColumns columns = find_columns(table, format);
-  std::vector<std::size_t> used;
-  if (columns.time) used.push_back(columns.time->index);
-  for (const RecordColumn& column : columns.channels) used.push_back(column.index);
+  std::vector<Used> used;
+  if (columns.time) used.push_back({columns.time->index, 1.0});
+  for (const RecordColumn& column : columns.channels) used.push_back({column.index, column.factor});
   check_rows(table, used, columns.time ? std::optional(columns.time->index) : std::nullopt, format.malformed);
   if (table.rows() < 2)
     throw InputError(

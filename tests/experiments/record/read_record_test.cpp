@@ -141,6 +141,12 @@ TEST(ReadRecord, RefusesBadNumbersAtTheirPlaces) {
        {"0,1\n1,\n", "bad.txt:2:3: column 2 holds nothing; expected a number"}});
 }
 
+TEST(ReadRecord, RefusesANumberThatIsTooLargeInTheUnitOfTheRecord) {
+  expect_refused({},
+                 {{"time_s,acceleration_g\n0,1\n1,1e308\n2,1\n",
+                   "bad.txt:3:3: column 2 holds '1e308'; expected a finite number within double precision"}});
+}
+
 TEST(ReadRecord, RefusesFilesWithoutRows) {
   RecordFormat headed = two_columns();
   headed.header_lines = 9;
