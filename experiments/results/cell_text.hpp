@@ -7,7 +7,7 @@
 
 namespace beamid::experiments {
 
-/// A text as it is, a number in its column's format, NaN as "-".
+/// A text as it is, a number in its column's format, without a sign where that is a zero, NaN as "-".
 /// @throws std::invalid_argument when the format does not suit a number.
 std::string cell_text(const Column& column, const Cell& cell);
 

@@ -19,12 +19,11 @@ constexpr int treatment_passes = 2;
 constexpr double stopped = 1e-6;        // of the power of a stopped mode is left: 60 dB
 constexpr double guessed_ratio = 0.01;  // damping ratio of a higher mode, before the record is seen
 
-// What decimation may leave: 0.7 of the new rate and all above is stopped, 0.3 and all below passes.
-int decimation_factor(const ModalMotion& motion, double interval) {
+// The least that decimation may leave [Hz]: 0.7 of it and all above is stopped, 0.3 and all below passes.
+double least_rate(const ModalMotion& motion) {
   const double first = motion.rate[0].imag() / (2.0 * std::numbers::pi);
   const double second = motion.rate.size() > 1 ? motion.rate[1].imag() / (2.0 * std::numbers::pi) : 8 * first;
-  const double rate = std::max(4.0 * first, 1.2 * second);
-  return std::max(1, static_cast<int>(1.0 / (rate * interval)));
+  return std::max(4.0 * first, 1.2 * second);
 }
 
 // Standard deviation of a displacement: the amplitude over the record, of the mode with index i.
@@ -74,7 +73,8 @@ FirstMode identify_first_mode(const ModalRecord& record, const ModalMotion& moti
   double interval = record.interval, variance = noise * noise;
   const auto full = static_cast<double>(samples.size());
   if (treatment == Treatment::filtered) {
-    const DecimatedSignal slow = decimate(samples, interval, decimation_factor(motion, interval));
+    const int factor = decimation_factor(1.0 / (least_rate(motion) * interval), samples.size());
+    const DecimatedSignal slow = decimate(samples, interval, factor);
     samples = slow.samples;
     interval = slow.interval;
     if (slow.factor > 1)

@@ -71,6 +71,17 @@ TEST(Table, PrintsNumbersToTheRightTextsToTheLeftAndNanAsDash) {
 }
 
 // Oracle: written by hand. Units in brackets stay in one piece.
+TEST(Table, PrintsNoSignOfWhatIsPrintedAsZero) {
+  Table table{"errors"};
+  table.column({"e", "error", "{:+.2f}"}).column({"d", "difference", "{:.2f}"}).column({"l", "limit"});
+  table.row({-1e-9, -0.004, -0.0}).row({1e-9, -0.006, -std::numeric_limits<double>::infinity()});
+  EXPECT_EQ(printed(table),
+            "   e      d     l\n"
+            "----  -----  ----\n"
+            "0.00   0.00     0\n"
+            "0.00  -0.01  -inf\n");
+}
+
 TEST(Table, BreaksHeadingsBeforeAnythingElse) {
   Table table{"wide", ""};
   for (int i = 0; i < 9; ++i) table.column({"long heading [N s/m]", "key", "{:.1f}", {1.0}});

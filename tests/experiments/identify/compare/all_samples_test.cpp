@@ -14,35 +14,66 @@ namespace {
 
 const Progress silent = [](const std::string&) {};
 
+constexpr const char* building = R"(
+[chain]
+masses_kg = [1000, 1000, 1000, 1000, 1000]
+stiffnesses_n_per_m = [2.0e6, 2.0e6, 1.6e6, 1.6e6, 1.2e6]
+dashpots_n_s_per_m = [800, 800, 800, 800, 800]
+
+[excitation]
+kind = "random"
+amplitude_n = 500
+frequency_hz = 50
+position_m = 5
+
+[model]
+name = "beam"
+sensor_bias = false
+
+[filter]
+discretisation = "pade"
+
+[[sensors]]
+position_m = 2
+noise_m_per_s2 = 0.01
+
+[[sensors]]
+position_m = 4
+noise_m_per_s2 = 0.01
+
+[simulation]
+duration_s = 10
+sampling_rate_hz = 100
+steps_per_sample = 2
+seed = {}
+)";
+
+constexpr const char* unknown = R"(
+[[parameters]]
+name = "{}{}"
+quantity = "{}"
+form = "logarithmic"
+relative_deviation = {}
+{} = {}
+from_m = {}
+to_m = {}
+)";
+
 // Five storeys under a random force at the roof, two accelerometers: stiffness and dashpot of every storey,
 // guessed at half or half as much again as the bits of `guesses` say; 0: as they are.
 Experiment five_storeys(int seed, unsigned guesses) {
   constexpr double stiffness[]{2.0e6, 2.0e6, 1.6e6, 1.6e6, 1.2e6}, dashpot = 800.0;
-  std::string text =
-      "[chain]\nmasses_kg = [1000, 1000, 1000, 1000, 1000]\nstiffnesses_n_per_m = [2.0e6, 2.0e6, 1.6e6, "
-      "1.6e6, "
-      "1.2e6]\ndashpots_n_s_per_m = [800, 800, 800, 800, 800]\n[excitation]\nkind = \"random\"\namplitude_n "
-      "= "
-      "500\nfrequency_hz = 50\nposition_m = 5\n[model]\nname = \"beam\"\nsensor_bias = false\n[filter]\n"
-      "discretisation = \"pade\"\n[[sensors]]\nposition_m = 2\nnoise_m_per_s2 = "
-      "0.01\n[[sensors]]\nposition_m = "
-      "4\nnoise_m_per_s2 = 0.01\n";
-  text += fmt::format(
-      "[simulation]\nduration_s = 10\nsampling_rate_hz = 100\nsteps_per_sample = 2\nseed = {}\n", seed);
+  std::string text = fmt::format(building, seed);
   const auto off = [&] {
     const double factor = guesses == 0 ? 1.0 : guesses % 2 == 0 ? 0.5 : 1.5;
     if (guesses != 0) guesses = guesses / 2 + 1024 * (guesses % 2);
     return factor;
   };
   for (int i = 0; i < 5; ++i) {
-    text += fmt::format(
-        "[[parameters]]\nname = \"k{}\"\nquantity = \"storey_stiffness\"\nform = \"logarithmic\"\n"
-        "relative_deviation = 0.5\nguess_n_per_m = {}\nfrom_m = {}\nto_m = {}\n",
-        i + 1, off() * stiffness[i], i, i + 1);
-    text += fmt::format(
-        "[[parameters]]\nname = \"c{}\"\nquantity = \"storey_damping\"\nform = \"logarithmic\"\n"
-        "relative_deviation = 1.0\nguess_n_s_per_m = {}\nfrom_m = {}\nto_m = {}\n",
-        i + 1, off() * dashpot, i, i + 1);
+    text += fmt::format(unknown, "k", i + 1, "storey_stiffness", 0.5, "guess_n_per_m", off() * stiffness[i],
+                        i, i + 1);
+    text +=
+        fmt::format(unknown, "c", i + 1, "storey_damping", 1.0, "guess_n_s_per_m", off() * dashpot, i, i + 1);
   }
   Experiment e = read_experiment(TomlTable::parse(text, "test.toml"));
   e.reduction = parse_reduction("none", "test");
