@@ -17,6 +17,7 @@
 #include <new>
 
 #include "experiments/record/apart_pipe.hpp"
+#include "experiments/text/clean_text.hpp"
 #include "experiments/text/memory_need.hpp"
 
 namespace beamid::experiments {
@@ -101,7 +102,7 @@ bool receive(PipeReceiver& in, const ReadingLimits& limits, CollectedSignals& si
 /// The error of `what`, which begins with the file's name already.
 InputError refusal(const std::string& file, const std::string& what) {
   const std::string start = file + ": ";
-  return InputError({file}, what.starts_with(start) ? what.substr(start.size()) : what);
+  return InputError({file}, clean_text(what.starts_with(start) ? what.substr(start.size()) : what));
 }
 
 int wait_for(pid_t child) {

@@ -60,6 +60,13 @@ FirstOrder first_order(ModelCheck& check) {
   return result;
 }
 
+/// Of a sum of squares: causes that are one and the same to these modes differ by rounding only, and stay in
+/// the order of the catalogue.
+double rank_of(double squares) {
+  constexpr double same = 1e-6;  // in ln
+  return std::round(std::log(squares) / same);
+}
+
 /// Those that come nearest at first order; all where there are few.
 std::vector<std::vector<std::size_t>> pairs_to_fit(const FirstOrder& at, ModelCheck& check) {
   std::vector<std::pair<double, std::vector<std::size_t>>> pairs;
@@ -68,7 +75,7 @@ std::vector<std::vector<std::size_t>> pairs_to_fit(const FirstOrder& at, ModelCh
       MatrixXd both(at.residual.size(), 2);
       both << at.slopes.col(static_cast<Index>(b)), at.slopes.col(static_cast<Index>(a));
       const VectorXd left = at.residual - both * both.completeOrthogonalDecomposition().solve(at.residual);
-      pairs.push_back({left.squaredNorm(), {b, a}});
+      pairs.push_back({rank_of(left.squaredNorm()), {b, a}});
     }
   check.possible_pairs = pairs.size();
   if (pairs.size() > most_fitted_pairs) {
@@ -77,7 +84,7 @@ std::vector<std::vector<std::size_t>> pairs_to_fit(const FirstOrder& at, ModelCh
     pairs.resize(most_fitted_pairs);
   }
   std::vector<std::vector<std::size_t>> result;
-  for (auto& [left, pair] : pairs) result.push_back(std::move(pair));
+  for (auto& [rank, pair] : pairs) result.push_back(std::move(pair));
   return result;
 }
 
@@ -86,7 +93,7 @@ std::vector<Explanation> explanations(const ModelCheck& check,
   std::vector<Explanation> all(causes.size());
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i] = explain(check, causes[i]); });
   std::stable_sort(all.begin(), all.end(), [](const Explanation& a, const Explanation& b) {
-    return std::pair(a.verdict, a.chi_square) < std::pair(b.verdict, b.chi_square);
+    return std::pair(a.verdict, rank_of(a.chi_square)) < std::pair(b.verdict, rank_of(b.chi_square));
   });
   return all;
 }

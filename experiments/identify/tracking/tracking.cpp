@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -28,19 +29,33 @@ struct Levels {
   double output_share = std::numeric_limits<double>::infinity();  // standard error of the output's
 };
 
+// The likelihood may have a maximum where force moves the mode and another where its stiffness wanders: the
+// search begins at both, and goes on where it has come highest.
 Levels tuned(const Ringing& ringing, const filters::Measurements& span, const filters::Gaussian& initial,
              const TrackSettings& settings) {
-  const double force = 0.1 * typical_force(ringing);
+  constexpr int first_iterations = 8, iterations = 60;
+  const auto make_filter = [&](const filters::Noise& noise) { return ringing_filter(ringing, noise); };
   filters::NoiseSettings search;
-  search.guess = ringing_noise(ringing, ringing.noise, force, settings.walk.value_or(first_walk));
   search.process_groups = {{ringing::slope}};
   if (!settings.walk) search.process_groups.push_back({ringing::stiffness, ringing::damping});
-  search.max_iterations = 25;
+  search.max_iterations = first_iterations;
   search.tolerance = 1e-3;
-  const filters::NoiseEstimate found = filters::estimate_noise(
-      [&](const filters::Noise& noise) { return ringing_filter(ringing, noise); }, initial, span, search);
-  if (found.status == filters::NoiseStatus::failed) return {search.guess};
-  return {found.noise, found.relative_deviations[0]};
+  std::vector<double> walks{first_walk, 0.01 * first_walk};
+  if (settings.walk) walks = {*settings.walk};
+  std::optional<filters::NoiseEstimate> best;
+  for (const double walk : walks)
+    for (const double share : {0.1, 1.0}) {
+      search.guess = ringing_noise(ringing, ringing.noise, share * typical_force(ringing), walk);
+      filters::NoiseEstimate found = filters::estimate_noise(make_filter, initial, span, search);
+      if (found.status == filters::NoiseStatus::failed) continue;
+      if (!best || found.log_likelihood > best->log_likelihood) best = std::move(found);
+    }
+  if (!best) return {ringing_noise(ringing, ringing.noise, 0.1 * typical_force(ringing), walks.front())};
+  search.guess = best->noise;
+  search.max_iterations = iterations;
+  const filters::NoiseEstimate found = filters::estimate_noise(make_filter, initial, span, search);
+  if (found.status != filters::NoiseStatus::failed) best = found;
+  return {best->noise, best->relative_deviations[0]};
 }
 
 std::vector<filters::Gaussian> smoothed(const Ringing& ringing, const filters::Measurements& span,
@@ -80,11 +95,20 @@ void compare_with_modal_analysis(const Ringing& ringing, Plateau& plateau) {
   } catch (const std::exception&) {
     return;  // too short, or no decay of constant stiffness: the plateau stands alone
   }
+  // By what exceeds them: where it is about as large, rounding must not decide on the interval.
   const auto widen = [](double difference, double& deviation) {
-    if (std::abs(difference) > beyond * deviation) deviation = std::hypot(deviation, difference);
+    const double excess = difference * difference - std::pow(beyond * deviation, 2);
+    deviation = std::sqrt(deviation * deviation + std::max(0.0, excess));
   };
   widen(plateau.frequency_hz - plateau.modal_frequency_hz, plateau.frequency_deviation_hz);
   widen(plateau.damping_ratio - plateau.modal_damping_ratio, plateau.damping_ratio_deviation);
+}
+
+// A walk [1/sqrt(s)] of ln K, or zero where over the span [s] it moves it by next to nothing beside the
+// deviation of the mean: the likelihood is flat there, and rounding would be printed.
+double told(double walk, double span, double deviation) {
+  constexpr double next_to_nothing = 0.1;
+  return walk * std::sqrt(span) < next_to_nothing * deviation ? 0.0 : walk;
 }
 
 Plateau plateau_of(const Ringing& ringing, const std::vector<filters::Gaussian>& beliefs, Index first,
@@ -107,7 +131,9 @@ Plateau plateau_of(const Ringing& ringing, const std::vector<filters::Gaussian>&
   compare_with_modal_analysis(ringing, plateau);
   plateau.noise = std::sqrt(levels.noise.output(0, 0));
   plateau.noise_relative_deviation = levels.output_share;
-  plateau.walk = std::sqrt(levels.noise.process(ringing::stiffness, ringing::stiffness) / ringing.interval);
+  plateau.walk =
+      told(std::sqrt(levels.noise.process(ringing::stiffness, ringing::stiffness) / ringing.interval), span,
+           2.0 * plateau.frequency_deviation_hz / plateau.frequency_hz);
   plateau.force = std::sqrt(levels.noise.process(ringing::slope, ringing::slope) / ringing.interval);
   return plateau;
 }

@@ -106,14 +106,15 @@ bool add_conclusions(const ModelCheck& check, const std::vector<Explanation>& al
   return !explains.empty();
 }
 
-/// How near the best come where none explains: of all, and of those that are plausible.
+/// How near the best come where none explains: of all, and of those that are plausible. `all` begins with the
+/// best.
 void tell_best(const ModelCheck& check, const std::vector<Explanation>& all, const char* kind,
                std::vector<std::string>& sentences) {
   const Explanation *best = nullptr, *plausible = nullptr;
   for (const Explanation& one : all) {
     if (one.verdict != ExplanationVerdict::leaves_much) continue;
-    if (!best || one.chi_square < best->chi_square) best = &one;
-    if (one.plausible && (!plausible || one.chi_square < plausible->chi_square)) plausible = &one;
+    if (!best) best = &one;
+    if (one.plausible && !plausible) plausible = &one;
   }
   const auto text = [&](const Explanation& e, const char* which) {
     return fmt::format(
