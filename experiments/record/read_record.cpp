@@ -65,9 +65,17 @@ void check_stamps(const Stamps& stamps, double rate) {
   }
 }
 
-Eigen::VectorXd counted(double start, double interval, std::size_t size) {
+Eigen::VectorXd counted(double start, double interval, std::size_t size, const std::string& file) {
   const auto count = static_cast<Eigen::Index>(size);
-  return start + Eigen::ArrayXd::LinSpaced(count, 0, static_cast<double>(size - 1)) * interval;
+  Eigen::VectorXd times =
+      start + Eigen::ArrayXd::LinSpaced(count, 0, static_cast<double>(size - 1)) * interval;
+  if (!((times.tail(count - 1) - times.head(count - 1)).minCoeff() > 0.0))
+    throw InputError(
+        {file},
+        fmt::format(
+            "begins at {:g} s, where an interval of {:g} s is lost in rounding; expected times that increase",
+            start, interval));
+  return times;
 }
 
 /// The instants (N) [s].
@@ -76,14 +84,14 @@ Eigen::VectorXd instants(const Stamps& stamps) {
   const std::size_t size = table.rows();
   const std::optional<double>& rate = stamps.format->sampling_rate;
   if (!stamps.column) {
-    if (!table.clock) return counted(0, 1 / *rate, size);
+    if (!table.clock) return counted(0, 1 / *rate, size, table.file);
     if (rate) check_interval(table.clock->interval, *rate, table.file);
-    return counted(table.clock->start, rate ? 1 / *rate : table.clock->interval, size);
+    return counted(table.clock->start, rate ? 1 / *rate : table.clock->interval, size, table.file);
   }
   const std::vector<double>& times = stamps.values();
   if (rate) {
     check_stamps(stamps, *rate);
-    return counted(times[0] * stamps.factor(), 1 / *rate, size);
+    return counted(times[0] * stamps.factor(), 1 / *rate, size, table.file);
   }
   auto fault = find_order_fault(times);
   if (!fault && !(stamps.format->irregular && stamps.show_intervals()))

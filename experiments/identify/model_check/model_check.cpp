@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <tuple>

@@ -165,6 +165,16 @@ TEST(Uff58Reader, RefusesWhatItCannotRead) {
       "volts.uff: no unit says what is measured: '1:+Z' [V]; expected record.channels in the configuration");
 }
 
+TEST(Uff58Reader, RefusesABeginningSoLateThatItsIntervalIsLost) {
+  std::string late = ascii_58(1, 4, true, "g", first_signal);
+  const std::string beginning = printed("%13.5e", 0.0);
+  late.replace(late.find(beginning), beginning.size(), printed("%13.5e", 5e14));
+  const TemporaryFile file("late.uff", late);
+  EXPECT_EQ(input_error_of(file, [&] { read_record(file.path()); }),
+            "late.uff: begins at 5e+14 s, where an interval of 0.01 s is lost in rounding; expected times "
+            "that increase");
+}
+
 TEST(Uff58Reader, ReadsOrRefusesDamagedFiles) {
   expect_read_or_refused("fuzz.uff",
                          ascii_58(1, 4, true, "g", first_signal) + ascii_58(2, 2, false, "N", second_signal),
