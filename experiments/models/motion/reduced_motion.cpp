@@ -71,8 +71,8 @@ class Evaluation {
       throw std::runtime_error("the parameters leave a mode without mass");
     damping_ += at_.mass_damping * mass_ + at_.stiffness_damping * stiffness_;
     for (std::size_t i = 0; i < given.damped_modes.size(); ++i) {
-      const ModeDamping& mode =
-          modes_.emplace_back(damping_at(given.damped_modes[i], at_.change, at_.ratios[static_cast<Index>(i)]));
+      const ModeDamping& mode = modes_.emplace_back(
+          damping_at(given.damped_modes[i], at_.change, at_.ratios[static_cast<Index>(i)]));
       products_.add_outer(mode.factor * mode.momentum, mode.momentum, damping_);
     }
     if (decoupled) return;
