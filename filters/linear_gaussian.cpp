@@ -4,6 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "filters/algorithms/covariance_steps.hpp"
+#include "filters/innovation.hpp"
+
 namespace beamid::filters {
 namespace {
 
@@ -37,14 +40,16 @@ KalmanStep step_at(const LinearGaussian& model, const MatrixXd& covariance, std:
   return step;
 }
 
-// P of the next sample, by Joseph's form [bucy1968].
+// P of the next sample.
 MatrixXd next_covariance(const LinearGaussian& model, const KalmanStep& step) {
   const MatrixXd h = model.h(step.seen, Eigen::all), r = model.r(step.seen, step.seen);
-  MatrixXd kept = -step.gain * h;
-  kept.diagonal().array() += 1.0;
-  const MatrixXd after = kept * step.covariance * kept.transpose() + step.gain * r * step.gain.transpose();
-  const MatrixXd next = model.a * after * model.a.transpose() + model.q;
-  return 0.5 * (next + next.transpose());
+  algorithms::CovarianceSteps<double, Eigen::Dynamic, Eigen::Dynamic> steps;
+  MatrixXd next = step.covariance;
+  steps.reduce(step.gain, h, r, next);
+  steps.carry(model.a, next);
+  next += model.q;
+  symmetrise(next);
+  return next;
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ void compare_with_modal_analysis(const Ringing& ringing, Plateau& plateau) {
 
 // A walk [1/sqrt(s)] of ln K, or zero where over the span [s] it moves it by next to nothing beside the
 // deviation of the mean: the likelihood is flat there, and rounding would be printed.
-double told(double walk, double span, double deviation) {
+double significant_walk(double walk, double span, double deviation) {
   constexpr double next_to_nothing = 0.1;
   return walk * std::sqrt(span) < next_to_nothing * deviation ? 0.0 : walk;
 }
@@ -131,9 +131,9 @@ Plateau plateau_of(const Ringing& ringing, const std::vector<filters::Gaussian>&
   compare_with_modal_analysis(ringing, plateau);
   plateau.noise = std::sqrt(levels.noise.output(0, 0));
   plateau.noise_relative_deviation = levels.output_share;
-  plateau.walk =
-      told(std::sqrt(levels.noise.process(ringing::stiffness, ringing::stiffness) / ringing.interval), span,
-           2.0 * plateau.frequency_deviation_hz / plateau.frequency_hz);
+  plateau.walk = significant_walk(
+      std::sqrt(levels.noise.process(ringing::stiffness, ringing::stiffness) / ringing.interval), span,
+      2.0 * plateau.frequency_deviation_hz / plateau.frequency_hz);
   plateau.force = std::sqrt(levels.noise.process(ringing::slope, ringing::slope) / ringing.interval);
   return plateau;
 }

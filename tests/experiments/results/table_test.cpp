@@ -70,7 +70,6 @@ TEST(Table, PrintsNumbersToTheRightTextsToTheLeftAndNanAsDash) {
             "Damping ratios are assumed.\n");
 }
 
-// Oracle: written by hand. Units in brackets stay in one piece.
 TEST(Table, PrintsNoSignOfWhatIsPrintedAsZero) {
   Table table{"errors"};
   table.column({"e", "error", "{:+.2f}"}).column({"d", "difference", "{:.2f}"}).column({"l", "limit"});
@@ -82,6 +81,7 @@ TEST(Table, PrintsNoSignOfWhatIsPrintedAsZero) {
             "0.00  -0.01  -inf\n");
 }
 
+// Oracle: written by hand. Units in brackets stay in one piece.
 TEST(Table, BreaksHeadingsBeforeAnythingElse) {
   Table table{"wide", ""};
   for (int i = 0; i < 9; ++i) table.column({"long heading [N s/m]", "key", "{:.1f}", {1.0}});

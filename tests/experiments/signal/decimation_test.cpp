@@ -44,7 +44,6 @@ TEST(Decimation, RefusesTooShortASignal) {
   EXPECT_THROW(decimate(Eigen::VectorXd::Ones(100), interval, 0), std::invalid_argument);
 }
 
-// Oracle: the sine's own frequency; a tenth of a bin is the parabola's error.
 // A frequency far below what the record can show asks for more than all samples, and more than an int holds.
 TEST(Decimation, LeavesASampleAtLeast) {
   EXPECT_EQ(decimation_factor(7.9, 100), 7);
@@ -53,6 +52,7 @@ TEST(Decimation, LeavesASampleAtLeast) {
   EXPECT_EQ(decimation_factor(1e30, 0), 1);
 }
 
+// Oracle: the sine's own frequency; a tenth of a bin is the parabola's error.
 TEST(Spectrum, FindsTheStrongestFrequency) {
   Eigen::VectorXd signal =
       damped_oscillation(1, Complex(-0.1, 2 * std::numbers::pi * 13.37), interval, 5000) +
