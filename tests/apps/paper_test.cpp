@@ -78,17 +78,6 @@ TEST(PaperJson, HoldsFiveBeamsWithEveryKey) {
   EXPECT_THAT(names, ElementsAre("S(0.65)", "S(11.8)", "S(43.8)", "S(76.3)", "S(119.3)"));
 }
 
-TEST(PaperText, TellsTheFindingFirstAndFitsATerminal) {
-  const Outcome outcome = Workplace().run("paper --trials 4");
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.err, IsEmpty());
-  EXPECT_THAT(outcome.out, StartsWith("The finding\n===========\n"));
-  for (const char* text : {"Table 1.", "Table 2.", "Table 3.", "Table 4.", "Table 5.", "6.41 %", "10^+5"})
-    EXPECT_THAT(outcome.out, HasSubstr(text));
-  std::istringstream lines(outcome.out);
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u) << line;  // bytes
-}
-
 class PaperFiles : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -127,6 +116,15 @@ TEST_F(PaperFiles, AreTheWholeSet) {
     EXPECT_GT(fs::file_size(place_->folder() / "one" / file), 0u);
 }
 
+TEST_F(PaperFiles, ComeWithATextThatTellsTheFindingFirstAndFitsATerminal) {
+  EXPECT_THAT(first_.err, IsEmpty());
+  EXPECT_THAT(first_.out, StartsWith("The finding\n===========\n"));
+  for (const char* text : {"Table 1.", "Table 2.", "Table 3.", "Table 4.", "Table 5.", "6.41 %", "10^+5"})
+    EXPECT_THAT(first_.out, HasSubstr(text));
+  std::istringstream lines(first_.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u) << line;  // bytes
+}
+
 TEST_F(PaperFiles, AreThoseThatResultsJsonLists) {
   const json results = json::parse(contents(place_->folder() / "one" / "results.json"));
   EXPECT_EQ(results.at("files").get<std::vector<std::string>>(), files_in("one"));
@@ -155,30 +153,6 @@ TEST_F(PaperFiles, AreNotReplacedWithoutForce) {
       refused.first_error_line(),
       "beamid: output folder 'one' is not empty; choose another one, or replace its results with --force");
   EXPECT_EQ(json::parse(contents(place_->folder() / "one" / "results.json")).at("seed"), 2009);
-}
-
-TEST(Paper, ReplacesItsOwnFilesWithForceAndNothingElse) {
-  Workplace place;
-  fs::create_directory(place.folder() / "notes");
-  place.write("notes/mine.txt", "keep");
-  const Outcome refused = place.run("paper --trials 4 --out notes --force");
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_EQ(
-      refused.first_error_line(),
-      "beamid: output folder 'notes' holds no results.json of beamid; --force replaces only earlier results");
-  EXPECT_THAT(place.files(), ElementsAre("notes", "notes/mine.txt"));
-
-  ASSERT_EQ(place.run("paper --trials 2 --out results").code, 0);
-  ASSERT_EQ(place.run("paper --trials 2 --seed 1 --out results --force").code, 0);
-  EXPECT_EQ(json::parse(contents(place.folder() / "results" / "results.json")).at("seed"), 1);
-}
-
-TEST(Paper, KeepsItsResultsWhenFiguresCannotBeDrawn) {
-  Workplace place;
-  const Outcome outcome = place.run("paper --trials 2 --out new/results", "PATH=/nowhere");
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("figures are not drawn: gnuplot is missing"));
-  EXPECT_TRUE(fs::exists(place.folder() / "new/results/results.json"));
 }
 
 TEST(Paper, OtherSeedsGiveOtherNoiseButTheSameOscillator) {

@@ -1,6 +1,7 @@
 #include "tests/apps/quoted.hpp"
 
 #include <cstdio>
+#include <map>
 
 namespace beamid::apps {
 
@@ -11,8 +12,11 @@ void expect_quoted(const std::string& words) {
   EXPECT_NE(document.find(words), std::string::npos) << "docs/study.md does not say: " << words;
 }
 
-json found_by(const std::string& command) {
-  return json::parse(Workplace().run(command + " --json").out);
+const json& found_by(const std::string& command) {
+  static std::map<std::string, json> found;  // several tests quote the same command
+  const auto [place, is_new] = found.try_emplace(command);
+  if (is_new) place->second = json::parse(Workplace().run(command + " --json").out);
+  return place->second;
 }
 
 std::string written(double value, const char* format) {

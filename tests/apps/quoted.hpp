@@ -7,8 +7,8 @@ namespace beamid::apps {
 
 void expect_quoted(const std::string& words);
 
-/// What the command prints with --json.
-nlohmann::json found_by(const std::string& command);
+/// What the command prints with --json; run once.
+const nlohmann::json& found_by(const std::string& command);
 
 /// "+6.41411": as the document writes it.
 std::string written(double value, const char* format);

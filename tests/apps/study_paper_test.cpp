@@ -10,13 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-const json& paper_results() {
-  static const json results = found_by("paper");
-  return results;
-}
-
 TEST(StudyDocument, QuotesWhatPaperFinds) {
-  const json& results = paper_results();
+  const json& results = found_by("paper");
   expect_quoted("Version " + results.at("version").get<std::string>() + ",\nseed " +
                 results.at("seed").dump());
   const json& table = results.at("table2");
@@ -47,8 +42,8 @@ TEST(StudyDocument, QuotesWhatPaperFinds) {
 // Oracle: the reference K = Meq w1^2 against 3EI/L^3, and against the mode's own mass; the shape 1 - cos has
 // the mass (3/2 - 4/pi) m.
 TEST(StudyDocument, MapsTheReferencesOfStiffness) {
-  const json masses = found_by("budget").at("beams");
-  const json& beams = paper_results().at("beams");
+  const json& masses = found_by("budget").at("beams");
+  const json& beams = found_by("paper").at("beams");
   const double own = masses.at(1).at("mass_kg"), equivalent = beams.at(1).at("equivalent_mass_kg"),
                stiffness = beams.at(1).at("reference_stiffness_n_per_m"),
                static_stiffness = 3.0 * 2.12e11 * 0.06 * std::pow(0.006, 3) / 12.0 / std::pow(1.1, 3);
@@ -69,7 +64,7 @@ TEST(StudyDocument, MapsTheReferencesOfStiffness) {
 }
 
 TEST(StudyDocument, QuotesHowSpecificTheDigitsAre) {
-  const json& cases = paper_results().at("generator_and_filter");
+  const json& cases = found_by("paper").at("generator_and_filter");
   int printing = 0;
   for (const json& one : cases) {
     if (!one.at("prints_the_published_digits")) continue;
@@ -83,23 +78,23 @@ TEST(StudyDocument, QuotesHowSpecificTheDigitsAre) {
 }
 
 TEST(StudyDocument, QuotesTheBiasAgainstTheCovariances) {
-  const json& cases = paper_results().at("covariances");
+  const json& cases = found_by("paper").at("covariances");
   for (const json& one : cases)
     expect_quoted("| " + written(one.at("damping_error_percent"), "%+.3f") + " |");
   const double truth = 2.0 * 0.1 * std::sqrt(515.8 * 3.0);
   expect_quoted(
       "C_f - C = K dt (1 - 4 xi^2) / 2: " +
       written(
-          100.0 * (paper_results().at("step_by_step").at("damping_n_s_per_m").get<double>() / truth - 1.0),
+          100.0 * (found_by("paper").at("step_by_step").at("damping_n_s_per_m").get<double>() / truth - 1.0),
           "%+.3f") +
       " %");
   expect_quoted("stays at " +
-                written(paper_results().at("printed_initial_variance").at("stiffness_n_per_m"), "%.4f") +
+                written(found_by("paper").at("printed_initial_variance").at("stiffness_n_per_m"), "%.4f") +
                 " N/m");
 }
 
 TEST(StudyDocument, QuotesThePredictionsThatNeedNoDampingRatio) {
-  const json& list = paper_results().at("predictions");
+  const json& list = found_by("paper").at("predictions");
   expect_quoted(row_of(column_of(list, json::json_pointer("/damping_difference_n_s_per_m")), "%.3f"));
   expect_quoted(row_of(column_of(list, json::json_pointer("/damping_ratio_difference"), 100.0), "%.3f"));
   expect_quoted(row_of(column_of(list, json::json_pointer("/least_damping_error_percent")), "%.0f"));
@@ -113,7 +108,7 @@ TEST(StudyDocument, QuotesThePredictionsThatNeedNoDampingRatio) {
 }
 
 TEST(StudyDocument, QuotesWhatTheInnovationsShow) {
-  for (const json& one : paper_results().at("two_channels")) {
+  for (const json& one : found_by("paper").at("two_channels")) {
     const json &nis = one.at("mean_nis"), &lag = one.at("lag_one_correlation");
     const double euler = nis.at("forward_euler"), exact = nis.at("exponential");
     if (one.at("observed") == "x") {
@@ -127,7 +122,7 @@ TEST(StudyDocument, QuotesWhatTheInnovationsShow) {
 }
 
 TEST(StudyDocument, QuotesTheLotteryOnTheLightestBeam) {
-  const json& results = paper_results();
+  const json& results = found_by("paper");
   for (const char* scheme : {"exponential", "forward_euler"})
     expect_quoted(row_of(column_of(results.at("start_sample"),
                                    json::json_pointer(std::string("/") + scheme + "/damping_error_percent")),
@@ -191,7 +186,7 @@ TEST(StudyDocument, QuotesTheLotteryOnTheLightestBeam) {
 }
 
 TEST(StudyDocument, QuotesTheAlternatives) {
-  for (const json& one : paper_results().at("alternatives")) {
+  for (const json& one : found_by("paper").at("alternatives")) {
     const auto values = one.at("damping_error_percent").get<std::vector<double>>(),
                noisy = one.at("with_process_noise_damping_error_percent").get<std::vector<double>>();
     const auto [least, largest] = std::minmax_element(values.begin(), values.end());
@@ -208,7 +203,7 @@ TEST(StudyDocument, QuotesTheAlternatives) {
 }
 
 TEST(StudyDocument, QuotesTheStepsOfASimulatedRecord) {
-  const json& step = paper_results().at("step_size");
+  const json& step = found_by("paper").at("step_size");
   const json &first = step.at("steps").front(), &last = step.at("steps").back();
   const auto percent = [](const json& one) { return written(100.0 * one.get<double>(), "%.4f"); };
   expect_quoted(percent(first.at("forward_euler_damping_ratio")) + " to " +

@@ -26,7 +26,7 @@ TEST(StudyDocument, QuotesTheBiasOfAHeldForce) {
 // digits (docs/theory/filter_table.md).
 TEST(StudyDocument, QuotesWhatEfficiencyFinds) {
   double least = 1.0, largest = 1.0;
-  const json found = found_by("efficiency --filter ekf --passes lengthening");
+  const json& found = found_by("efficiency --filter ekf --passes lengthening");
   ASSERT_EQ(found.at("cases").size(), 3u);
   for (const json& one : found.at("cases"))
     for (const char* parameter : {"stiffness", "damping"}) {
@@ -41,7 +41,7 @@ TEST(StudyDocument, QuotesWhatEfficiencyFinds) {
 
 TEST(StudyDocument, QuotesWhatNoiseFinds) {
   double displaced = 0.0, accelerated = 0.0, struck = 0.0, least = 1e9, largest = 0.0;
-  const json found = found_by("noise");
+  const json& found = found_by("noise");
   for (const json& one : found.at("cases")) {
     const double error = one.at("white").at("damping_rms_error_percent");
     const std::string observed = one.at("observed");
@@ -62,7 +62,7 @@ TEST(StudyDocument, QuotesWhatNoiseFinds) {
 }
 
 TEST(StudyDocument, QuotesWhatBudgetFinds) {
-  const json beams = found_by("budget").at("beams"), &beam = beams.at(1), &light = beams.at(0);
+  const json &beams = found_by("budget").at("beams"), &beam = beams.at(1), &light = beams.at(0);
   ASSERT_EQ(beam.at("name"), "S(11.8)");
   const auto percent = [](const json& one, const char* parameter) {
     return one.at(std::string(parameter) + "_percent").get<double>();
@@ -102,8 +102,8 @@ TEST(StudyDocument, QuotesWhatIdentifyFinds) {
       {"massa2", "massa2_test1-2", "massa2, 0.808-1.608", "14.40", "1.39"},
       {"massa3", "massa3_test2-3", "massa3, 0.707-1.307", "19.86", "1.76"}};
   for (const auto& row : rows) {
-    const json found = found_by("identify '" + (records / (row[1] + ".txt")).string() + "' --config '" +
-                                (experiments / (row[0] + ".toml")).string() + "'");
+    const json& found = found_by("identify '" + (records / (row[1] + ".txt")).string() + "' --config '" +
+                                 (experiments / (row[0] + ".toml")).string() + "'");
     const auto with_interval = [&](const char* parameter, double scale) {
       const json& one = found.at(parameter);
       return written(scale * one.at("estimate").get<double>(), "%.3f") + " (" +
@@ -126,9 +126,9 @@ TEST(StudyDocument, QuotesWhatIdentifyFinds) {
 TEST(StudyDocument, QuotesTheStepsOfAMeasuredRecord) {
   const fs::path record = source("../shared/data/unb-tip-mass/massa1_test1-1.txt");
   if (!fs::exists(record)) GTEST_SKIP() << "the measured records are not here";
-  const json found = found_by("steps '" + record.string() + "' --config '" +
-                              source("docs/tutorials/03_your_own_file/massa1.toml").string() +
-                              "' --discretisation forward_euler");
+  const json& found = found_by("steps '" + record.string() + "' --config '" +
+                               source("docs/tutorials/03_your_own_file/massa1.toml").string() +
+                               "' --discretisation forward_euler");
   const json &exact = found.at("schemes").at(0), &euler = found.at("schemes").at(1);
   const auto each = [](const json& scheme, const char* pointer, double scale) {
     json values;

@@ -142,5 +142,22 @@ TEST_F(CommandLine, IsRecordedWithoutWhereItsResultsWent) {
   EXPECT_THAT(page, HasSubstr("beamid modes --modes 3<"));
 }
 
+// Results are replaced with --force, and nothing else is.
+TEST(OutputFolder, IsReplacedOnlyWhereItHoldsResults) {
+  Workplace place;
+  fs::create_directory(place.folder() / "notes");
+  place.write("notes/mine.txt", "keep");
+  const Outcome refused = place.run("modes --out notes --force");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(
+      refused.first_error_line(),
+      "beamid: output folder 'notes' holds no results.json of beamid; --force replaces only earlier results");
+  EXPECT_THAT(place.files(), testing::ElementsAre("notes", "notes/mine.txt"));
+
+  ASSERT_EQ(place.run("modes --modes 3 --out results").code, 0);
+  ASSERT_EQ(place.run("modes --modes 2 --out results --force").code, 0);
+  EXPECT_EQ(nlohmann::json::parse(contents(place.folder() / "results/results.json")).at("modes").size(), 2);
+}
+
 }  // namespace
 }  // namespace beamid::apps::words_test
