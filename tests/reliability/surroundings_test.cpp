@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <ctime>
+
 #include "tests/reliability/shell.hpp"
 
 namespace beamid::reliability::surroundings_test {
@@ -97,6 +99,23 @@ TEST_F(Surroundings, NoHomeNoEnvironmentAndDecimalCommasChangeNothing) {
   EXPECT_EQ(contents(place_.folder() / "number"), "1,5");
   ASSERT_EQ(german.code, 0) << german.err;
   expect_same("plain", "german");
+}
+
+// Oracle: the run beside a clock that goes on; date shows that this one does not.
+TEST_F(Surroundings, AClockThatJumpsChangesNothing) {
+  if (sanitized) GTEST_SKIP() << "under sanitizers";
+  const Outcome dates = shell(place_, "export LD_PRELOAD='" BEAMID_JUMPING_CLOCK "'\ndate +%s; date +%s%N");
+  ASSERT_GT(std::stoll(dates.out), 86400 * 39 + static_cast<long long>(std::time(nullptr)));
+  fs::copy(apps::source("docs/tutorials/13_sweeps/rig.toml"), place_.folder());
+  for (const std::string words : {"identify --config cantilever.toml", "sweep --config rig.toml --seeds 3"}) {
+    fs::remove_all(place_.folder() / "plain");
+    fs::remove_all(place_.folder() / "leapt");
+    ASSERT_EQ(shell(place_, "\"$beamid\" " + words + " --out plain").code, 0);
+    const Outcome leapt =
+        shell(place_, "LD_PRELOAD='" BEAMID_JUMPING_CLOCK "' \"$beamid\" " + words + " --out leapt");
+    ASSERT_EQ(leapt.code, 0) << leapt.err;
+    expect_same("plain", "leapt");
+  }
 }
 
 TEST_F(Surroundings, PathsMayHoldWhatAShellTakesForACommand) {
