@@ -67,6 +67,7 @@ int run_compare(const Values& values) {
   const fs::path folder = source.config.parent_path();
   std::vector<fs::path> file;
   if (!values.has("truth")) file = record_files(values, source.config, source.experiment.record_file);
+  int code = 0;
   deliver(values, [&] {
     return blame_config(source, [&] {
       const Progress progress = show_progress(values);
@@ -77,14 +78,11 @@ int run_compare(const Values& values) {
         IdentificationRequest request{file[0], source.experiment, {}, {}};
         request.prepared = read_and_prepare(file[0], source.experiment.format);
         cut_decay(request);
-        if (source.experiment.reductions.size() == 1) {  // the question that identify would ask
-          request.experiment.reduction = source.experiment.reductions[0];
-          keep_out_higher_modes(request);
-        }
+        keep_out_higher_modes(request, source.experiment.reductions);  // as identify would
         source.experiment.format = request.experiment.format;
         prepared = request.as_analysed();
         decisions = request.decisions();
-        compared = measured_record(file[0].filename().string(), request.prepared.record);
+        compared = request.compared();
       } else if (values.has("truth")) {
         const fs::path truth = values.text("truth");
         compared = simulated_record(read_experiment(truth), truth.parent_path(), progress);
@@ -97,10 +95,11 @@ int run_compare(const Values& values) {
           report(source.experiment, compare(source.experiment, std::move(compared), folder, progress));
       for (const std::string& text : decisions) results.paragraph(text);
       if (!file.empty()) tell_preparation(results, prepared, source.experiment.format);
+      code = exit_code(results);
       return results;
     });
   });
-  return 0;
+  return code;
 }
 
 }  // namespace
@@ -114,7 +113,11 @@ Command compare_command() {
           "  beamid compare --config cantilever.toml --out results\n"
           "  beamid compare tip.csv --config cantilever.toml --reduction none --reduction rayleigh\n"
           "  beamid compare --config believed.toml --truth damaged.toml --filter ekf --filter ukf\n",
-          run_compare};
+          run_compare,
+          "",
+          "3  no run has an estimate to rely on, and \"status\" in results.json says why: the first one "
+          "\"diverged\" "
+          "or is \"contradicted\".\n"};
 }
 
 }  // namespace beamid::apps

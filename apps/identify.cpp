@@ -11,7 +11,6 @@
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/joint_comparison.hpp"
 #include "experiments/identify/joint_identification.hpp"
-#include "experiments/identify/noise_source.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/studies/compare/clock_report.hpp"
@@ -30,18 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace experiments;
 
-ComparedRecord compared_record(const IdentifyRequest& one) {
-  ComparedRecord compared = measured_record(one.file.filename().string(), one.prepared.record);
-  const Experiment& experiment = one.experiment;
-  if (experiment.noise_method.name == "before_event")  // of the whole record behind its preparation
-    compared.quiet_noise = at_place(experiment.noise_method.place, [&] {
-      return noise_before_event(prepare(one.prepared.raw, experiment.format.preparation));
-    });
-  return compared;
-}
-
 Comparison identified(const IdentifyRequest& one, const fs::path& folder, const Progress& progress) {
-  return identify_with_model(one.experiment, compared_record(one), folder, progress);
+  return identify_with_model(one.experiment, one.compared(), folder, progress);
 }
 
 /// K and C of a free decay have a report of their own. @throws where no mode is near the beam's, or the model

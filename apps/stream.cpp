@@ -100,6 +100,8 @@ void tell_end(const StreamedIdentification& stream, bool failed) {
     std::cerr << "The filter failed and the stream ended there; --on-failure inflate goes on.\n";
   else if (!stream.watch().settled() && stream.watch().starts() > 0)
     std::cerr << "The estimates had not settled at the end: they are not to be used.\n";
+  else if (!stream.reliable())
+    std::cerr << "The estimates are wrong as those of the earlier record are: they are not to be used.\n";
 }
 
 OptionGroup stream_options() {
@@ -125,6 +127,7 @@ int run_stream(const Values& values) {
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
   tell(implausible(experiment));
   tell_preparation(experiment, earlier);
+  tell(stream.news());
   if (values.has("save-state")) {
     at_place(experiment.filter.place, [&] { stream.check_can_be_saved(); });
     require_replaceable(values.text("save-state"));
@@ -152,7 +155,7 @@ int run_stream(const Values& values) {
     std::cout << std::flush;
     std::raise(signal);
   }
-  return failed ? 1 : 0;
+  return failed ? 1 : stream.reliable() ? 0 : 3;
 }
 
 }  // namespace
@@ -176,7 +179,8 @@ Command stream_command() {
       "settling, settled, left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
       "first example the higher modes of the release keep the filter from it until 2.4 s.\n"
       "[[record.prepare]] prepares the earlier record; samples are expected to arrive as it leaves them.\n",
-      "1  the filter failed as well\n"};
+      "1  the filter failed as well\n3  the earlier record, identified with this experiment, has no estimate "
+      "to rely on: nor has the stream\n"};
 }
 
 }  // namespace beamid::apps

@@ -6,7 +6,9 @@
 #include "experiments/identify/decay_window.hpp"
 #include "experiments/identify/higher_modes.hpp"
 #include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/noise_source.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/text/method_choice.hpp"
 
 namespace beamid::experiments {
 
@@ -19,6 +21,15 @@ PreparedRecord IdentificationRequest::as_analysed() const {
   if (const std::string remark = analysable(prepared.record).remark; !remark.empty())
     result.record.remarks.push_back("For the modal analysis and first estimates: " + remark);
   return result;
+}
+
+ComparedRecord IdentificationRequest::compared() const {
+  ComparedRecord record = measured_record(file.filename().string(), prepared.record);
+  if (experiment.noise_method.name == "before_event")  // of the whole record behind its preparation
+    record.quiet_noise = at_place(experiment.noise_method.place, [&] {
+      return noise_before_event(prepare(prepared.raw, experiment.format.preparation));
+    });
+  return record;
 }
 
 std::vector<std::string> IdentificationRequest::decisions() const {
@@ -35,8 +46,7 @@ std::vector<std::string> IdentificationRequest::decisions() const {
 namespace {
 
 // Whether higher modes are noise to the model, as they are to one degree of freedom.
-bool is_beam_of_one_mode(const IdentificationRequest& one) {
-  const Choice& reduction = one.experiment.reduction;
+bool is_beam_of_one_mode(const IdentificationRequest& one, const Choice& reduction) {
   const auto& options = reduction.options.values();
   const auto modes = options.find("modes");
   const bool single = reduction.name == "rayleigh" ||
@@ -58,10 +68,12 @@ void cut_decay(IdentificationRequest& one) {
   one.prepared.take(one.prepared.record, format, one.file);
 }
 
-void keep_out_higher_modes(IdentificationRequest& one) {
+void keep_out_higher_modes(IdentificationRequest& one, const std::vector<Choice>& reductions) {
   RecordFormat& format = one.experiment.format;
-  if (!format.preparation.empty() || !one.experiment.unknown_forces.empty() ||
-      !(one.is_free_oscillator() || is_beam_of_one_mode(one)))
+  if (!format.preparation.empty() || !one.experiment.unknown_forces.empty()) return;
+  const std::vector<Choice> asked = reductions.empty() ? std::vector{one.experiment.reduction} : reductions;
+  if (!one.is_free_oscillator() &&
+      !std::all_of(asked.begin(), asked.end(), [&](const Choice& c) { return is_beam_of_one_mode(one, c); }))
     return;
   Experiment oscillator = one.experiment;  // the same question, whatever model asks it
   oscillator.model = {"sdof", model_registry().completed("sdof", {})};

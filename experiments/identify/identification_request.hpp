@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/config/experiment.hpp"
+#include "experiments/identify/compare/comparison.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 
 namespace beamid::experiments {
@@ -24,6 +25,10 @@ struct IdentificationRequest {
   bool is_free_oscillator() const;
   /// With what the modal analysis needed of the record among its remarks: a filter takes it as it is.
   PreparedRecord as_analysed() const;
+  /// The record as it is compared, with the noise before its event where that is what the experiment asks
+  /// for.
+  /// @throws InputError at the noise method
+  ComparedRecord compared() const;
 };
 
 /// Cuts a free decay out of a record that the experiment does not cut, and in which no force was measured.
@@ -31,7 +36,9 @@ struct IdentificationRequest {
 void cut_decay(IdentificationRequest& one);
 
 /// Adds the step that an experiment silent about preparation does not have.
+/// @param reductions that the record is identified by; empty: the experiment's one. The step is added where
+/// each of them would have it alone, for all are given the same record.
 /// @throws as step_against_higher_modes(); InputError at the step or the window
-void keep_out_higher_modes(IdentificationRequest& one);
+void keep_out_higher_modes(IdentificationRequest& one, const std::vector<Choice>& reductions = {});
 
 }  // namespace beamid::experiments

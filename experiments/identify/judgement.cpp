@@ -41,7 +41,7 @@ void take_divergence(const std::string& condition, const Experiment& experiment,
   else
     text += "Look at [prior] and [noise] in the experiment file, or another window.";
   if (!found.identification.run.failure) text += " Below is where the filter ended.";
-  judgement.messages.push_back(text);
+  judgement.messages.insert(judgement.messages.begin(), text);
 }
 
 // What filter and modal analysis differ by.
@@ -103,10 +103,12 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   if (alone) {
     if (!(found.response_error_percent(record) > most_of_it)) return judgement;
     judgement.verdict = ComparedRun::Status::diverged;
-    judgement.messages.push_back(fmt::format(
-        "DIVERGED: its motion leaves {:.0f} % of the record. The record is no free decay of this beam, "
-        "or [prior] is far from it.",
-        found.response_error_percent(record)));
+    judgement.messages.insert(
+        judgement.messages.begin(),
+        fmt::format(
+            "DIVERGED: its motion leaves {:.0f} % of the record. The record is no free decay of this beam, "
+            "or [prior] is far from it.",
+            found.response_error_percent(record)));
     return judgement;
   }
   const Oscillator& filter = identification.found;
@@ -132,7 +134,7 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
     text += (doubtful ? "; " : ": ") + cause;
   else if (!doubtful)
     text += ". None of the usual causes was found (scheme, prior, another mode, amplitude, rattle)";
-  judgement.messages.push_back(text + ".");
+  judgement.messages.insert(judgement.messages.begin(), text + ".");
   return judgement;
 }
 

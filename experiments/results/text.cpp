@@ -32,7 +32,8 @@ void wrap_line(const std::string& line, std::size_t width, std::vector<std::stri
 
 /// Words of verdicts. They stand in capitals; what stands in capitals before them, as in THE RECORDS
 /// DISAGREE, belongs to them.
-constexpr std::array verdicts{"DIVERGED", "CONTRADICTED", "DISAGREE", "ALIASED", "WRONG", "WARNING"};
+constexpr std::array verdicts{"DIVERGED", "CONTRADICTED", "DISAGREE", "ALIASED",  "WRONG",       "WARNING",
+                              "SETTLED",  "DETERMINED",   "RELY",     "diverged", "contradicted"};
 
 bool in_capitals(const std::string& line, std::size_t from, std::size_t to) {
   return from < to &&

@@ -255,5 +255,52 @@ TEST_F(Tutorial, HasAnExitCodeForADivergedFilterAndForAContradictedOne) {
   EXPECT_THAT(place_.run("identify --help").out, HasSubstr("\n  3    no estimate to rely on"));
 }
 
+// Oracle: identify, which is asked for one reduction where compare is asked for two; both decide alike about
+// the record, its window, its higher modes and its noise.
+TEST_F(Tutorial, IsIdentifiedToTheLastDigitByCompareToo) {
+  std::string silent = contents(place_.folder() / "cantilever.toml");
+  silent.erase(silent.find("window_s"), silent.find('\n', silent.find("window_s")) - silent.find("window_s"));
+  silent += "[model]\nname = \"beam\"\n";
+  std::istringstream record(contents(place_.folder() / "tip_acceleration.csv"));
+  std::string line, at_rest;
+  std::getline(record, at_rest);
+  at_rest += "\n";
+  for (int k = 0; k < 500; ++k)
+    at_rest += std::to_string(0.004 * k) + "," + std::to_string(0.05 * (k * 7919 % 101 / 50.0 - 1.0)) + "\n";
+  while (std::getline(record, line))
+    at_rest += std::to_string(2.0 + std::stod(line)) + line.substr(line.find(',')) + "\n";
+  place_.write("at_rest.csv", at_rest);
+  place_.write("likeliest.toml", silent);
+  place_.write("quiet.toml", silent + "[noise]\nmethod = \"before_event\"\n");
+  for (const std::string words :
+       {"tip_acceleration.csv --config likeliest.toml --json", "at_rest.csv --config quiet.toml --json"}) {
+    const Outcome one = place_.run("identify " + words),
+                  both =
+                      place_.run("compare " + words + " --reduction modal_truncation --reduction rayleigh");
+    ASSERT_EQ(one.code, 0) << one.err;
+    ASSERT_EQ(both.code, 0) << both.err;
+    EXPECT_EQ(json::parse(one.out).at("runs").at(0).at("parameters"),
+              json::parse(both.out).at("runs").at(0).at("parameters"))
+        << words;
+  }
+}
+
+TEST_F(Tutorial, HasAnExitCodeForAComparisonWithoutAnEstimateToo) {
+  std::string text = contents(place_.folder() / "cantilever.toml");
+  text.replace(text.find("\"exponential\""), 13, "\"forward_euler\"");
+  place_.write("euler.toml", text);
+  const Outcome outcome =
+      place_.run("compare tip_acceleration.csv --config euler.toml --reduction rayleigh --json");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  const json results = json::parse(outcome.out);
+  EXPECT_EQ(results.at("status"), "contradicted");
+  EXPECT_EQ(results.at("messages").at(0).at("severity"), "failure");
+  EXPECT_EQ(place_
+                .run("compare tip_acceleration.csv --config euler.toml --reduction rayleigh "
+                     "--discretisation forward_euler --discretisation exponential")
+                .code,
+            0);
+}
+
 }  // namespace
 }  // namespace beamid::apps::identify_test

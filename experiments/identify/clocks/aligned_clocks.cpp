@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "experiments/identify/compare/chosen_channels.hpp"
 #include "experiments/identify/model_setting.hpp"
 
 namespace beamid::experiments {
@@ -26,25 +27,6 @@ Eigen::VectorXd lags_by_correlation(const Comparison& found, const std::vector<O
     lags[static_cast<Index>(j)] = clocks[j].input ? -lag : lag;
   }
   return lags;
-}
-
-// Of some channels.
-ComparedRecord with_channels(ComparedRecord record, const std::vector<bool>& kept) {
-  std::vector<Index> rows, outputs;  // outputs: of what is known of every channel of motion
-  std::vector<Channel> channels;
-  Index output = 0;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const Channel& channel = record.record.channels[i];
-    if (kept[i]) rows.push_back(static_cast<Index>(i)), channels.push_back(channel);
-    if (is_input(channel.quantity)) continue;
-    if (kept[i]) outputs.push_back(output);
-    ++output;
-  }
-  record.record.samples = MatrixXd(record.record.samples(rows, Eigen::all));
-  record.record.channels = std::move(channels);
-  for (Eigen::VectorXd* noise : {&record.sensor_noise, &record.quiet_noise})
-    if (noise->size() == output) *noise = Eigen::VectorXd((*noise)(outputs));
-  return record;
 }
 
 // Guesses of the parameters by the channels of the common clock alone; those of the experiment where these

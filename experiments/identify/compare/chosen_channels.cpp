@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace beamid::experiments {
 
@@ -18,18 +19,29 @@ ComparedRecord chosen_channels(ComparedRecord compared, const std::vector<std::s
       throw std::invalid_argument(fmt::format("{} channel of motion named '{}'; the record has {}",
                                               found == 0 ? "no" : "more than one", name,
                                               fmt::join(known, ", ")));
-  std::vector<Eigen::Index> kept;
-  for (std::size_t i = 0; i < all.channels.size(); ++i)
-    if (is_input(all.channels[i].quantity) ||
-        std::find(names.begin(), names.end(), all.channels[i].name) != names.end())
-      kept.push_back(static_cast<Eigen::Index>(i));
+  std::vector<bool> kept;
+  for (const Channel& channel : all.channels)
+    kept.push_back(is_input(channel.quantity) ||
+                   std::find(names.begin(), names.end(), channel.name) != names.end());
+  return with_channels(std::move(compared), kept);
+}
 
-  Record record = all;
-  record.samples = all.samples(kept, Eigen::all);
-  record.channels.clear();
-  for (const Eigen::Index i : kept) record.channels.push_back(all.channels[static_cast<std::size_t>(i)]);
-  if (compared.sensor_noise.size() > 0) compared.sensor_noise = compared.sensor_noise(kept).eval();
-  compared.record = std::move(record);
+ComparedRecord with_channels(ComparedRecord compared, const std::vector<bool>& kept) {
+  const std::vector<Channel> all = std::exchange(compared.record.channels, {});
+  std::vector<Eigen::Index> rows, outputs;  // among channels, and among those of motion
+  Eigen::Index output = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const bool measured = !is_input(all[i].quantity);
+    if (kept[i]) {
+      rows.push_back(static_cast<Eigen::Index>(i));
+      compared.record.channels.push_back(all[i]);
+      if (measured) outputs.push_back(output);
+    }
+    output += measured;
+  }
+  compared.record.samples = compared.record.samples(rows, Eigen::all).eval();
+  if (compared.sensor_noise.size() > 0) compared.sensor_noise = compared.sensor_noise(rows).eval();
+  if (compared.quiet_noise.size() > 0) compared.quiet_noise = compared.quiet_noise(outputs).eval();
   return compared;
 }
 

@@ -9,4 +9,7 @@ namespace beamid::experiments {
 /// @throws std::invalid_argument when a name is no channel of motion, or several have it.
 ComparedRecord chosen_channels(ComparedRecord compared, const std::vector<std::string>& names);
 
+/// Likewise, of its channels those that are kept (one for each), with what is known of each.
+ComparedRecord with_channels(ComparedRecord compared, const std::vector<bool>& kept);
+
 }  // namespace beamid::experiments

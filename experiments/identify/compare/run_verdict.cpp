@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/compare/reduction_error.hpp"
 #include "experiments/identify/compare/widened_interval.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
 #include "experiments/identify/record_identification.hpp"
@@ -137,11 +138,17 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
   if (!(run.misfit_percent > too_much)) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format(
-      "{}: {:.3g} % of it is left, and is no noise. A sensor's place, a sign, a unit or a clock is wrong, an "
-      "input is missing, a mass or the damping is not as described, or the {} on a wrong answer",
+      "{}: {:.3g} % of it is left, and is no noise. {}",
       forced ? "the measured input does not make the record's motion of this model"
              : "no start of this model makes the record's motion",
-      run.misfit_percent, forced ? "filter has settled" : "search has ended");
+      run.misfit_percent,
+      run.step_cause.empty()
+          ? fmt::format("The record holds modes that the model lacks, a sensor's place, a sign, a unit or a "
+                        "clock is wrong, an input is missing, a mass or the damping is not as described, or "
+                        "the {} on a wrong answer",
+                        forced ? "filter has settled" : "search has ended")
+          : run.step_cause);
+  if (run.reason.ends_with('.')) run.reason.pop_back();
   run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
 }
 
@@ -179,6 +186,8 @@ void judge_model(const RunContext& context, ComparedRun& run) {
     run.mode->damping_ratio_deviation *= run.interval_factor;
     run.mode->frequency_deviation_hz *= run.interval_factor;
   }
+  if (const std::string text = reduction_error(context, run); !text.empty())
+    run.warnings.insert(run.warnings.begin(), text);
   judge_settling(run);
   judge_motion_left(context, run);
   judge_moved_mass(run);
@@ -201,8 +210,9 @@ void judge_model(const RunContext& context, ComparedRun& run) {
                   [](const ComparedParameter& p) { return p.overconfidence < far_surer; }))
     run.warnings.emplace_back(
         "DO NOT RELY on these estimates: the filter is more than twice as sure of them as the record allows, "
-        "so that they may lie many of its intervals away. A reduction, or `identify`, which asks all samples "
-        "at once, does not do that.");
+        "so that they may lie many of its intervals away. Expected nearer initial estimates, more passes "
+        "([compare] passes), a reduction in place of the mesh, or `identify` in place of `compare`, which "
+        "asks all samples at once.");
   if (run.diagnostics && run.diagnostics->consistency)
     if (const std::string text = innovations_text(*run.diagnostics->consistency,
                                                   context.analysis.forced() ? run.misfit_percent : 0.0);
@@ -254,6 +264,9 @@ void judge_run(const RunContext& context, ComparedRun& run) {
     judge_oscillator(context, run);
   else if (run.status == ComparedRun::Status::converged)
     judge_model(context, run);
+  else
+    run.warnings.insert(run.warnings.begin(),
+                        "DIVERGED: " + run.reason + ". There is no estimate to rely on.");
 }
 
 }  // namespace beamid::experiments

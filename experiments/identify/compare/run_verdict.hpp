@@ -15,7 +15,8 @@ constexpr double settled_move = 1.0;  ///< of an unknown by the last pass, at mo
 /// - K and C of a free decay: judgement.hpp.
 /// - Of any other model, a warning where its first mode at the estimate and the modal analysis of the first
 ///   channel differ by more than three of their standard deviations together, in frequency or in damping
-///   ratio, with how much; and one where the innovations are not those of a consistent filter.
+///   ratio, with how much; one where the reduction moves the mode (reduction_error.hpp); and one where the
+///   innovations are not those of a consistent filter. A filter that diverged is said to have.
 ///
 /// Records driven by a measured force have no modal analysis, models that are not linear no mode: of the
 /// three, the last.

@@ -11,6 +11,8 @@ struct StreamStart {
   JointModel model;                 ///< on the basis that the earlier record led to
   IdentificationSettings settings;  ///< of one pass; the unknowns as uncertain as before any record
   double interval_factor = 1;       ///< of deviations, for the noise near the mode; 1 at least
+  bool reliable = true;  ///< whether the earlier record, identified alike, has an estimate to rely on
+  std::vector<std::string> warnings = {};  ///< of that identification, the worst first
 };
 
 /// Identifies the earlier record with the experiment's model, reduction and filter (identify_with_model).

@@ -35,6 +35,10 @@ class StreamedIdentification {
   /// @throws InputError, std::invalid_argument as stream_start()
   StreamedIdentification(const Experiment& experiment, const Record& earlier);
 
+  /// Whether model, discretisation and noise are right for the earlier record: news() begins with what is
+  /// not.
+  bool reliable() const { return prepared_.reliable; }
+
   /// Outputs of a sample (p).
   Eigen::Index outputs() const { return static_cast<Eigen::Index>(names_.size()); }
   const std::vector<std::string>& names() const { return names_; }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/config/channel_places.hpp"
@@ -44,6 +45,14 @@ Table run_table(const Comparison& comparison) {
   return table;
 }
 
+// Of a parameter, what the reference run found.
+std::optional<double> reference_value(const Comparison& comparison, const std::string& name) {
+  if (const ComparedRun* const reference = reference_run(comparison))
+    for (const ComparedParameter& p : reference->parameters)
+      if (p.estimate.name == name) return p.estimate.value;
+  return {};
+}
+
 // One parameter over all runs.
 Table parameter_table(const Comparison& comparison, const std::string& name) {
   Table table{"parameter_" + name, ""};
@@ -61,7 +70,11 @@ Table parameter_table(const Comparison& comparison, const std::string& name) {
       .column({"estimate", "estimate", "{:.6g}"})
       .column({"95 % from", "lower_95", "{:.6g}"})
       .column({"to", "upper_95", "{:.6g}"});
-  if (truth) table.column({"error [%]", "error_percent", "{:+.4g}"});
+  const std::optional<double> reference = reference_value(comparison, name);
+  if (truth)
+    table.column({"error [%]", "error_percent", "{:+.4g}"});
+  else
+    table.column({"from reference [%]", "from_reference_percent", "{:+.3g}"});
   table.column({"deviation [%]", "deviation_percent", "{:.2g}"})
       .column({"deviation / bound", "bound_ratio", "{:.3f}"});
   for (const ComparedRun& run : comparison.runs)
@@ -69,11 +82,42 @@ Table parameter_table(const Comparison& comparison, const std::string& name) {
       if (p.estimate.name == name && run.has_estimate()) {
         std::vector<Cell> row{name_of(comparison, run), p.estimate.value, p.estimate.lower_95,
                               p.estimate.upper_95};
-        if (truth) row.emplace_back(or_nan(p.error_percent()));
+        if (truth)
+          row.emplace_back(or_nan(p.error_percent()));
+        else
+          row.emplace_back(100.0 * (p.estimate.value / or_nan(reference) - 1.0));
         row.insert(row.end(),
                    {100.0 * p.estimate.deviation / std::abs(p.estimate.value), or_nan(p.bound_ratio())});
         table.row(row);
       }
+  return table;
+}
+
+// Of a single run, all parameters.
+Table parameter_table(const ComparedRun& run) {
+  Table table{"estimates", ""};
+  table.column({"parameter", "parameter"})
+      .column({"unit", "unit"})
+      .column({"estimate", "estimate", "{:.6g}"})
+      .column({"95 % from", "lower_95", "{:.6g}"})
+      .column({"to", "upper_95", "{:.6g}"});
+  const bool truth = std::any_of(run.parameters.begin(), run.parameters.end(),
+                                 [](const ComparedParameter& p) { return p.truth.has_value(); });
+  if (truth)
+    table.column({"true value", "true_value", "{:.6g}"}).column({"error [%]", "error_percent", "{:+.4g}"});
+  table.column({"deviation [%]", "deviation_percent", "{:.2g}"})
+      .column({"deviation / bound", "bound_ratio", "{:.3f}"});
+  for (const ComparedParameter& p : run.parameters) {
+    std::vector<Cell> row{p.estimate.name, p.estimate.unit, p.estimate.value, p.estimate.lower_95,
+                          p.estimate.upper_95};
+    if (truth) row.insert(row.end(), {or_nan(p.truth), or_nan(p.error_percent())});
+    row.insert(row.end(),
+               {100.0 * p.estimate.deviation / std::abs(p.estimate.value), or_nan(p.bound_ratio())});
+    table.row(row);
+  }
+  table.note =
+      "Deviation: standard deviation of the estimate. Bound: the least that the record and what was known "
+      "before allow (Cramer-Rao).";
   return table;
 }
 
@@ -123,6 +167,12 @@ Json comparison_values(const ComparedRun& run, const std::vector<std::string>& o
   return json;
 }
 
+// Of all runs together: converged where any is.
+ComparedRun::Status status_of(const Comparison& comparison) {
+  const ComparedRun* const reference = reference_run(comparison);
+  return (reference ? *reference : comparison.runs.front()).status;
+}
+
 void add_arrays(const Comparison& comparison, Results& results) {
   const bool alone = comparison.runs.size() == 1;
   for (const ComparedRun& run : comparison.runs) {
@@ -150,6 +200,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
                     {"sampling_rate_hz", 1.0 / record.interval()},
                     {"channels", channel_values(record)},
                     {"record_warnings", Json::array()},
+                    {"status", ""},
                     {"runs", Json::array()}};
   const std::optional<RecordInputs> inputs = record_inputs(record);
   if (inputs) results.values["inputs_between_samples"] = to_string(inputs->path);
@@ -159,23 +210,27 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
   for (const ComparedRun& run : comparison.runs)
     results.values["runs"].push_back(comparison_values(run, outputs));
+  results.values["status"] = to_string(status_of(comparison));
 
   const char* const usual = comparison.runs.size() == 1 ? "Identification" : "Reduced against continuum";
   results.heading(experiment.title.empty() ? usual : experiment.title);
   for (const std::string& warning : record.warnings) results.warning(warning);
   for (const std::string& warning : comparison.warnings) results.warning(warning);
   const bool alone = comparison.runs.size() == 1;
-  for (const ComparedRun& run : comparison.runs)
-    for (const std::string& warning : run.warnings)
-      if (alone) results.warning(warning);
+  // Of a run without an estimate to rely on the first says why.
+  const std::size_t failures = alone && comparison.runs[0].status != ComparedRun::Status::converged ? 1 : 0;
+  std::size_t told = 0;
+  for (const std::string& text : said_once(comparison, [](const ComparedRun& run) { return run.warnings; }))
+    results.warning(text, told++ < failures);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} pass{}.{}",
                   comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],
                   1.0 / record.interval(), channels_text(record), experiment.model.name, experiment.passes,
                   experiment.passes == 1 ? "" : "es", inputs ? " " + words(*inputs) : ""));
+  if (alone && comparison.runs[0].has_estimate()) results.table(parameter_table(comparison.runs[0]));
   results.table(run_table(comparison));
   for (const std::string& name : parameter_names(comparison))
-    results.table(parameter_table(comparison, name));
+    if (!alone) results.table(parameter_table(comparison, name));
   tell_clocks(results, comparison);
   for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
   add_notes(results, comparison.compared.notes);

@@ -12,30 +12,6 @@
 namespace beamid::experiments {
 namespace {
 
-// "bending_stiffness -2.72 % (interval +-0.01 %)", or how far from the reference where there is no truth.
-std::string parameter_text(const ComparedRun& run, const ComparedRun& reference, std::size_t j) {
-  const ComparedParameter& p = run.parameters[j];
-  const Estimate& e = p.estimate;
-  const double half = 100.0 * quantile_95 * e.deviation / std::abs(e.value);
-  if (const auto error = p.error_percent())
-    return fmt::format("{} {:+.3g} % (interval +-{:.2g} %)", e.name, *error, half);
-  std::string text = fmt::format("{} {:.5g}{}{} (interval +-{:.2g} %)", e.name, e.value,
-                                 e.unit.empty() ? "" : " ", e.unit, half);
-  if (&run == &reference) return text;
-  const double other = reference.parameters[j].estimate.value;
-  return text + fmt::format(", {:+.3g} % from the reference", 100.0 * (e.value / other - 1.0));
-}
-
-std::string run_text(const Comparison& comparison, const ComparedRun& run, const ComparedRun& reference) {
-  const bool alone = comparison.runs.size() == 1;
-  std::string text = fmt::format("{}{} ({} coordinate{}): ", name_of(comparison, run),
-                                 &run == &reference && !alone ? ", the reference" : "", run.coordinates,
-                                 run.coordinates == 1 ? "" : "s");
-  for (std::size_t j = 0; j < run.parameters.size(); ++j)
-    text += (j ? "; " : "") + parameter_text(run, reference, j);
-  return text + fmt::format(". It leaves {:.3g} % of the record.", run.response_error_percent);
-}
-
 // Whether a run says anything of its model.
 bool is_sound(const ComparedRun& run) {
   return run.status == ComparedRun::Status::converged && run.step_cause.empty();
@@ -73,15 +49,6 @@ bool worse_than_smaller(const Comparison& comparison, const ComparedRun& run) {
            smaller.discretisation == run.discretisation &&
            clearly * smaller.response_error_percent < run.response_error_percent;
   });
-}
-
-// What a discretisation does by itself explains all else that is seen of its run.
-std::string step_text(const Comparison& comparison) {
-  std::string text;
-  for (const ComparedRun& run : comparison.runs)
-    if (!run.step_cause.empty())
-      text += fmt::format("{}{}: {}", text.empty() ? "" : " ", name_of(comparison, run), run.step_cause);
-  return text;
 }
 
 // A model that leaves much of the record is blind to some of its modes, or the filter has settled on a wrong
@@ -147,13 +114,14 @@ std::string surer_text(const Comparison& comparison) {
   return text;
 }
 
-// What runs say of themselves beyond the remarks of their filters.
-std::string own_remarks(const Comparison& comparison) {
-  std::string text;
-  for (const ComparedRun& run : comparison.runs)
-    for (std::size_t i = run.run.remarks.size(); i < run.remarks.size(); ++i)
-      text += fmt::format("{}{}: {}", text.empty() ? "" : " ", name_of(comparison, run), run.remarks[i]);
-  return text;
+// What a discretisation does by itself explains all else that is seen of its run, and what runs say of
+// themselves beyond the remarks of their filters.
+std::vector<std::string> own_remarks(const ComparedRun& run) {
+  std::vector<std::string> texts;
+  if (!run.step_cause.empty() && run.status != ComparedRun::Status::contradicted)  // which gives it as reason
+    texts.push_back(run.step_cause);
+  for (std::size_t i = run.run.remarks.size(); i < run.remarks.size(); ++i) texts.push_back(run.remarks[i]);
+  return texts;
 }
 
 // By the work of a step: linearised once, several times, or many points moved.
@@ -178,27 +146,21 @@ double apart(const ComparedRun& one, const ComparedRun& other) {
 }
 
 // Filters that answer alike on the same model need not all be run.
-std::string agreement_text(const Comparison& comparison) {
+std::vector<std::string> agreement(const Comparison& comparison, const ComparedRun& run) {
   constexpr double alike = 0.2;
-  std::string text;
-  for (const ComparedRun& run : comparison.runs) {
-    std::string others;
-    double largest = 0.0;
-    for (const ComparedRun& other : comparison.runs)
-      if (is_sound(run) && is_sound(other) && other.reduction == run.reduction &&
-          other.discretisation == run.discretisation && other.parameters.size() == run.parameters.size() &&
-          cost_rank(other) > cost_rank(run) && apart(run, other) < alike) {
-        others += (others.empty() ? "" : ", ") + other.filter;
-        largest = std::max(largest, apart(run, other));
-      }
-    if (others.empty()) continue;
-    const std::string filter = run.filter;
-    text += fmt::format(
-        "{}{}: {} agrees with {} within {:.1g} standard deviations and is the cheaper one: it is enough "
-        "here.",
-        text.empty() ? "" : " ", name_of(comparison, run), filter, others, std::max(largest, 0.01));
-  }
-  return text;
+  std::string others;
+  double largest = 0.01;
+  for (const ComparedRun& other : comparison.runs)
+    if (is_sound(run) && is_sound(other) && other.reduction == run.reduction &&
+        other.discretisation == run.discretisation && other.parameters.size() == run.parameters.size() &&
+        cost_rank(other) > cost_rank(run) && apart(run, other) < alike) {
+      others += (others.empty() ? "" : ", ") + other.filter;
+      largest = std::max(largest, apart(run, other));
+    }
+  if (others.empty()) return {};
+  return {fmt::format(
+      "{} agrees with {} within {:.1g} standard deviations and is the cheaper one: it is enough here.",
+      run.filter, others, largest)};
 }
 
 // How far the best model is from a sensor's own noise, where that is known.
@@ -231,28 +193,44 @@ const ComparedRun* reference_run(const Comparison& comparison) {
   return best;
 }
 
+std::vector<std::string> said_once(
+    const Comparison& comparison,
+    const std::function<std::vector<std::string>(const ComparedRun&)>& texts_of) {
+  std::vector<std::pair<std::string, std::string>> said;  // a text, and who says it
+  for (const ComparedRun& run : comparison.runs)
+    for (const std::string& text : texts_of(run)) {
+      const auto same =
+          std::find_if(said.begin(), said.end(), [&](const auto& one) { return one.first == text; });
+      if (same == said.end())
+        said.emplace_back(text, name_of(comparison, run));
+      else
+        same->second += "; " + name_of(comparison, run);
+    }
+  std::vector<std::string> paragraphs;
+  for (const auto& [text, names] : said)
+    paragraphs.push_back(comparison.runs.size() == 1 ? text : names + ": " + text);
+  return paragraphs;
+}
+
 std::vector<std::string> words(const Comparison& comparison) {
   const ComparedRun* reference = reference_run(comparison);
+  const bool alone = comparison.runs.size() == 1;
   std::vector<std::string> paragraphs;
-  if (reference)
-    paragraphs.push_back(run_text(comparison, *reference, *reference));
-  else
-    paragraphs.emplace_back("No run converged.");
-  for (const ComparedRun& run : comparison.runs) {
-    if (&run == reference) continue;
-    if (run.status != ComparedRun::Status::converged)
-      paragraphs.push_back(
-          fmt::format("{}: {}, {}.", name_of(comparison, run), to_string(run.status), run.reason));
-    else if (run.parameters.size() == reference->parameters.size())
-      paragraphs.push_back(run_text(comparison, run, *reference));
-  }
-  std::vector<std::string> remarks{step_text(comparison)};
-  if (reference)
-    remarks.insert(remarks.end(), {bias_text(comparison), misfit_text(comparison), surer_text(comparison),
-                                   own_remarks(comparison), excess_text(comparison, *reference),
-                                   agreement_text(comparison)});
-  for (const std::string& text : remarks)
-    if (!text.empty()) paragraphs.push_back(text);
+  if (!alone && reference) paragraphs.push_back("The reference: " + name_of(comparison, *reference) + ".");
+  if (!alone && !reference) paragraphs.emplace_back("No run converged.");
+  for (const ComparedRun& run : comparison.runs)
+    if (!alone && run.status != ComparedRun::Status::converged && run.warnings.empty())  // which say why
+      paragraphs.push_back(fmt::format("{}: {}{}{}.", name_of(comparison, run), to_string(run.status),
+                                       run.reason.empty() ? "" : ", ", run.reason));
+  const auto add = [&](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts)
+      if (!text.empty()) paragraphs.push_back(text);
+  };
+  if (reference) add({bias_text(comparison), misfit_text(comparison), surer_text(comparison)});
+  add(said_once(comparison, own_remarks));
+  if (!reference) return paragraphs;
+  add({excess_text(comparison, *reference)});
+  add(said_once(comparison, [&](const ComparedRun& run) { return agreement(comparison, run); }));
   return paragraphs;
 }
 

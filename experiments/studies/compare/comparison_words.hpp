@@ -1,6 +1,7 @@
 // What a comparison says, in words.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,5 +16,10 @@ std::vector<std::string> words(const Comparison& comparison);
 /// The run that the others are measured against: no reduction where there is one, else the most coordinates.
 /// Null when nothing converged.
 const ComparedRun* reference_run(const Comparison& comparison);
+
+/// What runs say, each text once, behind the names of the runs that say it where there are several.
+std::vector<std::string> said_once(
+    const Comparison& comparison,
+    const std::function<std::vector<std::string>(const ComparedRun&)>& texts_of);
 
 }  // namespace beamid::experiments

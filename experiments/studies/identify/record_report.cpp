@@ -199,11 +199,13 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   results.values["channels"] = channel_values(placed);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
   for (const std::string& text : found.judgement.messages)
-    results.warning(text, found.judgement.verdict == ComparedRun::Status::diverged);
+    results.warning(text, found.judgement.verdict != ComparedRun::Status::converged &&
+                              &text == &found.judgement.messages.front());
   results.paragraph(fmt::format(
-      "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} passes.",
+      "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} pass{}.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
-      experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes));
+      experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes,
+      found.passes == 1 ? "" : "es"));
   if (record.channels.size() > 1 || !experiment.structure.has_positions() ||
       *placed.channels[0].position != fem::natural_point(experiment.structure).position)
     results.paragraph("Stiffness, damping and mass are those of the motion at the first channel of " +

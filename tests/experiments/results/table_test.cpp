@@ -71,7 +71,7 @@ TEST(Table, PrintsNumbersToTheRightTextsToTheLeftAndNanAsDash) {
 }
 
 TEST(Table, PrintsNoSignOfWhatIsPrintedAsZero) {
-  Table table{"errors"};
+  Table table{"errors", ""};
   table.column({"e", "error", "{:+.2f}"}).column({"d", "difference", "{:.2f}"}).column({"l", "limit"});
   table.row({-1e-9, -0.004, -0.0}).row({1e-9, -0.006, -std::numeric_limits<double>::infinity()});
   EXPECT_EQ(printed(table),

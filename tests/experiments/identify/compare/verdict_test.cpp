@@ -52,6 +52,25 @@ TEST(Verdict, AStepTooLongIsNamedAsTheCause) {
   EXPECT_THAT(words(found), Contains(HasSubstr("runge_kutta_4: runge_kutta_4 with steps of 0.05 s")));
 }
 
+// A static shape is stiffer than the mode, so that less bending stiffness makes the record's frequency.
+// Oracle: the beam simulated, whose stiffness the sentence gives to a tenth of the error.
+TEST(Verdict, AReductionThatMovesTheModeIsNamed) {
+  const Comparison found =
+      compared(cantilever("[simulation]\nduration_s = 10\nsampling_rate_hz = 100\n" + sensor + ask_stiffness,
+                          {"rayleigh", "modal_truncation", "none"}));
+  const ComparedRun& wrong = found.runs.at(0);
+  const double error = 100.0 * (wrong.parameters.at(0).estimate.value / *wrong.parameters.at(0).truth - 1.0);
+  ASSERT_LT(error, -1.0);
+  ASSERT_FALSE(wrong.warnings.empty());
+  const std::string text = wrong.warnings.at(0);
+  EXPECT_THAT(text, testing::StartsWith("WRONG BY THE REDUCTION: "));
+  const std::string before = "Stiffness comes out wrong by about ";
+  ASSERT_NE(text.find(before), std::string::npos);
+  EXPECT_NEAR(std::stod(text.substr(text.find(before) + before.size())), error, 0.1 * std::abs(error));
+  for (const std::size_t right : {1u, 2u})
+    EXPECT_THAT(found.runs.at(right).warnings, Not(Contains(HasSubstr("REDUCTION"))));
+}
+
 TEST(Verdict, FiltersThatAgreeAreSaidToAgree) {
   const Comparison found =
       compared(cantilever("[simulation]\nduration_s = 5\nsampling_rate_hz = 100\n" + sensor + ask_stiffness +
