@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
 #include "apps/command.hpp"
+#include "apps/terminal.hpp"
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
 #include "experiments/config/read_experiment.hpp"
@@ -13,6 +15,7 @@
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
+#include "experiments/results/text.hpp"
 #include "experiments/text/clean_text.hpp"
 #include "experiments/text/method_choice.hpp"
 #include "fem/assembly.hpp"
@@ -100,16 +103,24 @@ std::string sensors_text(const Experiment& experiment) {
   return text;
 }
 
-std::string structure_line(const Experiment& experiment, const fem::StructuralSystem& system) {
+/// "  record   ...", what is behind it broken to the terminal's width and indented.
+void print_line(const std::string& label, const std::string& text) {
+  const std::string indent(11, ' ');
+  const std::size_t width = terminal_page().width - indent.size();
+  std::string before = fmt::format("  {:<8} ", label);
+  for (const std::string& line : wrapped(clean_text(text), width))
+    std::cout << std::exchange(before, indent) << line << "\n";
+}
+
+std::string structure_words(const Experiment& experiment, const fem::StructuralSystem& system) {
   const fem::Structure& structure = experiment.structure;
   const std::string first =
       fmt::format("irst mode predicted at {:.4f} Hz", fem::modes(system, 1).frequency_hz()[0]);
   if (!structure.is_beam() || structure.is_chain())
-    return fmt::format("  {:<8} {} F{}.\n", structure.kind(),
-                       structure_text(experiment, experiment.elements, system.size()), first);
+    return structure_text(experiment, experiment.elements, system.size()) + " F" + first + ".";
   const fem::Beam& beam = structure.beam();
-  return fmt::format("  beam     {:g} m, EI = {} N m2, {:.6g} kg with {:.6g} kg at its tip; f{}\n",
-                     beam.length(), bending_stiffness_text(beam), beam.mass(), beam.tip_mass(), first);
+  return fmt::format("{:g} m, EI = {} N m2, {:.6g} kg with {:.6g} kg at its tip; f{}", beam.length(),
+                     bending_stiffness_text(beam), beam.mass(), beam.tip_mass(), first);
 }
 
 int run_validate(const Values& values) {
@@ -136,14 +147,16 @@ int run_validate(const Values& values) {
   }
 
   std::cout << clean_text(file.string()) << ": valid\n";
-  for (const std::string& sentence : implausible(experiment)) std::cout << "  " << sentence << "\n";
-  std::cout << structure_line(experiment, system)
-            << (experiment.sensors.empty() ? "" : "  sensors  " + clean_text(sensors_text(experiment)) + "\n")
-            << "  record   " << clean_text(record_line) << "\n"
-            << fmt::format("  methods  reduction {}, model {}, filter {}, discretisation {}\n",
-                           experiment.reduction.name, experiment.model.name, experiment.filter.name,
-                           experiment.discretisation)
-            << "  asks for " << clean_text(parameters) << "\n";
+  for (const std::string& sentence : implausible(experiment)) print_line("check", sentence);
+  const fem::Structure& structure = experiment.structure;
+  print_line(structure.is_beam() && !structure.is_chain() ? "beam" : structure.kind(),
+             structure_words(experiment, system));
+  if (!experiment.sensors.empty()) print_line("sensors", sensors_text(experiment));
+  print_line("record", record_line);
+  print_line("methods",
+             fmt::format("reduction {}, model {}, filter {}, discretisation {}", experiment.reduction.name,
+                         experiment.model.name, experiment.filter.name, experiment.discretisation));
+  print_line("asks for", parameters);
   return 0;
 }
 

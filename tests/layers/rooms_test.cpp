@@ -59,16 +59,21 @@ std::string between(const std::string& text, const std::string& from, const std:
   return text.substr(begin + from.size() + 1, end - begin - from.size() - 1);
 }
 
+// Hundreds of lines change with every edit: a tenth, or two hundred, are let pass.
 TEST(Rooms, AreDrawnInTheDocumentation) {
-  const std::string expected = picture(rooms());
-  const auto without_counts = [](const std::string& table) {
-    return std::regex_replace(table, std::regex(R"(\| \d+ \|)"), "| |");
-  };
-  EXPECT_EQ(
-      without_counts(between(text_of("docs/architecture.md"), "<!-- rooms -->", "<!-- end of rooms -->")),
-      without_counts(expected))
+  const std::string expected = picture(rooms()), drawn = between(text_of("docs/architecture.md"),
+                                                                 "<!-- rooms -->", "<!-- end of rooms -->");
+  const std::regex count(R"(\| (\d+) \|)");
+  EXPECT_EQ(std::regex_replace(drawn, count, "| |"), std::regex_replace(expected, count, "| |"))
       << "docs/architecture.md should show:\n"
       << expected;
+  for (std::sregex_iterator one(drawn.begin(), drawn.end(), count),
+       other(expected.begin(), expected.end(), count), end;
+       one != end && other != end; ++one, ++other) {
+    const double now = std::stod((*other)[1]);
+    EXPECT_NEAR(std::stod((*one)[1]), now, std::max(2.0, 0.1 * now)) << "docs/architecture.md should show:\n"
+                                                                     << expected;
+  }
 }
 
 TEST(Rooms, HaveNoLooseFiles) {
