@@ -66,6 +66,20 @@ TEST_F(Report, JoinsResultsAndComparesThem) {
   EXPECT_EQ(place_.run("report early --out both.html").code, 2);  // it exists
 }
 
+// Of a single run a parameter has its own name, whatever the reduction that it was found by is called.
+TEST_F(Report, ComparesAParameterOfTwoReductions) {
+  const std::string file = contents(place_.folder() / "cantilever.toml") + "[model]\nname = \"beam\"\n";
+  for (const std::string reduction : {"rayleigh", "modal_truncation"}) {
+    place_.write(reduction + ".toml", file + "[reduction]\nmethod = \"" + reduction + "\"\n");
+    ASSERT_EQ(place_.run("identify --config " + reduction + ".toml --out " + reduction).code, 0);
+  }
+  ASSERT_EQ(place_.run("report rayleigh modal_truncation --out both.html").code, 0);
+  const std::string page = contents(place_.folder() / "both.html");
+  const std::size_t parameters = page.find("Parameters, with 95 % intervals");
+  EXPECT_LT(page.find("<td>reduction.name</td>"), parameters);  // what differs comes first
+  EXPECT_NE(page.find("<td>bending stiffness [N m²]</td>", parameters), std::string::npos);
+}
+
 TEST_F(Report, SaysHowTheRunsWereMadeAndWhatDiffers) {
   std::string other = contents(place_.folder() / "cantilever.toml");
   const std::size_t at = other.find("\"ekf\"");

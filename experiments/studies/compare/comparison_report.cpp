@@ -173,6 +173,30 @@ ComparedRun::Status status_of(const Comparison& comparison) {
   return (reference ? *reference : comparison.runs.front()).status;
 }
 
+// How the record was identified: a name, or several.
+Json methods_of(const Experiment& experiment, const Comparison& comparison) {
+  const auto names = [&](std::string ComparedRun::*name) {
+    std::vector<std::string> all;
+    for (const ComparedRun& run : comparison.runs)
+      if (std::find(all.begin(), all.end(), run.*name) == all.end()) all.push_back(run.*name);
+    return all.size() == 1 ? Json(all[0]) : Json(all);
+  };
+  Json json{
+      {"reduction", {{"name", names(&ComparedRun::reduction)}}},
+      {"model", {{"name", experiment.model.name}}},
+      {"filter",
+       {{"name", names(&ComparedRun::filter)}, {"discretisation", names(&ComparedRun::discretisation)}}},
+      {"passes", experiment.passes},
+      {"noise", {{"method", experiment.noise_method.name}}}};
+  for (const auto& [quantity, deviation] : experiment.noise) json["noise"][to_string(quantity)] = deviation;
+  for (const Unknown& unknown : comparison.runs[0].unknowns) {
+    Json& asked = json["initial"][unknown.name] = {{"unit", unknown.unit}};
+    asked["mean"] = optional_number(unknown.guess);
+    asked["standard_deviation"] = optional_number(unknown.deviation);
+  }
+  return json;
+}
+
 void add_arrays(const Comparison& comparison, Results& results) {
   const bool alone = comparison.runs.size() == 1;
   for (const ComparedRun& run : comparison.runs) {
@@ -192,8 +216,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   results.command = "compare";
   if (comparison.compared.truth) results.seed = comparison.compared.truth->simulation.seed;
   results.configuration = describe(experiment);
-  results.configuration["model"] = experiment.model.name;
-  results.configuration["passes"] = experiment.passes;
+  results.configuration.update(methods_of(experiment, comparison));
   if (comparison.compared.truth) results.configuration["truth"] = describe(*comparison.compared.truth);
   results.values = {{"record", comparison.compared.name},
                     {"samples", record.size()},

@@ -36,7 +36,7 @@ Results identification_report(const Experiment& experiment, const Comparison& fo
   Results results = report(experiment, found);
   results.command = "identify";
   results.values["status"] = to_string(run.status);
-  results.configuration["on_failure"] = to_string(experiment.on_failure);
+  results.configuration["filter"]["on_failure"] = to_string(experiment.on_failure);
   std::vector<std::string> outputs;
   for (const Eigen::Index i : output_channels(record))
     outputs.push_back(record.channels[static_cast<std::size_t>(i)].name);

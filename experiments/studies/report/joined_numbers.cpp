@@ -66,6 +66,8 @@ class JoinedWalk {
         estimate(value, joined_name(place, key_label(key)));
       else if (value.is_object())
         object(value, inner);
+      else if (key == "runs" && value.is_array() && value.size() == 1 && value[0].is_object())
+        object(value[0], inner);  // which one it is, the configuration says
       else if (value.is_array())
         array(value, inner);
     }
