@@ -125,7 +125,9 @@ BeamSource read_beam(const Values& values, const std::vector<KeyOption>& more) {
       title += " (with " + changes(values) + ")";
   } else {
     source.experiment = read_experiment(TomlTable::parse(study_beam, "the study's beam", overrides));
-    if (!changed) source.experiment.title = "The study's steel beam (no --config and no other beam given)";
+    source.experiment.title =
+        changed ? "The study's steel beam, 2.12e11 Pa and 7715 kg/m3 (with " + changes(values) + ")"
+                : "The study's steel beam (no --config and no other beam given)";
   }
   if (values.has("elements")) {
     source.experiment.elements = values.whole("elements");

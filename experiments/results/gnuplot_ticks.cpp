@@ -70,12 +70,17 @@ double rounded_up_step(double size) {
 
 double step_for(const AxisRange& range, double length, bool upright) {
   const double span = range.second - range.first;
+  double step = rounded_up_step(span / 2);
   for (int count = 10; count > 1; --count) {
-    const double step = rounded_up_step(span / count);
-    const double needed = upright ? tick_height : label_width(range, step) + 16;
-    if (needed * (span / step) <= length) return step;
+    const double finer = rounded_up_step(span / count);
+    const double needed = upright ? tick_height : label_width(range, finer) + 16;
+    if (needed * (span / finer) > length) continue;
+    step = finer;
+    break;
   }
-  return rounded_up_step(span / 2);
+  const auto ticks = [&] { return std::floor(range.second / step) - std::ceil(range.first / step) + 1; };
+  while (ticks() < 2) step = rounded_up_step(0.35 * step);  // one number alone is no scale
+  return step;
 }
 
 Ticks linear_ticks(char name, const AxisRange& range, double step) {

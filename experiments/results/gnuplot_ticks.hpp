@@ -22,7 +22,7 @@ struct Ticks {
 /// The least of 1, 2 and 5 times a power of ten that is not below `size`.
 double rounded_up_step(double size);
 
-/// The step of a linear axis whose labels have room on `length` px.
+/// The step of a linear axis whose labels have room on `length` px, with two of them in the range at least.
 double step_for(const AxisRange& range, double length, bool upright);
 
 /// @param name 'x' or 'y'

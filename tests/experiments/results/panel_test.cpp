@@ -157,6 +157,7 @@ TEST(Ticks, StandClearOfEachOther) {
               HasSubstr("set xtics (0.001, 0.003, 0.01, 0.03, 0.1)"));
   EXPECT_THAT(logarithmic_ticks('x', {0.001, 0.1}, 900).commands, HasSubstr("0.002, 0.005"));
   EXPECT_EQ(step_for({-50, 40}, 80, true), 50);
+  EXPECT_EQ(step_for({-1.3, 1.3}, 60, true), 1);  // 2 would leave the 0 alone
   EXPECT_EQ(rounded_up_step(0.012), 0.02);
 }
 
