@@ -83,10 +83,10 @@ TEST(Validate, ReadsTheRecordToo) {
   EXPECT_EQ(
       named.out,
       "cantilever.toml: valid\n"
-      "  beam     1.1 m, EI = 228.96 N m2, 3.055 kg with 0.36049 kg at its tip; first mode predicted at "
-      "3.4555 Hz\n"
-      "  record   tip_acceleration.csv: 2001 samples from 2 to 10 s at 250 Hz; tip: acceleration at "
-      "1.1 m up to 4.581 m/s2\n"
+      "  beam     1.1 m, EI = 228.96 N m2, 3.055 kg with 0.36049 kg at its tip; first mode predicted at\n"
+      "           3.4555 Hz\n"
+      "  record   tip_acceleration.csv: 2001 samples from 2 to 10 s at 250 Hz; tip: acceleration at 1.1 m\n"
+      "           up to 4.581 m/s2\n"
       "  methods  reduction rayleigh, model sdof, filter ekf, discretisation exponential\n"
       "  asks for stiffness, damping ratio (initial estimates from the record)\n");
 }

@@ -107,9 +107,10 @@ TEST(Validate, TakesAFrameToo) {
   place.write("frame.toml", cross("pinned"));
   EXPECT_THAT(
       place.run("validate frame.toml").out,
-      StartsWith("frame.toml: valid\n  frame    Plane frame: 4 members between 5 joints, 2500 kg; pinned "
-                 "at 2, 3, 4, 5. 32 elements per member, 507 degrees of freedom. First mode predicted "
-                 "at 11.3362 Hz.\n"));
+      StartsWith(
+          "frame.toml: valid\n  frame    Plane frame: 4 members between 5 joints, 2500 kg; pinned "
+          "at 2, 3, 4, 5. 32 elements per\n           member, 507 degrees of freedom. First mode predicted "
+          "at 11.3362 Hz.\n"));
 }
 
 TEST(Frame, RefusesWhatMakesNoSense) {

@@ -131,6 +131,9 @@ TEST_F(Sweep, LeavesASweepThatIsRunningAlone) {
 
 // Oracle: one thread. So little memory has no room for the stacks of 200 threads.
 TEST_F(Sweep, TakesFewerThreadsWhereTheSystemRefusesThem) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "under sanitizers, which take terabytes of addresses";
+#endif
   expect_success(sweep("--seeds 120 --threads 1 --out one"));
   const Outcome outcome =
       place_.run("sweep --config rig.toml --seeds 120 --threads 200 --out many", "ulimit -v 1200000;");

@@ -57,8 +57,9 @@ inline Complex inverse(const Complex& z) {
 }
 
 // A second copy of a function for processors with registers of four numbers, chosen when the program starts.
-// Multiplication and addition stay apart (no FMA), as in the first, so that both give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// Multiplication and addition stay apart (no FMA), as in the first, so that both give the same bits. The
+// thread sanitizer cannot watch the choice, which is made before it has begun.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define BEAMID_WIDE_CLONE __attribute__((target_clones("avx2", "default")))
 #else
 #define BEAMID_WIDE_CLONE
