@@ -223,7 +223,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
                     {"sampling_rate_hz", 1.0 / record.interval()},
                     {"channels", channel_values(record)},
                     {"record_warnings", Json::array()},
-                    {"status", ""},
+                    {"status", to_string(status_of(comparison))},
                     {"runs", Json::array()}};
   const std::optional<RecordInputs> inputs = record_inputs(record);
   if (inputs) results.values["inputs_between_samples"] = to_string(inputs->path);
@@ -233,7 +233,6 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
   for (const ComparedRun& run : comparison.runs)
     results.values["runs"].push_back(comparison_values(run, outputs));
-  results.values["status"] = to_string(status_of(comparison));
 
   const char* const usual = comparison.runs.size() == 1 ? "Identification" : "Reduced against continuum";
   results.heading(experiment.title.empty() ? usual : experiment.title);
