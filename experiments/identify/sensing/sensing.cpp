@@ -62,9 +62,10 @@ filters::InnovationConsistency consistency_of(const filters::KalmanPass& pass, I
 }
 
 // At the constants that all sensors together say: what is checked is the structure, not their estimate. A
-// constant offset of the sensor is its own, and no error of the prediction.
+// constant offset of the sensor is its own, and no error of the prediction; nor is what a constant force does
+// to it where no other sensor sees that, as none does beside accelerometers.
 LeftOutSensor left_out(const SensingModel& model, const SensingForm& at_found, const Channel& channel,
-                       double noise, Index i) {
+                       double noise, bool sees_constants_alone, Index i) {
   const filters::LinearGaussian& form = at_found.matrices;
   filters::Measurements rest = model.record();
   const VectorXd read = rest.outputs.row(i);
@@ -74,8 +75,9 @@ LeftOutSensor left_out(const SensingModel& model, const SensingForm& at_found, c
       filters::smoothed_rows(form, rest, pass, at_found.row_without_offset(i), form.d.row(i));
   const VectorXd error = read - found.means.row(0).transpose();
   LeftOutSensor result{channel.name, si_unit(channel.quantity)};
-  result.root_mean_square = rms(model.has_offset(i) ? centred(read) : read);
-  result.error = rms(model.has_offset(i) ? centred(error) : error);
+  const bool free_mean = model.has_offset(i) || sees_constants_alone;
+  result.root_mean_square = rms(free_mean ? centred(read) : read);
+  result.error = rms(free_mean ? centred(error) : error);
   result.expected = std::sqrt(std::pow(rms(found.deviations.row(0)), 2) + noise * noise);
   return result;
 }
@@ -185,10 +187,12 @@ SensingStudy sensed(const Experiment& experiment, const SensingRecord& record, c
     study.noise.push_back({channel.name, si_unit(channel.quantity), noise[i], rms(read),
                            stated_noise(experiment, channel) > 0.0});
   }
+  const std::vector<Index> alone = model.sole_zeros(found.theta);
   for (Index i = 0; i < model.measured() && model.measured() > 1; ++i) {
     const Channel& channel = record.record.channels[static_cast<std::size_t>(i)];
     countdown.begin(channel.name);
-    study.left_out.push_back(left_out(model, at_found, channel, noise[i], i));
+    const bool sees_constants_alone = std::find(alone.begin(), alone.end(), i) != alone.end();
+    study.left_out.push_back(left_out(model, at_found, channel, noise[i], sees_constants_alone, i));
   }
   return study;
 }

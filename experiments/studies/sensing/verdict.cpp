@@ -54,9 +54,9 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
                     study.left_out.size() - free, study.left_out.size()));
   if (study.unseen_constants > 0)
     results.warning(
-        fmt::format("{} cannot be seen: these sensors read the same of {} as of rest. What changes slowly is "
-                    "known from the "
-                    "correlation time only; one displacement or strain would tell.",
+        fmt::format("{} cannot be seen: these sensors read the same of {} as of rest. Means of forces, "
+                    "displacements and strains are not known, and no error below holds them; what changes "
+                    "slowly is known from the correlation time only. One displacement or strain would tell.",
                     study.forces.size() == 1 ? "A constant force"
                     : study.unseen_constants == 1
                         ? "One combination of constant forces"

@@ -139,6 +139,37 @@ TEST(Sensing, SaysThatAccelerationsDoNotSeeAConstantForce) {
   EXPECT_EQ(study.unseen_constants, 1);
 }
 
+TEST(Sensing, TakesAMeanForceFromTheOneSensorThatSeesIt) {
+  // Oracle: superposition; a force that has always been there strains by -h/2 F (l - x) / (E I).
+  // Accelerometers say nothing of it: what they predict of the gauge is right but for its mean. Before:
+  // contradicted.
+  constexpr double mean = 80.0;  // five deviations of the gust
+  const double stiffness = 210e9 * 0.05 * std::pow(0.012, 3) / 12.0, strain = -0.006 * mean / stiffness;
+  const Experiment experiment = experiment_of(slower(mast + gauge));
+  SensingRecord record = simulated_sensing(experiment, {}, {}, unwatched);
+  record.record.samples.row(2).array() += 1.5 * strain;
+  record.sensors[0].array() += 2.0 * strain;
+  record.forces[0].array() += mean;
+  const SensingStudy study = study_sensing(
+      experiment, record, sensing_reduction(experiment, record.record.interval()), {}, unwatched);
+  ASSERT_TRUE(study.converged) << study.failure;
+  EXPECT_FALSE(study.contradicted());
+  EXPECT_TRUE(study.is_to_rely_on());
+  for (const SensedHistory& one : study.histories) {
+    EXPECT_LT(std::abs((one.mean - *one.truth).mean()), one.reported_error()) << one.name;
+    EXPECT_LT(one.error(), 2.0 * one.reported_error()) << one.name;
+  }
+}
+
+TEST(Sensing, IsContradictedWhereTheOneSensorThatSeesAMeanIsScaledWrongly) {
+  const Experiment experiment = experiment_of(slower(mast + gauge));
+  SensingRecord record = simulated_sensing(experiment, {}, {}, unwatched);
+  record.record.samples.row(2) *= 1.5;
+  const SensingStudy study = study_sensing(
+      experiment, record, sensing_reduction(experiment, record.record.interval()), {}, unwatched);
+  EXPECT_TRUE(study.contradicted());
+}
+
 TEST(Sensing, IsContradictedWhereASensorIsElsewhere) {
   std::string moved = slower(mast + gauge);
   const std::string place = "position_m = 1.2";
