@@ -98,6 +98,13 @@ void tell_end(const StreamedIdentification& stream, bool failed) {
   if (left_out > 0) std::cerr << fmt::format("Outliers left out: {}.\n", left_out);
   if (failed)
     std::cerr << "The filter failed and the stream ended there; --on-failure inflate goes on.\n";
+  else if (!stream.saw_motion())
+    std::cerr
+        << "Nothing was determined: no motion stood out of the noise of the sensors, and the unknowns are "
+           "as uncertain as at first. Excite the structure, or take the samples of a time when it moves.\n";
+  else if (stream.status() == StreamedIdentification::Status::undetermined)
+    std::cerr << "At the end no motion stood out of the noise: what was known before is no longer, and the "
+                 "unknowns are as uncertain as at first.\n";
   else if (!stream.watch().settled() && stream.watch().starts() > 0)
     std::cerr << "The estimates had not settled at the end: they are not to be used.\n";
   else if (!stream.reliable())
@@ -155,7 +162,7 @@ int run_stream(const Values& values) {
     std::cout << std::flush;
     std::raise(signal);
   }
-  return failed ? 1 : stream.reliable() ? 0 : 3;
+  return failed ? 1 : stream.reliable() && stream.saw_motion() ? 0 : 3;
 }
 
 }  // namespace
@@ -176,11 +183,12 @@ Command stream_command() {
       "record's channels; an output that is empty or nan was not measured. One line of estimates and "
       "standard deviations follows each, from one pass of the filter. Its last fields are the mean "
       "normalised square of the innovations over 50 outputs (1 where the filter is right) and the status: "
-      "settling, settled, left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
+      "settling, settled, undetermined (no motion stands out of the noise: the unknowns are as at first), "
+      "left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
       "first example the higher modes of the release keep the filter from it until 2.4 s.\n"
       "[[record.prepare]] prepares the earlier record; samples are expected to arrive as it leaves them.\n",
       "1  the filter failed as well\n3  the earlier record, identified with this experiment, has no estimate "
-      "to rely on: nor has the stream\n"};
+      "to rely on: nor has the stream; or no motion stood out of the noise\n"};
 }
 
 }  // namespace beamid::apps

@@ -55,7 +55,7 @@ bool StreamedIdentification::take_in(const filters::Sample& sample) {
     good_ = running_->save();
     return true;
   }
-  heed(predicted);
+  heed(sample, predicted);
   good_ = running_->save();
   return true;
 }
@@ -68,13 +68,18 @@ void StreamedIdentification::list_failures() {
       news_.push_back(failure_sentences({events[told_]}));
 }
 
-void StreamedIdentification::heed(const filters::Gaussian& predicted) {
+void StreamedIdentification::heed(const filters::Sample& sample, const filters::Gaussian& predicted) {
   using Watched = InnovationWatch::Verdict;
   const filters::Correction& correction = running_->correction();
   const Index outputs = correction.innovation.size();
-  const bool before = watch_.settled();
+  const bool before = watch_.settled() && motion_.seen();
   const Watched verdict = watch_.judge(correction.normalised_square, outputs);
-  status_ = watch_.settled() ? Status::settled : Status::settling;
+  if (verdict == Watched::keep) {
+    const VectorXd deviations = prepared_.settings.output_noise.diagonal().cwiseSqrt();
+    motion_.take_in(sample.output, deviations, correction, watch_.mean_square());
+  }
+  saw_motion_ = saw_motion_ || motion_.seen();
+  status_ = !watch_.settled() ? Status::settling : motion_.seen() ? Status::settled : Status::undetermined;
   if (verdict == Watched::leave_out) {
     filter_->reset(predicted);
     status_ = Status::left_out;
@@ -86,7 +91,7 @@ void StreamedIdentification::heed(const filters::Gaussian& predicted) {
                       watch_.left_out() < outliers_told ? "" : " Others are counted only."));
   } else if (verdict != Watched::keep) {
     begin_anew(verdict);
-  } else if (watch_.settled() && outputs > 0) {
+  } else if (status_ == Status::settled && outputs > 0) {
     if (!before && watch_.starts() > 0)
       news_.push_back(fmt::format("Settled at {:.6g} s.", running_->time()));
     remembered_ += outputs;
@@ -94,6 +99,10 @@ void StreamedIdentification::heed(const filters::Gaussian& predicted) {
     older_ = newer_;
     newer_ = known_now();
     remembered_ = 0;
+  } else if (status_ == Status::undetermined && (at_rest_ += outputs) >= InnovationWatch::most_patience) {
+    filter_->reset(first_belief(at_first()));  // what noise has taught it
+    motion_.begin_anew();
+    at_rest_ = 0;
   }
 }
 
@@ -122,11 +131,13 @@ void StreamedIdentification::begin_anew(InnovationWatch::Verdict why) {
     start = *newer_;
     said += " The motion begins anew, with the unknowns as they were known.";
   } else {
-    const Known now = newer_.value_or(known_now());
+    const Known now = newer_.value_or(motion_.seen() ? known_now() : start);
     const VectorXd far = (now.mean - start.mean).cwiseAbs2() - 9.0 * start.covariance.diagonal();
     if (why != Watched::gave_up && (far.array() <= 0.0).all()) start.mean = now.mean;
     newer_.reset();
     older_.reset();
+    motion_.begin_anew();
+    at_rest_ = 0;
     said += " The filter begins anew, the unknowns as uncertain as at first.";
   }
   filter_->reset(first_belief(start));
@@ -169,6 +180,8 @@ const char* word(StreamedIdentification::Status status) {
       return "settling";
     case Status::settled:
       return "settled";
+    case Status::undetermined:
+      return "undetermined";
     case Status::left_out:
       return "left_out";
     default:
@@ -177,7 +190,8 @@ const char* word(StreamedIdentification::Status status) {
 }
 
 std::vector<StreamedIdentification::Shown> StreamedIdentification::shown() const {
-  const filters::Gaussian belief = running_->belief();
+  const bool at_rest = watch_.settled() && !motion_.seen();
+  const filters::Gaussian belief = at_rest ? prepared_.settings.initial : running_->belief();
   std::vector<Shown> all;
   for (const Estimate& one : estimates(prepared_.model, belief))
     all.push_back({one.name, one.unit, one.value, one.deviation});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/identify/stream/innovation_watch.hpp"
+#include "experiments/identify/stream/motion_evidence.hpp"
 #include "experiments/identify/stream/stream_start.hpp"
 #include "filters/running_filter.hpp"
 
@@ -20,16 +21,20 @@ namespace beamid::experiments {
 /// unknown as at first, the unknowns as they were known some 50 outputs before, at a time when the
 /// innovations agreed; or, before there was such a time and where those of then do not fit for 2000 outputs,
 /// as uncertain as at first.
+///
+/// Innovations of a structure at rest agree with any filter, and a filter learns frequencies from their
+/// noise: as long as no motion stands out of it (MotionEvidence), nothing is determined, and nothing kept.
 class StreamedIdentification {
  public:
   static constexpr Eigen::Index forget_after = 2000;  ///< outputs that the unknowns of before do not fit
 
   /// What became of the last sample.
   enum class Status {
-    settling,   ///< taken in; the innovations have not yet agreed with the filter for 200 outputs
-    settled,    ///< taken in; they have
-    left_out,   ///< an outlier
-    begun_anew  ///< the filter begins anew behind it
+    settling,      ///< taken in; the innovations have not yet agreed with the filter for 200 outputs
+    settled,       ///< taken in; they have
+    undetermined,  ///< taken in; they have, and are no motion: the unknowns are as at first
+    left_out,      ///< an outlier
+    begun_anew     ///< the filter begins anew behind it
   };
 
   /// @throws InputError, std::invalid_argument as stream_start()
@@ -48,6 +53,8 @@ class StreamedIdentification {
   const filters::RunningFilter& running() const { return *running_; }
   Status status() const { return status_; }
   const InnovationWatch& watch() const { return watch_; }
+  /// Whether motion stood out of the noise at any time.
+  bool saw_motion() const { return saw_motion_; }
   /// A sentence for everything that happened since the last call.
   std::vector<std::string> news();
 
@@ -80,7 +87,7 @@ class StreamedIdentification {
   };
 
   void list_failures();
-  void heed(const filters::Gaussian& predicted);
+  void heed(const filters::Sample& sample, const filters::Gaussian& predicted);
   void begin_anew(InnovationWatch::Verdict why);
   Known known_now() const;
   filters::Gaussian first_belief(const Known& unknowns) const;
@@ -93,6 +100,9 @@ class StreamedIdentification {
   std::unique_ptr<filters::Filter> filter_;
   std::unique_ptr<filters::RunningFilter> running_;
   InnovationWatch watch_;
+  MotionEvidence motion_;
+  bool saw_motion_ = false;
+  Eigen::Index at_rest_ = 0;  // outputs that agreed and were no motion, since the last start
   Status status_ = Status::settling;
   std::optional<Known> older_, newer_;  // at least one window old, and at most
   Eigen::Index remembered_ = 0;         // outputs since newer_
@@ -106,7 +116,7 @@ class StreamedIdentification {
 std::string stream_header(const StreamedIdentification& stream);
 std::string stream_row(double time, const StreamedIdentification& stream);
 
-/// "settling", "settled", "left_out", "begun_anew"
+/// "settling", "settled", "undetermined", "left_out", "begun_anew"
 const char* word(StreamedIdentification::Status status);
 
 }  // namespace beamid::experiments

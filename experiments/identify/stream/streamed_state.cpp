@@ -71,6 +71,9 @@ nlohmann::ordered_json StreamedIdentification::save() const {
           {"covariance", numbers(good_.belief.covariance)},
           {"factor", numbers(good_.belief.factor)},
           {"health", watch_.save()},
+          {"motion", motion_.save()},
+          {"saw_motion", saw_motion_},
+          {"outputs_at_rest", at_rest_},
           {"outputs_since_known", remembered_},
           {"known", known}};
 }
@@ -103,6 +106,8 @@ void StreamedIdentification::resume(const nlohmann::json& saved) {
     run.step = static_cast<Index>(step);
     InnovationWatch watch;
     watch.resume(saved.at("health"));
+    MotionEvidence motion;
+    motion.resume(saved.at("motion"), outputs());
     std::vector<Known> known;
     for (const auto& one : saved.at("known")) {
       known.push_back({matrix(one, "mean", q, 1), matrix(one, "covariance", q, q)});
@@ -112,7 +117,10 @@ void StreamedIdentification::resume(const nlohmann::json& saved) {
     remembered_ = std::clamp<Index>(saved.at("outputs_since_known").get<Index>(), 0, InnovationWatch::window);
     running_->resume(run);
     watch_ = watch;
-    status_ = watch_.settled() ? Status::settled : Status::settling;
+    motion_ = motion;
+    saw_motion_ = saved.at("saw_motion").get<bool>();
+    at_rest_ = std::clamp<Index>(saved.at("outputs_at_rest").get<Index>(), 0, InnovationWatch::most_patience);
+    status_ = !watch_.settled() ? Status::settling : motion_.seen() ? Status::settled : Status::undetermined;
     newer_ = known.empty() ? std::nullopt : std::optional(known.back());
     older_ = known.size() < 2 ? std::nullopt : std::optional(known.front());
     told_ = 0;
