@@ -17,11 +17,20 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::Vector4d, Eigen::VectorXcd, Eigen::VectorXd;
 
+// D_k.
+double response_to_force(double b, double zeta, int power) {
+  return std::pow(b, power) / (std::pow(b * b - 1.0, 2) + std::pow(2.0 * zeta * b, 2));
+}
+
+int power_of_kind(ResponseKind kind) {
+  return 2 * static_cast<int>(kind);
+}
+
 // [f / f_start - 1 in units of the damping ratio, ln zeta, ln S, ln S_e], and -ln p of them.
 class BandLikelihood {
  public:
   BandLikelihood(const BandCoefficients& band, double frequency_hz, double damping_ratio, ResponseKind kind)
-      : band_(band), scale_(damping_ratio), frequency_(frequency_hz), power_(2 * static_cast<int>(kind)) {
+      : band_(band), scale_(damping_ratio), frequency_(frequency_hz), power_(power_of_kind(kind)) {
     total_ = band.coefficients.squaredNorm();
   }
 
@@ -56,9 +65,7 @@ class BandLikelihood {
     return found;
   }
 
-  double response(double b, double zeta) const {
-    return std::pow(b, power_) / (std::pow(b * b - 1.0, 2) + std::pow(2.0 * zeta * b, 2));
-  }
+  double response(double b, double zeta) const { return response_to_force(b, zeta, power_); }
 
  private:
   double eigenvalue(const VectorXd& weight, VectorXd* vector) const {
@@ -153,6 +160,16 @@ BandCoefficients within(const BandCoefficients& all, const std::pair<double, dou
   return {all.frequency_hz.segment(from, count), all.coefficients.middleCols(from, count)};
 }
 
+BandCoefficients without(const BandCoefficients& all, double frequency_hz) {
+  const Index n = all.frequency_hz.size();
+  Index at = 0;
+  (all.frequency_hz.array() - frequency_hz).abs().minCoeff(&at);
+  std::vector<Index> kept;
+  for (Index k = 0; k < n; ++k)
+    if (std::abs(k - at) > 1) kept.push_back(k);
+  return {all.frequency_hz(kept), all.coefficients(Eigen::all, kept)};
+}
+
 AmbientMode ambient_mode(const BandCoefficients& band, double frequency_hz, double damping_ratio,
                          ResponseKind kind) {
   const Index n = band.frequency_hz.size(), p = band.coefficients.rows();
@@ -181,6 +198,18 @@ AmbientMode ambient_mode(const BandCoefficients& band, double frequency_hz, doub
   mode.damping_ratio_deviation = mode.damping_ratio * std::sqrt(std::max(0.0, covariance(1, 1)));
   mode.band_hz = {band.frequency_hz[0], band.frequency_hz[n - 1]};
   return mode;
+}
+
+VectorXd band_misfit(const AmbientMode& mode, const BandCoefficients& band, ResponseKind kind) {
+  VectorXd misfit(band.frequency_hz.size());
+  for (Index k = 0; k < misfit.size(); ++k) {
+    const double own = mode.force_density * response_to_force(band.frequency_hz[k] / mode.frequency_hz,
+                                                              mode.damping_ratio, power_of_kind(kind));
+    const double along = std::norm(mode.shape.cast<Complex>().dot(band.coefficients.col(k)));
+    misfit[k] = along / (own + mode.noise_density) +
+                (band.coefficients.col(k).squaredNorm() - along) / mode.noise_density;
+  }
+  return misfit;
 }
 
 AmbientLaw ambient_law(double damping_ratio, double periods, double kappa) {

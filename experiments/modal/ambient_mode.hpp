@@ -19,6 +19,8 @@ struct BandCoefficients {
 /// The whole spectrum of a record (p x N), means removed; bands of it by within().
 BandCoefficients fourier_coefficients(const Eigen::MatrixXd& outputs, double interval);
 BandCoefficients within(const BandCoefficients& all, const std::pair<double, double>& band_hz);
+/// All but f_k and its two neighbours, over which a line between two of them spreads.
+BandCoefficients without(const BandCoefficients& all, double frequency_hz);
 
 /// The likeliest mode of a band and its deviations.
 struct AmbientMode {
@@ -42,6 +44,10 @@ struct AmbientMode {
 /// @throws std::invalid_argument when the band has fewer than 8 coefficients.
 AmbientMode ambient_mode(const BandCoefficients& band, double frequency_hz, double damping_ratio,
                          ResponseKind kind);
+
+/// How far from the mode a band is at each f_k, F_k^H (S D_k phi phi^T + S_e 1)^-1 F_k (n): of a right model
+/// the sum of p exponentially distributed numbers of mean 1.
+Eigen::VectorXd band_misfit(const AmbientMode& mode, const BandCoefficients& band, ResponseKind kind);
 
 /// What no unbiased estimate of a long record falls below, relative to f and zeta [au2014]: N_c periods, a
 /// band of f (1 +- kappa zeta), a response far above the noise.

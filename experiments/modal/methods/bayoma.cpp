@@ -2,13 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/gamma.hpp>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "experiments/modal/ambient_mode.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/modal/spectral_peaks.hpp"
+#include "experiments/signal/median.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -26,6 +29,22 @@ MatrixXd autocorrelations(const MatrixXd& outputs, Index lags) {
       found(i, l) = y.head(count).dot(y.segment(l + 1, count)) / static_cast<double>(count);
   }
   return found;
+}
+
+// Neighbours as one range.
+std::string lines_sentence(const AmbientMode& mode, Index in_band, std::vector<double> lines, double step) {
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t first = i;
+    while (i + 1 < lines.size() && lines[i + 1] - lines[i] < 3.5 * step) ++i;
+    text += fmt::format("{}{:.5g}", text.empty() ? "" : ", ", lines[first]);
+    if (i > first) text += fmt::format(" to {:.5g}", lines[i]);
+  }
+  return fmt::format(
+      "At {} Hz, beside the mode at {:.5g} Hz, the record is stronger than this mode and noise can be: a "
+      "machine, or another mode. {} of the {} frequencies of its band were left out.",
+      text, mode.frequency_hz, static_cast<Index>(3 * lines.size()), in_band);
 }
 
 class BayesMethod final : public ModalMethod {
@@ -52,20 +71,35 @@ class BayesMethod final : public ModalMethod {
 
  private:
   // The band is as wide as the damping ratio asks for, which is known only then: twice.
+  BandCoefficients fit(const BandCoefficients& all, const std::pair<double, double>& room,
+                       AmbientMode& mode) const {
+    BandCoefficients band;
+    for (int pass = 0; pass < 3; ++pass) {
+      const double half = kappa_ * mode.damping_ratio * mode.frequency_hz;
+      band = within(all, {std::max(room.first, mode.frequency_hz - half),
+                          std::min(room.second, mode.frequency_hz + half)});
+      mode = ambient_mode(band, mode.frequency_hz, mode.damping_ratio, kind_);
+      if (!mode.converged || !(mode.damping_ratio < 0.5) || mode.frequency_hz < mode.band_hz.first ||
+          mode.frequency_hz > mode.band_hz.second)
+        throw std::invalid_argument("the band has no likeliest mode");
+    }
+    return band;
+  }
+
   void add_mode(const BandCoefficients& all, double peak, const std::pair<double, double>& room,
                 PoleSearch& found) const {
     Pole pole{Complex(0.0, 2.0 * std::numbers::pi * peak), Eigen::VectorXcd::Ones(all.coefficients.rows())};
     try {
       AmbientMode mode;
       mode.frequency_hz = peak, mode.damping_ratio = first_ratio_;
-      for (int pass = 0; pass < 3; ++pass) {
-        const double half = kappa_ * mode.damping_ratio * mode.frequency_hz;
-        mode = ambient_mode(within(all, {std::max(room.first, mode.frequency_hz - half),
-                                         std::min(room.second, mode.frequency_hz + half)}),
-                            mode.frequency_hz, mode.damping_ratio, kind_);
-        if (!mode.converged || !(mode.damping_ratio < 0.5) || mode.frequency_hz < mode.band_hz.first ||
-            mode.frequency_hz > mode.band_hz.second)
-          throw std::invalid_argument("the band has no likeliest mode");
+      BandCoefficients rest = all, band = fit(rest, room, mode);
+      std::vector<double> lines;
+      while (const std::optional<double> line = line_in(band, mode)) {
+        lines.push_back(*line);
+        rest = without(rest, *line);
+        band = fit(rest, room, mode);
+        if (static_cast<Index>(3 * lines.size()) > band.frequency_hz.size() / 3)
+          throw std::invalid_argument("its band is not that of one mode: a machine, or other modes");
       }
       const double w = 2.0 * std::numbers::pi * mode.frequency_hz, zeta = mode.damping_ratio;
       pole.rate = {-zeta * w, w * std::sqrt(1.0 - zeta * zeta)};
@@ -74,10 +108,34 @@ class BayesMethod final : public ModalMethod {
       pole.damping_ratio_deviation = mode.damping_ratio_deviation;
       if (!(mode.damping_ratio_deviation < mode.damping_ratio))
         throw std::invalid_argument(fmt::format("too uncertain, damping ratio {:.2g} %", 100.0 * zeta));
+      const double step = all.frequency_hz[0];
+      if (zeta * mode.frequency_hz < step)
+        throw std::invalid_argument(
+            "as narrow as so long a record shows: a machine, or a mode that needs a longer one");
       found.orders.back().poles.push_back(pole);
+      if (!lines.empty())
+        found.warnings.push_back(
+            lines_sentence(mode, within(all, mode.band_hz).frequency_hz.size(), lines, step));
     } catch (const std::invalid_argument& error) {
       found.refused.push_back({pole, error.what()});
     }
+  }
+
+  // Where the band is further from the mode, and from its own median around, than by chance in one of ten
+  // thousand bands. What is left of a neighbour rises over many frequencies and is no line.
+  std::optional<double> line_in(const BandCoefficients& band, const AmbientMode& mode) const {
+    constexpr double by_chance = 1e-4;
+    constexpr Index around = 25;
+    const boost::math::gamma_distribution<> law(static_cast<double>(band.coefficients.rows()));
+    Eigen::VectorXd misfit = band_misfit(mode, band, kind_);
+    const Index n = misfit.size();
+    const double limit = quantile(complement(law, by_chance / static_cast<double>(n)));
+    for (Index at = 0; misfit.maxCoeff(&at) > limit; misfit[at] = 0.0) {
+      const Index from = std::max<Index>(0, at - around), to = std::min(n, at + around + 1);
+      const double level = median(Eigen::VectorXd(misfit.segment(from, to - from))) / quantile(law, 0.5);
+      if (misfit[at] > limit * std::max(1.0, level)) return band.frequency_hz[at];
+    }
+    return {};
   }
 
   ResponseKind kind_;

@@ -8,9 +8,11 @@
 #include <stdexcept>
 
 #include "experiments/modal/shape_fit.hpp"
+#include "experiments/modal/steady_lines.hpp"
 #include "experiments/modal/study/decay_part.hpp"
 #include "experiments/modal/study/decay_polish.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
+#include "experiments/modal/study/persistent_motion.hpp"
 #include "experiments/modal/study/pole_levels.hpp"
 #include "experiments/modal/study/signal_band.hpp"
 
@@ -96,11 +98,15 @@ void take_modes(RecordModes& found) {
   for (const RefusedPole& refused : found.search.refused)
     if (inside(refused.pole)) found.stabilisation.rejected.push_back({refused.pole, {}, refused.reason});
   found.remarks.insert(found.remarks.end(), found.search.remarks.begin(), found.search.remarks.end());
+  found.warnings.insert(found.warnings.end(), found.search.warnings.begin(), found.search.warnings.end());
 }
 
 /// A method for decays wants one, a method for random vibration a steady record. A slow decay loses little
 /// over a record, and two near modes can be stronger late: what decaying modes reproduce is a decay.
-void check_kind(const MatrixXd& samples, RecordModes& found) {
+void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found) {
+  constexpr const char* no_decay =
+      "Deviations are too small. For random vibration take --method ssi_cov or bayoma and a record of many "
+      "decay times; for a decay, a --window of it alone.";
   constexpr double reproduced = 0.5;  // of the motion's size
   const MatrixXd motion = samples.colwise() - samples.rowwise().mean();
   const Index half = motion.cols() / 2;
@@ -113,10 +119,42 @@ void check_kind(const MatrixXd& samples, RecordModes& found) {
         "The record does not decay: its second half is nearly as strong as its first, and no decaying modes "
         "reproduce it. For random vibration take --method ssi_cov; for a decay that comes later in the "
         "record, --window.");
+  else if (found.free_decay && motion_goes_on(found))
+    found.warnings.push_back(
+        fmt::format("The motion goes on: the modes leave {:.2g} % of it, at their own frequencies and to the "
+                    "end, which no "
+                    "decay does. {}",
+                    100.0 * (found.target - found.reproduced).norm() / motion.norm(), no_decay));
+  else if (found.free_decay && moved_before(whole, found))
+    found.warnings.push_back(
+        fmt::format("Nothing was released: the record moves as much before its largest reading, at {:.4g} s, "
+                    "as after. {}",
+                    found.record.time[0], no_decay));
   if (!found.free_decay && std::max(early, late) > 10 * std::min(early, late))
     found.warnings.push_back(
         "The record is not steady: one half is much stronger than the other. For a free decay take --method "
         "era; for random vibration, a --window without the strong part.");
+}
+
+/// Of random vibration: sines that last are no mode's, and next to one they draw it to themselves.
+void take_lines_out(const VectorXd& scales, CoarseRecord& coarse, RecordModes& found) {
+  const SteadyLines steady =
+      steady_lines(scales.cwiseInverse().asDiagonal() * coarse.samples, found.interval);
+  if (steady.lines.empty()) return;
+  coarse.samples = scales.asDiagonal() * steady.rest;
+  std::vector<double> frequencies;
+  double squares = 0.0;
+  for (const SteadyLine& line : steady.lines) {
+    frequencies.push_back(line.frequency_hz);
+    squares += line.share * line.share;
+  }
+  const bool several = frequencies.size() > 1;
+  found.warnings.push_back(
+      fmt::format("{} at {}, {:.2g} % of the motion's root mean square, {} over the whole record, as no mode "
+                  "does that is "
+                  "shaken at random: a machine or the mains. {} before modes were sought.",
+                  several ? "Lines" : "A line", frequencies_text(frequencies), 100.0 * std::sqrt(squares),
+                  several ? "last" : "lasts", several ? "They were taken out" : "It was taken out"));
 }
 
 /// What the record shows and no mode stands for: lines outside the band, and lines inside it.
@@ -159,6 +197,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   found.free_decay = registry.find(settings.method.name).contracts.contains(contract::free_decay);
   found.mode_by_mode = registry.find(settings.method.name).contracts.contains(contract::mode_by_mode);
   found.record = complete_part(motion_of(record), found.remarks);
+  const Record whole = found.record;
   if (found.free_decay && !windowed) found.record = from_release(found.record, found.remarks);
   check_intervals(found.record);
   const double interval = found.record.interval();
@@ -169,9 +208,10 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   found.band_hz = settings.band_hz ? *settings.band_hz : decay_band(found.record.samples, interval, lines);
   check_band(found.band_hz, interval, found.record.size());
 
-  const CoarseRecord coarse = coarse_record(found.record, found.band_hz.second);
+  CoarseRecord coarse = coarse_record(found.record, found.band_hz.second);
   found.interval = coarse.last.interval;
   found.start = found.record.time[0] + coarse.last.start;
+  if (!found.free_decay) take_lines_out(scales, coarse, found);
   const auto method = registry.make(settings.method.name, settings.method.options);
   if (found.mode_by_mode) {
     found.search = method->search(scales.cwiseInverse().asDiagonal() * coarse.samples, found.interval,
@@ -196,7 +236,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
     set_overtones_aside(found);
     add_shapes(scales, found);
   }
-  check_kind(coarse.samples, found);
+  check_kind(whole, coarse.samples, found);
   name_missed_lines(lines, found);
   if (found.free_decay) {
     for (ModeEstimate& mode : found.modes)  // back to the undecimated record and its beginning
