@@ -77,7 +77,7 @@ Results hammer_results(const std::vector<std::string>& names, const std::vector<
   Results results = report(settings, study);
   std::vector<std::complex<double>> rates;
   for (const HammerMode& mode : study.modes) rates.push_back(mode.pole.rate);
-  tell_masses(names, records, std::vector(records.size(), rates), results);
+  tell_masses(names, records, std::vector(records.size(), rates), results, true);
   return results;
 }
 
@@ -169,7 +169,7 @@ Command modal_command() {
           run_modal,
           "",
           "3  --events: a sign, the order or the clocks of base and response are not as described; the first "
-          "lines say which.\n"};
+          "lines say which. Of frf_lscf and frf_half_power: hits of so few samples that no mass stands.\n"};
 }
 
 }  // namespace beamid::apps

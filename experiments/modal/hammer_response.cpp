@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
 
+#include "experiments/modal/hit_sampling.hpp"
 #include "experiments/signal/fast_length.hpp"
 #include "experiments/signal/median.hpp"
 #include "experiments/signal/onsets.hpp"
@@ -52,7 +53,40 @@ struct ForceBlock {
   const Record* record;
   const VectorXd* force;
   Index begin, length;
+  HitSampling sampling;
 };
+
+/// Sets what noise and sampling leave unknown of the force, and tells of hits that are too coarse.
+void judge_sampling(const std::vector<ForceBlock>& blocks, double interval, HammerResponses& found) {
+  std::vector<HitSampling> hits;
+  VectorXd squares;
+  for (const ForceBlock& block : blocks) {
+    hits.push_back(block.sampling);
+    found.pulse_s += 1.5 * interval * block.sampling.above_half / static_cast<double>(blocks.size());
+    const double noise = block.sampling.noise_n;
+    const VectorXd part = block.force->segment(block.begin, block.length);
+    Index end = part.size();
+    while (end > 1 && part[end - 1] == 0) --end;
+    if (squares.size() < end) squares.conservativeResizeLike(VectorXd::Zero(end));
+    squares.head(end).array() += noise * noise / static_cast<double>(blocks.size());
+  }
+  found.force_noise = squares.cwiseSqrt();
+  found.unresolved = unresolved_on_average(hits);
+  found.masses_lost = unresolved_at_once(hits) > lost_momentum;
+  found.coarse = coarse_hits(hits, interval);
+}
+
+/// Whether a motion of more than 5 % of what follows precedes a hit. Noise has no memory: motion is what
+/// neighbouring samples have in common, beyond four standard deviations of that in noise alone.
+bool moves_before(const VectorXd& response, Index begin, Index part) {
+  constexpr double least = 0.05, deviations = 4;
+  const double mean = response.mean();
+  const VectorXd before = response.segment(begin - part, part).array() - mean,
+                 after = response.segment(begin + 2 * lead, part).array() - mean;
+  const double common = before.head(part - 1).dot(before.tail(part - 1)),
+               noise = 0.5 * (before.tail(part - 1) - before.head(part - 1)).squaredNorm();
+  return common > std::max(least * least * after.squaredNorm(), deviations * noise / std::sqrt(part));
+}
 
 VectorXcd spectrum(const VectorXd& windowed) {
   Eigen::FFT<double> transform;
@@ -77,7 +111,7 @@ std::vector<Hit> find_hits(const VectorXd& force, double interval) {
     Hit hit{onset, stop, VectorXd::Zero(force.size()), 0, part.maxCoeff(), {}};
     Index last = part.size() - 1;
     while (last > 0 && part[last] < 0.05 * hit.largest) --last;
-    const Index taper = std::max<Index>(4, last / 4);
+    const Index taper = std::max<Index>(lead, last / 4);
     const Index begin = std::max<Index>(0, onset - lead);
     hit.end = std::min(stop, onset + last + 1 + taper);
     for (Index i = begin; i < hit.end; ++i) {
@@ -122,7 +156,8 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
       const Index begin = std::max<Index>(0, hit.onset - lead);
       const Index stop =
           k + 1 < hits[r].size() ? std::max<Index>(0, hits[r][k + 1].onset - lead) : records[r].size();
-      blocks.push_back({&records[r], &hit.force, begin, stop - begin});
+      blocks.push_back({&records[r], &hit.force, begin, stop - begin,
+                        hit_sampling(records[r].samples.row(force_row(records[r])).transpose(), hit)});
       longest = std::max(longest, stop - begin);
     }
   for (const std::vector<Hit>& of_record : hits)
@@ -137,8 +172,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
     const Index part = std::min(block.begin, block.length / 10);
     for (Index row = 0; part >= 16 && row < block.record->samples.rows(); ++row)
       if (row != force_row(*block.record) &&
-          block.record->samples.row(row).segment(block.begin - part, part).norm() >
-              0.05 * block.record->samples.row(row).segment(block.begin + 2 * lead, part).norm()) {
+          moves_before(block.record->samples.row(row).transpose(), block.begin, part)) {
         ++moving;
         break;
       }
@@ -161,6 +195,8 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
     throw std::invalid_argument(fmt::format("{} samples behind a hit; expected 64 at least", length));
   length = fast_length_within(length);
 
+  judge_sampling(blocks, interval, found);
+  found.interval = interval;
   found.averages = static_cast<int>(blocks.size());
   found.duration = interval * static_cast<double>(length);
   found.window_rate = -std::log(window_end) / found.duration;
@@ -171,11 +207,13 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
   const Index lines = length / 2 + 1, outputs = records.front().samples.rows() - 1;
   if (outputs < 1) throw std::invalid_argument("the record holds a force only; expected a response as well");
   VectorXd ff = VectorXd::Zero(lines);
+  found.force_mean = VectorXcd::Zero(lines);
   MatrixXd yy = MatrixXd::Zero(outputs, lines);
   MatrixXcd yf = MatrixXcd::Zero(outputs, lines);
   for (const ForceBlock& block : blocks) {
     const VectorXcd f = spectrum(window.cwiseProduct(block.force->segment(block.begin, length)));
     ff += f.head(lines).cwiseAbs2();
+    found.force_mean += f.head(lines) / static_cast<double>(blocks.size());
     const Index force = force_row(*block.record);
     for (Index i = 0, row = 0; row < block.record->samples.rows(); ++row) {
       if (row == force) continue;

@@ -20,8 +20,8 @@ struct Hit {
 };
 
 /// Hits of a force (N). The force window is 1 from the onset to the last sample above a twentieth of the
-/// largest within 0.1 s, then falls as half a cosine: what a sensor with alternating-current coupling droops
-/// afterwards is no force.
+/// largest within 0.1 s, then falls as half a cosine over a quarter more or eight samples: what a sensor with
+/// alternating-current coupling droops afterwards is no force.
 /// @throws std::invalid_argument when there is none.
 std::vector<Hit> find_hits(const Eigen::VectorXd& force, double interval);
 
@@ -31,6 +31,13 @@ struct HammerResponses {
   Eigen::MatrixXcd h1, h2;            ///< (p x F) [unit of the channel / N], at s = i 2 pi f + window_rate
   Eigen::MatrixXd coherence;          ///< (p x F); 1 where there is one average only
   Eigen::VectorXd force_spectrum;     ///< (F), root mean square of |F(f)| over the hits [N s]
+  Eigen::VectorXcd force_mean;        ///< (F), of F(f) over the hits, for its phase
+  Eigen::VectorXd force_noise;        ///< standard deviation of each sample in the force window [N]
+  double unresolved = 0;              ///< what sampling leaves of the mean momentum (hit_sampling.hpp)
+  std::string coarse;                 ///< what is said of it; empty where the momentum is well resolved
+  bool masses_lost = false;           ///< no mass stands that
+  double pulse_s = 0;                 ///< about how long the pulses last [s]
+  double interval = 0;                ///< of the records [s]
   int averages = 0;                   ///< hits
   double duration = 0;                ///< of a block [s]
   double window_rate = 0;             ///< of the exponential window [1/s]

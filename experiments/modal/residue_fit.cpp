@@ -105,14 +105,45 @@ ResidueSlopes slopes(const VectorXcd& s, int power, const ResidueFit& at, const 
   return found;
 }
 
-/// [white1980]
-MatrixXd covariance_of_residues(const ResidueSlopes& at, const VectorXd& left, double correlated) {
-  const Index n = at.normal.cols(), spare = left.size() - n;
-  if (spare < 1) throw std::runtime_error("fewer lines than parameters");
-  const MatrixXd inverse = filters::solve_damped(at.normal, 0, MatrixXd::Identity(n, n));
-  const MatrixXd weighted = at.jacobian.transpose() * left.cwiseAbs2().asDiagonal() * at.jacobian;
-  return correlated * static_cast<double>(left.size()) / static_cast<double>(spare) *
-         (inverse * weighted * inverse.transpose());
+/// What H tends to as s grows [unit of H]: s^2 (R / (s - p) + c.c.) tends to 2 Re(R p) where Re R is 0.
+VectorXd at_high_frequencies(const ResidueFit& at, int power) {
+  if (power < 2) return VectorXd::Zero(at.lower.size());
+  VectorXd sum = at.lower;
+  for (std::size_t m = 0; m < at.rates.size(); ++m)
+    sum += 2 * (at.residues.col(static_cast<Index>(m)) * at.rates[m]).real();
+  return sum;
+}
+
+/// Errors of the responses (2 p F x q), as residual() stacks them, that those of the force make.
+MatrixXd known_errors(const ResidueFit& at, int power, const ResponseNoise& noise) {
+  const Index lines = at.reproduced.cols(), outputs = at.reproduced.rows();
+  const VectorXd limit = at_high_frequencies(at, power);
+  MatrixXd result(2 * outputs * lines, noise.force.cols() + noise.aliases.cols());
+  for (Index o = 0; o < outputs; ++o) {
+    MatrixXcd of_output(lines, result.cols());
+    const VectorXcd h = at.reproduced.row(o).transpose();
+    if (noise.force.cols() > 0) of_output.leftCols(noise.force.cols()) = -(h.asDiagonal() * noise.force);
+    if (noise.aliases.cols() > 0)
+      of_output.rightCols(noise.aliases.cols()) =
+          VectorXcd(limit[o] - h.array()).asDiagonal() * noise.aliases;
+    result.middleRows(2 * o * lines, 2 * lines) = stacked(of_output);
+  }
+  return result;
+}
+
+MatrixXd covariance_of_residues(const VectorXd& frequency_hz, int power, const ResidueFit& at,
+                                const ResidueSlopes& slope, const VectorXd& left,
+                                const ResponseNoise& noise) {
+  const Index n = slope.normal.cols();
+  if (left.size() <= n) throw std::runtime_error("fewer lines than parameters");
+  const MatrixXd inverse = filters::solve_damped(slope.normal, 0, MatrixXd::Identity(n, n));
+  const MatrixXd known = known_errors(at, power, noise),
+                 moved = inverse * (slope.jacobian.transpose() * known);
+  const Index force = noise.force.cols();  // aliases are known too roughly to be taken off
+  const VectorXd explained =
+      (known.leftCols(force) - slope.jacobian * moved.leftCols(force)).rowwise().squaredNorm();
+  return covariance_under(noise.lines, frequency_hz, slope.jacobian, inverse, left, explained) +
+         moved * moved.transpose();
 }
 
 }  // namespace
@@ -123,7 +154,7 @@ ResidueFit fit_residues(const VectorXd& frequency_hz, const MatrixXcd& responses
 }
 
 ResidueFit refine_poles(const VectorXd& frequency_hz, const MatrixXcd& responses, double shift, int power,
-                        const std::vector<Complex>& rates, double correlated) {
+                        const std::vector<Complex>& rates, const ResponseNoise& noise) {
   const VectorXcd s = points(frequency_hz, shift);
   ResidueFit at = fit(s, responses, power, rates);
   VectorXd left = residual(responses, at);
@@ -150,7 +181,7 @@ ResidueFit refine_poles(const VectorXd& frequency_hz, const MatrixXcd& responses
   };
   if (filters::levenberg_marquardt({}, step, take) != filters::DescentEnd::settled)
     throw std::runtime_error("the fit of frequency responses does not converge");
-  at.covariance = covariance_of_residues(slope, left, correlated);
+  at.covariance = covariance_of_residues(frequency_hz, power, at, slope, left, noise);
   return at;
 }
 

@@ -5,6 +5,8 @@
 #include <complex>
 #include <vector>
 
+#include "experiments/modal/line_noise.hpp"
+
 namespace beamid::experiments {
 
 /// H_o(s) = s^k (sum_m R_om / (s - p_m) + conj(R_om) / (s - conj(p_m)) + U_o + L_o / s^2), with k = 0, 1, 2
@@ -20,15 +22,23 @@ struct ResidueFit {
   Eigen::MatrixXd covariance;
 };
 
+/// What is wrong with frequency responses at F lines.
+struct ResponseNoise {
+  LineNoise lines;
+  /// (F x q) relative errors of the force, independent, a standard deviation each: H is off by -H of them. Of
+  /// aliases the response has its own, (H_inf - H) of them with H_inf what H tends to at high frequencies.
+  Eigen::MatrixXcd force, aliases;
+};
+
 /// Linear least squares over lines s = i 2 pi f + shift (F) with the poles given.
 ResidueFit fit_residues(const Eigen::VectorXd& frequency_hz, const Eigen::MatrixXcd& responses, double shift,
                         int power, const std::vector<std::complex<double>>& rates);
 
 /// The same with the poles refined by Gauss-Newton steps, damped where they do not descend. The covariance is
-/// that of residuals of unequal size, (J^T J)^-1 J^T diag(r^2) J (J^T J)^-1 [white1980].
-/// @param correlated lines over which the window spreads noise, 1 or more: multiplies the covariance
+/// that of noise as large as the residual is around each line (line_noise.hpp) and of the force's errors.
 /// @throws std::runtime_error when it does not converge.
 ResidueFit refine_poles(const Eigen::VectorXd& frequency_hz, const Eigen::MatrixXcd& responses, double shift,
-                        int power, const std::vector<std::complex<double>>& rates, double correlated = 1);
+                        int power, const std::vector<std::complex<double>>& rates,
+                        const ResponseNoise& noise = {});
 
 }  // namespace beamid::experiments

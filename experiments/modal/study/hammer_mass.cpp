@@ -1,12 +1,14 @@
 #include "experiments/modal/study/hammer_mass.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "experiments/modal/amplitude_dependence.hpp"
-#include "experiments/modal/hammer_response.hpp"
+#include "experiments/modal/hit_sampling.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -45,6 +47,13 @@ std::optional<HammerMass> hammer_mass(const Record& record, const Pole& pole,
     const double interval = record.interval();
     const std::vector<Hit> hits = find_hits(record.samples.row(force).transpose(), interval);
     const Hit& hit = hits.front();
+    std::vector<HitSampling> sampling;
+    for (const Hit& one : hits) sampling.push_back(hit_sampling(record.samples.row(force).transpose(), one));
+    const double unresolved = unresolved_at_once(sampling);
+    reason =
+        fmt::format("its hit has {:.0f} samples above half of the largest force, too few for its momentum",
+                    sampling.front().above_half);
+    if (unresolved > lost_momentum) return std::nullopt;
     const Index end = hits.size() > 1 ? hits[1].onset : record.size();
     const VectorXd decay = record.samples.row(motion).segment(hit.end, end - hit.end).transpose();
     const std::vector<AmplitudePoint> points = amplitude_dependence(decay, interval, pole.rate, others);
@@ -66,9 +75,9 @@ std::optional<HammerMass> hammer_mass(const Record& record, const Pole& pole,
     HammerMass found;
     const int power = power_of(record.channels[motion].quantity);
     found.mass = std::pow(w, power) * std::abs(transformed) / (s.imag() * std::exp(logarithm));
-    found.deviation =
-        found.mass * w *
-        std::hypot((back + part) * first.damping_ratio_deviation, part * second.damping_ratio_deviation);
+    found.deviation = found.mass * std::hypot(w * (back + part) * first.damping_ratio_deviation,
+                                              w * part * second.damping_ratio_deviation, unresolved);
+    found.coarse = coarse_hits(sampling, interval);
     found.impulse = hit.impulse;
     found.velocity_step = hit.impulse / found.mass;
     found.pulses_s = hit.pulses_s;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/modal/force_error.hpp"
 #include "experiments/modal/response_peaks.hpp"
 
 namespace beamid::experiments {
@@ -67,12 +68,18 @@ double carried(const std::complex<double>& from, const std::complex<double>& to)
 bool refine(const VectorXd& lines, const MatrixXcd& measured, HammerStudy& study) {
   constexpr double farthest = 0.05;
   const double shift = study.responses.window_rate;
-  const double correlated = std::max(1.0, 0.5 * shift * study.responses.duration);
+  const ForceErrors force = force_errors(study.responses, study.first, study.lines);
+  const VectorXd& spectrum = study.responses.force_spectrum;
+  const ResponseNoise noise{
+      {shift * study.responses.duration,
+       spectrum.segment(study.first, study.lines).cwiseMax(1e-6 * spectrum.maxCoeff()).cwiseInverse()},
+      force.noise,
+      force.aliases};
   const HammerStudy before = study;
   try {
     while (true) {
       const std::vector<std::complex<double>> rates = rates_of(study.modes);
-      ResidueFit refined = refine_poles(lines, measured, shift, study.power, rates, correlated);
+      ResidueFit refined = refine_poles(lines, measured, shift, study.power, rates, noise);
       std::size_t worst = 0;
       for (std::size_t m = 1; m < rates.size(); ++m)
         if (carried(rates[m], refined.rates[m]) > carried(rates[worst], refined.rates[worst])) worst = m;

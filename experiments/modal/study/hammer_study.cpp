@@ -47,7 +47,8 @@ void add_modes(HammerStudy& study) {
     const double turn = mode.pole.rate.imag();
     for (Index o = 0; o < outputs; ++o) {
       const std::complex<double> residue = study.fit.residues(o, m);
-      const double size = std::abs(residue), mass = 1 / (2 * turn * size);
+      const double size = std::abs(residue),
+                   mass = study.responses.masses_lost ? Pole::unknown : 1 / (2 * turn * size);
       mode.mass.push_back(mass);
       mode.phase.push_back(std::arg(std::complex<double>(0, 2 * turn) * residue));
       const Index at = 2 * count + o * (2 * count + 2) + 2 * m;
@@ -68,14 +69,15 @@ void judge_phases(HammerStudy& study) {
       const double size = std::abs(mode.phase[o]), off = std::min(size, std::numbers::pi - size);
       if (off <= most) continue;
       mode.complex = true;
+      const std::string mass =
+          std::isfinite(mode.mass[o]) ? fmt::format(" of {:.3g} kg", mode.mass[o]) : std::string();
       study.warnings.push_back(fmt::format(
           "The residue of mode {} at {:.4g} Hz{} has a phase of {:.0f} degrees, where a real mode has 0 or "
-          "180: "
-          "its modal mass of {:.3g} kg is not to be trusted. A near mode that was missed, a rebound or a "
-          "frequency that follows the amplitude does that.",
+          "180: its modal mass{} is not to be trusted. A near mode that was missed, a rebound or a frequency "
+          "that follows the amplitude does that.",
           m + 1, mode.pole.frequency_hz(),
           study.channels.size() > 1 ? " in " + study.channels[o].name : std::string(),
-          mode.phase[o] * 180 / std::numbers::pi, mode.mass[o]));
+          mode.phase[o] * 180 / std::numbers::pi, mass));
     }
   }
 }

@@ -14,7 +14,8 @@ namespace beamid::experiments {
 struct HammerMode {
   Pole pole;                 ///< shape: residues, scaled to 1 at the largest
   std::vector<int> orders;   ///< at which it was stable; none for one taken from its peak
-  std::vector<double> mass;  ///< (p) 1 / (2 w_d |R|) [kg]: the modal mass where channel o is the hit's place
+  std::vector<double> mass;  ///< (p) 1 / (2 w_d |R|) [kg]: the modal mass where channel o is the hit's place;
+                             ///< NaN where hits are too coarse
   std::vector<double> deviation;  ///< (p) [kg]
   std::vector<double> phase;  ///< (p) of 2 i w_d R: 0 or pi for a real mode, pi where the sensor is opposed
   bool complex = false;       ///< a phase more than 30 degrees from both: the masses say nothing

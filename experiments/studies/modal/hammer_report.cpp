@@ -36,8 +36,10 @@ Table mode_table(const HammerStudy& study) {
         .column({"standard deviation", fmt::format("modal_mass_{}_standard_deviation_kg", o + 1), "{:.2g}"})
         .column({"phase [deg]", fmt::format("residue_phase_{}_deg", o + 1), "{:.1f}"});
   const bool rebounded = !study.responses.warnings.empty();
-  const bool remarks = rebounded || std::any_of(study.modes.begin(), study.modes.end(),
-                                                [](const HammerMode& mode) { return mode.complex; });
+  const bool coarse = !study.responses.coarse.empty();
+  const bool remarks = rebounded || coarse ||
+                       std::any_of(study.modes.begin(), study.modes.end(),
+                                   [](const HammerMode& mode) { return mode.complex; });
   if (remarks) table.column({"remark", "remark"});
   for (std::size_t m = 0; m < study.modes.size(); ++m) {
     const HammerMode& mode = study.modes[m];
@@ -51,7 +53,11 @@ Table mode_table(const HammerStudy& study) {
                               : fmt::format("{} of {}", mode.orders.size(), study.orders.size())};
     for (std::size_t o = 0; o < mode.mass.size(); ++o)
       row.insert(row.end(), {mode.mass[o], mode.deviation[o], mode.phase[o] * 180 / 3.14159265358979});
-    if (remarks) row.emplace_back(std::string(mode.complex ? "phase" : rebounded ? "hits disturbed" : ""));
+    if (remarks)
+      row.emplace_back(std::string(mode.complex ? "phase"
+                                   : rebounded  ? "hits disturbed"
+                                   : coarse     ? "hits coarse"
+                                                : ""));
     table.row(std::move(row));
   }
   table.note =
@@ -79,17 +85,19 @@ Json hammer_values(const HammerStudy& study) {
     one["channels"] = Json::array();
     for (std::size_t o = 0; o < mode.mass.size(); ++o)
       one["channels"].push_back({{"channel", study.channels[o].name},
-                                 {"modal_mass_kg", mode.mass[o]},
+                                 {"modal_mass_kg", known_or_null(mode.mass[o])},
                                  {"modal_mass_standard_deviation_kg", known_or_null(mode.deviation[o])},
                                  {"residue_phase_rad", mode.phase[o]}});
     json["modes"].push_back(std::move(one));
   }
-  for (std::size_t o = 0; o < study.channels.size() && !study.modes.empty(); ++o)
+  for (std::size_t o = 0; o < study.channels.size() && !study.modes.empty() && !study.responses.masses_lost;
+       ++o)
     json["residual_terms"].push_back({{"channel", study.channels[o].name},
                                       {"upper_m_per_n", study.fit.upper[static_cast<Index>(o)]},
                                       {"lower_per_kg", study.fit.lower[static_cast<Index>(o)]}});
   std::vector<std::string> warnings = study.record_warnings;
   warnings.insert(warnings.end(), study.responses.warnings.begin(), study.responses.warnings.end());
+  if (!study.responses.coarse.empty()) warnings.push_back(study.responses.coarse);
   json["record_warnings"] = warnings;
   json["notes"] = study.warnings;
   return json;
@@ -198,6 +206,8 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   results.heading(names);
   for (const auto* warnings : {&study.record_warnings, &study.responses.warnings})
     for (const std::string& warning : *warnings) results.warning(warning);
+  if (!study.responses.coarse.empty()) results.warning(study.responses.coarse, study.responses.masses_lost);
+  if (study.responses.masses_lost) results.values["status"] = "contradicted";
   std::string text = fmt::format(
       "Frequency responses of {} hit{} of {:.4g} s, {}. Band {:.4g} to {:.4g} Hz, {} lines. Method {}",
       study.responses.averages, study.responses.averages > 1 ? "s" : "", study.responses.duration,

@@ -9,7 +9,8 @@
 namespace beamid::experiments {
 
 void tell_masses(const std::vector<std::string>& names, const std::vector<Record>& records,
-                 const std::vector<std::vector<std::complex<double>>>& rates, Results& results) {
+                 const std::vector<std::vector<std::complex<double>>>& rates, Results& results,
+                 bool coarse_told) {
   Table table{"hammer_mass", "Mass from the hammer's impulse and the velocity step of the mode"};
   table.column({"record", "record"})
       .column({"mode", "mode", "{:.0f}"})
@@ -20,7 +21,7 @@ void tell_masses(const std::vector<std::string>& names, const std::vector<Record
       .column({"standard deviation", "mass_standard_deviation_kg", "{:.2g}"})
       .column({"remark", "remark"});
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  std::string rebounds, missing;
+  std::string rebounds, coarse, missing;
   std::size_t told = 0;  // record whose rebound is
   for (std::size_t r = 0; r < records.size(); ++r)
     for (std::size_t m = 0; m < rates[r].size(); ++m) {
@@ -34,7 +35,9 @@ void tell_masses(const std::vector<std::string>& names, const std::vector<Record
       const bool rebounded = found->pulses_s.size() > 1;
       table.row({names[r], static_cast<double>(m + 1), pole.frequency_hz(), found->impulse,
                  found->velocity_step, found->mass, found->deviation,
-                 std::string(rebounded ? "hammer rebounded" : "")});
+                 std::string(rebounded                ? "hammer rebounded"
+                             : !found->coarse.empty() ? "hit coarse"
+                                                      : "")});
       json.push_back({{"record", names[r]},
                       {"mode", m + 1},
                       {"impulse_n_s", found->impulse},
@@ -42,6 +45,7 @@ void tell_masses(const std::vector<std::string>& names, const std::vector<Record
                       {"mass_kg", found->mass},
                       {"mass_standard_deviation_kg", found->deviation},
                       {"pulses_s", found->pulses_s}});
+      if (coarse.empty() && !coarse_told && !found->coarse.empty()) coarse = names[r] + ": " + found->coarse;
       if (rebounded && std::exchange(told, r + 1) != r + 1)
         rebounds += fmt::format(
             "{}: the hammer rebounded, {} pulses within {:.3g} ms. All of them are in the impulse, but what "
@@ -51,10 +55,11 @@ void tell_masses(const std::vector<std::string>& names, const std::vector<Record
   if (table.rows() == 0) return;
   table.note =
       "The first motion counts, taken to be where the hammer hits. The deviation is that of the amplitude "
-      "taken back to the hit; calibration is not in it.";
+      "taken back to the hit and of the hit's sampling; calibration is not in it.";
   results.values["hammer_mass"] = std::move(json);
   results.table(std::move(table));
   if (!rebounds.empty()) results.paragraph(rebounds);
+  if (!coarse.empty()) results.warning(coarse);
   if (!missing.empty()) results.paragraph("Without a mass:" + missing);
 }
 
