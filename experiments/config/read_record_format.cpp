@@ -87,7 +87,9 @@ const Schema<DescribedRecord>& record_keys() {
                "1651.612903")
           .fallback("from the printed times")
           .key("window_s", &R::window, "part of the record to use, [from, to]", "[0.808, 1.608]")
-          .fallback("whole record; `identify`: the decay behind the last event")
+          .fallback(
+              "whole record; `identify`: the decay behind the last event, between knocks and behind clipped "
+              "readings")
           .tables({"time"}, Key::Type::table)
           .tables({"channels", "prepare"});
   return keys;

@@ -9,7 +9,6 @@
 #include "experiments/modal/damped_sine_fit.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/decimation.hpp"
-#include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -80,17 +79,15 @@ std::vector<AmplitudeLaw> laws_of(const DecimatedSignal& coarse, Index used, dou
 
 }  // namespace
 
-AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, const ModalEstimate& modal) {
-  constexpr double largest_share_missing = 0.02, least_over_noise = 3;
+AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, const ModalEstimate& modal,
+                                     double read) {
+  constexpr double least_read = 0.7, least_over_noise = 3;
   constexpr Index kernel_and_more = 50;
   AmplitudeSections result;
-  const auto measured = static_cast<double>(signal.array().isFinite().count());
-  if (!modal.companions.empty() ||
-      measured < (1 - largest_share_missing) * static_cast<double>(signal.size()))
-    return result;
+  if (!modal.companions.empty() || read < least_read) return result;
   const int factor = decimation_factor(1 / (interval * modal.frequency_hz * section_samples_per_cycle),
                                        signal.size() / kernel_and_more);
-  const DecimatedSignal coarse = decimate(bridged_straight(signal), interval, factor);
+  const DecimatedSignal coarse = decimate(signal, interval, factor);
   const double periods = coarse.interval * static_cast<double>(coarse.samples.size()) * modal.frequency_hz;
   if (periods < fewest_sections * fewest_periods) return result;
   const int count = std::clamp(static_cast<int>(periods / wished_periods), fewest_sections, most_sections);
@@ -109,8 +106,8 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
     }
   }
   if (fitted.size() < static_cast<std::size_t>(fewest_sections) || !(squares > 0)) return result;
-  const double noise = std::sqrt(squares / freedom);  // as dense as this at the coarse rate
-  result.noise = noise / coarse.kernel.norm();
+  const double noise = std::sqrt(squares / freedom);              // as dense as this at the coarse rate
+  result.noise = noise / coarse.kernel.norm() / std::sqrt(read);  // what is filled in has none
   const auto sections = static_cast<Index>(fitted.size());
   SectionValues frequency{VectorXd(sections), VectorXd(sections)},
       damping{VectorXd(sections), VectorXd(sections)};

@@ -45,6 +45,7 @@ double beam_frequency_hz(const Experiment& experiment) {
 }
 
 void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
+  constexpr double mostly_read = 0.7;
   const Record& stamped = found.evenly_stamped();
   ModalAnalysisSettings settings;
   settings.expected_frequency_hz = found.expected_hz;
@@ -54,9 +55,13 @@ void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
     found.mode = FoundMode{found.modal->frequency_hz, found.modal->damping_ratio};
     found.mode_noise = found.residual_noise(*found.modal);
     found.near_mode = found.noise_at(*found.modal);
+    const Index first = output_channels(stamped)[0];
+    found.overtone = third_overtone(stamped.samples.row(first).transpose(), stamped.interval(), *found.modal);
+    const double interval = found.even.record.interval();
+    const VectorXd filled = found.even.record.samples.row(first).transpose();
+    if (found.even.share > mostly_read) found.jump = decay_jump(filled, interval, *found.modal);
     if (asks_free_oscillator(experiment, found.record))
-      found.sections = amplitude_sections(stamped.samples.row(output_channels(stamped)[0]).transpose(),
-                                          stamped.interval(), *found.modal);
+      found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
   } catch (const std::invalid_argument& error) {
     found.modal_refusal = fmt::format(
         "modal analysis: {} (looked for near {:.6g} Hz of {})", error.what(), found.expected_hz,

@@ -8,7 +8,9 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/amplitude_sections.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
+#include "experiments/modal/decay_jump.hpp"
 #include "experiments/modal/dominant_mode.hpp"
+#include "experiments/modal/third_overtone.hpp"
 #include "experiments/models/divergence.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
 
@@ -32,6 +34,8 @@ struct RecordAnalysis {
   std::optional<NoiseNearMode> near_mode;  ///< noise_at() `modal`
   std::optional<FoundMode> mode;           ///< what models are checked against; a force may drive it
   AmplitudeSections sections;              ///< of the first output, where asks_free_oscillator() and `modal`
+  std::optional<DecayJump> jump;           ///< of the first output of `even`, from its first sample
+  std::optional<ThirdOvertone> overtone;   ///< of the first output
   std::vector<std::string> notes, warnings;
 
   bool forced() const;  ///< whether a force was measured

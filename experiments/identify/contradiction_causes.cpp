@@ -122,11 +122,7 @@ bool modal_analysis_is_worse(const Record& record, const RecordIdentification& f
   constexpr double clearly = 1.02;
   if (!(found.identification.found.damping_ratio() < 1.0)) return false;
   std::vector<Complex> modes{found.modal.rate()};
-  for (const CompanionMode& other : found.modal.companions) {
-    ModalEstimate mode;
-    mode.frequency_hz = other.frequency_hz, mode.damping_ratio = other.damping_ratio;
-    modes.push_back(mode.rate());
-  }
+  for (const CompanionMode& other : found.modal.companions) modes.push_back(other.rate());
   const Record even = on_even_stamps(record).record;
   return left_by(even, modes) > clearly * left_by(even, {found.identification.found.eigenvalue()});
 }

@@ -1,5 +1,7 @@
 #include "experiments/identify/identification_request.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "experiments/identify/analysis.hpp"
@@ -7,6 +9,7 @@
 #include "experiments/identify/higher_modes.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/noise_source.hpp"
+#include "experiments/identify/sound_part.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/text/method_choice.hpp"
 
@@ -61,11 +64,21 @@ void cut_decay(IdentificationRequest& one) {
   RecordFormat& format = one.experiment.format;
   const bool driven = !input_channels(one.prepared.record).empty() || !one.experiment.unknown_forces.empty();
   if (format.window || driven) return;
-  const auto window = decay_window(one.experiment, one.prepared.record);
-  if (!window) return;
-  format.window = {window->from, window->to};
-  one.window = window->words();
-  one.prepared.take(one.prepared.record, format, one.file);
+  Record& record = one.prepared.record;
+  if (const auto window = decay_window(one.experiment, record)) {
+    format.window = {window->from, window->to};
+    one.window = window->words();
+  }
+  const Record decay = format.window ? record.window(format.window->first, format.window->second) : record;
+  if (const auto part = sound_part(one.experiment, decay, one.prepared.defects)) {
+    format.window = {part->from, part->to};
+    one.window += one.window.empty() ? fmt::format(
+                                           "No window was given. {} record.window_s or --window takes "
+                                           "the place of this.",
+                                           part->words)
+                                     : " " + part->words;
+  }
+  if (format.window) one.prepared.take(record, format, one.file);
 }
 
 void keep_out_higher_modes(IdentificationRequest& one, const std::vector<Choice>& reductions) {

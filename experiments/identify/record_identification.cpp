@@ -1,7 +1,12 @@
 #include "experiments/identify/record_identification.hpp"
 
+#include <fmt/format.h>
+#include <algorithm>
+
 #include <cmath>
 #include <stdexcept>
+
+#include "experiments/identify/decay_objections.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -36,6 +41,32 @@ double factor_of(const RecordIdentification& found, const SectionTrend& trend, d
   return std::max(1.0, half / (quantile_95 * deviation));
 }
 
+void contradict(const std::string& text, Judgement& judgement) {
+  judgement.verdict = ComparedRun::Status::contradicted;
+  judgement.messages.insert(judgement.messages.begin(), text);
+}
+
+// What speaks against any one decay, whatever modal analysis and filter agree on.
+void take_objections(const RecordAnalysis& analysis, double misfit_percent, RecordIdentification& found) {
+  constexpr double most_of_it = 50;  // [%]
+  const Identification& filter = found.identification;
+  if (found.judgement.verdict == ComparedRun::Status::converged && misfit_percent > most_of_it)
+    contradict(
+        fmt::format("CONTRADICTED: {:.3g} % of the record is motion that no decay of one frequency and "
+                    "damping ratio makes: other modes, a clock that changes its rate, or something that "
+                    "touched the structure. Expected another --window, or a model of more modes.",
+                    misfit_percent),
+        found.judgement);
+  FoundMode mode{filter.found.frequency_hz(), filter.found.damping_ratio()};
+  mode.damping_ratio_deviation = found.damping_factor() * filter.damping_ratio_deviation;
+  for (const DecayObjection& one : decay_objections(analysis, mode)) {
+    if (one.contradicts)
+      contradict(one.text, found.judgement);
+    else
+      found.judgement.messages.insert(found.judgement.messages.begin(), one.text);
+  }
+}
+
 }  // namespace
 
 RecordIdentification oscillator_of(const Experiment& experiment, const RecordAnalysis& analysis,
@@ -63,6 +94,8 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
   result.interval_factor = interval_widening(result);
   result.batch = run.batch;
   result.diagnostics = run.diagnostics;
+  const auto own = std::min(run.remarks.size(), run.run.remarks.size());
+  result.remarks.assign(run.remarks.begin() + static_cast<std::ptrdiff_t>(own), run.remarks.end());
   if (!run.run.failure) {
     if (result.diagnostics) result.consistency = result.diagnostics->consistency;
     result.smoothed = run.smoothed;
@@ -70,6 +103,8 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
     result.sections = analysis.sections;
   }
   result.judgement = judge(experiment, analysis.record, result);
+  if (result.judgement.verdict != ComparedRun::Status::diverged)
+    take_objections(analysis, run.misfit_percent, result);
   return result;
 }
 

@@ -32,6 +32,7 @@ struct RecordIdentification {
   int passes = 3;
   std::optional<filters::InnovationConsistency> consistency;  ///< absent when the filter failed early
   std::optional<filters::Diagnostics> diagnostics;            ///< absent below 100 samples
+  std::vector<std::string> remarks;                           ///< on the passes, for reports
   Judgement judgement;
   std::vector<filters::Gaussian> smoothed;   ///< of every sample, where a smoother was asked for
   Eigen::MatrixXd reproduced;                ///< (p x N): free decay with the identified K and C

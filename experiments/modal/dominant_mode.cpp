@@ -104,6 +104,34 @@ Realised realise(const DecimatedSignal& coarse, double expected_hz, const ModalA
   }
 }
 
+/// A mode damped by more than the realisation's limit, which keeps out the poles that noise makes; taken
+/// where its least squares know it well enough for it to be none of these. @throws as realise() with the
+/// limit
+Realised realise_to_any_damping(const DecimatedSignal& coarse, double expected_hz,
+                                const ModalAnalysisSettings& settings) {
+  constexpr double any_oscillation = 0.7,
+                   well = 0.1;  // well: of the pole's real part and of its imaginary part
+  try {
+    return realise(coarse, expected_hz, settings);
+  } catch (const std::invalid_argument&) {
+    ModalAnalysisSettings heavy = settings;
+    heavy.eigensystem.largest_damping_ratio = any_oscillation;
+    try {
+      Realised found = realise(coarse, expected_hz, heavy);
+      const DampedSineFit fit = fit_damped_sines(coarse.samples, coarse.interval, {found.rates.front()});
+      const double noise = fit.residual_standard_deviation;
+      const std::complex<double> rate = fit.sines.front().rate;
+      found.rates.resize(1);
+      if (noise * std::sqrt(fit.cofactors(1, 1)) < well * std::abs(rate.real()) &&
+          noise * std::sqrt(fit.cofactors(0, 0)) < well * std::abs(rate.imag()) &&
+          -rate.real() < any_oscillation * std::abs(rate))
+        return found;
+    } catch (const std::exception&) {  // none there either
+    }
+    throw;
+  }
+}
+
 /// A sine in the decimated signal's time and amplitude, returned to those of the signal itself.
 DampedSine undo_decimation(DampedSine sine, const DecimatedSignal& coarse) {
   sine.amplitude *= std::exp(-sine.rate * coarse.start) / coarse.response(sine.rate);
@@ -199,11 +227,19 @@ void fit_measured_samples(const Eigen::VectorXd& signal, double interval, Decima
   }
 }
 
+std::complex<double> rate_of(double frequency_hz, double damping_ratio) {
+  return 2 * std::numbers::pi * frequency_hz *
+         std::complex<double>(-damping_ratio, std::sqrt(1 - damping_ratio * damping_ratio));
+}
+
 }  // namespace
 
 std::complex<double> ModalEstimate::rate() const {
-  return 2 * std::numbers::pi * frequency_hz *
-         std::complex<double>(-damping_ratio, std::sqrt(1 - damping_ratio * damping_ratio));
+  return rate_of(frequency_hz, damping_ratio);
+}
+
+std::complex<double> CompanionMode::rate() const {
+  return rate_of(frequency_hz, damping_ratio);
 }
 
 ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
@@ -217,7 +253,7 @@ ModalEstimate dominant_mode(const Eigen::VectorXd& signal, double interval,
   DecimatedSignal coarse =
       decimate(whole ? signal : filled_by_one_sine(signal, interval, expected, settings.frequency_tolerance),
                interval, factor);
-  const Realised realised = realise(coarse, expected, settings);
+  const Realised realised = realise_to_any_damping(coarse, expected, settings);
   DampedSineFit fit = polish_dominant_mode(coarse, realised.rates);
   if (!whole) fit_measured_samples(signal, interval, coarse, fit);
 

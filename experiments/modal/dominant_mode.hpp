@@ -24,6 +24,8 @@ struct CompanionMode {
   double frequency_hz = 0;
   double damping_ratio = 0;
   double amplitude = 0;  ///< [unit of the signal]
+
+  std::complex<double> rate() const;  ///< as ModalEstimate::rate()
 };
 
 /// y(t) = offset + amplitude e^(-damping_ratio w t) cos(w_d t + phase), with w = 2 pi frequency_hz,

@@ -9,6 +9,11 @@
 #include "experiments/signal/median.hpp"
 
 namespace beamid::experiments {
+namespace {
+
+constexpr const char* too_coarse = " (times printed this coarsely need record.sampling_rate_hz)";
+
+}  // namespace
 
 void PrintedPrecision::add(std::string_view token) {
   int decimals = 0, digits = 0, exponent = 0;
@@ -43,11 +48,15 @@ double PrintedPrecision::resolution(double value) const {
 }
 
 std::optional<SamplingFault> find_order_fault(const std::vector<double>& times) {
-  for (std::size_t i = 1; i < times.size(); ++i)
-    if (!(times[i] > times[i - 1]))
-      return SamplingFault{
-          i, fmt::format("time {} after {}; expected increasing times", times[i], times[i - 1])};
-  return std::nullopt;
+  const auto later = [&](std::size_t i) { return times[i] > times[i - 1]; };
+  std::size_t i = 1;
+  while (i < times.size() && later(i)) ++i;
+  if (i >= times.size()) return std::nullopt;
+  std::size_t equal = 0;
+  for (std::size_t j = 1; j < times.size(); ++j) equal += times[j] == times[j - 1] ? 1 : 0;
+  const bool coarse = 2 * equal > times.size();  // the seconds of a clock, printed without their decimals
+  return SamplingFault{i, fmt::format("time {} after {}; expected increasing times{}", times[i], times[i - 1],
+                                      coarse ? too_coarse : "")};
 }
 
 std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,
@@ -67,8 +76,7 @@ std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& time
       return SamplingFault{
           i, fmt::format(
                  "time {} after {}, an interval of {:.6g}; expected the median interval {:.6g} within 5 %{}",
-                 times[i], times[i - 1], intervals[i - 1], usual,
-                 coarse ? " (times printed this coarsely need record.sampling_rate_hz)" : "")};
+                 times[i], times[i - 1], intervals[i - 1], usual, coarse ? too_coarse : "")};
   }
   return std::nullopt;
 }

@@ -152,6 +152,14 @@ bool Passes::nearest_with_own_scheme() const {
   return run_.coordinates == 1 && !is_nonlinear(*run_.model);
 }
 
+// With which motions are held against the record. @param noise covariance of the outputs (p x p)
+std::unique_ptr<filters::DiscreteModel> Passes::discretised(const MatrixXd& noise) const {
+  const JointModel& model = *run_.model;
+  return nearest_with_own_scheme()
+             ? filters::discretise(model.motion, dt_, settings_.discretisation, {{}, noise})
+             : finest(model, dt_, noise);
+}
+
 bool Passes::has_settled() const {
   return !(last_move_ > settled_move);
 }
@@ -186,10 +194,7 @@ void Passes::begin_at(const VectorXd& state) {
                                        dt_ * static_cast<double>(record_.time.size()));
   directions_ = start_directions(model, setting_.observations, scale);
   next_ = start_belief(model, with_guess(directions_, model, working_guess()));
-  const MatrixXd unit = unit_noise(record_.outputs);
-  const auto discrete = nearest_with_own_scheme()
-                            ? filters::discretise(model.motion, dt_, settings_.discretisation, {{}, unit})
-                            : finest(model, dt_, unit);
+  const auto discrete = discretised(unit_noise(record_.outputs));
   motion_ = is_nonlinear(model) ? reproduce_nonlinear(model, *discrete, state, directions_, record_)
                                 : reproduce(*discrete, state, directions_, record_);
   next_.mean = motion_.initial_state;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 
 #include "experiments/identify/compare/compared_run.hpp"
@@ -36,7 +37,8 @@ class Passes {
   void fit_inputs_noise();
   /// Of a driven record that the filter's end does not make, or makes with passes that have not settled, are
   /// overconfident or lie half a deviation from what all samples at once say: the unknowns by these, where
-  /// they leave less.
+  /// they leave less. Likewise of a free decay of one linear mode whose few cycles leave the filter
+  /// overconfident or a quarter of a deviation away.
   void mend_by_output_error();
   /// Of a driven record that the filter has lost, a start from all samples at once; absent: none makes the
   /// record.
@@ -52,8 +54,10 @@ class Passes {
   bool nearest_with_own_scheme() const;
   bool has_settled() const;
   bool is_linear_and_driven() const;
+  bool is_free_mode() const;
   bool is_overconfident() const;
   double distance_from_all_samples() const;
+  std::unique_ptr<filters::DiscreteModel> discretised(const Eigen::MatrixXd& noise) const;
   const Eigen::VectorXd& noise_shown() const;
   FirstGuess working_guess() const;
   void begin_at(const Eigen::VectorXd& state);

@@ -5,7 +5,6 @@
 #include "experiments/identify/compare/known_prior.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/compare/passes.hpp"
-#include "experiments/models/finest_discretisation.hpp"
 #include "filters/batch_estimator.hpp"
 
 namespace beamid::experiments {
@@ -56,7 +55,7 @@ std::optional<filters::Gaussian> Passes::output_error(VectorXd state, Index firs
     begin_at(state);
     if (!motion_.initial_state.allFinite() || !directions_.all().allFinite()) return {};
     run_.noise = assumed_noise(known_, noise_shown());
-    const auto discrete = finest(*run_.model, dt_, run_.noise.cwiseAbs2().asDiagonal());
+    const auto discrete = discretised(run_.noise.cwiseAbs2().asDiagonal());
     const filters::BatchEstimate found =
         filters::estimate_batch(*discrete, motion_.initial_state, directions_.all(), record_, settings);
     if (found.covariance.size() == 0) return {};

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/channel_amplitudes.hpp"
+#include "experiments/identify/compare/against_description.hpp"
+#include "experiments/identify/compare/described_response.hpp"
 #include "experiments/identify/compare/reduction_error.hpp"
 #include "experiments/identify/compare/widened_interval.hpp"
+#include "experiments/identify/decay_objections.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/models/finest_discretisation.hpp"
@@ -166,6 +170,16 @@ void judge_settling(ComparedRun& run) {
                           "([compare] passes) or nearer initial estimates.");
 }
 
+void judge_decay(const RunContext& context, ComparedRun& run) {
+  if (!run.mode) return;
+  for (const DecayObjection& one : decay_objections(context.analysis, *run.mode)) {
+    run.warnings.insert(run.warnings.begin(), one.text);
+    if (!one.contradicts) continue;
+    run.status = ComparedRun::Status::contradicted;
+    run.reason = "the record is no free decay of one damping ratio";
+  }
+}
+
 // What the base moves beyond the model's coordinates is in the record, too.
 void judge_moved_mass(ComparedRun& run) {
   constexpr double enough = 0.95;
@@ -174,6 +188,12 @@ void judge_moved_mass(ComparedRun& run) {
       "The {} coordinates of this model hold {:.3g} % of the mass that the base moves; the rest is in the "
       "record and not in the model. Expected more of them: [reduction] modes.",
       run.coordinates, 100.0 * run.model->moved_share));
+}
+
+// A unit that is wrong, of a forced motion that nothing makes by its size.
+void judge_size(const RunContext& context, ComparedRun& run) {
+  if (const std::string text = described_response_text(context, run); !text.empty())
+    run.warnings.push_back(text);
 }
 
 // Of the general model: its lowest mode beside the modal analysis, its innovations.
@@ -190,8 +210,13 @@ void judge_model(const RunContext& context, ComparedRun& run) {
     run.warnings.insert(run.warnings.begin(), text);
   judge_settling(run);
   judge_motion_left(context, run);
+  judge_decay(context, run);
   judge_moved_mass(run);
   judge_what_is_said(run);
+  if (run.status == ComparedRun::Status::converged)
+    judge_description(context, run);
+  else
+    judge_size(context, run);
   // A model that has the mode's companions does not have its frequency alone, and an aliased one has another.
   const bool one_mode =
       !context.analysis.aliased && (run.coordinates == 1 || (modal && modal->companions.empty()));
@@ -223,7 +248,13 @@ void judge_model(const RunContext& context, ComparedRun& run) {
 // K and C of a free decay: with what is known of one mode and its amplitude.
 void judge_oscillator(const RunContext& context, ComparedRun& run) {
   const auto found =
-      std::make_shared<const RecordIdentification>(oscillator_of(context.experiment, context.analysis, run));
+      std::make_shared<RecordIdentification>(oscillator_of(context.experiment, context.analysis, run));
+  if (const ChannelAmplitudes channels = channel_amplitudes(context.experiment, context.analysis);
+      !channels.text.empty()) {
+    found->judgement.messages.push_back(channels.text);
+    if (channels.contradict && found->judgement.verdict == ComparedRun::Status::converged)
+      found->judgement.verdict = ComparedRun::Status::contradicted;
+  }
   run.warnings = found->judgement.messages;
   run.near_mode = found->near_mode;
   run.interval_factor = found->interval_factor;
@@ -239,6 +270,15 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
   if (!run.mode) return;
   run.mode->frequency_deviation_hz *= found->frequency_factor();
   run.mode->damping_ratio_deviation *= found->damping_factor();
+}
+
+// A unit that is wrong, of a free decay by its channels.
+void judge_channels(const RunContext& context, ComparedRun& run) {
+  const ChannelAmplitudes channels = channel_amplitudes(context.experiment, context.analysis);
+  if (!channels.text.empty()) run.warnings.push_back(channels.text);
+  if (!channels.contradict || run.status != ComparedRun::Status::converged) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = channels.text;
 }
 
 }  // namespace
@@ -264,9 +304,12 @@ void judge_run(const RunContext& context, ComparedRun& run) {
     judge_oscillator(context, run);
   else if (run.status == ComparedRun::Status::converged)
     judge_model(context, run);
-  else
+  else {
     run.warnings.insert(run.warnings.begin(),
                         "DIVERGED: " + run.reason + ". There is no estimate to rely on.");
+    judge_size(context, run);
+  }
+  if (!run.oscillator) judge_channels(context, run);
 }
 
 }  // namespace beamid::experiments

@@ -11,6 +11,7 @@
 #include "experiments/modal/steady_lines.hpp"
 #include "experiments/modal/study/decay_part.hpp"
 #include "experiments/modal/study/decay_polish.hpp"
+#include "experiments/modal/study/decay_warnings.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/modal/study/persistent_motion.hpp"
 #include "experiments/modal/study/pole_levels.hpp"
@@ -241,6 +242,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   if (found.free_decay) {
     for (ModeEstimate& mode : found.modes)  // back to the undecimated record and its beginning
       mode.pole.shape *= std::exp(-mode.pole.rate * coarse.last.start) / coarse.last.response(mode.pole.rate);
+    for (const std::string& text : decay_warnings(found)) found.warnings.push_back(text);
   }
   return found;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <numbers>
 
 namespace beamid::experiments {
 namespace {
@@ -46,6 +47,19 @@ bool dominates(const JointDecayFit& fit, Index m, const RecordModes& found) {
   return (energy.array() > least * found.target.rowwise().squaredNorm().array()).any();
 }
 
+/// Whether a mode is at n times the frequency of another with n times its phase, or against that, in the
+/// channel that shows it best: what saturates decays more slowly than the n-th power, with the same phase.
+bool is_locked_to(const ModeEstimate& base, const ModeEstimate& mode, int n) {
+  constexpr double off = 0.003, in_phase = 0.35, slowest = 0.25, fastest = 1.4;  // [rad], over its ratio
+  Index c = 0;
+  mode.pole.shape.cwiseAbs().maxCoeff(&c);
+  const double phase = std::remainder(std::arg(mode.pole.shape[c]) - n * std::arg(base.pole.shape[c]),
+                                      std::numbers::pi),
+               f = mode.pole.frequency_hz(), ratio = mode.pole.damping_ratio() / base.pole.damping_ratio();
+  return std::abs(f - n * base.pole.frequency_hz()) < off * f && std::abs(phase) < in_phase &&
+         ratio > slowest && ratio < fastest;
+}
+
 /// The multiple of `base` that a mode is; 0: none.
 int multiple_of(const ModeEstimate& base, const ModeEstimate& mode) {
   constexpr int most = 3;  // modes of a pinned beam are at 1, 4, 9, ...
@@ -64,7 +78,7 @@ int multiple_of(const ModeEstimate& base, const ModeEstimate& mode) {
   const bool same_damping =
       std::abs(ratio - ratio1) < std::max(damping_off * ratio1, deviation(mode.pole.damping_ratio_deviation,
                                                                           base.pole.damping_ratio_deviation));
-  return same_frequency && same_damping ? n : 0;
+  return (same_frequency && same_damping) || is_locked_to(base, mode, n) ? n : 0;
 }
 
 }  // namespace
@@ -112,12 +126,13 @@ void set_overtones_aside(RecordModes& found) {
     }
     found.stabilisation.rejected.push_back(
         {mode.pole, mode.orders,
-         fmt::format("overtone: {} times {:.4g} Hz with its damping ratio", multiple_of(*base, mode),
-                     base->pole.frequency_hz())});
+         fmt::format("overtone: {} times {:.4g} Hz with its damping ratio or its phase",
+                     multiple_of(*base, mode), base->pole.frequency_hz())});
   }
   if (kept.size() < found.modes.size())
     found.warnings.emplace_back(
-        "Multiples of a mode's frequency that share its damping ratio are listed as its overtones, not as "
+        "Multiples of a mode's frequency that share its damping ratio or its phase are listed as its "
+        "overtones, not as "
         "modes: stiffness, clamp or sensor are not linear at these amplitudes.");
   found.modes = std::move(kept);
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "experiments/record/inspect/defects.hpp"
+#include "experiments/record/inspect/noise_floor.hpp"
 #include "experiments/signal/median.hpp"
 #include "experiments/text/input_error.hpp"
 
@@ -31,12 +32,14 @@ struct ChannelDefects {
   const Channel& channel() const { return record->channels[static_cast<std::size_t>(row)]; }
   std::string unit() const { return si_unit(channel().quantity); }
 
-  void add(const std::string& what, const std::vector<Run>& runs, const std::string& consequence) const {
+  void add(const std::string& what, const std::vector<Run>& runs, const std::string& consequence,
+           bool clipped = false) const {
     if (runs.empty()) return;
     const auto time = [&](std::size_t sample) { return record->time[static_cast<Index>(sample)]; };
     const std::size_t samples = samples_in(runs);
     RecordDefect defect;
     defect.channel = row;
+    defect.clipped = clipped;
     for (const Run& run : runs) defect.spans.emplace_back(time(run.first), time(run.first + run.length - 1));
     defect.text = fmt::format("{}: {}, {} of {} samples ({:.2g} %), {} {:.6g} s{}",
                               record_defects_title(channel()), what, samples, record->size(),
@@ -62,6 +65,17 @@ struct ChannelDefects {
     return text + " " + unit();
   }
 };
+
+/// Whether the noise is 2 % of a limit or more: from there on a decay of 60 % of clipped amplitude has a
+/// damping ratio that is off by more than its interval.
+bool noise_decides(const Eigen::VectorXd& signal, const std::vector<Run>& clipped) {
+  constexpr double share = 0.02;
+  constexpr Index fewest = 64;
+  if (clipped.empty() || signal.size() < fewest || !signal.allFinite()) return false;
+  double limit = std::numeric_limits<double>::infinity();
+  for (const Run& run : clipped) limit = std::min(limit, std::abs(run.value - median(signal)));
+  return noise_floor(signal) > share * limit;
+}
 
 void mark_gaps(const Record& record, std::vector<RecordDefect>& all) {
   constexpr double wide = 2.5;  // median intervals, as the step resample takes them
@@ -114,7 +128,13 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
     if (!found.spikes.empty())
       channel.add(fmt::format("spikes, the first {:.3g} {}", found.spikes.front().value, channel.unit()),
                   found.spikes, found.spikes.size() > 1 ? left_out : "; it is left out.");
-    channel.add("clipped at " + channel.levels(found.clipped), found.clipped, left_out);
+    channel.add("clipped at " + channel.levels(found.clipped), found.clipped,
+                noise_decides(signal, found.clipped)
+                    ? "; they are left out, but noise decides which readings beside them are not: amplitudes "
+                      "near the limit come out too small, and the damping ratio of a decay with them. A "
+                      "--window behind them avoids that."
+                    : left_out,
+                true);
     channel.add(fmt::format("{} drop-out{}", found.dropped.size(), found.dropped.size() == 1 ? "" : "s"),
                 found.dropped, left_out);
     channel.add("repeats of the reading before", found.repeated, left_out);

@@ -53,5 +53,18 @@ TEST(Sampling, KnowsTheResolutionOfPrintedNumbers) {
   EXPECT_DOUBLE_EQ(scientific.resolution(25.0), 1e-3);
 }
 
+// A clock's seconds without their decimals: 100 samples share each stamp.
+TEST(Sampling, StampsPrintedWithoutTheirDecimalsAreSaidToBe) {
+  const auto fault = fault_of([] {
+    std::vector<std::string> tokens;
+    for (int i = 0; i < 1000; ++i) tokens.push_back(fmt::format("{}", 1700000000 + i / 100));
+    return tokens;
+  }());
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->message,
+            "time 1700000000 after 1700000000; expected increasing times (times printed this coarsely need "
+            "record.sampling_rate_hz)");
+}
+
 }  // namespace
 }  // namespace beamid::experiments::sampling_test

@@ -169,6 +169,28 @@ TEST(FindModes, TakesOvertonesForNoModes) {
   }
 }
 
+// 4 tanh(y / 4): the overtone of three times the frequency decays more slowly than y^3.
+TEST(FindModes, TakesASaturatedSensorsOvertoneForNoMode) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Record record = decay({{5, 0.005, 7}}, 200, 10, 0, seed);
+    record.samples = 4 * (record.samples.array() / 4).tanh();
+    record.samples.row(0) += 0.05 * standard_normal(record.size(), seed, 8).transpose();
+    const RecordModes found = find_modes("a", record, false, {});
+    ASSERT_EQ(found.modes.size(), 1u) << PrintToString(frequencies(found));
+    EXPECT_LT(found.modes[0].pole.damping_ratio(), 0.0045);
+    EXPECT_THAT(PrintToString(found.warnings),
+                HasSubstr("An overtone at three times the frequency, against it"));
+  }
+}
+
+// Half as large again from 4 s on.
+TEST(FindModes, SaysWhereADecayIsKnocked) {
+  Record record = decay({{5, 0.005, 6}}, 200, 10, 0.05, 1);
+  record.samples.rightCols(1200) += 0.5 * decay({{5, 0.005, 6}}, 200, 10, 0, 1).samples.rightCols(1200);
+  EXPECT_THAT(PrintToString(find_modes("a", record, false, {}).warnings),
+              HasSubstr("s the motion jumps, by +5"));
+}
+
 // A second mode at twice the frequency with another damping ratio is no overtone.
 TEST(FindModes, KeepsAModeAtTwiceAnothersFrequency) {
   const RecordModes found =
