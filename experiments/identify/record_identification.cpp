@@ -41,29 +41,14 @@ double factor_of(const RecordIdentification& found, const SectionTrend& trend, d
   return std::max(1.0, half / (quantile_95 * deviation));
 }
 
-void contradict(const std::string& text, Judgement& judgement) {
-  judgement.verdict = ComparedRun::Status::contradicted;
-  judgement.messages.insert(judgement.messages.begin(), text);
-}
-
 // What speaks against any one decay, whatever modal analysis and filter agree on.
-void take_objections(const RecordAnalysis& analysis, double misfit_percent, RecordIdentification& found) {
-  constexpr double most_of_it = 50;  // [%]
+void take_objections(const RecordAnalysis& analysis, RecordIdentification& found) {
   const Identification& filter = found.identification;
-  if (found.judgement.verdict == ComparedRun::Status::converged && misfit_percent > most_of_it)
-    contradict(
-        fmt::format("CONTRADICTED: {:.3g} % of the record is motion that no decay of one frequency and "
-                    "damping ratio makes: other modes, a clock that changes its rate, or something that "
-                    "touched the structure. Expected another --window, or a model of more modes.",
-                    misfit_percent),
-        found.judgement);
   FoundMode mode{filter.found.frequency_hz(), filter.found.damping_ratio()};
   mode.damping_ratio_deviation = found.damping_factor() * filter.damping_ratio_deviation;
   for (const DecayObjection& one : decay_objections(analysis, mode)) {
-    if (one.contradicts)
-      contradict(one.text, found.judgement);
-    else
-      found.judgement.messages.insert(found.judgement.messages.begin(), one.text);
+    found.judgement.messages.insert(found.judgement.messages.begin(), one.text);
+    if (one.contradicts) found.judgement.verdict = ComparedRun::Status::contradicted;
   }
 }
 
@@ -103,8 +88,7 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
     result.sections = analysis.sections;
   }
   result.judgement = judge(experiment, analysis.record, result);
-  if (result.judgement.verdict != ComparedRun::Status::diverged)
-    take_objections(analysis, run.misfit_percent, result);
+  if (result.judgement.verdict != ComparedRun::Status::diverged) take_objections(analysis, result);
   return result;
 }
 
