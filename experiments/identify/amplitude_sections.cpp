@@ -81,10 +81,10 @@ std::vector<AmplitudeLaw> laws_of(const DecimatedSignal& coarse, Index used, dou
 
 AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, const ModalEstimate& modal,
                                      double read) {
-  constexpr double least_read = 0.7, least_over_noise = 3;
+  constexpr double least_over_noise = 3;
   constexpr Index kernel_and_more = 50;
   AmplitudeSections result;
-  if (!modal.companions.empty() || read < least_read) return result;
+  if (!modal.companions.empty()) return result;
   const int factor = decimation_factor(1 / (interval * modal.frequency_hz * section_samples_per_cycle),
                                        signal.size() / kernel_and_more);
   const DecimatedSignal coarse = decimate(signal, interval, factor);

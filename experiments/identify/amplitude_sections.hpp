@@ -49,8 +49,7 @@ struct AmplitudeSections {
 /// B_g making a change over the decay of 0.4 % of the frequency or four fifths of the damping ratio. A report
 /// says that the quantity varies where the best law's b is not zero, or the sections scatter about their
 /// lines, with a probability below 1 %. Sections whose amplitude has fallen to three deviations of the noise
-/// are left out; none are made beside a companion mode, whose beat is not a matter of amplitude, nor where
-/// less than 0.7 of the samples were read.
+/// are left out; none are made beside a companion mode, whose beat is not a matter of amplitude.
 /// @param signal (N), finite @param read share of its samples that were read, not filled in
 AmplitudeSections amplitude_sections(const Eigen::VectorXd& signal, double interval,
                                      const ModalEstimate& modal, double read = 1);

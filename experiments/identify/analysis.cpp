@@ -45,7 +45,7 @@ double beam_frequency_hz(const Experiment& experiment) {
 }
 
 void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
-  constexpr double mostly_read = 0.7;
+  constexpr double mostly_read = 0.7;  // what is filled in follows the mode, not its changes
   const Record& stamped = found.evenly_stamped();
   ModalAnalysisSettings settings;
   settings.expected_frequency_hz = found.expected_hz;
@@ -59,7 +59,8 @@ void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
     found.overtone = third_overtone(stamped.samples.row(first).transpose(), stamped.interval(), *found.modal);
     const double interval = found.even.record.interval();
     const VectorXd filled = found.even.record.samples.row(first).transpose();
-    if (found.even.share > mostly_read) found.jump = decay_jump(filled, interval, *found.modal);
+    if (found.even.share < mostly_read) return;
+    found.jump = decay_jump(filled, interval, *found.modal);
     if (asks_free_oscillator(experiment, found.record))
       found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
   } catch (const std::invalid_argument& error) {
@@ -169,6 +170,7 @@ RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
       find_driven_mode(found);
   } else {
     find_decaying_mode(experiment, found);
+    found.channels = channel_amplitudes(experiment, found);
   }
   if (!found.mode)
     found.notes.push_back(fmt::format(

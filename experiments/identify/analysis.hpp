@@ -7,6 +7,7 @@
 
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/amplitude_sections.hpp"
+#include "experiments/identify/channel_amplitudes.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
 #include "experiments/modal/decay_jump.hpp"
 #include "experiments/modal/dominant_mode.hpp"
@@ -36,6 +37,7 @@ struct RecordAnalysis {
   AmplitudeSections sections;              ///< of the first output, where asks_free_oscillator() and `modal`
   std::optional<DecayJump> jump;           ///< of the first output of `even`, from its first sample
   std::optional<ThirdOvertone> overtone;   ///< of the first output
+  ChannelAmplitudes channels;              ///< of all outputs, beside each other
   std::vector<std::string> notes, warnings;
 
   bool forced() const;  ///< whether a force was measured

@@ -7,6 +7,7 @@
 #include <complex>
 #include <stdexcept>
 
+#include "experiments/identify/analysis.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/modal/shape_fit.hpp"
 #include "fem/modes.hpp"

@@ -4,9 +4,10 @@
 #include <string>
 
 #include "experiments/config/experiment.hpp"
-#include "experiments/identify/analysis.hpp"
 
 namespace beamid::experiments {
+
+struct RecordAnalysis;
 
 /// In the mode s of a free decay, y_i = Re(a_i e^(st)), the structure as described moves by u_i where channel
 /// i sits, so that

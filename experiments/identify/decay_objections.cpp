@@ -12,12 +12,10 @@ namespace {
 DecayObjection jump_objection(const DecayJump& jump, double from) {
   constexpr double much = 0.05;
   const bool contradicts = std::abs(jump.amplitude_ratio - 1) > much || std::abs(jump.phase) > much;
-  return {
-      fmt::format("{}At {:.4g} s {}: something touched the structure, or samples were lost. A decay across "
-                  "it has neither this frequency nor this damping ratio within their intervals. Expected a "
-                  "--window on one side of it.",
-                  contradicts ? "CONTRADICTED: " : "", from + jump.time, jump.words()),
-      contradicts};
+  return {fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
+                      "intervals. Expected a --window on one side of it.",
+                      contradicts ? "CONTRADICTED: " : "", jump.sentence(from)),
+          contradicts};
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "experiments/identify/identification_request.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "experiments/identify/analysis.hpp"
@@ -72,10 +70,8 @@ void cut_decay(IdentificationRequest& one) {
   const Record decay = format.window ? record.window(format.window->first, format.window->second) : record;
   if (const auto part = sound_part(one.experiment, decay, one.prepared.defects)) {
     format.window = {part->from, part->to};
-    one.window += one.window.empty() ? fmt::format(
-                                           "No window was given. {} record.window_s or --window takes "
-                                           "the place of this.",
-                                           part->words)
+    one.window += one.window.empty() ? "No window was given. " + part->words +
+                                           " record.window_s or --window takes the place of this."
                                      : " " + part->words;
   }
   if (format.window) one.prepared.take(record, format, one.file);

@@ -1,8 +1,6 @@
 #include "experiments/identify/record_identification.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
-
 #include <cmath>
 #include <stdexcept>
 
@@ -52,6 +50,12 @@ void take_objections(const RecordAnalysis& analysis, RecordIdentification& found
   }
 }
 
+void take_channels(const ChannelAmplitudes& channels, Judgement& judgement) {
+  if (!channels.text.empty()) judgement.messages.push_back(channels.text);
+  if (channels.contradict && judgement.verdict == ComparedRun::Status::converged)
+    judgement.verdict = ComparedRun::Status::contradicted;
+}
+
 }  // namespace
 
 RecordIdentification oscillator_of(const Experiment& experiment, const RecordAnalysis& analysis,
@@ -89,6 +93,7 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
   }
   result.judgement = judge(experiment, analysis.record, result);
   if (result.judgement.verdict != ComparedRun::Status::diverged) take_objections(analysis, result);
+  take_channels(analysis.channels, result.judgement);
   return result;
 }
 

@@ -22,12 +22,10 @@ struct Break {
   std::string words = {};
 };
 
-std::vector<Break> clipped_stretches(const Record& record, const std::vector<RecordDefect>& defects,
-                                     double period) {
+std::vector<Break> clipped_stretches(const std::vector<RecordDefect>& defects, double period) {
   std::vector<Break> breaks;
   for (const RecordDefect& defect : defects) {
-    if (!defect.clipped || is_input(record.channels[static_cast<std::size_t>(defect.channel)].quantity))
-      continue;
+    if (!defect.clipped) continue;
     for (const auto& [first, last] : defect.spans) breaks.push_back({first - period, last + period});
   }
   return breaks;
@@ -37,8 +35,8 @@ struct Part {
   double from = 0, to = 0;
 };
 
-/// Energy of the first channel times squared length.
-double told_by(const Record& record, const Part& part) {
+/// On frequency and damping, but for a factor: energy of the first channel times squared length.
+double information_in(const Record& record, const Part& part) {
   double energy = 0;
   for (Index k = 0; k < record.size(); ++k)
     if (record.time[k] >= part.from && record.time[k] <= part.to)
@@ -57,7 +55,7 @@ std::optional<Part> best_between(const Record& record, std::vector<Break> breaks
     const Part part{from, one.from};
     from = std::max(from, one.to);
     if (!(part.to - part.from >= least_periods * period)) continue;
-    if (const double told = told_by(record, part); told > most) most = told, best = part;
+    if (const double here = information_in(record, part); here > most) most = here, best = part;
   }
   return best;
 }
@@ -91,7 +89,7 @@ std::optional<SoundPart> sound_part(const Experiment& experiment, const Record& 
                                     const std::vector<RecordDefect>& defects) {
   const Record record = analysable(whole).record;
   const double period = 1 / described_frequency_hz(experiment, record);
-  std::vector<Break> breaks = clipped_stretches(record, defects, period);
+  std::vector<Break> breaks = clipped_stretches(defects, period);
   const auto reaches = [&](const Break& one) {
     return one.to - period >= record.time[0] && one.from + period <= record.time[record.size() - 1];
   };

@@ -16,7 +16,7 @@ struct SoundPart {
 };
 
 /// Of a free decay that is broken by clipped readings (of any channel, to a period behind them) or by jumps
-/// of its motion (decay_jump.hpp, of the first channel), the part that tells most of frequency and damping:
+/// of its motion (decay_jump.hpp, of the first channel), the part that determines frequency and damping best:
 /// that of the largest energy times squared length. Nothing where the decay is whole, or where no part of
 /// eight periods is left.
 ///

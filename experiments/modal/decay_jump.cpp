@@ -55,7 +55,6 @@ class Motions {
     basis.col(column++).setOnes();
     for (const CompanionMode& other : mode.companions)
       append(basis, column, other.rate(), time, ArrayXd::Ones(u.size()));
-    smooth_.compute(basis.leftCols(columns_));
     append(basis, column, mode.rate(), time, u.pow(degree + 1));
     smoother_.compute(basis);
     column = columns_;
@@ -66,17 +65,19 @@ class Motions {
   bool are_of(Index before, Index behind) const { return before == before_ && behind == behind_; }
   bool are_few() const { return before_ + behind_ < 2 * (columns_ + 2); }
 
+  // Of A = Q R, Q^T y behind the first columns is what they leave: the smooth motion's are the step's first.
   Instant seen_in(const VectorXd& samples) const {
-    const auto left = [&](const auto& factor) {
-      const VectorXd turned = factor.householderQ().transpose() * samples;
-      return turned.tail(samples.size() - factor.cols()).squaredNorm();
-    };
-    const double squares = left(stepped_),
-                 variance = squares / static_cast<double>(samples.size() - columns_ - 2);
-    const VectorXd x = stepped_.solve(samples);
+    const Index free = samples.size() - columns_ - 2;
+    const VectorXd turned = stepped_.householderQ().transpose() * samples,
+                   smoother = smoother_.householderQ().transpose() * samples;
+    const double squares = turned.tail(free).squaredNorm(), variance = squares / static_cast<double>(free);
+    const VectorXd x = stepped_.matrixQR()
+                           .topRows(columns_ + 2)
+                           .triangularView<Eigen::Upper>()
+                           .solve(turned.head(columns_ + 2));
     return {0,
-            (left(smooth_) - squares) / 2 / variance,
-            (left(smoother_) - squares) / 2 / variance,
+            turned.segment(columns_, 2).squaredNorm() / 2 / variance,
+            (smoother.tail(free).squaredNorm() - squares) / 2 / variance,
             variance,
             {x[0], x[1]},
             {x[columns_], x[columns_ + 1]}};
@@ -84,7 +85,7 @@ class Motions {
 
  private:
   Index before_, behind_, columns_ = 0;
-  Eigen::HouseholderQR<MatrixXd> smooth_, smoother_, stepped_;
+  Eigen::HouseholderQR<MatrixXd> smoother_, stepped_;  // with the next power of time, with the step
 };
 
 /// The signal less its mean under a Hann window of two periods, which holds nothing of the mode: what sways
@@ -161,13 +162,19 @@ std::string DecayJump::words() const {
                      100 * (amplitude_ratio - 1), phase * 180 / std::numbers::pi);
 }
 
+std::string DecayJump::sentence(double begin) const {
+  return fmt::format("At {:.4g} s {}: something touched the structure, or samples were lost.", begin + time,
+                     words());
+}
+
 std::optional<DecayJump> decay_jump(const VectorXd& signal, double interval, const ModalEstimate& mode) {
   const int factor = decimation_factor(1 / (mode.frequency_hz * interval * jump_samples_per_cycle),
                                        signal.size() / kernel_and_more);
   const DecimatedSignal coarse = without_sway(decimate(signal, interval, factor), 1 / mode.frequency_hz);
   constexpr double confirmed = 5;
-  const std::vector<Instant> smooth = instants_of(coarse, mode, 3), straight = instants_of(coarse, mode, 1);
+  const std::vector<Instant> smooth = instants_of(coarse, mode, 3);
   if (const Instant* found = clearest_of(smooth, mode.amplitude)) return jump_at(*found);
+  const std::vector<Instant> straight = instants_of(coarse, mode, 1);
   const Instant* found = clearest_of(straight, mode.amplitude);
   if (found && std::any_of(smooth.begin(), smooth.end(), [&](const Instant& one) {
         return std::abs(one.time - found->time) * mode.frequency_hz < 1 && one.beyond > confirmed;

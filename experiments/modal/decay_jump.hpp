@@ -16,6 +16,9 @@ struct DecayJump {
   double phase = 0;            ///< by which it is ahead behind it [rad]
 
   std::string words() const;  ///< "the motion jumps, by +10 % in amplitude and 2.1 degrees in phase"
+  /// "At 8 s the motion jumps, ...: something touched the structure, or samples were lost."
+  /// @param begin time of the first sample [s]
+  std::string sentence(double begin) const;
 };
 
 /// The clearest jump of a decay (N, finite), where there is one. Over twelve periods before and behind an

@@ -56,7 +56,7 @@ struct ForceBlock {
   HitSampling sampling;
 };
 
-/// Sets what noise and sampling leave unknown of the force, and tells of hits that are too coarse.
+/// Sets what noise and sampling leave unknown of the force, and says which hits are too coarse.
 void judge_sampling(const std::vector<ForceBlock>& blocks, double interval, HammerResponses& found) {
   std::vector<HitSampling> hits;
   VectorXd squares;

@@ -23,4 +23,8 @@ struct ShapeFit {
 ShapeFit fit_shapes(const Eigen::MatrixXd& outputs, double interval,
                     const std::vector<std::complex<double>>& rates, const std::vector<bool>& oscillating);
 
+/// The same of instants that increase as they like, t = 0 where they say (N) [s].
+ShapeFit fit_shapes_at(const Eigen::MatrixXd& outputs, const Eigen::VectorXd& time,
+                       const std::vector<std::complex<double>>& rates, const std::vector<bool>& oscillating);
+
 }  // namespace beamid::experiments

@@ -12,9 +12,9 @@
 namespace beamid::experiments {
 namespace {
 
-constexpr double by_belief = 4.0;  // deviations of a belief
+constexpr double far_from_prior = 4.0;  // of its standard deviations
 
-bool states_a_belief(const Estimate& e) {
+bool states_a_prior(const Estimate& e) {
   const bool damping = e.name.find("damping") != std::string::npos;
   return std::isfinite(e.value) && e.prior_deviation > 0.0 &&
          !(damping && e.prior_deviation >= std::abs(e.prior_value));
@@ -45,7 +45,7 @@ CommonFactor common_factor(const std::vector<ComparedParameter>& parameters) {
   int turned = 0, masses = 0;
   for (const ComparedParameter& p : parameters) {
     const Estimate& e = p.estimate;
-    if (!has_force(e) || !states_a_belief(e) || e.prior_value == 0.0 || e.value == 0.0) continue;
+    if (!has_force(e) || !states_a_prior(e) || e.prior_value == 0.0 || e.value == 0.0) continue;
     const double ratio = e.value / e.prior_value;
     logs.push_back(std::log(std::abs(ratio)));
     weights.push_back(1.0 /
@@ -82,7 +82,7 @@ bool is_no_coincidence(const CommonFactor& found, const std::vector<ComparedPara
   constexpr double noteworthy = 1.5, together = 0.1;
   const bool known = std::all_of(parameters.begin(), parameters.end(), [&](const ComparedParameter& p) {
     const Estimate& e = p.estimate;
-    return !has_force(e) || !states_a_belief(e) || e.deviation < together * found.size() * std::abs(e.value);
+    return !has_force(e) || !states_a_prior(e) || e.deviation < together * found.size() * std::abs(e.value);
   });
   return known && found.size() > noteworthy * found.deviation && found.log_apart < together * found.size();
 }
@@ -98,15 +98,15 @@ std::string scale_text(const CommonFactor& found, bool contradicts) {
       listed(found.names), found.factor,
       found.factor < 0.0 ? ", the force or the motion with its sign turned"
                          : usual_scale(found.factor, std::min(3.0 * found.deviation, 0.1)),
-      contradicts ? fmt::format(", {:.2g} of the deviations believed", found.size() / found.deviation) : "",
+      contradicts ? fmt::format(", {:.2g} prior standard deviations", found.size() / found.deviation) : "",
       found.factor, found.names.size() == 2 ? "both" : "all",
       contradicts ? "describe the structure with the masses that it has" : "weigh the structure");
 }
 
-std::string belief_text(const Estimate& e, double deviations) {
+std::string prior_text(const Estimate& e, double deviations) {
   const double ratio = e.value / e.prior_value;
   return fmt::format(
-      "{} comes out as {:.5g}{}{}, {:.2g} deviations from what was believed, {:.5g} +- {:.2g}{}: belief and "
+      "{} comes out as {:.5g}{}{}, {:.2g} deviations from the prior, {:.5g} +- {:.2g}{}: prior and "
       "record exclude each other. A wrong unit, gain, place or description does this to estimates; check "
       "them, or state a larger deviation.",
       e.name, e.value, e.unit.empty() ? "" : " ", e.unit, deviations, e.prior_value, e.prior_deviation,
@@ -135,14 +135,14 @@ std::string usual_scale(double factor, double near) {
 AgainstDescription against_description(const std::vector<ComparedParameter>& parameters, bool by_force) {
   AgainstDescription found;
   const CommonFactor scale = by_force ? common_factor(parameters) : CommonFactor{};
-  found.contradicts = scale.common && (scale.factor < 0.0 || scale.size() > by_belief * scale.deviation);
+  found.contradicts = scale.common && (scale.factor < 0.0 || scale.size() > far_from_prior * scale.deviation);
   if (found.contradicts || (scale.common && is_no_coincidence(scale, parameters)))
     found.scale = scale_text(scale, found.contradicts);
   for (const ComparedParameter& p : parameters) {
     const Estimate& e = p.estimate;
     const double deviations = std::abs(e.value - e.prior_value) / e.prior_deviation;
-    if (states_a_belief(e) && deviations > by_belief && !(found.contradicts && has_force(e)))
-      found.differences.push_back(belief_text(e, deviations));
+    if (states_a_prior(e) && deviations > far_from_prior && !(found.contradicts && has_force(e)))
+      found.differences.push_back(prior_text(e, deviations));
   }
   return found;
 }

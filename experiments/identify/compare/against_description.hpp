@@ -1,4 +1,4 @@
-// What estimates say of the belief that they started from.
+// Estimates beside the prior that they started from.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace beamid::experiments {
 
-/// Estimates beside what was described or believed beforehand, p0 +- s0.
+/// Estimates beside what was described or given as a prior, p0 +- s0.
 struct AgainstDescription {
   std::string scale;         ///< all masses and stiffnesses are wrong by one factor; empty: they are not
-  bool contradicts = false;  ///< the beliefs exclude that factor
+  bool contradicts = false;  ///< the priors exclude that factor
   std::vector<std::string>
       differences;  ///< parameters, each more than four s0 away; none where `scale` has it
 };
@@ -21,10 +21,10 @@ struct AgainstDescription {
 /// as ever, and only what was known beforehand can tell. With r_j = log(p_j / p0_j) and s_j^2 = (s0_j /
 /// p0_j)^2 + (s_j / p_j)^2 the factor is g = sum r_j / s_j^2 / sum 1 / s_j^2, with the deviation (sum 1 /
 /// s_j^2)^-1/2. It is one factor where sum (r_j - g)^2 / s_j^2 is less than its chi-square's 99.9 % point.
-/// The beliefs exclude it from four deviations on. From one and a half on it is still no coincidence where
+/// The priors exclude it from four deviations on. From one and a half on it is still no coincidence where
 /// all r_j lie together within a tenth of g.
 ///
-/// A damping believed to 100 % or less well states no belief, and is left out.
+/// A damping known to 100 % or less well states no prior, and is left out.
 /// @param by_force whether a force was measured, which the scale then comes from
 AgainstDescription against_description(const std::vector<ComparedParameter>& parameters, bool by_force);
 
@@ -32,7 +32,7 @@ AgainstDescription against_description(const std::vector<ComparedParameter>& par
 /// its reading, what makes such a factor within exp(+-near); empty: nothing usual.
 std::string usual_scale(double factor, double near);
 
-/// Puts it among the warnings of a run; its status becomes contradicted where the beliefs exclude the factor.
+/// Puts it among the warnings of a run; its status becomes contradicted where the priors exclude the factor.
 void judge_description(const RunContext& context, ComparedRun& run);
 
 }  // namespace beamid::experiments

@@ -127,14 +127,14 @@ void Passes::mend_by_output_error() {
   // A filter, linearised from sample to sample, is surer of a storey's law than the record allows.
   const bool laws = has_storey_laws(*run_.model);
   if (has_noise(run_.settings.input_noise) || run_.run.last.covariance.size() == 0) return;
-  const bool driven = is_linear_and_driven(), free = is_free_mode();
+  const bool driven = is_linear_and_driven(), free = is_free_mode(), asked = driven || free;
   const double apart = free ? 0.25 : 0.5;  // of a deviation
-  const bool astray = (driven && !has_settled()) ||
-                      ((driven || free) && (is_overconfident() || distance_from_all_samples() > apart));
+  const bool astray =
+      (driven && !has_settled()) || (asked && (is_overconfident() || distance_from_all_samples() > apart));
   const bool any_less = laws || astray;
   const double& now_left = any_less ? motion_.response_error_percent : motion_.misfit_percent;  // of motion_
   const double left = now_left;
-  if (!any_less && !((driven || free) && left > not_the_record)) return;
+  if (!any_less && !(asked && left > not_the_record)) return;
   const auto start = std::chrono::steady_clock::now();
   const VectorXd filtered = motion_.initial_state, noise = run_.noise;
   std::optional<filters::Gaussian> best;

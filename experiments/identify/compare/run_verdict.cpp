@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/identify/channel_amplitudes.hpp"
 #include "experiments/identify/compare/against_description.hpp"
 #include "experiments/identify/compare/described_response.hpp"
 #include "experiments/identify/compare/reduction_error.hpp"
@@ -248,13 +247,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
 // K and C of a free decay: with what is known of one mode and its amplitude.
 void judge_oscillator(const RunContext& context, ComparedRun& run) {
   const auto found =
-      std::make_shared<RecordIdentification>(oscillator_of(context.experiment, context.analysis, run));
-  if (const ChannelAmplitudes channels = channel_amplitudes(context.experiment, context.analysis);
-      !channels.text.empty()) {
-    found->judgement.messages.push_back(channels.text);
-    if (channels.contradict && found->judgement.verdict == ComparedRun::Status::converged)
-      found->judgement.verdict = ComparedRun::Status::contradicted;
-  }
+      std::make_shared<const RecordIdentification>(oscillator_of(context.experiment, context.analysis, run));
   run.warnings = found->judgement.messages;
   run.near_mode = found->near_mode;
   run.interval_factor = found->interval_factor;
@@ -274,7 +267,7 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
 
 // A unit that is wrong, of a free decay by its channels.
 void judge_channels(const RunContext& context, ComparedRun& run) {
-  const ChannelAmplitudes channels = channel_amplitudes(context.experiment, context.analysis);
+  const ChannelAmplitudes& channels = context.analysis.channels;
   if (!channels.text.empty()) run.warnings.push_back(channels.text);
   if (!channels.contradict || run.status != ComparedRun::Status::converged) return;
   run.status = ComparedRun::Status::contradicted;

@@ -31,9 +31,7 @@ ModalEstimate strongest_of(const std::vector<ModeEstimate>& modes, const ModeEst
 
 std::vector<std::string> decay_warnings(const RecordModes& found) {
   if (found.modes.empty()) return {};
-  const ModeEstimate& strongest =
-      *std::max_element(found.modes.begin(), found.modes.end(),
-                        [](const ModeEstimate& a, const ModeEstimate& b) { return a.strength < b.strength; });
+  const ModeEstimate& strongest = found.strongest();
   const Record& record = found.record;
   Eigen::Index channel = 0;
   (strongest.pole.shape.cwiseAbs().array() / record.samples.rowwise().norm().array()).maxCoeff(&channel);
@@ -41,10 +39,9 @@ std::vector<std::string> decay_warnings(const RecordModes& found) {
   const ModalEstimate mode = strongest_of(found.modes, strongest, channel);
   std::vector<std::string> warnings;
   if (const auto jump = decay_jump(signal, record.interval(), mode))
-    warnings.push_back(
-        fmt::format("At {:.4g} s {}: something touched the structure, or samples were lost. Modes across it "
-                    "are wrong by more than their deviations. Expected a --window on one side of it.",
-                    record.time[0] + jump->time, jump->words()));
+    warnings.push_back(jump->sentence(record.time[0]) +
+                       " Modes across it are wrong by more than their deviations. Expected a --window on one "
+                       "side of it.");
   constexpr double many = 2;
   const auto overtone = third_overtone(signal, record.interval(), mode);
   if (overtone && std::abs(overtone->damping_error()) * mode.damping_ratio >

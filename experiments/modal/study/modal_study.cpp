@@ -189,6 +189,12 @@ void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found)
 
 }  // namespace
 
+const ModeEstimate& RecordModes::strongest() const {
+  return *std::max_element(modes.begin(), modes.end(), [](const ModeEstimate& a, const ModeEstimate& b) {
+    return a.strength < b.strength;
+  });
+}
+
 RecordModes find_modes(const std::string& name, const Record& record, bool windowed,
                        const ModalStudySettings& settings) {
   const auto& registry = modal_method_registry();

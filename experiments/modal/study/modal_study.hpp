@@ -51,6 +51,8 @@ struct RecordModes {
   std::vector<ModeEstimate> modes;  ///< by rising frequency
   Eigen::MatrixXd target;           ///< (p x L) what the modes were to reproduce: record or autocorrelations
   Eigen::MatrixXd reproduced;       ///< (p x L)
+
+  const ModeEstimate& strongest() const;  ///< of one mode at least
 };
 
 /// Analyses one record. Readings that are missing (NaN) end the part that is taken; without a window on a

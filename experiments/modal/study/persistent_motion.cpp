@@ -48,11 +48,6 @@ double median_power(const MatrixXd& samples, double interval, std::pair<double, 
   return median(powers);
 }
 
-const ModeEstimate& strongest_mode_of(const RecordModes& found) {
-  return *std::max_element(found.modes.begin(), found.modes.end(),
-                           [](const auto& a, const auto& b) { return a.strength < b.strength; });
-}
-
 double motion_size_of(const MatrixXd& samples) {
   return (samples.colwise() - samples.rowwise().mean()).norm();
 }
@@ -82,7 +77,7 @@ bool motion_goes_on(const RecordModes& found) {
   const MatrixXd left = found.target - found.reproduced;
   const MatrixXd motion = found.target.colwise() - found.target.rowwise().mean();
   if (left.norm() < least_left * motion.norm() ||
-      !motion_rises(motion, samples_in_periods(4.0, strongest_mode_of(found), found.interval)))
+      !motion_rises(motion, samples_in_periods(4.0, found.strongest(), found.interval)))
     return false;
   const MatrixXd early = left.leftCols(left.cols() / 2), late = left.rightCols(left.cols() / 2);
   const double usual = median_power(late, found.interval, found.band_hz);
@@ -98,7 +93,7 @@ bool moved_before(const Record& whole, const RecordModes& found) {
   const Index before = whole.size() - found.record.size();
   if (before <= found.record.size()) return false;
   const Index part =
-      std::min(found.record.size(), samples_in_periods(2.0, strongest_mode_of(found), whole.interval()));
+      std::min(found.record.size(), samples_in_periods(2.0, found.strongest(), whole.interval()));
   if (part < 2 || part > before) return false;
   return motion_size_of(whole.samples.middleCols(before - part, part)) >
          as_much * motion_size_of(whole.samples.middleCols(before, part));

@@ -72,8 +72,9 @@ bool noise_decides(const Eigen::VectorXd& signal, const std::vector<Run>& clippe
   constexpr double share = 0.02;
   constexpr Index fewest = 64;
   if (clipped.empty() || signal.size() < fewest || !signal.allFinite()) return false;
+  const double middle = median(signal);
   double limit = std::numeric_limits<double>::infinity();
-  for (const Run& run : clipped) limit = std::min(limit, std::abs(run.value - median(signal)));
+  for (const Run& run : clipped) limit = std::min(limit, std::abs(run.value - middle));
   return noise_floor(signal) > share * limit;
 }
 

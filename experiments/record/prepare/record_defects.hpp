@@ -15,7 +15,7 @@ struct RecordDefect {
   std::string text;
   std::vector<std::pair<double, double>> spans;
   Eigen::Index channel = -1;  ///< -1: of all
-  bool clipped = false;       ///< readings at the end of the sensor's range
+  bool clipped = false;       ///< readings of a motion at the end of the sensor's range
 };
 
 /// Finds the defects of every channel (find_defects), gaps between the stamps among them, and makes samples

@@ -14,9 +14,9 @@ namespace {
 // masses'.
 TEST(HammerDeviation, HoldsTheTruthInNineteenOfTwentyTests) {
   const std::vector<test::StruckMode> truth{{12, 0.03, 1.6}, {47, 0.01, 0.5}};
-  std::vector<test::Blow> blows;
-  for (int k = 0; k < 5; ++k) blows.push_back({0.5 + 3.1003 * k, 0.016, 80.0 + 10 * k});
-  const Record clean = test::struck_modes(truth, blows, 1e-3, 16000);
+  std::vector<test::Impact> impacts;
+  for (int k = 0; k < 5; ++k) impacts.push_back({0.5 + 3.1003 * k, 0.016, 80.0 + 10 * k});
+  const Record clean = test::struck_modes(truth, impacts, 1e-3, 16000);
   ModalStudySettings settings;
   settings.method = {"frf_lscf", {}};
   settings.band_hz = {3, 70};
@@ -43,14 +43,14 @@ TEST(HammerDeviation, HoldsTheTruthInNineteenOfTwentyTests) {
 
 // Oracle: a motion of 10 % that was added to the 0.3 s before each hit. Noise of 8 % is none.
 TEST(HammerDeviation, TellsMotionBeforeAHitFromNoise) {
-  std::vector<test::Blow> blows;
-  for (int k = 0; k < 4; ++k) blows.push_back({0.5 + 3 * k, 0.02, 100});
-  Record record = test::struck_modes({{12, 0.03, 1.6}}, blows, 2e-3, 6250);
+  std::vector<test::Impact> impacts;
+  for (int k = 0; k < 4; ++k) impacts.push_back({0.5 + 3 * k, 0.02, 100});
+  Record record = test::struck_modes({{12, 0.03, 1.6}}, impacts, 2e-3, 6250);
   const double rms = std::sqrt(record.samples.row(1).segment(260, 140).squaredNorm() / 140);
   EXPECT_TRUE(hammer_responses({test::with_noise(record, 0.3, 0.08 * rms, 1)}, 0.01).warnings.empty());
-  for (const test::Blow& blow : blows)
+  for (const test::Impact& impact : impacts)
     for (Eigen::Index k = 0; k < record.size(); ++k)
-      if (record.time[k] < blow.start && record.time[k] > blow.start - 0.3)
+      if (record.time[k] < impact.start && record.time[k] > impact.start - 0.3)
         record.samples(1, k) += 0.1 * std::sqrt(2) * rms * std::sin(75 * record.time[k]);
   const auto warnings = hammer_responses({test::with_noise(record, 0.3, 0.01 * rms, 1)}, 0.01).warnings;
   ASSERT_EQ(warnings.size(), 1u);

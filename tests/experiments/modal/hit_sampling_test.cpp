@@ -93,14 +93,14 @@ TEST(HitSampling, DoesNotAverageAliasesOfOnePlace) {
 
 HammerStudy study_of(double samples, std::uint64_t seed) {
   constexpr double interval = 1e-3;
-  std::vector<test::Blow> blows;
+  std::vector<test::Impact> impacts;
   for (int k = 0; k < 4; ++k)
-    blows.push_back({0.5 + 5 * k + 0.37e-3 * k, samples * interval, 80.0 + 10 * k, true});
+    impacts.push_back({0.5 + 5 * k + 0.37e-3 * k, samples * interval, 80.0 + 10 * k, true});
   ModalStudySettings settings;
   settings.method = {"frf_lscf", {}};
-  return study_hits({"hits.csv"},
-                    {test::with_noise(test::struck_modes({truth}, blows, interval, 20500), 0.1, 0.05, seed)},
-                    settings);
+  return study_hits(
+      {"hits.csv"},
+      {test::with_noise(test::struck_modes({truth}, impacts, interval, 20500), 0.1, 0.05, seed)}, settings);
 }
 
 // Oracle: the mass that was simulated.
