@@ -63,7 +63,8 @@ struct ComparedRun {
     converged,
     contradicted,  ///< the modal analysis of the same record has less than half or more than twice the
                    ///< damping; or the motion that the measured input makes of the model is not the record's;
-                   ///< or the last pass still moved an unknown by many of its deviations
+                   ///< or the last pass still moved an unknown by many of its deviations; or the filter
+                   ///< is more than twice as sure of one as the record allows
     diverged,      ///< the filter failed, or its motion is not the record's
     refused        ///< the model cannot be made this way
   };

@@ -1,0 +1,66 @@
+#include "experiments/identify/compare/motion_left.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "experiments/models/finest_discretisation.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// @param misfit_percent of the record, motion that is left; 0: not said
+std::string innovations_text(const filters::InnovationConsistency& c, double misfit_percent) {
+  // One healthy record in a thousand: the band of the worst of ten windows, 2.8 deviations, goes to 3.9.
+  constexpr double surely_coloured = 1e-3, surely_unsteady = 1.4;
+  const bool white = c.whiteness_p_value >= surely_coloured,
+             steady = c.windows.maxCoeff() - 1.0 <= surely_unsteady * (c.window_upper_95 - 1.0) &&
+                      1.0 - c.windows.minCoeff() <= surely_unsteady * (1.0 - c.window_lower_95);
+  if (white && steady) return {};
+  const char* const what = white    ? "white, but their size changes along the record"
+                           : steady ? "of steady size, but not white"
+                                    : "neither white nor of steady size";
+  const std::string motion = misfit_percent > 0.0 ? fmt::format("{:.2g} % of the record is", misfit_percent)
+                                                  : std::string("the record holds");
+  return fmt::format(
+      "The innovations are {} (Ljung-Box p = {:.2g}, mean normalised square {:.3g}): {} motion that the "
+      "model does not{}, and the intervals are a lower limit of the uncertainty{}.",
+      what, c.whiteness_p_value, c.mean_normalised_square, motion, misfit_percent > 0.0 ? " make" : "",
+      misfit_percent > 0.0 ? ": a mass, a place or a gain believed wrongly moves estimates by more" : "");
+}
+
+}  // namespace
+
+// A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
+// that started otherwise. Nor is it where storeys follow laws, which no mode beside them can stand in for. A
+// free decay may hold modes that the model lacks, but not for the greater part.
+void judge_motion_left(const RunContext& context, ComparedRun& run) {
+  // A sensor a storey off leaves 40, a mass off by half 20, no defect 0.4.
+  constexpr double too_much_driven = 10.0, too_much_free = 50.0;
+  const bool forced = context.analysis.forced();
+  const double too_much = forced || has_storey_laws(*run.model) ? too_much_driven : too_much_free;
+  if (!(run.misfit_percent > too_much)) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = fmt::format(
+      "{}: {:.3g} % of it is left, and is no noise. {}",
+      forced ? "the measured input does not make the record's motion of this model"
+             : "no start of this model makes the record's motion",
+      run.misfit_percent,
+      run.step_cause.empty()
+          ? fmt::format("The record holds modes that the model lacks, a sensor's place, a sign, a unit or a "
+                        "clock is wrong, an input is missing, a mass or the damping is not as described, or "
+                        "the {} on a wrong answer",
+                        forced ? "filter has settled" : "search has ended")
+          : run.step_cause);
+  if (run.reason.ends_with('.')) run.reason.pop_back();
+  run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
+}
+
+void judge_innovations(const RunContext& context, ComparedRun& run) {
+  if (!run.diagnostics || !run.diagnostics->consistency) return;
+  const double left = context.analysis.forced() ? run.misfit_percent : 0.0;
+  const std::string text = innovations_text(*run.diagnostics->consistency, left);
+  if (!text.empty()) run.warnings.push_back(text);
+}
+
+}  // namespace beamid::experiments
