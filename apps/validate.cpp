@@ -112,11 +112,15 @@ void print_line(const std::string& label, const std::string& text) {
     std::cout << std::exchange(before, indent) << line << "\n";
 }
 
+bool is_one_beam(const fem::Structure& structure) {
+  return structure.is_beam() && !structure.is_chain();
+}
+
 std::string structure_words(const Experiment& experiment, const fem::StructuralSystem& system) {
   const fem::Structure& structure = experiment.structure;
   const std::string first =
       fmt::format("irst mode predicted at {:.4f} Hz", fem::modes(system, 1).frequency_hz()[0]);
-  if (!structure.is_beam() || structure.is_chain())
+  if (!is_one_beam(structure))
     return structure_text(experiment, experiment.elements, system.size()) + " F" + first + ".";
   const fem::Beam& beam = structure.beam();
   return fmt::format("{:g} m, EI = {} N m2, {:.6g} kg with {:.6g} kg at its tip; f{}", beam.length(),
@@ -149,8 +153,7 @@ int run_validate(const Values& values) {
   std::cout << clean_text(file.string()) << ": valid\n";
   for (const std::string& sentence : implausible(experiment)) print_line("check", sentence);
   const fem::Structure& structure = experiment.structure;
-  print_line(structure.is_beam() && !structure.is_chain() ? "beam" : structure.kind(),
-             structure_words(experiment, system));
+  print_line(is_one_beam(structure) ? "beam" : structure.kind(), structure_words(experiment, system));
   if (!experiment.sensors.empty()) print_line("sensors", sensors_text(experiment));
   print_line("record", record_line);
   print_line("methods",

@@ -37,9 +37,4 @@ nlohmann::ordered_json agreement_values(const JointEstimate& estimate,
   return json;
 }
 
-int shown_decimals(double half_width) {
-  if (!(half_width > 0) || !std::isfinite(half_width)) return 6;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(half_width))), 0, 12);
-}
-
 }  // namespace beamid::experiments

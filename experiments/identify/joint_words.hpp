@@ -16,7 +16,4 @@ std::string agreement_words(const JointEstimate& estimate, const std::vector<std
 /// `agreement` of results.json.
 nlohmann::ordered_json agreement_values(const JointEstimate& estimate, const std::vector<std::string>& names);
 
-/// Of a number with this half width of its interval: decimals that show two digits of it.
-int shown_decimals(double half_width);
-
 }  // namespace beamid::experiments

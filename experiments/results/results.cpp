@@ -55,7 +55,7 @@ Json tables_of(const Results& results) {
     for (std::size_t i = 0; i < table->rows(); ++i) {
       Json& row = rows.emplace_back(Json::object());
       for (const Column& column : table->columns) {
-        const double* number = std::get_if<double>(&column.cells[i]);
+        const double* number = number_of(column.cells[i]);
         if (!number)
           row[column.key] = std::get<std::string>(column.cells[i]);
         else

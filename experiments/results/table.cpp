@@ -8,6 +8,11 @@
 
 namespace beamid::experiments {
 
+const double* number_of(const Cell& cell) {
+  if (const auto* rounded = std::get_if<Rounded>(&cell)) return &rounded->value;
+  return std::get_if<double>(&cell);
+}
+
 Table& Table::column(Column column) {
   columns.push_back(std::move(column));
   return *this;
@@ -42,7 +47,9 @@ std::string to_csv(const Table& table) {
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       if (i > 0) csv += ',';
-      csv += std::visit([](const auto& value) { return csv_field(value); }, table.columns[i].cells[row]);
+      const Cell& cell = table.columns[i].cells[row];
+      const double* number = number_of(cell);
+      csv += number ? csv_field(*number) : csv_field(std::get<std::string>(cell));
     }
     csv += '\n';
   }

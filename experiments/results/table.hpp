@@ -9,7 +9,18 @@
 
 namespace beamid::experiments {
 
-using Cell = std::variant<double, std::string>;
+/// A number that a person sees to two digits of its uncertainty, and a program whole.
+struct Rounded {
+  double value = 0.0;
+  double uncertainty = 0.0;  ///< standard deviation or half interval, in the value's unit; not > 0: not known
+
+  bool operator==(const Rounded&) const = default;
+};
+
+using Cell = std::variant<double, std::string, Rounded>;
+
+/// What a program reads of a cell that is no text, else null.
+const double* number_of(const Cell& cell);
 
 /// One column of a table, for the terminal and for CSV.
 struct Column {
@@ -39,7 +50,7 @@ struct Table {
   std::size_t rows() const;
 };
 
-/// The table aligned, numbers to the right and texts to the left, NaN as "-".
+/// The table aligned, numbers to the right, texts and rounded numbers to the left, NaN as "-".
 ///
 /// Never wider than page_width: headings break at blanks first, then the widest columns of texts, and columns
 /// that still do not fit follow below, with the leading columns of texts repeated.

@@ -5,14 +5,13 @@
 
 #include "experiments/identify/model_check/shared_residual.hpp"
 #include "experiments/identify/update/updating.hpp"
+#include "experiments/models/estimates.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using ExplanationVerdict = Explanation::Verdict;
-
-constexpr double interval_quantile = 1.96;
 
 constexpr Index large_system = 400;  // coordinates, of which a search takes seconds
 
@@ -57,8 +56,8 @@ void set_intervals(const ModelCheck& check, const SharedResidual& residual, cons
     if (const double slope = found.best().fit.value.jacobian.col(i).norm();
         one.on_bound && q == 1 && slope > 0)
       e.deviation[i] = found.widening * std::abs(residual.space().slope(found.best().fit.x)[i]) / slope;
-    e.lower[i] = std::max(c.lower, e.change[i] - interval_quantile * e.deviation[i]);
-    e.upper[i] = std::min(c.upper, e.change[i] + interval_quantile * e.deviation[i]);
+    e.lower[i] = std::max(c.lower, e.change[i] - quantile_95 * e.deviation[i]);
+    e.upper[i] = std::min(c.upper, e.change[i] + quantile_95 * e.deviation[i]);
     const double most = one.determined ? e.upper[i] : e.change[i],
                  least = one.determined ? e.lower[i] : e.change[i];
     e.plausible = e.plausible && most >= c.plausible_lower && least <= c.plausible_upper;

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "experiments/models/estimates.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -61,7 +63,7 @@ void add_damages(const Experiment& experiment, const SensingModel& model, const 
     }
     for (const FatigueDamage& drawn : found[i])
       squares += std::pow(std::log(drawn.damage) - logs, 2) / (draws - 1);
-    const double half = 1.96 * std::sqrt(squares);
+    const double half = quantile_95 * std::sqrt(squares);
     one.lower_95 = std::exp(logs - half), one.upper_95 = std::exp(logs + half);
     const FatigueLaw& law = *experiment.fatigue;
     one.damage.equivalent_range =

@@ -43,11 +43,11 @@ Table mode_table(const ModelCheck& check) {
     std::vector<Cell> row;
     if (check.structures.size() > 1) row.emplace_back(check.structures[mode.structure].name);
     row.insert(row.end(), {static_cast<double>(mode.number), mode.predicted_hz, mode.identified.frequency_hz,
-                           1.96 * mode.identified.frequency_deviation_hz,
+                           quantile_95 * mode.identified.frequency_deviation_hz,
                            100 * (mode.identified.frequency_hz / mode.predicted_hz - 1)});
     if (damped) row.emplace_back(100 * mode.predicted_damping_ratio);
-    row.insert(row.end(),
-               {100 * mode.identified.damping_ratio, 196 * mode.identified.damping_ratio_deviation});
+    row.insert(row.end(), {100 * mode.identified.damping_ratio,
+                           100 * quantile_95 * mode.identified.damping_ratio_deviation});
     if (shaped) row.emplace_back(mode.assurance);
     table.row(std::move(row));
   }
@@ -73,8 +73,8 @@ Table effect_table(const ModelCheck& check) {
   return table;
 }
 
-std::string change_number(const Candidate& c, double x) {
-  return fmt::format("{:+.3g}", (c.unit == "%" ? 100 : 1) * x + 0.0);
+double change_number(const Candidate& c, double x) {
+  return (c.unit == "%" ? 100 : 1) * x + 0.0;
 }
 
 /// Candidate, change and its 95 % interval, with what update remarks of a parameter.
@@ -84,8 +84,8 @@ std::vector<Cell> change_cells(const ModelCheck& check, const Explanation& e, st
   return {c.name,
           c.unit,
           change_number(c, e.change[static_cast<Index>(i)]),
-          interval ? change_number(c, e.lower_95(i)) : "",
-          interval ? change_number(c, e.upper_95(i)) : "",
+          interval ? change_number(c, e.lower_95(i)) : std::nan(""),
+          interval ? change_number(c, e.upper_95(i)) : std::nan(""),
           std::string(!e.determined[i] ? "not determined"
                       : e.at_limit[i]  ? "on its bound"
                                        : "")};
@@ -94,9 +94,9 @@ std::vector<Cell> change_cells(const ModelCheck& check, const Explanation& e, st
 Table& add_change_columns(Table& table) {
   return table.column({"candidate", "candidate"})
       .column({"unit", "unit"})
-      .column({"change", "change"})
-      .column({"95 % from", "lower_95"})
-      .column({"to", "upper_95"})
+      .column({"change", "change", "{:+.3g}"})
+      .column({"95 % from", "lower_95", "{:+.3g}"})
+      .column({"to", "upper_95", "{:+.3g}"})
       .column({"remark", "remark"});
 }
 

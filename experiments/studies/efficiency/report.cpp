@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/models/estimates.hpp"
 #include "experiments/text/choice_text.hpp"
 
 namespace beamid::experiments {
@@ -40,7 +41,7 @@ Panel panel(const Efficiency& all, Passes passes, Index constant) {
       const double aside = (static_cast<double>(f) + 0.5) / count - 0.5;  // side by side
       x[k] = 100.0 * shown[i]->damping_ratio * std::exp2(1.2 * aside);
       y[k] = shown[i]->result.rms_over_bound[constant];
-      half[k] = std::min(1.96 * shown[i]->result.relative_rms_deviation, 0.95) * y[k];
+      half[k] = std::min(quantile_95 * shown[i]->result.relative_rms_deviation, 0.95) * y[k];
     }
     if (shown.empty()) continue;
     panel.curves.push_back({label_of(settings.filters[f]), x, y,

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "experiments/models/estimates.hpp"
 #include "experiments/studies/efficiency/report.hpp"
 #include "experiments/text/choice_text.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN(), two_sided_95 = 1.96;
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 double at(const Eigen::VectorXd& values, Index i) {
   return values.size() > 0 ? values[i] : no_value;
@@ -42,7 +43,7 @@ Table efficiency_table(const Efficiency& all) {
     std::vector<Cell> row = start_of_row(one);
     for (Index i = 0; i < 2; ++i) {
       const double ratio = at(one.result.rms_over_bound, i),
-                   half = two_sided_95 * one.result.relative_rms_deviation;
+                   half = quantile_95 * one.result.relative_rms_deviation;
       row.insert(row.end(),
                  {ratio, ratio * (1.0 - half), ratio * (1.0 + half), at(one.result.bias, i) / one.bound[i]});
     }

@@ -12,12 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string shown(double value, const Estimate& by) {
-  constexpr double large = 1e5, small = 1e-3;
-  if (std::abs(value) > large || std::abs(value) < small) return fmt::format("{:.6g}", value);
-  return fmt::format("{:.{}f}", value, shown_decimals(0.5 * (by.upper_95 - by.lower_95)));
-}
-
 Table parameter_table(const BeamFamily& family) {
   Table table{"parameters", "Together"};
   table.column({"parameter", "parameter"})
@@ -28,8 +22,9 @@ Table parameter_table(const BeamFamily& family) {
       .column({"asked about in", "files"});
   for (std::size_t j = 0; j < family.parameters.size(); ++j) {
     const Estimate& e = family.parameters[j];
-    table.row(
-        {e.name, e.unit, shown(e.value, e), shown(e.lower_95, e), shown(e.upper_95, e), family.shared_by[j]});
+    const double half = 0.5 * (e.upper_95 - e.lower_95);
+    const auto shown = [&](double value) { return Rounded{value, half}; };
+    table.row({e.name, e.unit, shown(e.value), shown(e.lower_95), shown(e.upper_95), family.shared_by[j]});
   }
   return table;
 }

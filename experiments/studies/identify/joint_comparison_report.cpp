@@ -20,13 +20,6 @@ bool converged(const Comparison& one) {
   return one.runs.at(0).status == ComparedRun::Status::converged;
 }
 
-std::string shown_joint(double value, const Estimate& by) {
-  constexpr double large = 1e5, small = 1e-3;
-  const double half = 0.5 * (by.upper_95 - by.lower_95);
-  if (std::abs(value) > large || std::abs(value) < small) return fmt::format("{:.6g}", value);
-  return fmt::format("{:.{}f}", value, shown_decimals(half));
-}
-
 Table table_of(const JointComparison& joint, std::size_t which) {
   const Estimate& all = joint.parameters[which];
   Table table{"parameter_" + all.name, all.name + (all.unit.empty() ? "" : " [" + all.unit + "]")};
@@ -36,8 +29,8 @@ Table table_of(const JointComparison& joint, std::size_t which) {
       .column({"95 % from", "lower_95"})
       .column({"to", "upper_95"});
   const auto row = [&](const std::string& record, const std::string& window, const Estimate& e) {
-    table.row(
-        {record, window, shown_joint(e.value, e), shown_joint(e.lower_95, e), shown_joint(e.upper_95, e)});
+    const double half = 0.5 * (e.upper_95 - e.lower_95);
+    table.row({record, window, Rounded{e.value, half}, Rounded{e.lower_95, half}, Rounded{e.upper_95, half}});
   };
   for (const Comparison& one : joint.records) {
     const VectorXd& time = one.compared.record.time;

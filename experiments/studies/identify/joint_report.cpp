@@ -24,6 +24,11 @@ std::string window_of(const Record& record) {
   return fmt::format("{:.4g} to {:.4g}", record.time[0], record.time[record.size() - 1]);
 }
 
+// Of a value that is shown in percent.
+std::string key_in_table(const Parameter& p) {
+  return std::string(p.key) + (p.shown == 100 ? "_percent" : "");
+}
+
 // Two of the four parameters, from `first` on, of every record and of all.
 Table table_of(const JointIdentification& joint, const char* name, const char* title, std::size_t first) {
   constexpr std::size_t two = 2;
@@ -31,16 +36,15 @@ Table table_of(const JointIdentification& joint, const char* name, const char* t
   table.column({"record", "record"}).column({"window [s]", "window_s"});
   const std::vector<Parameter> together = joint_parameters(joint);
   for (std::size_t i = first; i < first + two; ++i)
-    table.column({together[i].name, together[i].key})
-        .column({"95 % +-", std::string(together[i].key) + "_half_width_95"});
+    table.column({together[i].name, key_in_table(together[i])})
+        .column({"95 % +-", key_in_table(together[i]) + "_half_width_95"});
   const auto row = [&](const std::string& record, const std::string& window,
                        const std::vector<Parameter>& found) {
     std::vector<Cell> cells{record, window};
     for (std::size_t i = first; i < first + two; ++i) {
       const double half = found[i].shown * quantile_95 * found[i].deviation;
-      const int digits = shown_decimals(half);
-      cells.emplace_back(fmt::format("{:.{}f}", found[i].shown * found[i].estimate, digits));
-      cells.emplace_back(fmt::format("{:.{}f}", half, digits));
+      cells.emplace_back(Rounded{found[i].shown * found[i].estimate, half});
+      cells.emplace_back(Rounded{half, half});
     }
     table.row(std::move(cells));
   };

@@ -17,12 +17,6 @@
 namespace beamid::experiments {
 namespace {
 
-// Decimals that show two significant digits of a standard deviation.
-int decimals(double deviation) {
-  if (!(deviation > 0.0) || !std::isfinite(deviation)) return 6;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 12);
-}
-
 Table parameter_table(const RecordIdentification& found) {
   Table table{"parameters", ""};
   table.column({"", "parameter"})
@@ -40,14 +34,10 @@ Table parameter_table(const RecordIdentification& found) {
     together = parameters(found, *found.batch->identification);
   }
   for (const Parameter& p : parameters(found)) {
-    const int digits = decimals(p.shown * p.deviation);
-    const auto shown = [&](double value) { return fmt::format("{:.{}f}", p.shown * value, digits); };
-    std::vector<Cell> cells{p.name,
-                            shown(p.estimate),
-                            shown(p.lower_95()),
-                            shown(p.upper_95()),
-                            std::isfinite(p.modal) ? shown(p.modal) : "-",
-                            percent(p.estimate, p.modal)};
+    const auto shown = [&](double value) { return Rounded{p.shown * value, p.shown * p.deviation}; };
+    std::vector<Cell> cells{
+        p.name,         shown(p.estimate),           shown(p.lower_95()), shown(p.upper_95()),
+        shown(p.modal), percent(p.estimate, p.modal)};
     if (batch) {
       const Parameter& b = together[table.rows()];
       for (const double value : {b.estimate, b.lower_95(), b.upper_95()}) cells.emplace_back(shown(value));

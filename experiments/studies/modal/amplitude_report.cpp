@@ -8,6 +8,7 @@
 
 #include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/results/cell_text.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -46,12 +47,6 @@ Dependence dependence_of(const RecordModes& found, std::size_t at) {
   return one;
 }
 
-std::string with_deviation(double value, double deviation) {
-  const int digits =
-      deviation > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 9) : 4;
-  return fmt::format("{:.{}f}", value, digits);
-}
-
 Table table_of(const std::vector<Dependence>& all, const std::vector<RecordModes>& records) {
   constexpr std::size_t most_rows = 8;
   Table table{"amplitude", "Frequency and damping ratio against amplitude"};
@@ -72,12 +67,12 @@ Table table_of(const std::vector<Dependence>& all, const std::vector<RecordModes
       const AmplitudePoint& point = one.points[k];
       std::vector<Cell> row;
       if (records.size() > 1) row.emplace_back(records[one.record].name);
-      row.insert(row.end(), {static_cast<double>(one.mode + 1), point.time, point.amplitude,
-                             std::string(si_unit(records[one.record].record.channels[one.channel].quantity)),
-                             with_deviation(point.frequency_hz, point.frequency_deviation_hz),
-                             point.frequency_deviation_hz,
-                             with_deviation(100 * point.damping_ratio, 100 * point.damping_ratio_deviation),
-                             100 * point.damping_ratio_deviation});
+      row.insert(row.end(),
+                 {static_cast<double>(one.mode + 1), point.time, point.amplitude,
+                  std::string(si_unit(records[one.record].record.channels[one.channel].quantity)),
+                  Rounded{point.frequency_hz, point.frequency_deviation_hz}, point.frequency_deviation_hz,
+                  Rounded{100 * point.damping_ratio, 100 * point.damping_ratio_deviation},
+                  100 * point.damping_ratio_deviation});
       table.row(std::move(row));
     }
   }
@@ -109,11 +104,11 @@ std::string sentence(const Dependence& one, const RecordModes& found) {
       one.mode + 1, found.name, first.amplitude, last.amplitude,
       si_unit(found.record.channels[one.channel].quantity),
       ratio ? fmt::format("goes from {} to {} %",
-                          with_deviation(100 * first.damping_ratio, 100 * first.damping_ratio_deviation),
-                          with_deviation(100 * last.damping_ratio, 100 * last.damping_ratio_deviation))
+                          rounded_text({100 * first.damping_ratio, 100 * first.damping_ratio_deviation}),
+                          rounded_text({100 * last.damping_ratio, 100 * last.damping_ratio_deviation}))
             : "does not change beyond its deviations",
-      f ? fmt::format("from {} to {} Hz", with_deviation(first.frequency_hz, first.frequency_deviation_hz),
-                      with_deviation(last.frequency_hz, last.frequency_deviation_hz))
+      f ? fmt::format("from {} to {} Hz", rounded_text({first.frequency_hz, first.frequency_deviation_hz}),
+                      rounded_text({last.frequency_hz, last.frequency_deviation_hz}))
         : "does not");
 }
 

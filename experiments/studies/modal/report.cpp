@@ -12,15 +12,9 @@ namespace {
 
 using Eigen::Index;
 
-/// A value with two digits of its deviation; "-" for what is unknown.
-std::string with_scaled_deviation(double value, double deviation, double shown = 1) {
-  const bool known = deviation > 0 && std::isfinite(deviation);
-  const int digits =
-      known ? std::clamp(1 - static_cast<int>(std::floor(std::log10(shown * deviation))), 0, 9) : 4;
-  return fmt::format("{:.{}f}", shown * value, digits);
-}
-std::string deviation_text(double deviation, double shown = 1) {
-  return deviation > 0 && std::isfinite(deviation) ? fmt::format("{:.2g}", shown * deviation) : "-";
+/// NaN for a deviation that is not known.
+double known_or_nan(double deviation, double scale = 1) {
+  return deviation > 0 && std::isfinite(deviation) ? scale * deviation : std::nan("");
 }
 
 std::string introduction(const ModalStudySettings& settings, const RecordModes& found) {
@@ -64,9 +58,9 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
   Table table{"modes" + suffix, ""};
   table.column({"mode", "mode", "{:.0f}"})
       .column({"f [Hz]", "frequency_hz"})
-      .column({"standard deviation", "frequency_standard_deviation_hz"})
+      .column({"standard deviation", "frequency_standard_deviation_hz", "{:.2g}"})
       .column({"damping ratio [%]", "damping_ratio_percent"})
-      .column({"standard deviation", "damping_ratio_standard_deviation_percent"});
+      .column({"standard deviation", "damping_ratio_standard_deviation_percent", "{:.2g}"});
   if (!found.free_decay)
     table.column({"f: over bound", "frequency_deviation_over_bound", "{:.2f}"})
         .column({"damping: over bound", "damping_ratio_deviation_over_bound", "{:.2f}"});
@@ -81,10 +75,10 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
     const ModeEstimate& mode = found.modes[m];
     const Pole& pole = mode.pole;
     std::vector<Cell> row{static_cast<double>(m + 1),
-                          with_scaled_deviation(pole.frequency_hz(), pole.frequency_deviation_hz),
-                          deviation_text(pole.frequency_deviation_hz),
-                          with_scaled_deviation(pole.damping_ratio(), pole.damping_ratio_deviation, 100),
-                          deviation_text(pole.damping_ratio_deviation, 100)};
+                          Rounded{pole.frequency_hz(), pole.frequency_deviation_hz},
+                          known_or_nan(pole.frequency_deviation_hz),
+                          Rounded{100 * pole.damping_ratio(), 100 * pole.damping_ratio_deviation},
+                          known_or_nan(pole.damping_ratio_deviation, 100)};
     if (!found.free_decay) {
       const AmbientLaw bound = bound_of_mode(found, m);
       row.emplace_back(pole.frequency_deviation_hz / (bound.frequency * pole.frequency_hz()));
@@ -129,18 +123,18 @@ Table merged_table(const std::vector<MergedMode>& merged, std::size_t records) {
   Table table{"merged_modes", ""};
   table.column({"mode", "mode", "{:.0f}"})
       .column({"f [Hz]", "frequency_hz"})
-      .column({"standard deviation", "frequency_standard_deviation_hz"})
-      .column({"between records", "frequency_standard_deviation_between_records_hz"})
+      .column({"standard deviation", "frequency_standard_deviation_hz", "{:.2g}"})
+      .column({"between records", "frequency_standard_deviation_between_records_hz", "{:.2g}"})
       .column({"damping ratio [%]", "damping_ratio_percent"})
-      .column({"standard deviation", "damping_ratio_standard_deviation_percent"})
-      .column({"between records", "damping_ratio_standard_deviation_between_records_percent"})
+      .column({"standard deviation", "damping_ratio_standard_deviation_percent", "{:.2g}"})
+      .column({"between records", "damping_ratio_standard_deviation_between_records_percent", "{:.2g}"})
       .column({"records", "records"});
   for (std::size_t m = 0; m < merged.size(); ++m) {
     const MergedValue &f = merged[m].frequency_hz, &ratio = merged[m].damping_ratio;
-    table.row({static_cast<double>(m + 1), with_scaled_deviation(f.mean, std::fmax(f.deviation, f.scatter)),
-               deviation_text(f.deviation), deviation_text(f.scatter),
-               with_scaled_deviation(ratio.mean, std::fmax(ratio.deviation, ratio.scatter), 100),
-               deviation_text(ratio.deviation, 100), deviation_text(ratio.scatter, 100),
+    table.row({static_cast<double>(m + 1), Rounded{f.mean, std::fmax(f.deviation, f.scatter)},
+               known_or_nan(f.deviation), known_or_nan(f.scatter),
+               Rounded{100 * ratio.mean, 100 * std::fmax(ratio.deviation, ratio.scatter)},
+               known_or_nan(ratio.deviation, 100), known_or_nan(ratio.scatter, 100),
                fmt::format("{} of {}", merged[m].records(), records)});
   }
   table.note =

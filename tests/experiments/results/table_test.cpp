@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "experiments/results/cell_text.hpp"
 #include "experiments/results/print.hpp"
 #include "experiments/results/text.hpp"
 #include "experiments/text/fields.hpp"
@@ -212,6 +213,22 @@ TEST(Text, WrapsAtBlanksAndIndentsListItems) {
   EXPECT_EQ(wrapped("  kept   as it is\n\nlast", 20),
             (std::vector<std::string>{"  kept   as it is", "", "last"}));
   EXPECT_EQ(wrapped("unbreakable", 4), (std::vector<std::string>{"unbreakable"}));
+}
+
+// Oracle: two significant digits of the uncertainty, counted by hand.
+TEST(Table, RoundsForPeopleAndNotForPrograms) {
+  const auto text = [](double value, double uncertainty) { return rounded_text({value, uncertainty}); };
+  EXPECT_EQ(text(3.455518812, 0.00008), "3.455519");
+  EXPECT_EQ(text(3.455518812, 0.012), "3.456");
+  EXPECT_EQ(text(210333.0, 4100.0), "210333");
+  EXPECT_EQ(text(2.0712e11, 3.2e8), "2.0712e+11");
+  EXPECT_EQ(text(0.000001234567, 3e-9), "1.2346e-06");
+  EXPECT_EQ(text(-0.0001, 0.2), "0.00");
+  EXPECT_EQ(text(509.38971, 0.0), "509.39");
+  EXPECT_EQ(text(nan, 0.1), "-");
+  Table table{"modes", ""};
+  table.column({"f [Hz]", "frequency_hz"}).row({Rounded{3.455518812, 0.012}}).row({Rounded{nan, nan}});
+  EXPECT_EQ(to_csv(table), "frequency_hz\n3.455518812\n\n");
 }
 
 }  // namespace
