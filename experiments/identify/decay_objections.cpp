@@ -11,7 +11,8 @@ namespace {
 
 DecayObjection jump_objection(const DecayJump& jump, double from) {
   constexpr double much = 0.05;
-  const bool contradicts = std::abs(jump.amplitude_ratio - 1) > much || std::abs(jump.phase) > much;
+  const bool contradicts =
+      jump.frequency || std::abs(jump.amplitude_ratio - 1) > much || std::abs(jump.phase) > much;
   return {fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
                       "intervals. Expected a --window on one side of it.",
                       contradicts ? "CONTRADICTED: " : "", jump.sentence(from)),

@@ -14,7 +14,7 @@ struct DecayObjection {
 };
 
 /// - A jump of the motion (decay_jump.hpp) in what was identified: no single decay goes across it. By a
-///   twentieth of the amplitude, or of a radian, it contradicts.
+///   twentieth of the amplitude, or of a radian, or of its frequency, it contradicts.
 /// - The overtone of a sensor that saturates softly (third_overtone.hpp), where the damping ratio is wrong by
 ///   more than its interval through it, and the frequency does not follow the amplitude as that of a spring
 ///   would; it contradicts from twice the interval on.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "experiments/identify/analysis.hpp"
@@ -69,7 +70,15 @@ std::optional<Break> jump_in(const Record& record, const Part& part, double peri
     const auto jump = decay_jump(signal, decay.interval(), dominant_mode(signal, decay.interval(), expected));
     if (!jump) return {};
     const double at = decay.time[0] + jump->time;
-    return Break{at - period, at + period, fmt::format(" {:.4g} s {}", at, jump->words())};
+    Break found{at - period, at + period, fmt::format(" {:.4g} s {}", at, jump->words())};
+    if (const auto& frequency = jump->frequency) {  // on one side time runs at another rate
+      const auto off = [&](double hz) { return std::abs(std::log(hz * period)); };
+      if (off(frequency->behind_hz) > off(frequency->before_hz))
+        found.to = part.to;
+      else
+        found.from = part.from;
+    }
+    return found;
   } catch (const std::exception&) {  // no mode there, or a part too short for it
     return {};
   }

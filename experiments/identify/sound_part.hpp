@@ -17,8 +17,9 @@ struct SoundPart {
 
 /// Of a free decay that is broken by clipped readings (of any channel, to a period behind them) or by jumps
 /// of its motion (decay_jump.hpp, of the first channel), the part that determines frequency and damping best:
-/// that of the largest energy times squared length. Nothing where the decay is whole, or where no part of
-/// eight periods is left.
+/// that of the largest energy times squared length. Where the frequency jumps, the side whose frequency is
+/// nearer to the mode as described is left: on the other the clock is another one. Nothing where the decay is
+/// whole, or where no part of eight periods is left.
 ///
 /// Clipped readings are missing by what their own noise was and by what the motion rides on: those beside
 /// them are a choice, whose mean is no longer that of the motion. With a noise of a sixth of the limit the

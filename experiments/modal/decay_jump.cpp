@@ -11,6 +11,7 @@
 
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/median.hpp"
+#include "experiments/signal/sway.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -88,23 +89,6 @@ class Motions {
   Eigen::HouseholderQR<MatrixXd> smoother_, stepped_;  // with the next power of time, with the step
 };
 
-/// The signal less its mean under a Hann window of two periods, which holds nothing of the mode: what sways
-/// slowly beneath the mode is no noise to it.
-DecimatedSignal without_sway(DecimatedSignal coarse, double period) {
-  const Index half = std::max<Index>(1, std::lround(period / coarse.interval)),
-              left = coarse.samples.size() - 2 * half;
-  if (left < 1) return coarse;
-  const VectorXd kernel =
-      (VectorXd::LinSpaced(2 * half + 1, -std::numbers::pi, std::numbers::pi).array().cos() + 1) /
-      static_cast<double>(2 * half);
-  VectorXd samples(left);
-  for (Index k = 0; k < left; ++k)
-    samples[k] = coarse.samples[k + half] - kernel.dot(coarse.samples.segment(k, 2 * half + 1));
-  coarse.samples = std::move(samples);
-  coarse.start += coarse.interval * static_cast<double>(half);
-  return coarse;
-}
-
 std::vector<Instant> instants_of(const DecimatedSignal& coarse, const ModalEstimate& mode, int degree) {
   const double samples = 1 / (mode.frequency_hz * coarse.interval);  // per period
   const auto count = [&](double periods) {
@@ -158,16 +142,20 @@ DecayJump jump_at(const Instant& instant) {
 }  // namespace
 
 std::string DecayJump::words() const {
+  if (frequency) return frequency->words();
   return fmt::format("the motion jumps, by {:+.2g} % in amplitude and {:+.2g} degrees in phase",
                      100 * (amplitude_ratio - 1), phase * 180 / std::numbers::pi);
 }
 
 std::string DecayJump::sentence(double begin) const {
-  return fmt::format("At {:.4g} s {}: something touched the structure, or samples were lost.", begin + time,
-                     words());
+  return fmt::format("At {:.4g} s {}: {}.", begin + time, words(),
+                     frequency ? "the sampling rate changed there, or the structure did"
+                               : "something touched the structure, or samples were lost");
 }
 
 std::optional<DecayJump> decay_jump(const VectorXd& signal, double interval, const ModalEstimate& mode) {
+  if (const auto frequency = frequency_jump(signal, interval, mode))
+    return DecayJump{frequency->time, 1, 0, frequency};
   const int factor = decimation_factor(1 / (mode.frequency_hz * interval * jump_samples_per_cycle),
                                        signal.size() / kernel_and_more);
   const DecimatedSignal coarse = without_sway(decimate(signal, interval, factor), 1 / mode.frequency_hz);

@@ -1,4 +1,4 @@
-// Whether something happened to a free decay while it rang: a knock, samples lost.
+// Whether something happened to a free decay while it rang: a knock, samples lost, another sampling rate.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,14 +6,16 @@
 #include <string>
 
 #include "experiments/modal/dominant_mode.hpp"
+#include "experiments/modal/frequency_jump.hpp"
 
 namespace beamid::experiments {
 
 /// The motion behind an instant is not the continuation of the motion before it.
 struct DecayJump {
-  double time = 0;             ///< [s], from the first sample
-  double amplitude_ratio = 1;  ///< behind it over before
-  double phase = 0;            ///< by which it is ahead behind it [rad]
+  double time = 0;                              ///< [s], from the first sample
+  double amplitude_ratio = 1;                   ///< behind it over before
+  double phase = 0;                             ///< by which it is ahead behind it [rad]
+  std::optional<FrequencyJump> frequency = {};  ///< where it is this that jumps
 
   std::string words() const;  ///< "the motion jumps, by +10 % in amplitude and 2.1 degrees in phase"
   /// "At 8 s the motion jumps, ...: something touched the structure, or samples were lost."
@@ -21,9 +23,9 @@ struct DecayJump {
   std::string sentence(double begin) const;
 };
 
-/// The clearest jump of a decay (N, finite), where there is one. Over twelve periods before and behind an
-/// instant, but for one period to either side, the signal, decimated to eight samples per cycle and freed of
-/// what sways below the mode, is
+/// The clearest jump of a decay (N, finite), where there is one: of its frequency (frequency_jump.hpp), or
+/// else of its amplitude and phase. Over twelve periods before and behind an instant, but for one period to
+/// either side, the signal, decimated to eight samples per cycle and freed of what sways below the mode, is
 ///
 ///     e^(s t) (a_0 + a_1 t + a_2 t^2 + a_3 t^3 + j H(t)) + an offset + companions e^(s_i t),
 ///

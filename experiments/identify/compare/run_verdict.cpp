@@ -9,6 +9,7 @@
 #include "experiments/identify/compare/described_response.hpp"
 #include "experiments/identify/compare/motion_left.hpp"
 #include "experiments/identify/compare/reduction_error.hpp"
+#include "experiments/identify/compare/step_error.hpp"
 #include "experiments/identify/compare/widened_interval.hpp"
 #include "experiments/identify/decay_objections.hpp"
 #include "experiments/identify/record_identification.hpp"
@@ -76,6 +77,8 @@ void judge_certainty(ComparedRun& run) {
 void judge_model(const RunContext& context, ComparedRun& run) {
   widen_intervals(context, run);
   if (const std::string text = reduction_error(context, run); !text.empty())
+    run.warnings.insert(run.warnings.begin(), text);
+  if (const std::string text = step_error(context, run); !text.empty())
     run.warnings.insert(run.warnings.begin(), text);
   judge_settling(run);
   judge_motion_left(context, run);

@@ -14,6 +14,7 @@
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/median.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/sway.hpp"
 #include "filters/smoother.hpp"
 
 namespace beamid::experiments {
@@ -95,9 +96,11 @@ void compare_with_modal_analysis(const Ringing& ringing, Plateau& plateau) {
   } catch (const std::exception&) {
     return;  // too short, or no decay of constant stiffness: the plateau stands alone
   }
-  // By what exceeds them: where it is about as large, rounding must not decide on the interval.
-  const auto widen = [](double difference, double& deviation) {
-    const double excess = difference * difference - std::pow(beyond * deviation, 2);
+  // By what exceeds them: where it is about as large, rounding must not decide on the interval. Beside
+  // another mode, which only the modal analysis fits, by all of it.
+  const double allowed = plateau.companions_hz.empty() ? beyond : 0;
+  const auto widen = [&](double difference, double& deviation) {
+    const double excess = difference * difference - std::pow(allowed * deviation, 2);
     deviation = std::sqrt(deviation * deviation + std::max(0.0, excess));
   };
   widen(plateau.frequency_hz - plateau.modal_frequency_hz, plateau.frequency_deviation_hz);
@@ -136,6 +139,38 @@ Plateau plateau_of(const Ringing& ringing, const std::vector<filters::Gaussian>&
       2.0 * plateau.frequency_deviation_hz / plateau.frequency_hz);
   plateau.force = std::sqrt(levels.noise.process(ringing::slope, ringing::slope) / ringing.interval);
   return plateau;
+}
+
+Ringing ringing_in(const DecimatedSignal& low, double start, const std::pair<double, double>& band_hz) {
+  const Index samples = low.samples.size();
+  return {start + low.start +
+              low.interval * VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)).array(),
+          low.samples,
+          low.interval,
+          band_hz,
+          std::sqrt(band_hz.first * band_hz.second),
+          0.0};
+}
+
+/// Of what moves below the band, where it is more than noise, the root mean square; `ringing` is then without
+/// it. Its noise is found in either case.
+double take_out_sway(Ringing& ringing, double shortest_cycles) {
+  constexpr double share = 0.5;  // of the noise; of white noise 0.2 lie below the band
+  const double period = 1 / ringing.centre_hz;
+  const DecimatedSignal low{ringing.signal, ringing.interval, ringing.time[0], 1, {}};
+  const DecimatedSignal freed = without_sway(without_sway(low, period), period);
+  const VectorXd slow = sway({sway(low, 2 * period), low.interval, 0, 1, {}}, 2 * period);
+  if (slow.size() > 0 && freed.samples.size() >= ringing.cycles(2 * shortest_cycles)) {
+    Ringing without = ringing_in(freed, 0, ringing.band_hz);
+    without.noise = typical_noise(without);
+    const double sways = std::sqrt((slow.array() - slow.mean()).square().mean());
+    if (sways > share * without.noise) {
+      ringing = std::move(without);
+      return sways;
+    }
+  }
+  ringing.noise = typical_noise(ringing);
+  return 0;
 }
 
 void check_tracking(const TrackSettings& settings, double interval) {
@@ -179,22 +214,14 @@ Tracking track(const VectorXd& signal, double start, double interval, const Trac
   Tracking result;
   result.band_hz = settings.band_hz ? *settings.band_hz : track_band(signal, interval);
   const int factor = decimation_factor(0.3 / (result.band_hz.second * interval), signal.size());
-  const DecimatedSignal low = decimate(signal, interval, factor);
-  result.decimation = factor, result.interval = low.interval, result.signal = low.samples;
-  const Index samples = low.samples.size();
-  result.time = start + low.start +
-                low.interval * VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)).array();
-
-  Ringing ringing{result.time,
-                  result.signal,
-                  low.interval,
-                  result.band_hz,
-                  std::sqrt(result.band_hz.first * result.band_hz.second),
-                  0.0};
-  if (samples < ringing.cycles(2 * settings.shortest_cycles))
+  Ringing ringing = ringing_in(decimate(signal, interval, factor), start, result.band_hz);
+  if (ringing.size() < ringing.cycles(2 * settings.shortest_cycles))
     throw std::invalid_argument("signal of fewer than " + std::to_string(2 * settings.shortest_cycles) +
                                 " cycles at the middle of the band");
-  ringing.noise = result.noise = typical_noise(ringing);
+  result.sway = take_out_sway(ringing, settings.shortest_cycles);
+  result.decimation = factor, result.interval = ringing.interval, result.noise = ringing.noise;
+  result.time = ringing.time, result.signal = ringing.signal;
+  const Index samples = ringing.size();
   say("seeking changes");
   const Segments segments = find_segments(ringing, settings.walk.value_or(first_walk), settings.false_alarms);
   result.threshold = segments.threshold, result.test_samples = segments.test_samples;

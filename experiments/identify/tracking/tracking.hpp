@@ -24,7 +24,7 @@ struct Plateau {
   Eigen::Index first = 0, last = 0;  ///< samples of the history
   double from = 0, to = 0;           ///< [s]
   /// Mean over the span, of the logarithm for the frequency; deviations include the wandering and, where the
-  /// modal analysis is further away than three of them, its distance.
+  /// modal analysis is further away than three of them or has found another mode beside, its distance.
   double frequency_hz = 0, frequency_deviation_hz = 0;
   double damping_ratio = 0, damping_ratio_deviation = 0;
   /// Of the span as a free decay with constant stiffness, modes beside it fitted along; NaN where that fails.
@@ -40,6 +40,7 @@ struct Plateau {
 struct Tracking {
   std::pair<double, double> band_hz;
   int decimation = 1;
+  double sway = 0;  ///< root mean square of what moves below the band and was taken out [unit of the signal]
   double interval = 0;   ///< of the history [s]
   double noise = 0;      ///< that changes were sought with [unit of the signal]
   double threshold = 0;  ///< of the sum of `test_samples` normalised squares
@@ -55,10 +56,11 @@ struct Tracking {
 /// @throws std::invalid_argument when the signal is shorter than 512 samples.
 std::pair<double, double> track_band(const Eigen::VectorXd& signal, double interval);
 
-/// Low-pass and decimate; follow the mode by an extended Kalman filter on the ringing model, taking it up
-/// anew at every alarm (find_segments); tune noise, unmeasured force and walk of every span long enough by
-/// maximum likelihood, and smooth it. Spans shorter than that are no plateaus: their band is what few samples
-/// tell.
+/// Low-pass and decimate; where the signal sways below the band by more than half of the noise, take that
+/// out, with two cycles at each end (without_sway() twice, at the middle of the band); follow the mode by an
+/// extended Kalman filter on the ringing model, taking it up anew at every alarm (find_segments); tune noise,
+/// unmeasured force and walk of every span long enough by maximum likelihood, and smooth it. Spans shorter
+/// than that are no plateaus: their band is what few samples tell.
 /// @throws std::invalid_argument when a setting makes no sense or the signal is too short.
 Tracking track(const Eigen::VectorXd& signal, double start, double interval, const TrackSettings& settings,
                const Progress& progress = {});

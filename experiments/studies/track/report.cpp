@@ -16,13 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Eigen::Index;
 
-// Decimals that show two digits of a deviation.
-std::string shown(double value, double deviation) {
-  if (!(deviation > 0.0) || !std::isfinite(deviation)) return fmt::format("{:.4g}", value);
-  return fmt::format("{:.{}f}", value,
-                     std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 9));
-}
-
 Table plateau_table(const Tracking& found) {
   Table table{"plateaus", "Plateaus"};
   table.column({"plateau", "plateau", "{:.0f}"})
@@ -41,15 +34,15 @@ Table plateau_table(const Tracking& found) {
     const double ratio = p.frequency_hz / found.plateaus.front().frequency_hz;
     const double f = quantile_95 * p.frequency_deviation_hz,
                  d = 100 * quantile_95 * p.damping_ratio_deviation;
-    table.row({static_cast<double>(i + 1), p.from, p.to, shown(p.frequency_hz, f), shown(f, f),
-               shown(100 * p.damping_ratio, d), shown(d, d), ratio * ratio, p.modal_frequency_hz,
+    table.row({static_cast<double>(i + 1), p.from, p.to, Rounded{p.frequency_hz, f}, Rounded{f, f},
+               Rounded{100 * p.damping_ratio, d}, Rounded{d, d}, ratio * ratio, p.modal_frequency_hz,
                100 * p.modal_damping_ratio, p.walk});
   }
   table.note =
       "Frequency and damping ratio are means over the plateau; intervals include the drift within it "
-      "and, where it exceeds three standard deviations, the difference from the modal analysis, which takes "
-      "the "
-      "plateau for a free decay. A damping ratio below zero: the motion grew. K1 is the stiffness on the "
+      "and, where it exceeds three standard deviations or another mode rings beside, the difference from the "
+      "modal analysis, which takes the plateau for a free decay. A damping ratio below zero: the motion "
+      "grew. K1 is the stiffness on the "
       "first plateau, the mass being the same.";
   return table;
 }
@@ -63,7 +56,7 @@ Table change_table(const std::vector<PlateauChange>& between) {
       .column({"of", "of"});
   for (const PlateauChange& change : between) {
     const double half = 100 * quantile_95 * change.stiffness_deviation;
-    table.row({change.from, change.to, shown(100 * change.stiffness, half), shown(half, half),
+    table.row({change.from, change.to, Rounded{100 * change.stiffness, half}, Rounded{half, half},
                std::string(change.of_stiffness() ? "stiffness" : "motion only")});
   }
   return table;
@@ -115,6 +108,7 @@ Json tracking_values(const Tracking& found, const std::vector<PlateauChange>& be
   Json json{{"band_hz", {found.band_hz.first, found.band_hz.second}},
             {"history_interval_s", found.interval},
             {"noise_si", found.noise},
+            {"sway_si", found.sway},
             {"alarm_threshold", found.threshold},
             {"alarm_samples", found.test_samples}};
   json["alarms_s"] = Json::array();
@@ -185,6 +179,11 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
                   settings.band_hz ? "as given" : "from the record", 1.0 / found.interval,
                   settings.walk ? fmt::format("by {:g} per square root of a second, as given", *settings.walk)
                                 : std::string("as much as is likeliest on each plateau")));
+  if (found.sway > 0)
+    results.paragraph(
+        fmt::format("Below the band the signal sways by {:.2g} {} (root mean square), {:.2g} times the "
+                    "noise: that was taken out, with two cycles at each end.",
+                    found.sway, si_unit(channel.quantity), found.sway / found.noise));
   results.table(plateau_table(found));
   if (const std::string text = companions(found); !text.empty()) results.paragraph(text);
   if (!between.empty()) results.table(change_table(between));

@@ -36,6 +36,18 @@ Record knocked(double at, double more, std::uint64_t seed) {
   return record;
 }
 
+/// Taken at half the rate from an instant [s] on, under stamps that go on as before.
+Record slowed(double from, std::uint64_t seed) {
+  Record record = simulated.record({Quantity::acceleration}, 0.01, seed);
+  Index k = 0;
+  while (k < record.size() && record.time[k] < from) ++k;
+  for (Index taken = k; taken < record.size(); ++k, taken += 2)
+    record.samples(0, k) = record.samples(0, taken);
+  record.time.conservativeResize(k);
+  record.samples.conservativeResize(Eigen::NoChange, k);
+  return record;
+}
+
 bool holds(double estimate, double half_width, double truth) {
   return std::abs(estimate - truth) <= half_width;
 }
@@ -66,6 +78,25 @@ TEST(SoundPart, OfAKnockedDecayIsTheSideThatTellsMore) {
     EXPECT_NEAR(at < 5 ? part->from : part->to, at, 0.6) << at;
     EXPECT_THAT(part->words, testing::HasSubstr("the motion jumps, by +2")) << at;
   }
+}
+
+// Behind the change the frequency reads twice what it is: that part is not the mode as described.
+TEST(SoundPart, IsThatAtTheRateOfTheStamps) {
+  for (const double from : {3.0, 5.0}) {
+    const auto part = sound_part(simulated.experiment(), slowed(from, 8), {});
+    ASSERT_TRUE(part) << from;
+    EXPECT_LT(part->from, 0.1) << from;
+    EXPECT_NEAR(part->to, from, 0.6) << from;
+    EXPECT_THAT(part->words, testing::HasSubstr("the frequency jumps from ")) << from;
+  }
+}
+
+TEST(DecayObjections, ContradictADecayAcrossAChangeOfRate) {
+  const RecordIdentification r = identify_record(simulated.experiment(), slowed(5.0, 9));
+  EXPECT_EQ(r.judgement.verdict, ComparedRun::Status::contradicted);
+  ASSERT_FALSE(r.judgement.messages.empty());
+  EXPECT_THAT(r.judgement.messages[0],
+              testing::ContainsRegex("the frequency jumps from 3.4.* times, while the motion"));
 }
 
 TEST(SoundPart, OfASoundDecayIsNotAsked) {
