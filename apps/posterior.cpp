@@ -76,7 +76,7 @@ int run_posterior(const Values& values) {
     warn(results, experiment);
     return results;
   });
-  return study->posterior.disagrees() ? 3 : 0;
+  return study->posterior.disagrees() || study->contradicted() ? 3 : 0;
 }
 
 }  // namespace
@@ -98,7 +98,9 @@ Command posterior_command() {
       "bounds "
       "(uniform). Where\nnothing is stated, log-uniform within a factor of 10 of the initial estimate is "
       "assumed.\n",
-      "3  the two temperings, the humps or the chains disagree: the first line says by how much.\n"};
+      "3  the temperings, the humps or the chains disagree, or the record contradicts the structure: the "
+      "first "
+      "lines say by how much.\n"};
 }
 
 }  // namespace beamid::apps

@@ -67,6 +67,41 @@ TEST_F(PosteriorCommand, EndsWithThreeWhereItsTwoTemperingsDisagree) {
   EXPECT_THAT(outcome.out, HasSubstr("temperings differ by"));
 }
 
+// One storey of 1000 N/m, its frequency known to 2 %. Oracle: k = (2 pi f)^2 m is 1000 +- 40 N/m, 2.5
+// deviations below the bound, and 13 prior deviations below 3000 +- 150.
+class PriorOfOneStorey : public PosteriorCommand {
+ protected:
+  Outcome with(const std::string& prior) {
+    place_.write("one.toml",
+                 "[chain]\nmasses_kg = [1]\nstiffnesses_n_per_m = [1500]\nheights_m = [1]\n[[parameters]]\n"
+                 "quantity = \"storey_stiffness\"\nfrom_m = 0\nto_m = 1\n" +
+                     prior);
+    place_.write("one_mode.toml",
+                 "[[modes]]\nfrequency_hz = 5.0329\nfrequency_standard_deviation_hz = 0.1007\n");
+    return place_.run("posterior one_mode.toml --config one.toml --model-error 0");
+  }
+};
+
+TEST_F(PriorOfOneStorey, IsNamedWhereItsBoundDecides) {
+  EXPECT_THAT(with("lower_n_per_m = 1100\nupper_n_per_m = 3000\n").out,
+              HasSubstr("draws pile up at its stated bound of 1100 N/m"));
+}
+
+TEST_F(PriorOfOneStorey, IsNamedWhereTheMeasurementContradictsIt) {
+  EXPECT_THAT(with("guess_n_per_m = 3000\ndeviation_n_per_m = 150\n").out,
+              HasSubstr("prior and measurement contradict each other"));
+}
+
+TEST_F(PriorOfOneStorey, IsNotNamedWhereItHoldsWhatWasMeasured) {
+  for (const char* prior :
+       {"lower_n_per_m = 800\nupper_n_per_m = 3000\n", "guess_n_per_m = 1100\ndeviation_n_per_m = 150\n"}) {
+    const Outcome outcome = with(prior);
+    EXPECT_THAT(outcome.out, testing::StartsWith("Converged"));
+    EXPECT_THAT(outcome.out, testing::Not(HasSubstr("pile up")));
+    EXPECT_THAT(outcome.out, testing::Not(HasSubstr("contradict")));
+  }
+}
+
 TEST_F(PosteriorCommand, RefusesAFrequencyWithoutAnyStandardDeviation) {
   place_.write("bare.toml", "[[modes]]\nfrequency_hz = 7.2\n");
   const Outcome outcome = place_.run("posterior bare.toml --config frame.toml --model-error 0");

@@ -39,7 +39,8 @@ struct Posterior {
   double fewest_effective() const;
   std::size_t divergences() const;
   std::size_t draws() const;
-  /// The temperings disagree, or importance sampling disagrees with them: humps may be missing.
+  /// The temperings hold more evidence than the humps that were found, or, where importance sampling cannot
+  /// weigh those, disagree: humps may be missing.
   bool humps_in_doubt() const;
   /// That, or chains that have not met: no number to rely on.
   bool disagrees() const { return humps_in_doubt() || worst_r_hat() > 1.05; }

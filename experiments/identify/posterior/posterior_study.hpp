@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct PosteriorParameter {
   double share_of_prior =
       0.0;              ///< standard deviation of u, whose prior has 1: what the prior's width was reduced to
   double beyond = 0.0;  ///< share of the draws in the outer 5 % of the prior
+  bool in_tail = false;  ///< most draws lie in the outer 0.1 % of the prior: prior and measurement disagree
+  /// The bound stated of it where the draws pile up, of the prior's two: the bound decides, not what was
+  /// measured.
+  std::optional<double> cut_at = {};
 };
 
 /// A frequency measured again, as the posterior predicts it: drawn with the error of the measurement.
@@ -58,6 +63,11 @@ struct PosteriorStudy {
   const std::vector<Unknown>& unknowns() const { return asked; }
   /// Whether the structure explains what was measured as well as the assumed errors say.
   bool explains() const { return update ? update->updating.explains() : !source->sensing.contradicted(); }
+  /// Whether a record, at the best draw, contradicts the structure or its noise is so far from white that all
+  /// intervals are too narrow.
+  bool contradicted() const {
+    return source && (source->sensing.contradicted() || source->sensing.correlated());
+  }
   /// Of one parameter (draws x chains).
   Eigen::MatrixXd draws(std::size_t parameter) const;
   /// Of the heaviest hump, the smallest and the largest over the parameters: Laplace's width over the sampled

@@ -10,26 +10,32 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Whether [[parameters]] says how well all of this quantity are known; what was not asked about has the
-// model's own deviation.
-bool has_stated_prior(const Unknown& unknown, const Experiment& experiment) {
-  return std::none_of(experiment.parameters.begin(), experiment.parameters.end(),
-                      [&](const ParameterChoice& one) {
-                        return one.quantity == unknown.quantity && !one.deviation && !one.relative_deviation;
-                      });
+bool has_stated_prior(const ParameterChoice& choice) {
+  return choice.deviation || choice.relative_deviation;
+}
+
+// Every theta with the shapes of its own modes: with those of the guess a set of parameters far from there is
+// another structure, less likely than it is.
+filters::InnovationProblem exact_problem(const SensingModel& model) {
+  filters::InnovationProblem problem = model.problem(model.record());
+  if (model.turns_shapes())
+    problem.model = [&model](const VectorXd& theta) { return model.with_shapes_at(theta).at(theta); };
+  return problem;
 }
 
 }  // namespace
 
 RecordLikelihood::RecordLikelihood(const SensingModel& model, const Experiment& experiment)
-    : model_(model), problem_(model.problem(model.record())) {
+    : model_(model), problem_(exact_problem(model)) {
+  filters::require_even_stamps(model.record(),
+                               model.interval());  // else no parameters would have a likelihood
   for (std::size_t j = 0; j < model.constants().size(); ++j) {
     const SensingConstant& one = model.constants()[j];
     Unknown unknown;
     bool stated = true;
     if (one.kind == SensingConstant::Kind::parameter) {
       unknown = model.unknown(one.index);
-      stated = has_stated_prior(unknown, experiment);
+      stated = has_stated_prior(experiment.parameters.at(one.index));
     } else {
       unknown = {one.name, one.unit, model.value(j, 0.0), SensingModel::known_within * model.value(j, 0.0),
                  Form::logarithmic};

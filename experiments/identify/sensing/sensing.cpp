@@ -45,6 +45,26 @@ void require_memory_of(const SensingModel& model) {
                  sizeof(double) * (n * n + n * p + p * p + 8.0 * (n + p)));
 }
 
+// What is said of colour is that of the sensor with the most, p-values counted as often as there are sensors
+// (Bonferroni): noise of one sensor in several may be far from white.
+void take_worst_colour(const filters::FilterRun& run, filters::InnovationConsistency& all) {
+  constexpr Index fewest = 100;  // innovations, for the test
+  const Index sensors = run.whitened_innovations.rows();
+  for (Index i = 0; i < sensors; ++i) {
+    const VectorXd white = run.whitened_innovations.row(i);
+    if (white.array().isFinite().count() < fewest) continue;
+    filters::FilterRun one;
+    one.innovations = run.innovations.row(i);
+    one.whitened_innovations = white.transpose();
+    one.normalised_squares = white.array().isFinite().select(white.array().square(), 0.0);
+    const filters::InnovationConsistency own = filters::innovation_consistency(one);
+    const double p = static_cast<double>(sensors) * own.whiteness_p_value;
+    all.whiteness_p_value = i == 0 ? std::min(1.0, p) : std::min(all.whiteness_p_value, p);
+    if (std::abs(own.lag_one_correlation) > std::abs(all.lag_one_correlation))
+      all.lag_one_correlation = own.lag_one_correlation;
+  }
+}
+
 filters::InnovationConsistency consistency_of(const filters::KalmanPass& pass, Index measured) {
   filters::FilterRun run;
   run.innovations = pass.innovations.topRows(measured);
@@ -58,7 +78,9 @@ filters::InnovationConsistency consistency_of(const filters::KalmanPass& pass, I
     run.whitened_innovations.col(k)(step.seen) = white;
     run.normalised_squares[k] = white.squaredNorm();
   }
-  return filters::innovation_consistency(run);
+  filters::InnovationConsistency found = filters::innovation_consistency(run);
+  take_worst_colour(run, found);
+  return found;
 }
 
 // At the constants that all sensors together say: what is checked is the structure, not their estimate. A

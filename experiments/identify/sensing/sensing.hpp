@@ -67,11 +67,11 @@ struct SensingStudy {
   Eigen::VectorXd time;
   std::string filter;  ///< of the histories; empty: the smoother, over all readings
   std::vector<std::string> filter_remarks = {};
-  std::vector<SensedHistory> histories;  ///< virtual sensors, then forces
-  std::vector<LeftOutSensor> left_out;   ///< none of a single sensor
-  std::vector<SensorNoise> noise;        ///< of every sensor that was read
-  filters::InnovationConsistency innovations;
-  int unseen_constants = 0;  ///< SensingModel::unseen_constant_forces
+  std::vector<SensedHistory> histories;        ///< virtual sensors, then forces
+  std::vector<LeftOutSensor> left_out;         ///< none of a single sensor
+  std::vector<SensorNoise> noise;              ///< of every sensor that was read
+  filters::InnovationConsistency innovations;  ///< of all sensors; its colour is that of the worst
+  int unseen_constants = 0;                    ///< SensingModel::unseen_constant_forces
   std::vector<SoleZero> sole_zeros = {};
   struct SensorDamage {
     std::string name;
@@ -83,8 +83,16 @@ struct SensingStudy {
   /// Of the innovations over what they should be; 1 of a right model.
   static constexpr double largest_square = 1.5;
   bool contradicted() const;
-  /// Innovations so far from white that intervals are too small.
-  bool correlated() const { return std::abs(innovations.lag_one_correlation) > 0.3; }
+  /// Whether the innovations of a sensor are not white, which chance does once in 1,000 records.
+  bool coloured() const { return innovations.whiteness_p_value < 1e-3; }
+  /// So far from white that intervals are too small.
+  bool correlated() const { return coloured() && std::abs(innovations.lag_one_correlation) > 0.3; }
+  /// Whether innovations are larger by five of their deviations, and by a twentieth, than they should be.
+  bool noisier_than_stated() const {
+    constexpr double deviations = 5.0 / 1.96, least = 1.1;
+    const double square = innovations.mean_normalised_square;
+    return square > least && square - 1.0 > deviations * (innovations.upper_95 - 1.0);
+  }
   bool is_to_rely_on() const { return converged && !contradicted() && !correlated(); }
 };
 

@@ -7,7 +7,8 @@
 #include "experiments/identify/compare/run_noise.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/sensing/sensing_model.hpp"
-#include "experiments/models/start_belief.hpp"
+#include "experiments/models/banded/continuum_motion.hpp"
+#include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/signal/median.hpp"
 #include "experiments/signal/missing_samples.hpp"
 
@@ -44,6 +45,14 @@ filters::LatentInput::Process process_of(UnknownForce::Process process) {
   return To::ornstein_uhlenbeck;
 }
 
+// Whether the shapes of the modes depend on what [[parameters]] asks of the structure.
+bool asks_about_shapes(const ModelSetting& setting) {
+  if (setting.parameters.empty() || !setting.storey_springs.empty()) return false;
+  const std::vector<ParameterDefault> defaults =
+      beam_defaults(setting.continuum->structure, setting.parameters);
+  return !keeps_mode_shapes(beam_equations(setting, properties_of(setting.parameters, defaults)));
+}
+
 }  // namespace
 
 // P = A P A^T + Q, by doubling: P_2j = P_j + A^j P_j A^jT. A random walk's grows by as much as it is.
@@ -63,18 +72,13 @@ VectorXd unread_deviations(const filters::LinearGaussian& model, const MatrixXd&
 
 SensingModel::SensingModel(const Experiment& experiment, const SensingRecord& record, const Choice& reduction,
                            const std::filesystem::path& folder)
-    : record_(measurements(record.record)), measured_(record.measured) {
-  const ModelSetting setting = model_setting(experiment, record.record, reduction, folder);
+    : setting_(model_setting(experiment, record.record, reduction, folder)),
+      record_(std::make_shared<const filters::Measurements>(measurements(record.record))),
+      measured_(record.measured) {
   const bool own = experiment.model.name == "beam";
-  const filters::Options options =
-      own ? experiment.model.options : filters::Options{{"sensor_bias", filters::OptionValue(true)}};
-  model_ = std::move(*model_registry().make("beam", options, setting));
-  motion_ = std::dynamic_pointer_cast<const filters::LinearMotion>(model_.motion);
-  if (!motion_)
-    throw std::invalid_argument(
-        "the whole mesh is too large to be followed under unknown forces; expected a [reduction]");
-  observations_ = setting.observations;
-  const auto inputs = static_cast<Index>(setting.forces.size()),
+  options_ = own ? experiment.model.options : filters::Options{{"sensor_bias", filters::OptionValue(true)}};
+  make_structure();
+  const auto inputs = static_cast<Index>(setting_.forces.size()),
              unknown = static_cast<Index>(experiment.unknown_forces.size());
   for (Index i = 0; i < unknown; ++i) {
     const UnknownForce& force = experiment.unknown_forces[static_cast<std::size_t>(i)];
@@ -114,8 +118,32 @@ SensingModel::SensingModel(const Experiment& experiment, const SensingRecord& re
     noise_(one.channels).setConstant(median(floors));
   }
   add_constants(experiment);
+  turns_shapes_ = asks_about_shapes(setting_);
+  const std::vector<Observation> observed(setting_.observations.begin(),
+                                          setting_.observations.begin() + measured_);
+  const double duration = record_->time[record_->size() - 1] - record_->time[0];
+  scale_ = start_scale(model_, observed, record_->outputs.topRows(measured_), duration);
   make_start();
+  make_prior();
   guess_forces();
+}
+
+void SensingModel::make_structure() {
+  model_ = std::move(*model_registry().make("beam", options_, setting_));
+  motion_ = std::dynamic_pointer_cast<const filters::LinearMotion>(model_.motion);
+  if (!motion_)
+    throw std::invalid_argument(
+        "the whole mesh is too large to be followed under unknown forces; expected a [reduction]");
+}
+
+SensingModel SensingModel::with_shapes_at(const VectorXd& theta) const {
+  SensingModel there = *this;
+  for (std::size_t j = 0; j < constants_.size(); ++j)
+    if (constants_[j].kind == Kind::parameter)
+      there.setting_.parameters.at(constants_[j].index).guess = value(j, theta[static_cast<Index>(j)]);
+  there.make_structure();
+  there.make_start();
+  return there;
 }
 
 // Parameters first, then forces; what of the sensors is unknown stands in constants_ already.
@@ -135,11 +163,10 @@ void SensingModel::add_constants(const Experiment& experiment) {
 }
 
 void SensingModel::make_start() {
-  const MatrixXd seen = record_.outputs.topRows(measured_);
-  const std::vector<Observation> observed(observations_.begin(), observations_.begin() + measured_);
-  const double duration = record_.time[record_.size() - 1] - record_.time[0];
-  start_ = start_belief(
-      model_, start_directions(model_, observations_, start_scale(model_, observed, seen, duration)));
+  start_ = start_belief(model_, start_directions(model_, setting_.observations, scale_));
+}
+
+void SensingModel::make_prior() {
   const auto q = static_cast<Index>(constants_.size());
   prior_ = {VectorXd::Zero(q), MatrixXd::Zero(q, q), {}};
   for (Index j = 0; j < q; ++j) {
@@ -173,17 +200,17 @@ void SensingModel::guess_forces() {
         forces_[i].correlation_time = std::max(share * radian, 0.5 * interval());
     VectorXd theta = prior_.mean;
     const filters::LinearGaussian unit = at(theta);
-    const VectorXd moved = unread_deviations(unit, unit.h.topRows(measured_), record_.size());
+    const VectorXd moved = unread_deviations(unit, unit.h.topRows(measured_), record_->size());
     std::vector<double> ratios;
     for (Index i = 0; i < measured_; ++i) {
-      const VectorXd row = record_.outputs.row(i);
+      const VectorXd row = record_->outputs.row(i);
       if (moved[i] > 0.0) ratios.push_back(root_mean_squares(row.transpose())[0] / moved[i]);
     }
     if (ratios.empty()) throw std::invalid_argument("no sensor is moved by the unknown forces");
     for (std::size_t i = 0; i < forces_.size(); ++i)
       if (unstated(Kind::force_deviation, i)) forces_[i].deviation = median(ratios);
     try {
-      const double cost = filters::kalman_pass(at(theta), record_, interval()).cost;
+      const double cost = filters::kalman_pass(at(theta), *record_, interval()).cost;
       if (cost < best) best = cost, likeliest = forces_;
     } catch (const std::runtime_error&) {  // another guess may do
     }

@@ -82,7 +82,7 @@ SensingForm SensingModel::form(const VectorXd& theta, const std::vector<filters:
   const MatrixXd q = latent->process_noise(result.start.mean, interval());
   const MatrixXd r = noise_at(theta).cwiseAbs2().asDiagonal();
   result.model = filters::discretise(latent, interval(), "exponential", {q, r});
-  result.matrices = filters::linear_gaussian(*result.model, known, eta, result.start, record_.inputs.rows());
+  result.matrices = filters::linear_gaussian(*result.model, known, eta, result.start, record_->inputs.rows());
   for (const JointModel::Offset& offset : model_.offsets) {
     const auto found =
         std::lower_bound(result.moving.begin(), result.moving.end(), latent->moved(offset.place));

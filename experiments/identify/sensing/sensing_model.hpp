@@ -9,6 +9,7 @@
 
 #include "experiments/identify/sensing/sensing_record.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "experiments/models/start_belief.hpp"
 #include "filters/innovation_likelihood.hpp"
 #include "filters/latent_inputs.hpp"
 
@@ -48,16 +49,22 @@ class SensingModel {
   void take_prior(const SensingModel& other);
 
   const std::vector<SensingConstant>& constants() const { return constants_; }  ///< theta (q)
-  const filters::Measurements& record() const { return record_; }
-  double interval() const { return record_.interval(); }
+  const filters::Measurements& record() const { return *record_; }
+  double interval() const { return record_->interval(); }
   Eigen::Index measured() const { return measured_; }  ///< outputs that were read, the first ones
-  Eigen::Index outputs() const { return record_.outputs.rows(); }
+  Eigen::Index outputs() const { return record_->outputs.rows(); }
   std::size_t forces() const { return forces_.size(); }
   Eigen::Index coordinates() const { return model_.motion_size(); }
 
   /// The model at theta; its outputs: measured, then virtual ones.
   filters::LinearGaussian at(const Eigen::VectorXd& theta) const { return form_at(theta).matrices; }
   SensingForm form_at(const Eigen::VectorXd& theta) const { return form(theta, forces_at(theta)); }
+  /// Whether what is asked turns the shapes of the modes, so that at() is exact at the guess alone: a basis
+  /// of reduced modes and the damping of modes are those of the guess.
+  bool turns_shapes() const { return turns_shapes_; }
+  /// The same model with the modes of the structure at theta; the scale of the start, forces, noise and prior
+  /// stay. @throws as the constructor, std::runtime_error where there is no such structure
+  SensingModel with_shapes_at(const Eigen::VectorXd& theta) const;
   /// With random walks in their place that change by as much from sample to sample: for filters that take
   /// nothing else for known of the forces.
   SensingForm form_of_walks(const Eigen::VectorXd& theta) const;
@@ -88,21 +95,26 @@ class SensingModel {
 
  private:
   void add_constants(const Experiment& experiment);
+  void make_structure();
   void make_start();
+  void make_prior();
   void guess_forces();
   Eigen::VectorXd parameters_at(const Eigen::VectorXd& theta) const;
   Eigen::MatrixXd constant_forces_read(const Eigen::VectorXd& theta) const;
   SensingForm form(const Eigen::VectorXd& theta, const std::vector<filters::LatentInput>& forces) const;
 
+  ModelSetting setting_;
+  filters::Options options_;  // of the model
   JointModel model_;
   std::shared_ptr<const filters::LinearMotion> motion_;
-  std::vector<Observation> observations_;
-  filters::Measurements record_;
+  bool turns_shapes_ = false;
+  std::shared_ptr<const filters::Measurements> record_;
   Eigen::Index measured_ = 0;
   std::vector<filters::LatentInput> forces_;  // as stated; deviations and times guessed where not
   Eigen::VectorXd noise_;                     // likewise (p)
   std::vector<Eigen::Index> stated_;          // outputs whose noise the file states
   std::vector<SensingConstant> constants_;
+  StartScale scale_;         // of the motion at the guess
   filters::Gaussian start_;  // of the motion's own state
   filters::Gaussian prior_;
 };

@@ -19,6 +19,17 @@ nlohmann::ordered_json record_configuration(const Experiment& experiment, const 
   return {{"title", experiment.title}, {"reduction", study.source->sensing.reduction}};
 }
 
+// Frequencies, and motion that no measured force drives, show stiffness over mass alone.
+std::string mass_sentence(const Experiment& experiment, const PosteriorStudy& study) {
+  for (const ParameterChoice& one : experiment.parameters)
+    if (one.quantity.find("mass") != std::string::npos || one.quantity == "factor") return "";
+  if (study.source)
+    for (const Channel& channel : study.source->record.record.channels)
+      if (channel.quantity == Quantity::force) return "";
+  return "Masses are taken as described: where all are wrong by 1 %, so is every stiffness, and nothing here "
+         "shows it.";
+}
+
 }  // namespace
 
 Results posterior_report(const Experiment& experiment, const PosteriorStudy& study) {
@@ -41,6 +52,8 @@ Results posterior_report(const Experiment& experiment, const PosteriorStudy& stu
     add_doubts_of_modes(study, results);
   else
     add_sensing_verdict(study.source->sensing, results);
+  for (const std::string& warning : prior_warnings(study)) results.warning(warning);
+  if (const std::string text = mass_sentence(experiment, study); !text.empty()) results.paragraph(text);
   results.heading("Parameters");
   results.table(posterior_table(study));
   for (const std::string& sentence : posterior_sentences(study)) results.paragraph(sentence);

@@ -49,6 +49,25 @@ std::string posterior_verdict(const PosteriorStudy& study) {
                             least, most, humps > 1 ? " in the first" : "");
 }
 
+std::vector<std::string> prior_warnings(const PosteriorStudy& study) {
+  std::vector<std::string> warnings;
+  for (std::size_t j = 0; j < study.unknowns().size(); ++j) {
+    const Unknown& unknown = study.unknowns()[j];
+    const PosteriorParameter& one = study.parameters[j];
+    if (one.cut_at)
+      warnings.push_back(
+          fmt::format("{}: the draws pile up at its stated bound of {:.5g}{}{}, which decides its interval "
+                      "and moves those of the others.",
+                      unknown.name, *one.cut_at, unknown.unit.empty() ? "" : " ", unknown.unit));
+    else if (one.in_tail)
+      warnings.push_back(fmt::format(
+          "{}: most draws lie where its prior has 0.1 % of its probability ({}): prior and measurement "
+          "contradict each other, and the interval lies between the two.",
+          unknown.name, study.likelihood->priors()[j].text()));
+  }
+  return warnings;
+}
+
 std::vector<std::string> posterior_sentences(const PosteriorStudy& study) {
   std::vector<std::string> sentences;
   const Posterior& posterior = study.posterior;

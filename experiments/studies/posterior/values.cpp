@@ -27,6 +27,8 @@ Json parameter_values(const PosteriorStudy& study, std::size_t j) {
   json["prior"] = study.likelihood->priors()[j].text();
   json["prior_assumed"] = study.likelihood->priors()[j].assumed();
   json["width_over_prior"] = one.share_of_prior;
+  json["piles_up_at_bound"] = one.cut_at ? Json(*one.cut_at) : Json(nullptr);
+  json["in_tail_of_prior"] = one.in_tail;
   return json;
 }
 
@@ -57,6 +59,7 @@ Json posterior_values(const PosteriorStudy& study) {
                                                    : "one hump";
   json["converged"] = posterior.complaints().empty();
   json["disagrees"] = posterior.disagrees();
+  json["contradicted"] = study.contradicted();
   json["reasons"] = posterior.complaints();
   json["log_evidence"] = posterior.log_evidence();
   json["log_evidence_standard_error"] =

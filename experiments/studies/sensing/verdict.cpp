@@ -96,7 +96,7 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
             "as they should: structure, sensors or forces are not as described.",
             std::sqrt(square)),
         true);
-  else if (study.innovations.whiteness_p_value < 1e-3)
+  else if (study.coloured())
     results.warning(
         fmt::format(
             "Innovations are correlated from sample to sample, {:.2f}: the force is not such a process, "
@@ -105,6 +105,13 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
             study.correlated() ? "Deviations, and intervals of parameters above all, are too small"
                                : "Deviations may be too small"),
         study.correlated());
+  if (square <= SensingStudy::largest_square && study.noisier_than_stated())
+    results.warning(fmt::format(
+        "From sample to sample the sensors read {:.2f} times as far from what is expected of them as they "
+        "should: the noise is larger than stated, or forces are; deviations and intervals are too small by "
+        "as "
+        "much.",
+        std::sqrt(square)));
 }
 
 }  // namespace beamid::experiments

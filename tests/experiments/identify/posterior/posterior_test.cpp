@@ -195,6 +195,23 @@ TEST(Posterior, OfThreeStoreysWithoutThePriorShowsTheSecondSet) {
   EXPECT_NEAR(second[0], 155200, 1000);
 }
 
+// Oracle: Markov's inequality. A tempering's evidence has the true one as its mean: it may be far too small,
+// as that of 200 particles on a narrow posterior is, and is e^3 times too large once in 20 times at most.
+TEST(Posterior, DoubtsItsHumpsWhereTheTemperingsHoldMoreThanThem) {
+  Posterior found;
+  found.importance.log_evidence = 631.3;
+  found.importance.effective_share = 0.5;
+  found.tempered_apart = 5.0;
+  found.tempered.log_evidence = 626.0;
+  EXPECT_FALSE(found.humps_in_doubt());
+  found.tempered.log_evidence = 635.0;
+  EXPECT_TRUE(found.humps_in_doubt());
+  found.importance.effective_share = 0.01;  // the humps are not weighed: temperings that disagree are all
+  EXPECT_TRUE(found.humps_in_doubt());
+  found.tempered_apart = 1.0;
+  EXPECT_FALSE(found.humps_in_doubt());
+}
+
 TEST(Posterior, IsRefusedWhereThePriorCannotHaveProducedTheModes) {
   class Impossible final : public Likelihood {
     Index size() const override { return 1; }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/config/read_experiment.hpp"
+#include "filters/random.hpp"
 
 namespace beamid::sensing_test {
 namespace {
@@ -292,6 +293,21 @@ TEST(Sensing, FindsStoreysFromGuessesAFifthOff) {
     EXPECT_NEAR(one.value, k[j], 4.0 * (one.upper_95 - one.lower_95) / (2.0 * 1.96)) << one.name;
     EXPECT_NEAR(one.value, k[j], 1e-3 * k[j]) << one.name;
   }
+}
+
+TEST(Sensing, SeesTheColourOfTheNoiseOfAnySensor) {
+  // Oracle: means of four successive normal numbers have a correlation of 3/4 from sample to sample. They are
+  // added to the last sensor alone, 4 deviations of its own noise.
+  const Experiment experiment = experiment_of(slower(mast));
+  SensingRecord record = simulated_sensing(experiment, {}, {}, unwatched);
+  const Choice reduction = sensing_reduction(experiment, record.record.interval());
+  EXPECT_FALSE(study_sensing(experiment, record, reduction, {}, unwatched).correlated());
+  filters::RandomStream random(7, 0);
+  const Index last = record.measured - 1;
+  const Eigen::VectorXd white = random.normal(record.record.size() + 3, 1);
+  for (Index k = 0; k < record.record.size(); ++k)
+    record.record.samples(last, k) += 0.2 * 0.5 * white.segment(k, 4).sum();
+  EXPECT_TRUE(study_sensing(experiment, record, reduction, {}, unwatched).correlated());
 }
 
 TEST(Sensing, FindsTheNoiseOfSensorsThatReadMotionsOfSeveralSizes) {
