@@ -15,14 +15,17 @@ using namespace experiments;
 int run_twins(const Values& values) {
   const Experiment experiment = read_experiment(values.text("config"));
   require_linear_storeys(experiment, "twins");
+  int code = 0;
   deliver(values, [&] {
     const ModalData data =
         values.has("modes") ? read_modal_data(values.text("modes"), experiment) : described_modes(experiment);
-    Results results = twins_report(experiment, studied_update(values, experiment, data));
+    const UpdateStudy study = studied_update(values, experiment, data);
+    code = study.updating.refuted ? 3 : 0;
+    Results results = twins_report(experiment, study);
     warn(results, experiment);
     return results;
   });
-  return 0;
+  return code;
 }
 
 }  // namespace
@@ -37,7 +40,8 @@ Command twins_command() {
           "  beamid twins modes.toml --config building.toml --out twins\n",
           run_twins,
           "Without MODES the frequencies of the structure as described are taken, as many as there are "
-          "parameters.\n"};
+          "parameters.\n",
+          "3  no values of the parameters explain the modes: chi^2 is above its 99.9 % point.\n"};
 }
 
 }  // namespace beamid::apps

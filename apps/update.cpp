@@ -16,12 +16,15 @@ int run_update(const Values& values) {
   const Experiment experiment = read_experiment(values.text("config"));
   require_linear_storeys(experiment, "update");
   const ModalData data = read_modal_data(values.text("modes"), experiment);
+  int code = 0;
   deliver(values, [&] {
-    Results results = report(experiment, studied_update(values, experiment, data));
+    const UpdateStudy study = studied_update(values, experiment, data);
+    code = study.updating.refuted ? 3 : 0;
+    Results results = report(experiment, study);
     warn(results, experiment);
     return results;
   });
-  return 0;
+  return code;
 }
 
 }  // namespace
@@ -35,7 +38,9 @@ Command update_command() {
           "  beamid update modes.toml --config building.toml\n"
           "  beamid update found/results.json --config building.toml --out updated\n"
           "  beamid update modes.toml --config beam.toml --model-error 0.2 --starts 1000\n",
-          run_update};
+          run_update,
+          "",
+          "3  no values of the parameters explain the modes: chi^2 is above its 99.9 % point.\n"};
 }
 
 }  // namespace beamid::apps

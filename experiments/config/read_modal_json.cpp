@@ -95,6 +95,8 @@ ModalData modes_in(const Json& json, const std::filesystem::path& file, const Ex
       json["records"].empty())
     throw InputError({file.string()}, fmt::format("results of the command '{}'; expected those of modal",
                                                   json.value("command", "")));
+  for (const Json& message : json.value("messages", Json::array()))
+    data.warnings.push_back(message.value("text", ""));
   if (json["records"].size() == 1) {
     for (const Json& mode : json["records"][0].value("modes", Json::array()))
       data.modes.push_back(measured_mode_of(mode, file, experiment, data));

@@ -4,8 +4,8 @@
 
 namespace beamid::experiments {
 
-double chi_square_limit(double freedom) {
-  return quantile(boost::math::chi_squared(freedom), 0.95);
+double chi_square_limit(double freedom, double probability) {
+  return quantile(boost::math::chi_squared(freedom), probability);
 }
 
 }  // namespace beamid::experiments

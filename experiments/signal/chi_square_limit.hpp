@@ -3,7 +3,7 @@
 
 namespace beamid::experiments {
 
-/// 95 % point of chi-square. @param freedom above 0
-double chi_square_limit(double freedom);
+/// 95 % point of chi-square, or another one. @param freedom above 0
+double chi_square_limit(double freedom, double probability = 0.95);
 
 }  // namespace beamid::experiments

@@ -81,6 +81,40 @@ TEST(Frf, SumsModesWhereTheLawHasNoMatrix) {
   EXPECT_EQ(json::parse(Workplace().run("frf --json").out)["method"], "direct");
 }
 
+// Twenty equal storeys, f_j = sqrt(k / m) sin((2 j - 1) pi / 82) / pi, at fifty frequencies: up to four modes
+// lie between two of them, and every one is found.
+TEST(Frf, FindsResonancesBetweenItsFrequencies) {
+  Workplace place;
+  std::string masses, stiffnesses;
+  for (int i = 0; i < 20; ++i) masses += i > 0 ? ", 1000" : "1000", stiffnesses += i > 0 ? ", 2e6" : "2e6";
+  for (const std::string damping : {"", "[damping]\nratio = 0.001\n"}) {
+    place.write("chain.toml", "[chain]\nmasses_kg = [" + masses + "]\nstiffnesses_n_per_m = [" + stiffnesses +
+                                  "]\n" + damping +
+                                  "[frequency_response]\npoints = 50\nfrom_hz = 0.1\nto_hz = 15\n"
+                                  "pairs = [{ input_m = 20, output_m = 20 }]\n");
+    const Outcome outcome = place.run("frf --config chain.toml --json");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json found = json::parse(outcome.out);
+    const json& resonances = found["pairs"][0]["resonances"];
+    ASSERT_EQ(resonances.size(), 20u) << damping;
+    for (int j = 1; j <= 20; ++j)
+      EXPECT_NEAR(resonances[j - 1]["frequency_hz"].get<double>(),
+                  std::sqrt(2000.0) * std::sin((2 * j - 1) * pi / 82) / pi, damping.empty() ? 1e-9 : 0.02);
+    EXPECT_EQ(found["pairs"][0]["anti_resonances"].size(), 19u) << damping;
+    if (damping.empty()) continue;
+    EXPECT_THAT(found["notes"].dump(), HasSubstr("show less than half"));
+  }
+}
+
+TEST(Frf, WarnsOfResonancesThatTheSumLacks) {
+  Workplace place;
+  place.write("sum.toml",
+              "[chain]\nmasses_kg = [1000, 1000, 1000]\nstiffnesses_n_per_m = [2e6, 2e6, 2e6]\n"
+              "[damping]\nratio = 0.01\n[frequency_response]\nmodes = 1\nto_hz = 20\n");
+  EXPECT_THAT(json::parse(place.run("frf --config sum.toml --json").out)["messages"].dump(),
+              HasSubstr("1 modes are summed, and 3 natural frequencies lie up to 20 Hz"));
+}
+
 TEST(Frf, RefusesAPointThatCannotMove) {
   Workplace place;
   place.write(

@@ -57,6 +57,32 @@ TEST_F(Update, ReadsTheResultsOfModalAsTheyAre) {
   EXPECT_NEAR(found["modes"][1]["mac"].get<double>(), 1.0, 1e-6);
 }
 
+// Shapes of sensors 3 and 4 exchanged: nothing explains them, and a script learns it, too.
+TEST_F(Update, EndsWithThreeWhereNothingExplainsTheModes) {
+  place_.write("wrong.toml",
+               "[[modes]]\nfrequency_hz = 0.8829\nshape = [0.41, 0.74, 1.01, 0.92]\n"
+               "[[modes]]\nfrequency_hz = 2.7477\nshape = [1.03, 0.75, -0.73, -0.21]\n"
+               "[[modes]]\nfrequency_hz = 4.2998\nshape = [1.00, -0.95, 0.55, -0.33]\n"
+               "[[modes]]\nfrequency_hz = 5.5295\nshape = [0.19, -0.50, -0.57, 1.02]\n");
+  for (const char* command : {"update", "twins"}) {
+    const Outcome outcome = place_.run(std::string(command) + " wrong.toml --config frame.toml --json");
+    EXPECT_EQ(outcome.code, 3);
+    const json found = json::parse(outcome.out);
+    EXPECT_EQ(found["status"], "not explained");
+    EXPECT_EQ(found["messages"][0]["severity"], "failure");
+    EXPECT_THAT(found["messages"].dump(), HasSubstr("With sensors 3 and 4 exchanged"));
+  }
+}
+
+// What the modal analysis warned of is said again where its modes are used.
+TEST_F(Update, RepeatsTheWarningsOfModal) {
+  place_.write("results.json", R"({"command": "modal", "records": [{"modes": [
+    {"frequency_hz": 0.8829, "shape": []}]}],
+    "messages": [{"severity": "warning", "text": "A hand held the frame."}]})");
+  EXPECT_THAT(json_of(place_.run("update results.json --config frame.toml --json"))["messages"].dump(),
+              HasSubstr("beamid modal warned of these modes: A hand held the frame."));
+}
+
 TEST_F(Update, RefusesWhatMakesNoSense) {
   place_.write("wrong.toml", "[[modes]]\nfrequency_hz = 1\nshape = [1, 2]\n");
   EXPECT_EQ(place_.run("update wrong.toml --config frame.toml").first_error_line(),

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "experiments/identify/compare/run_noise.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 
 namespace beamid::experiments {
@@ -31,6 +32,14 @@ std::string innovations_text(const filters::InnovationConsistency& c, double mis
 
 }  // namespace
 
+// Noise of the inputs moves the structure, too, and what it moves is left beside their own response. It is
+// the noise that was stated as long as the innovations are no larger than that makes them.
+bool is_noise_of_inputs(const RunContext& context, const ComparedRun& run) {
+  constexpr double much = 1.25;  // mean normalised square; a sample's delay at 5 % of noise 1.7, a place 100
+  return has_noise(input_noise(context.experiment, context.analysis.record)) && run.diagnostics &&
+         run.diagnostics->consistency && run.diagnostics->consistency->mean_normalised_square < much;
+}
+
 // A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
 // that started otherwise. Nor is it where storeys follow laws, which no mode beside them can stand in for. A
 // free decay may hold modes that the model lacks, but not for the greater part.
@@ -39,7 +48,7 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
   constexpr double too_much_driven = 10.0, too_much_free = 50.0;
   const bool forced = context.analysis.forced();
   const double too_much = forced || has_storey_laws(*run.model) ? too_much_driven : too_much_free;
-  if (!(run.misfit_percent > too_much)) return;
+  if (!(run.misfit_percent > too_much) || is_noise_of_inputs(context, run)) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format(
       "{}: {:.3g} % of it is left, and is no noise. {}",

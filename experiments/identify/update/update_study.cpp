@@ -56,6 +56,8 @@ UpdateStudy study_update(const Experiment& experiment, const ModalData& data, co
   for (const ParameterSet& set : study.updating.sets)
     if (set.as_well) as_well.push_back(set.values);
   study.deciding = deciding_measurements(*study.model, data, as_well, settings.trust);
+  if (study.updating.refuted && study.model->dense())
+    study.remedies = remedies({experiment, *study.model, *study.space, data, settings.trust, study.updating});
   study.warnings = update_warnings(study);
   return study;
 }

@@ -8,6 +8,7 @@
 
 #include "experiments/identify/twins/deciding_measurement.hpp"
 #include "experiments/identify/twins/twins.hpp"
+#include "experiments/identify/update/remedies.hpp"
 #include "experiments/identify/update/updating.hpp"
 
 namespace beamid::experiments {
@@ -22,6 +23,7 @@ struct UpdateStudy {
   Updating updating;
   PredictedModes described;                   ///< before anything is changed
   std::vector<DecidingMeasurement> deciding;  ///< between the sets that fit as well
+  std::vector<Remedy> remedies;               ///< where no values explain the modes
   std::vector<std::string> warnings;          ///< sentences (update_warnings.hpp)
 
   const ModalData& data() const { return residual->data(); }

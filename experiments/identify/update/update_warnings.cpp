@@ -57,7 +57,7 @@ void add_missing(const UpdateStudy& study, std::vector<std::string>& warnings) {
   const auto count = static_cast<Index>(study.data().modes.size());
   const bool numbered = std::any_of(study.data().modes.begin(), study.data().modes.end(),
                                     [](const MeasuredMode& mode) { return mode.number.has_value(); });
-  if (study.data().has_shapes() || numbered || count < 3 || study.described.frequency_hz.size() <= count)
+  if (study.data().has_shapes() || numbered || count < 2 || study.described.frequency_hz.size() <= count)
     return;
   std::vector<Index> numbers(static_cast<std::size_t>(count));
   for (Index i = 0; i < count; ++i) numbers[static_cast<std::size_t>(i)] = i;
@@ -138,6 +138,9 @@ void add_strange_shapes(const UpdateStudy& study, std::vector<std::string>& warn
 
 std::vector<std::string> update_warnings(const UpdateStudy& study) {
   std::vector<std::string> warnings;
+  for (const std::string& warning : study.data().warnings)
+    warnings.push_back("beamid modal warned of these modes: " + warning);
+  for (const Remedy& remedy : study.remedies) warnings.push_back(remedy.sentence);
   add_units(study, warnings);
   add_missing(study, warnings);
   add_signs(study, warnings);

@@ -47,6 +47,7 @@ struct Updating {
   Eigen::Index independent = 0;  ///< numbers that were fitted
   Eigen::Index freedom = 0;      ///< those less the parameters that are determined
   double limit = 0.0;            ///< 95 % point of chi^2; 0 without freedom
+  bool refuted = false;          ///< chi^2 above its 99.9 % point: more than chance
   double widening = 1.0;         ///< of the intervals, where the first set's chi^2 is above its limit
   const ParameterSet& best() const { return sets.front(); }
   bool explains() const { return widening == 1.0; }

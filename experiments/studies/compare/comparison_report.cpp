@@ -93,8 +93,23 @@ Table parameter_table(const Comparison& comparison, const std::string& name) {
   return table;
 }
 
+// Of motion without a measured force: it shows the ratio of stiffness to mass alone.
+std::string mass_note(const ComparedRun& run, const Record& record) {
+  const bool forced = std::any_of(record.channels.begin(), record.channels.end(),
+                                  [](const Channel& channel) { return channel.quantity == Quantity::force; });
+  const auto any_in = [&](const char* unit) {
+    return std::any_of(run.unknowns.begin(), run.unknowns.end(),
+                       [&](const Unknown& unknown) { return unknown.unit.starts_with(unit); });
+  };
+  const bool factors = std::any_of(run.unknowns.begin(), run.unknowns.end(),
+                                   [](const Unknown& unknown) { return unknown.quantity == "factor"; });
+  if (forced || any_in("kg") || !(any_in("N") || factors)) return {};
+  return " No force was measured: masses described 1 % too large make every stiffness and dashpot 1 % too "
+         "large, and no interval counts that.";
+}
+
 // Of a single run, all parameters.
-Table parameter_table(const ComparedRun& run) {
+Table parameter_table(const ComparedRun& run, const Record& record) {
   Table table{"estimates", ""};
   table.column({"parameter", "parameter"})
       .column({"unit", "unit"})
@@ -117,7 +132,8 @@ Table parameter_table(const ComparedRun& run) {
   }
   table.note =
       "Deviation: standard deviation of the estimate. Bound: the least that the record and what was known "
-      "before allow (Cramer-Rao).";
+      "before allow (Cramer-Rao)." +
+      mass_note(run, record);
   return table;
 }
 
@@ -249,7 +265,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
                   comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],
                   1.0 / record.interval(), channels_text(record), experiment.model.name, experiment.passes,
                   experiment.passes == 1 ? "" : "es", inputs ? " " + words(*inputs) : ""));
-  if (alone && comparison.runs[0].has_estimate()) results.table(parameter_table(comparison.runs[0]));
+  if (alone && comparison.runs[0].has_estimate()) results.table(parameter_table(comparison.runs[0], record));
   results.table(run_table(comparison));
   for (const std::string& name : parameter_names(comparison))
     if (!alone) results.table(parameter_table(comparison, name));

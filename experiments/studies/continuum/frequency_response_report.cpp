@@ -151,6 +151,7 @@ Results report(const Experiment& experiment, const FrequencyResponses& found) {
                                 to_string(settings.kind), settings.points, found.frequency_hz[0],
                                 found.frequency_hz[found.frequency_hz.size() - 1], found.method.name,
                                 damping_text(experiment.damping, found.system)));
+  for (const std::string& warning : found.warnings) results.warning(warning);
   results.table(resonance_table(experiment, found));
   add_notes(results, found.notes);
   results.attachments.push_back(

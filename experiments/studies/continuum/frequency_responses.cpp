@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "fem/modes.hpp"
 
@@ -100,15 +101,13 @@ class Solver {
 
 // Which minima are anti-resonances: those where the response has turned its sign by the next resonance. Below
 // a resonance of residue r the receptance has the sign of r, at it -i r, above it -r.
-void tell_anti_resonances(const FrequencyResponses& all, const PairResponse& pair, const Solver& solver,
+void tell_anti_resonances(const VectorXd& f, const VectorXcd& h, const Solver& solver,
                           std::vector<Extremum>& extrema) {
-  const Index last = all.frequency_hz.size() - 1;
+  const Index last = f.size() - 1;
   const auto residue = [&](const Extremum& e) {
     return -solver.receptance(e.frequency_hz, e.response).imag();
   };
-  const auto in_phase = [&](Index i) {
-    return solver.receptance(all.frequency_hz[i], pair.response[i]).real();
-  };
+  const auto in_phase = [&](Index i) { return solver.receptance(f[i], h[i]).real(); };
   for (std::size_t i = 0; i < extrema.size(); ++i) {
     if (extrema[i].kind != Extremum::Kind::minimum) continue;
     const double before = i > 0 ? -residue(extrema[i - 1]) : in_phase(0);
@@ -117,26 +116,60 @@ void tell_anti_resonances(const FrequencyResponses& all, const PairResponse& pai
   }
 }
 
-std::vector<Extremum> extrema(const FrequencyResponses& all, const PairResponse& pair, const Solver& solver,
-                              const fem::InputOutput& numbers, bool damped) {
+// The grid's frequencies and, about every natural one, others that close in on it: a resonance and the
+// anti-resonance beside it may both lie between two of the grid's, and show at neither.
+VectorXd closer_grid(const VectorXd& grid, const VectorXd& natural, bool damped) {
+  std::set<double> frequencies(grid.begin(), grid.end());
+  for (const double f : natural) {
+    if (!(grid[0] < f && f < grid[grid.size() - 1])) continue;
+    const auto above = std::upper_bound(grid.begin(), grid.end(), f);
+    const double step = *above - *(above - 1);
+    if (damped) frequencies.insert(f);
+    for (const double part : {2.0, 8.0, 32.0, 128.0, 512.0})
+      for (const double there : {f - step / part, f + step / part})
+        if (grid[0] < there && there < grid[grid.size() - 1]) frequencies.insert(there);
+  }
+  VectorXd closer(static_cast<Index>(frequencies.size()));
+  std::copy(frequencies.begin(), frequencies.end(), closer.begin());
+  return closer;
+}
+
+// Of responses h at frequencies f, between which the extrema are searched for.
+std::vector<Extremum> extrema(const VectorXd& f, const VectorXcd& h, const VectorXd& natural,
+                              const Solver& solver, const fem::InputOutput& numbers, bool damped) {
   std::vector<Extremum> found;
-  const VectorXd size = pair.response.cwiseAbs();
-  const VectorXd& f = all.frequency_hz;
+  const VectorXd size = h.cwiseAbs();
   for (Index i = 1; i + 1 < size.size(); ++i) {
     const bool largest = size[i] > size[i - 1] && size[i] >= size[i + 1];
     const bool smallest = size[i] < size[i - 1] && size[i] <= size[i + 1];
     if (smallest || (largest && damped))
       found.push_back(solver.refined(f[i - 1], f[i + 1], largest, numbers));
-    const bool turns = (pair.response[i - 1] * std::conj(pair.response[i + 1])).real() < 0.0;
+    // Undamped, it is zero itself; its sign may turn back at a resonance before the next frequency.
+    const bool turns =
+        damped ? (h[i - 1] * std::conj(h[i + 1])).real() < 0.0
+               : smallest && std::abs(found.back().response) < 1e-3 * std::min(size[i - 1], size[i + 1]);
     if (smallest && turns) found.back().kind = Extremum::Kind::anti_resonance;
     if (!largest || damped) continue;
     // The response is infinite at the natural frequency itself.
-    for (const double natural : all.natural_frequencies_hz)
-      if (f[i - 1] <= natural && natural <= f[i + 1])
-        found.push_back({Extremum::Kind::resonance, natural, std::numeric_limits<double>::infinity()});
+    for (const double one : natural)
+      if (f[i - 1] <= one && one <= f[i + 1])
+        found.push_back({Extremum::Kind::resonance, one, std::numeric_limits<double>::infinity()});
   }
-  if (damped) tell_anti_resonances(all, pair, solver, found);
+  if (damped) tell_anti_resonances(f, h, solver, found);
   return found;
+}
+
+// Resonances of which the grid's frequencies show less than half the height.
+Index between_grid(const VectorXd& f, const PairResponse& pair) {
+  Index count = 0;
+  for (const Extremum& one : pair.extrema) {
+    if (one.kind != Extremum::Kind::resonance || !std::isfinite(std::abs(one.response))) continue;
+    const Index above = std::upper_bound(f.begin(), f.end(), one.frequency_hz) - f.begin();
+    if (above == 0 || above == f.size()) continue;
+    const double shown = std::max(std::abs(pair.response[above - 1]), std::abs(pair.response[above]));
+    count += shown < 0.5 * std::abs(one.response) ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace
@@ -171,6 +204,14 @@ FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Pr
 
   all.method = settings.method;
   if (all.method.name.empty()) all.method.name = method_for(experiment.damping);
+  const Index size = all.system.size(),
+              summed = all.method.modes > 0 ? all.method.modes : (size <= 200 ? size : Index{100});
+  const Index in_band = all.natural_frequencies_hz.size();
+  if (all.method.name == "modal" && in_band > summed)
+    all.warnings.push_back(fmt::format(
+        "{} modes are summed, and {} natural frequencies lie up to {:.6g} Hz: resonances of {} are "
+        "missing; expected [frequency_response] modes = {} at least.",
+        summed, in_band, end, in_band - summed, in_band));
   progress("frequency responses");
   const Solver solver(experiment, all.system, all.method);
   const Eigen::MatrixXcd responses = solver(all.frequency_hz, numbers);
@@ -178,16 +219,27 @@ FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Pr
   if (const std::string note = small_motion_note(experiment); !note.empty()) all.notes.push_back(note);
   if (!damped) all.notes.emplace_back("Without damping resonances are infinite, at the natural frequencies.");
   progress("resonances");
+  const VectorXd closer = closer_grid(all.frequency_hz, all.natural_frequencies_hz, damped);
+  const Eigen::MatrixXcd closer_responses = solver(closer, numbers);
+  Index between = 0, resonances = 0;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const fem::Point &input = points[numbers[i].input], &output = points[numbers[i].output];
-    PairResponse pair{input,
-                      output,
+    const auto column = static_cast<Index>(i);
+    PairResponse pair{input, output,
                       input.name == output.name ? input.name : input.name + " to " + output.name,
-                      responses.col(static_cast<Index>(i)),
-                      {}};
-    pair.extrema = extrema(all, pair, solver, numbers[i], damped);
+                      responses.col(column),
+                      extrema(closer, closer_responses.col(column), all.natural_frequencies_hz, solver,
+                              numbers[i], damped)};
+    between += between_grid(all.frequency_hz, pair);
+    resonances += std::count_if(pair.extrema.begin(), pair.extrema.end(),
+                                [](const Extremum& one) { return one.kind == Extremum::Kind::resonance; });
     all.pairs.push_back(std::move(pair));
   }
+  if (between > 0)
+    all.notes.push_back(fmt::format(
+        "{} of {} resonances lie between two of the {} frequencies, which show less than half of "
+        "their height: neither frf.csv nor the figure has it, the table has. More points show it.",
+        between, resonances, all.frequency_hz.size()));
   return all;
 }
 

@@ -37,7 +37,7 @@ struct FrequencyResponses {
   Eigen::VectorXd natural_frequencies_hz;  ///< of the undamped modes up to the grid's end, 200 at most
   fem::FrequencyResponseMethod method;     ///< as used
   std::vector<PairResponse> pairs;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, warnings;
 };
 
 /// @throws std::invalid_argument when a point cannot move or the method cannot treat the damping;

@@ -107,6 +107,23 @@ void add_verdict(const PartedIdentification& found, Results& results) {
                   exact.mean_square));
 }
 
+// Motion alone knows ratios: M, C and K of a part times any factor move alike.
+std::string without_forces(const PartedIdentification& found) {
+  std::string names;
+  for (const IdentifiedPart& part : found.parts) {
+    const auto& channels = part.noisy.compared.record.channels;
+    const bool forced = std::any_of(channels.begin(), channels.end(),
+                                    [](const Channel& one) { return one.quantity == Quantity::force; });
+    if (part.converged() && !forced) names += (names.empty() ? "" : ", ") + part.part.name;
+  }
+  if (names.empty()) return {};
+  return fmt::format(
+      "No measured force acts inside {}: motion alone knows stiffness and damping over mass. Masses count as "
+      "described: 1 % too large, they make all stiffnesses and dashpots 1 % too large, which no deviation "
+      "counts.",
+      names);
+}
+
 Table joined_table(const PartedIdentification& found) {
   Table table{"joined", "Joined"};
   const bool truth = is_simulated(found);
@@ -226,6 +243,7 @@ Results substructures_report(const Experiment& experiment, const PartedIdentific
   add_verdict(found, results);
   if (!found.joined.empty()) results.table(joined_table(found));
   if (Table parts = part_table(found); parts.rows() > 0) results.table(std::move(parts));
+  if (const std::string text = without_forces(found); !text.empty()) results.paragraph(text);
   if (!found.no_whole.empty()) results.paragraph(found.no_whole);
   results.values["status"] = substructures_status(found);
   results.values["joined"] = Json::array();

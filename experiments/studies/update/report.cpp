@@ -32,11 +32,12 @@ Results report(const Experiment& experiment, const UpdateStudy& study) {
   if (good)
     results.paragraph(verdict);
   else
-    results.warning(verdict, !study.updating.explains());
+    results.warning(verdict, study.updating.refuted);
   for (const std::string& warning : study.warnings) results.warning(warning);
   results.heading("Parameters");
   results.table(parameter_table(study));
   for (const std::string& sentence : update_sentences(study)) results.paragraph(sentence);
+  results.paragraph(described_text());
   results.heading("Modes");
   results.table(measured_mode_table(study));
   for (const std::string& remark : study.data().remarks) results.paragraph(remark);

@@ -22,6 +22,8 @@ std::string sets_text(const Updating& updating);
 std::string twins_warning(const Experiment& experiment);
 /// What else there is to say, a sentence each.
 std::vector<std::string> update_sentences(const UpdateStudy& study);
+/// What no interval counts: all that is not asked about.
+std::string described_text();
 /// "storey_stiffness_1 up by 1 % with storey_stiffness_2 down by 0.8 %"
 std::string direction_text(const UpdateStudy& study, const OpenDirection& direction);
 /// Whether the list of sets can lack one.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/models/estimates.hpp"
 #include "experiments/studies/update/report.hpp"
 #include "experiments/text/spelling.hpp"
 
@@ -46,7 +47,7 @@ std::string sets_text(const Updating& updating) {
 std::pair<std::string, bool> update_verdict(const UpdateStudy& study) {
   const Updating& updating = study.updating;
   const std::string numbers = numbers_text(updating);
-  if (!updating.explains())
+  if (updating.refuted)
     return {"No values of these parameters explain the modes: " + numbers +
                 ". Something else than the parameters asked about is wrong, or the modes are.",
             false};
@@ -59,6 +60,10 @@ std::pair<std::string, bool> update_verdict(const UpdateStudy& study) {
   }
   if (updating.as_well() > 1)
     return {sets_text(updating) + ", and the modes cannot tell which is true: " + numbers + ".", false};
+  if (!updating.explains())
+    return {"These parameters explain the modes poorly: " + numbers +
+                ", which chance alone exceeds once in 20 times.",
+            false};
   if (study.twins.method == TwinSearch::Method::all_solutions && !study.complete())
     return {fmt::format("One set of parameters explains the modes, as far as was found: {}.", numbers), true};
   if (study.twins.method != TwinSearch::Method::all_solutions && starts_say_little(updating))
@@ -66,7 +71,10 @@ std::pair<std::string, bool> update_verdict(const UpdateStudy& study) {
         fmt::format("One set of parameters explains the modes, as far as so few starts can tell ({}): {}.",
                     updating.starts, numbers),
         true};
-  return {fmt::format("One set of parameters explains the modes: {}.", numbers), true};
+  return {fmt::format(
+              "One set of parameters explains the modes: {}.{}", numbers,
+              updating.freedom > 0 ? "" : " No number is left over to contradict a wrong mode or sensor."),
+          true};
 }
 
 std::string direction_text(const UpdateStudy& study, const OpenDirection& direction) {
@@ -154,6 +162,13 @@ std::string twins_warning(const Experiment& experiment) {
   }
 }
 
+std::string described_text() {
+  return "All that is not asked about counts as described, exactly. Frequencies and shapes know only the "
+         "ratio "
+         "of stiffness to mass: masses described 1 % too large make every stiffness 1 % too large, and no "
+         "interval counts that.";
+}
+
 std::vector<std::string> update_sentences(const UpdateStudy& study) {
   const Updating& updating = study.updating;
   std::vector<std::string> sentences;
@@ -165,12 +180,13 @@ std::vector<std::string> update_sentences(const UpdateStudy& study) {
         std::isinf(open.deviation)
             ? fmt::format("No measured number changes with {}.", direction_text(study, open))
             : fmt::format("Hardly any measured number changes with {}: known to a factor of {:.2g} only.",
-                          direction_text(study, open), std::exp(1.96 * std::min(open.deviation, 100.0))));
+                          direction_text(study, open),
+                          std::exp(quantile_95 * std::min(open.deviation, 100.0))));
   for (std::size_t j = 0; j < study.unknowns().size(); ++j) {
     const std::string& name = study.unknowns()[j].name;
     if (updating.parameters[j].on_bound)
       sentences.push_back(name +
-                          " lies on its bound: its interval and those of the others hold only if the "
+                          " lies on its bound: its interval ends there, and those of all hold only if the "
                           "bound does.");
     if (updating.parameters[j].at_search_limit)
       sentences.push_back(name +

@@ -51,9 +51,10 @@ Json update_values(const UpdateStudy& study) {
   const Updating& updating = study.updating;
   Json json;
   json["verdict"] = update_verdict(study).first;
-  json["status"] = !updating.explains()     ? "not explained"
+  json["status"] = updating.refuted         ? "not explained"
                    : !updating.open.empty() ? "not determined"
                    : updating.as_well() > 1 ? "several sets"
+                   : !updating.explains()   ? "poorly explained"
                                             : "one set";
   json["chi_square"] = updating.best().fit.chi_square() < 1e-12 ? 0.0 : updating.best().fit.chi_square();
   json["chi_square_limit_95"] = updating.limit;
