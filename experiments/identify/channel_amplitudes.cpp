@@ -19,18 +19,6 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
 
-int times_differentiated(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::velocity:
-      return 1;
-    case Quantity::acceleration:
-    case Quantity::angular_acceleration:
-      return 2;
-    default:
-      return 0;
-  }
-}
-
 // u_i s^k_i of the first mode as described (p); empty: not to be had.
 VectorXcd expected(const Experiment& experiment, const Record& record, const std::vector<Index>& outputs,
                    Complex rate) {

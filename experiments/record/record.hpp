@@ -28,6 +28,19 @@ inline bool is_input(Quantity quantity) {
          quantity == Quantity::support_acceleration || quantity == Quantity::support_angular_acceleration;
 }
 
+/// How often a displacement is differentiated in time to make it; 0 also of what is no motion.
+inline int times_differentiated(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::velocity:
+      return 1;
+    case Quantity::acceleration:
+    case Quantity::angular_acceleration:
+      return 2;
+    default:
+      return 0;
+  }
+}
+
 /// Whether it is of a point whose motion is taken as it was measured.
 inline bool is_imposed(Quantity quantity) {
   return quantity == Quantity::support_acceleration || quantity == Quantity::support_angular_acceleration;

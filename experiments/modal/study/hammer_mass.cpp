@@ -16,18 +16,9 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::VectorXd;
 
-/// Derivatives of displacement; -1 for what is no motion.
-int power_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::displacement:
-      return 0;
-    case Quantity::velocity:
-      return 1;
-    case Quantity::acceleration:
-      return 2;
-    default:
-      return -1;
-  }
+bool is_motion(Quantity quantity) {
+  return quantity == Quantity::displacement || quantity == Quantity::velocity ||
+         quantity == Quantity::acceleration;
 }
 
 }  // namespace
@@ -37,7 +28,7 @@ std::optional<HammerMass> hammer_mass(const Record& record, const Pole& pole,
   Index force = -1, motion = -1;
   for (Index i = 0; i < record.samples.rows(); ++i) {
     if (record.channels[i].quantity == Quantity::force && force < 0) force = i;
-    if (power_of(record.channels[i].quantity) >= 0 && motion < 0) motion = i;
+    if (is_motion(record.channels[i].quantity) && motion < 0) motion = i;
   }
   reason = "the record holds no force beside a motion";
   if (force < 0 || motion < 0) return std::nullopt;
@@ -73,7 +64,7 @@ std::optional<HammerMass> hammer_mass(const Record& record, const Pole& pole,
     for (Index i = 0; i < hit.end; ++i)
       transformed += interval * hit.force[i] * std::exp(-s * interval * static_cast<double>(i - hit.onset));
     HammerMass found;
-    const int power = power_of(record.channels[motion].quantity);
+    const int power = times_differentiated(record.channels[motion].quantity);
     found.mass = std::pow(w, power) * std::abs(transformed) / (s.imag() * std::exp(logarithm));
     found.deviation = found.mass * std::hypot(w * (back + part) * first.damping_ratio_deviation,
                                               w * part * second.damping_ratio_deviation, unresolved);

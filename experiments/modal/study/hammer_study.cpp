@@ -32,7 +32,7 @@ int power_of(const std::vector<Channel>& channels) {
     if (channel.quantity != quantity || quantity == Quantity::strain)
       throw std::invalid_argument(
           "frequency responses are fitted in one quantity: displacement, velocity or acceleration");
-  return quantity == Quantity::acceleration ? 2 : quantity == Quantity::velocity ? 1 : 0;
+  return times_differentiated(quantity);
 }
 
 void add_modes(HammerStudy& study) {
