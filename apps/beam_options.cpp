@@ -44,8 +44,7 @@ const std::vector<KeyOption>& beam_keys() {
        "beam", "root_rotational_stiffness_n_m_per_rad"},
       {text("support", "ROOT-TIP",
             "how the ends are held: clamped-free, clamped-clamped, pinned-pinned, free-free, ... every pair "
-            "of "
-            "clamped, pinned, guided, free")
+            "of clamped, pinned, guided, free")
            .such_as(end_supports()),
        "beam", "support"},
       {number("damping-ratio", "XI", "damping ratio of every mode"), "damping", "ratio"}};

@@ -112,7 +112,7 @@ Command compare_command() {
           {compare_options(), beam_options(), output_options()},
           "  beamid compare --config cantilever.toml --out results\n"
           "  beamid compare tip.csv --config cantilever.toml --reduction none --reduction rayleigh\n"
-          "  beamid compare --config believed.toml --truth damaged.toml --filter ekf --filter ukf\n",
+          "  beamid compare --config described.toml --truth damaged.toml --filter ekf --filter ukf\n",
           run_compare,
           "",
           "3  no run has an estimate to rely on, and \"status\" in results.json says why: the first one "

@@ -20,16 +20,12 @@ constexpr double largest_seed = 0x1p52;
 OptionGroup efficiency_options() {
   return {
       "Options",
-      {text(
-           "study", "NAME",
-           "filters: against the bound; coverage: how often the intervals of identify hold the truth, with "
-           "higher "
-           "modes and coloured noise (uses --runs, --seed, --noise and one --damping-ratio); decays: whether "
-           "identify ends well on clean decays of all lengths and dampings (uses --runs, --seed); records: "
-           "what "
-           "identify makes of laboratory records when given nothing but the beam (uses --runs, of which 100 "
-           "are "
-           "enough, --seed and --only)")
+      {text("study", "NAME",
+            "filters: against the bound; coverage: how often the intervals of identify hold the truth, with "
+            "higher modes and coloured noise (uses --runs, --seed, --noise and one --damping-ratio); decays: "
+            "whether identify ends well on clean decays of all lengths and dampings (uses --runs, --seed); "
+            "records: what identify makes of laboratory records when given nothing but the beam (uses "
+            "--runs, of which 100 are enough, --seed and --only)")
            .one_of({"filters", "coverage", "decays", "records"})
            .by_default("filters"),
        text(

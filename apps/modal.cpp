@@ -26,9 +26,8 @@ OptionGroup modal_options() {
       "Options",
       {modal_method_option(
            "era for free decays, ssi_cov for random vibration, frf_lscf for hammer hits with a measured "
-           "force; "
-           "at the peaks of the spectrum: damped_sine, hilbert_envelope, logarithmic_decrement, half_power, "
-           "frf_half_power (beamid list modal_methods)")
+           "force; at the peaks of the spectrum: damped_sine, hilbert_envelope, logarithmic_decrement, "
+           "half_power, frf_half_power (beamid list modal_methods)")
            .by_default("era"),
        band_option("frequencies to look at [Hz]; else all where the spectrum shows something"),
        whole("order", "N", 4, 80, "largest model order").by_default("30"),
@@ -36,8 +35,7 @@ OptionGroup modal_options() {
        flag("amplitude", "frequency and damping ratio of every mode against its amplitude along the decay"),
        flag("events",
             "of earthquakes: f1 and damping of every record's response to its base, over its peak "
-            "acceleration; needs "
-            "base_acceleration (the borehole) and acceleration (the surface)"),
+            "acceleration; needs base_acceleration (the borehole) and acceleration (the surface)"),
        flag("polish",
             "refine a free decay's modes by least squares, all together (without the option for era only)"),
        flag("no-polish", "take them as the method finds them")}};

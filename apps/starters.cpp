@@ -67,7 +67,7 @@ discretisation = "exponential"      # beamid list discretisations; forward_euler
 # [reduction]
 # method = "rayleigh"               # beamid list reductions
 
-# [prior]                           # believed beforehand; what is left out is worked out from beam and record
+# [prior]                           # known beforehand; what is left out is worked out from beam and record
 # stiffness_n_per_m = 510.0
 # stiffness_deviation_n_per_m = 150.0
 # damping_ratio = 0.01

@@ -40,7 +40,7 @@ OptionGroup steps_options() {
 OptionGroup published_options() {
   return {
       "A published value",
-      {number("believed-xi", "XI",
+      {number("published-xi", "XI",
               "a damping ratio that a filter of --scheme found: what was the true one? Steps and frequency "
               "by the options below, else the record's")
            .greater_than(0)
@@ -97,7 +97,7 @@ int run_record(const Values& values) {
   const fs::path config = values.text("config");
   if (config.empty()) throw UsageError("--config FILE is missing");
   for (const char* name : {"scheme", "interval", "frequency"})
-    if (values.has(name)) throw UsageError(fmt::format("--{} goes with --believed-xi", name));
+    if (values.has(name)) throw UsageError(fmt::format("--{} goes with --published-xi", name));
   const IdentificationRequest one = steps_request(values, config);
   const StepsSettings settings = steps_settings(values, one.experiment);
   int code = 0;
@@ -132,11 +132,11 @@ void take_from_record(const Values& values, PublishedDamping& published) {
 
 int run_published(const Values& values) {
   for (const char* name : {"discretisation", "steps"})
-    if (values.has(name)) throw UsageError(fmt::format("--{} does not go with --believed-xi", name));
-  if (!values.has("scheme")) throw UsageError("--believed-xi of which filter? Add --scheme NAME");
+    if (values.has(name)) throw UsageError(fmt::format("--{} does not go with --published-xi", name));
+  if (!values.has("scheme")) throw UsageError("--published-xi of which filter? Add --scheme NAME");
   PublishedDamping published;
-  published.ratio = values.number("believed-xi");
-  published.half_digit = half_digit_of(values.text("believed-xi"));
+  published.ratio = values.number("published-xi");
+  published.half_digit = half_digit_of(values.text("published-xi"));
   published.scheme = values.text("scheme");
   at_place({"--scheme"}, [&] { filters::scheme_registry().find(published.scheme); });
   if (values.has("interval")) published.interval = values.number("interval");
@@ -144,7 +144,7 @@ int run_published(const Values& values) {
   const bool stated = values.has("interval") && values.has("frequency");
   if (!values.has("config") && (!stated || values.has("record")))
     throw UsageError(
-        "--believed-xi needs the filter's steps and frequency: --interval and --frequency, or a record with "
+        "--published-xi needs the filter's steps and frequency: --interval and --frequency, or a record with "
         "--config");
   int code = 0;
   deliver(values, [&] {
@@ -161,27 +161,28 @@ int run_published(const Values& values) {
 }
 
 int run_steps(const Values& values) {
-  return values.has("believed-xi") ? run_published(values) : run_record(values);
+  return values.has("published-xi") ? run_published(values) : run_record(values);
 }
 
 }  // namespace
 
 Command steps_command() {
-  return {"steps",
-          "RECORD --config FILE [--discretisation NAME]... [--out DIR]",
-          "one record at dt, 2 dt, 4 dt, ...: how wrong a filter's discretisation makes its damping",
-          {record_argument()},
-          {steps_options(), published_options(), output_options()},
-          "  beamid steps tip_acceleration.csv --config cantilever.toml --out results\n"
-          "  beamid steps --config cantilever.toml --discretisation forward_euler --discretisation "
-          "runge_kutta_2\n"
-          "  beamid steps --believed-xi 0.0342 --scheme forward_euler --interval 0.000605 --frequency 11.22\n"
-          "  beamid steps --believed-xi 0.0479 --scheme forward_euler --config cantilever.toml\n",
-          run_steps,
-          "",
-          "3  the exact discretisation has no estimate to compare with, or no damped structure gives the "
-          "published "
-          "value; the first lines say why.\n"};
+  return {
+      "steps",
+      "RECORD --config FILE [--discretisation NAME]... [--out DIR]",
+      "one record at dt, 2 dt, 4 dt, ...: how wrong a filter's discretisation makes its damping",
+      {record_argument()},
+      {steps_options(), published_options(), output_options()},
+      "  beamid steps tip_acceleration.csv --config cantilever.toml --out results\n"
+      "  beamid steps --config cantilever.toml --discretisation forward_euler --discretisation "
+      "runge_kutta_2\n"
+      "  beamid steps --published-xi 0.0342 --scheme forward_euler --interval 0.000605 --frequency 11.22\n"
+      "  beamid steps --published-xi 0.0479 --scheme forward_euler --config cantilever.toml\n",
+      run_steps,
+      "",
+      "3  the exact discretisation has no estimate to compare with, or no damped structure gives the "
+      "published "
+      "value; the first lines say why.\n"};
 }
 
 }  // namespace beamid::apps

@@ -116,8 +116,7 @@ OptionGroup stream_options() {
           {config_option("experiment file: beam, columns, filter (docs/configuration.md)").needed(),
            text("like", "RECORD",
                 "an earlier record of the rig, which gives noise, amplitude and sampling interval; without "
-                "it that of "
-                "the experiment file"),
+                "it that of the experiment file"),
            on_failure_option(), text("resume", "STATE", "go on from a saved state"),
            text("save-state", "STATE",
                 "save the state at the end, whatever ends the stream: the input, a signal, a failure, a bad "

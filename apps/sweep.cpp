@@ -34,17 +34,15 @@ OptionGroup sweep_options() {
             "experiment file of the beam that records are simulated from; without it the beam as described"),
        text("vary", "KEY=...",
             "a key of FILE, as beam.tip_mass_kg or sensors[1].noise_m: KEY=FROM:TO:STEPS[:log], KEY=A,B,C; "
-            "drawn: "
-            "KEY=uniform:FROM:TO, log_uniform:FROM:TO, normal:MEAN:DEVIATION; truth.KEY: of the record's "
-            "beam only")
+            "drawn: KEY=uniform:FROM:TO, log_uniform:FROM:TO, normal:MEAN:DEVIATION; truth.KEY: of the "
+            "record's beam only")
            .repeated(),
        whole("random", "N", 1, most_samples, "samples of what is drawn, at every point"),
        whole("seeds", "N", 1, most_samples, "cases for every sample, each with its own noise"),
        whole("seed", "N", 0, 2e9, "of the first case").by_default("1"),
        flag("once",
             "filter every record once from what is assumed, as the 2009 study did: model sdof, many records "
-            "at a "
-            "time; without it as `beamid compare` does"),
+            "at a time; without it as `beamid compare` does"),
        whole("threads", "N", 1, 4096, "to work on").by_default(std::to_string(cores())).unrecorded(),
        flag("resume", "go on with a sweep that was interrupted; needs its --out DIR").unrecorded(),
        text("shard", "I/N", "this part only, from 1/N to N/N, each in a DIR of its own"),

@@ -61,7 +61,7 @@ std::string value_text(const std::string& name, std::optional<double> value, std
 }
 
 // Model sdof starts from [prior] and, for what that leaves open, from the record.
-std::string prior_text(const PriorBelief& prior) {
+std::string prior_text(const Prior& prior) {
   return value_text("stiffness", prior.stiffness, prior.stiffness_deviation, "N/m") + ", " +
          value_text("damping ratio", prior.damping_ratio, prior.damping_ratio_deviation, "") +
          (prior.stiffness || prior.damping_ratio ? " (initial estimates; the others from the record)"

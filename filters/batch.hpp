@@ -22,7 +22,7 @@ struct OscillatorTrials {
   bool forward_euler = false;      ///< the scheme of that name instead of `exponential`
 };
 
-/// One record, and what was believed before it.
+/// One record, and what was assumed before it.
 struct LaneTrial {
   Eigen::MatrixXd outputs;  ///< y (p x N); NaN: not measured
   Gaussian initial;         ///< mean (4) and covariance (4 x 4)
@@ -33,7 +33,7 @@ struct TrialResult {
   Gaussian last;                         ///< after the last sample, or after the last one before the failure
   double log_likelihood = 0.0;           ///< of all samples up to there
   std::optional<Eigen::Index> failed{};  ///< sample at which the innovation covariance lost its
-                                         ///< positivity, or the belief ceased to be finite
+                                         ///< positivity, or the estimate ceased to be finite
 };
 
 /// The extended Kalman filter on every trial: what `ekf` gives for each alone, to rounding. A trial that

@@ -56,8 +56,8 @@ MatrixXd factor_of(const MatrixXd& covariance) {
   return result;
 }
 
-MatrixXd factor_of(const Gaussian& belief) {
-  return belief.factor.size() > 0 ? belief.factor : factor_of(belief.covariance);
+MatrixXd factor_of(const Gaussian& estimate) {
+  return estimate.factor.size() > 0 ? estimate.factor : factor_of(estimate.covariance);
 }
 
 MatrixXd covariance_of(const MatrixXd& factor) {
@@ -67,9 +67,9 @@ MatrixXd covariance_of(const MatrixXd& factor) {
   return covariance;
 }
 
-Gaussian with_covariance(const Gaussian& belief) {
-  if (belief.covariance.size() > 0) return belief;
-  return {belief.mean, covariance_of(belief.factor), belief.factor};
+Gaussian with_covariance(const Gaussian& estimate) {
+  if (estimate.covariance.size() > 0) return estimate;
+  return {estimate.mean, covariance_of(estimate.factor), estimate.factor};
 }
 
 bool same(const MatrixXd& a, const MatrixXd& b) {

@@ -15,13 +15,13 @@ namespace {
 
 constexpr double range = 5.0;
 
-MatrixXd covariance_at(const Gaussian& belief, const std::vector<Index>& entries) {
+MatrixXd covariance_at(const Gaussian& estimate, const std::vector<Index>& entries) {
   for (const Index entry : entries)
-    if (entry < 0 || entry >= belief.mean.size())
+    if (entry < 0 || entry >= estimate.mean.size())
       throw std::invalid_argument("unknown " + std::to_string(entry) + " does not exist; expected 0 to " +
-                                  std::to_string(belief.mean.size() - 1));
-  if (belief.covariance.size() > 0) return belief.covariance(entries, entries);
-  const MatrixXd rows = belief.factor(entries, Eigen::all);
+                                  std::to_string(estimate.mean.size() - 1));
+  if (estimate.covariance.size() > 0) return estimate.covariance(entries, entries);
+  const MatrixXd rows = estimate.factor(entries, Eigen::all);
   return rows * rows.transpose();
 }
 

@@ -26,7 +26,7 @@ const Correction& Filter::correct(const Eigen::VectorXd& output, const Eigen::Ve
 }
 
 Gaussian Filter::marginal(const std::vector<Eigen::Index>& entries) const {
-  const Gaussian& all = belief();
+  const Gaussian& all = estimate();
   if (all.covariance.size() > 0) return {all.mean(entries), all.covariance(entries, entries)};
   return {all.mean(entries), {}, all.factor(entries, Eigen::all)};
 }

@@ -1,4 +1,4 @@
-// Bayesian filters: a belief moved by a model and corrected by measurements.
+// Bayesian filters: an estimate moved by a model and corrected by measurements.
 #pragma once
 
 #include <memory>
@@ -35,17 +35,17 @@ class Filter {
   explicit Filter(std::unique_ptr<DiscreteModel> model) : model_(std::move(model)) {}
   virtual ~Filter() = default;
 
-  /// Start from a belief. @throws std::invalid_argument when its size is not the model's.
-  virtual void reset(const Gaussian& belief) = 0;
+  /// Start from an estimate. @throws std::invalid_argument when its size is not the model's.
+  virtual void reset(const Gaussian& estimate) = 0;
   /// z_k | y_0..k  ->  z_k+1 | y_0..k under the input u_k (m). @throws FilterFailure
   virtual void predict(const Eigen::VectorXd& input) = 0;
   /// z_k | y_0..k-1  ->  z_k | y_0..k, given y_k (p). Entries that are NaN were not measured: the filter sees
-  /// the others alone, and the belief stays as it is where there are none. @throws FilterFailure
+  /// the others alone, and the estimate stays as it is where there are none. @throws FilterFailure
   const Correction& correct(const Eigen::VectorXd& output, const Eigen::VectorXd& input);
 
   /// Valid until the next step; a filter that carries a factor may form it only now.
-  virtual const Gaussian& belief() const = 0;
-  /// The belief about some entries of the state alone, as cheaply as the filter can tell it.
+  virtual const Gaussian& estimate() const = 0;
+  /// The estimate about some entries of the state alone, as cheaply as the filter can tell it.
   virtual Gaussian marginal(const std::vector<Eigen::Index>& entries) const;
 
   /// Its interval and noise may be set from step to step.

@@ -65,18 +65,18 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
     if (step % between_looks == 0) heed_stop_request();
     take_sample(measurements, step, sample);
     if (!running.move_to(sample.time)) break;
-    if (settings.keep == Keep::all_beliefs) result.predicted.push_back(running.belief());
+    if (settings.keep == Keep::all_estimates) result.predicted.push_back(running.estimate());
     if (!running.correct(sample)) break;
     store(running.correction(), filter.model().observed(), step, result);
-    if (settings.keep == Keep::all_beliefs) result.filtered.push_back(running.belief());
+    if (settings.keep == Keep::all_estimates) result.filtered.push_back(running.estimate());
     if (traced == 0) continue;
-    const Gaussian belief = filter.marginal(settings.trace.entries);
-    result.means.col(step) = belief.mean;
-    result.deviations.col(step) = belief.deviations();
+    const Gaussian estimate = filter.marginal(settings.trace.entries);
+    result.means.col(step) = estimate.mean;
+    result.deviations.col(step) = estimate.deviations();
   }
   result.failure = running.failure();
   result.events = running.events();
-  result.last = running.belief();
+  result.last = running.estimate();
   result.remarks = filter.remarks();
   return result;
 }

@@ -22,24 +22,24 @@ struct FilterRun {
   double log_likelihood = 0.0;
   Eigen::MatrixXd means;       ///< filtered, of the traced entries (k x N)
   Eigen::MatrixXd deviations;  ///< their standard deviations (k x N)
-  Gaussian last;               ///< the last filtered belief
+  Gaussian last;               ///< the last filtered estimate
   std::optional<Failure>
       failure;  ///< what ended the run; the part up to there is a research result, and kept
   std::vector<Failure> events = {};  ///< all that went wrong, that included: what was inflated, what diverged
   std::vector<std::string> remarks;  ///< of the filter: approximations made, and what they cost
 };
 
-enum class Keep { last_belief, all_beliefs };
+enum class Keep { last_estimate, all_estimates };
 
 /// Entries of the state (k) whose filtered mean and deviation are recorded at every sample. For states of
-/// thousands of entries, of which all beliefs would fill the memory.
+/// thousands of entries, of which all estimates would fill the memory.
 struct Trace {
   std::vector<Eigen::Index> entries;
 };
 
 /// What a run keeps, where it starts and how it goes on after a failure.
 struct RunSettings {
-  Keep keep = Keep::last_belief;
+  Keep keep = Keep::last_estimate;
   Start start = Start::at_first_sample;
   Trace trace = {};
   OnFailure on_failure = OnFailure::stop;
@@ -52,6 +52,6 @@ struct RunSettings {
 FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements,
               const RunSettings& settings);
 FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements,
-              Keep keep = Keep::last_belief, Start start = Start::at_first_sample, const Trace& trace = {});
+              Keep keep = Keep::last_estimate, Start start = Start::at_first_sample, const Trace& trace = {});
 
 }  // namespace beamid::filters

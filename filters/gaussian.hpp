@@ -1,4 +1,4 @@
-// A belief about a state, and the names of what is believed.
+// An estimate of a state, and the names of what is estimated.
 #pragma once
 
 #include <Eigen/Core>

@@ -67,8 +67,8 @@ void check_finite(const Eigen::VectorXd& mean, const MatrixXd& covariance) {
     throw FilterFailure("a variance is negative or not finite", smallest_eigenvalue(covariance));
 }
 
-void check_finite(const Gaussian& belief) {
-  check_finite(belief.mean, belief.covariance);
+void check_finite(const Gaussian& estimate) {
+  check_finite(estimate.mean, estimate.covariance);
 }
 
 void refuse(const MatrixXd& innovation_covariance) {
@@ -81,28 +81,28 @@ bool is_covariance(const MatrixXd& matrix) {
          smallest_eigenvalue(matrix) >= -1e-12 * matrix.norm();
 }
 
-void check_belief(const Gaussian& belief, const DiscreteModel& model) {
+void check_estimate(const Gaussian& estimate, const DiscreteModel& model) {
   const auto n = static_cast<Eigen::Index>(model.state_labels().size());
-  const MatrixXd &covariance = belief.covariance, &factor = belief.factor;
+  const MatrixXd &covariance = estimate.covariance, &factor = estimate.factor;
   const bool has_covariance = covariance.size() > 0 || factor.size() == 0;
   const auto size = [](const MatrixXd& matrix) {
     return std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols());
   };
-  if (belief.mean.size() != n || (has_covariance && (covariance.rows() != n || covariance.cols() != n)))
-    throw std::invalid_argument("initial belief has a mean of " + std::to_string(belief.mean.size()) +
+  if (estimate.mean.size() != n || (has_covariance && (covariance.rows() != n || covariance.cols() != n)))
+    throw std::invalid_argument("initial estimate has a mean of " + std::to_string(estimate.mean.size()) +
                                 " and a covariance of " + size(has_covariance ? covariance : factor) +
                                 "; expected " + std::to_string(n));
   if (factor.size() > 0 && factor.rows() != n)
-    throw std::invalid_argument("initial belief has a factor of " + size(factor) + "; expected " +
+    throw std::invalid_argument("initial estimate has a factor of " + size(factor) + "; expected " +
                                 std::to_string(n) + " rows");
-  if (!belief.mean.allFinite() || !factor.allFinite())
+  if (!estimate.mean.allFinite() || !factor.allFinite())
     throw std::invalid_argument("initial mean and factor must be finite");
   if (has_covariance && !is_covariance(covariance))
     throw std::invalid_argument("initial covariance must be finite, symmetric and positive semidefinite");
   if (covariance.size() > 0 && factor.size() > 0 &&
       (covariance - factor * factor.transpose()).norm() > 1e-9 * covariance.norm())
     throw std::invalid_argument(
-        "initial covariance and factor disagree; expected the same belief, or only one");
+        "initial covariance and factor disagree; expected the same estimate, or only one");
 }
 
 }  // namespace beamid::filters

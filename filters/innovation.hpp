@@ -21,7 +21,7 @@ void symmetrise(Eigen::MatrixXd& covariance);
 
 /// @throws FilterFailure when the mean or the covariance's diagonal is not finite, or a variance is negative.
 void check_finite(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance);
-void check_finite(const Gaussian& belief);
+void check_finite(const Gaussian& estimate);
 
 /// @throws FilterFailure that S is not positive definite, with its smallest eigenvalue.
 [[noreturn]] void refuse(const Eigen::MatrixXd& innovation_covariance);
@@ -29,8 +29,8 @@ void check_finite(const Gaussian& belief);
 /// Whether a square matrix is finite, symmetric to 1e-12 and positive semidefinite to 1e-12.
 bool is_covariance(const Eigen::MatrixXd& matrix);
 
-/// @throws std::invalid_argument when the belief does not fit the model, has neither covariance nor factor
+/// @throws std::invalid_argument when the estimate does not fit the model, has neither covariance nor factor
 /// or two that disagree, or its covariance is not symmetric positive semidefinite.
-void check_belief(const Gaussian& belief, const DiscreteModel& model);
+void check_estimate(const Gaussian& estimate, const DiscreteModel& model);
 
 }  // namespace beamid::filters

@@ -54,14 +54,15 @@ LatentInputs::LatentInputs(std::shared_ptr<const LinearMotion> motion, std::vect
   }
 }
 
-Gaussian LatentInputs::with_latent(const Gaussian& belief) const {
+Gaussian LatentInputs::with_latent(const Gaussian& estimate) const {
   const Index rest = parameter_size();
-  const MatrixXd inner =
-      belief.covariance.size() > 0 ? belief.covariance : MatrixXd(belief.factor * belief.factor.transpose());
+  const MatrixXd inner = estimate.covariance.size() > 0
+                             ? estimate.covariance
+                             : MatrixXd(estimate.factor * estimate.factor.transpose());
   Gaussian result{VectorXd::Zero(own_ + added_ + rest), {}, {}};
   result.covariance.setZero(result.mean.size(), result.mean.size());
-  result.mean.head(own_) = belief.mean.head(own_);
-  result.mean.tail(rest) = belief.mean.tail(rest);
+  result.mean.head(own_) = estimate.mean.head(own_);
+  result.mean.tail(rest) = estimate.mean.tail(rest);
   result.covariance.topLeftCorner(own_, own_) = inner.topLeftCorner(own_, own_);
   result.covariance.topRightCorner(own_, rest) = inner.topRightCorner(own_, rest);
   result.covariance.bottomLeftCorner(rest, own_) = inner.bottomLeftCorner(rest, own_);

@@ -44,8 +44,8 @@ class LatentInputs final : public LinearMotion {
   Eigen::Index place(std::size_t latent) const { return places_[latent]; }  ///< of its p in the state
   /// Where an entry of the motion's own state is found (in z).
   Eigen::Index moved(Eigen::Index place) const { return place < own_ ? place : place + added_; }
-  /// A belief about the motion's own state, and every process as it is at any time, or starts.
-  Gaussian with_latent(const Gaussian& belief) const;
+  /// An estimate about the motion's own state, and every process as it is at any time, or starts.
+  Gaussian with_latent(const Gaussian& estimate) const;
   /// Q (n x n) of an interval [s], with the constants as in this state [vanloan1978].
   Eigen::MatrixXd process_noise(const Eigen::VectorXd& state, double interval) const;
 

@@ -88,7 +88,7 @@ Proportion proportion(int count, int runs) {
   return {count, runs, std::max(0.0, centre - half), std::min(1.0, centre + half)};
 }
 
-Estimator last_belief_of(std::function<std::unique_ptr<Filter>()> make_filter, std::vector<Index> entries) {
+Estimator last_estimate_of(std::function<std::unique_ptr<Filter>()> make_filter, std::vector<Index> entries) {
   return [make = std::move(make_filter),
           places = std::move(entries)](const Trial& trial) -> std::optional<Gaussian> {
     const std::unique_ptr<Filter> filter = make();

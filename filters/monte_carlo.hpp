@@ -20,12 +20,12 @@ struct Trial {
 
 /// The same seed gives the same trial.
 using TrialGenerator = std::function<Trial(std::uint64_t seed)>;
-/// Belief about the k entries, as covariance or factor; nothing: it failed.
+/// Estimate about the k entries, as covariance or factor; nothing: it failed.
 using Estimator = std::function<std::optional<Gaussian>(const Trial&)>;
 
-/// The filter's last belief about some entries of the state; nothing where the run failed.
-Estimator last_belief_of(std::function<std::unique_ptr<Filter>()> make_filter,
-                         std::vector<Eigen::Index> entries);
+/// The filter's last estimate about some entries of the state; nothing where the run failed.
+Estimator last_estimate_of(std::function<std::unique_ptr<Filter>()> make_filter,
+                           std::vector<Eigen::Index> entries);
 
 /// How many runs, and what their errors are compared with.
 struct MonteCarloSettings {

@@ -39,13 +39,13 @@ MeanSquares output_squares(const SmoothedRun& smoothed, ObservedModel& model, co
   MatrixXd sensor;
   model.observe_all();
   for (Index k = 0; k < record.size(); ++k) {
-    const Gaussian& belief = smoothed.beliefs[static_cast<std::size_t>(k)];
+    const Gaussian& estimate = smoothed.estimates[static_cast<std::size_t>(k)];
     if (record.inputs.size() > 0) input = record.inputs.col(k);
-    model.output(belief.mean, input, expected);
-    model.output_jacobian(belief.mean, input, sensor);
-    const MatrixXd cross = belief.factor.size() > 0
-                               ? MatrixXd(belief.factor * (sensor * belief.factor).transpose())
-                               : MatrixXd(belief.covariance * sensor.transpose());
+    model.output(estimate.mean, input, expected);
+    model.output_jacobian(estimate.mean, input, sensor);
+    const MatrixXd cross = estimate.factor.size() > 0
+                               ? MatrixXd(estimate.factor * (sensor * estimate.factor).transpose())
+                               : MatrixXd(estimate.covariance * sensor.transpose());
     for (Index i = 0; i < record.outputs.rows(); ++i) {
       if (std::isnan(record.outputs(i, k))) continue;
       const double variance =
@@ -93,7 +93,7 @@ VectorXd NoiseLevels::expectation_maximisation(const VectorXd& x, double& log_li
   ++runs_;
   const std::unique_ptr<Filter> filter = make_filter_(noise(x));
   const Measurements record = measurements(x);
-  const FilterRun filtered = run(*filter, initial(x), record, Keep::all_beliefs);
+  const FilterRun filtered = run(*filter, initial(x), record, Keep::all_estimates);
   log_likelihood = filtered.log_likelihood;
   if (filtered.failure || !std::isfinite(log_likelihood)) return {};
   const bool noises = !settings_.process_groups.empty();
@@ -116,7 +116,7 @@ VectorXd NoiseLevels::expectation_maximisation(const VectorXd& x, double& log_li
       ++place;
     }
   }
-  if (settings_.initial_level) result[place] = initial_level(smoothed.beliefs.front(), initial_);
+  if (settings_.initial_level) result[place] = initial_level(smoothed.estimates.front(), initial_);
   return result;
 }
 

@@ -32,21 +32,22 @@ void NoisyInputs::set_interval(double dt) {
   take_noise();
 }
 
-Gaussian NoisyInputs::with_errors(const Gaussian& belief) const {
+Gaussian NoisyInputs::with_errors(const Gaussian& estimate) const {
   const Index m = deviations_.size();
   Gaussian result{VectorXd::Zero(own() + m), MatrixXd::Zero(own() + m, own() + m), {}};
-  result.mean.head(own()) = belief.mean;
+  result.mean.head(own()) = estimate.mean;
   result.covariance.topLeftCorner(own(), own()) =
-      belief.covariance.size() > 0 ? belief.covariance : MatrixXd(belief.factor * belief.factor.transpose());
+      estimate.covariance.size() > 0 ? estimate.covariance
+                                     : MatrixXd(estimate.factor * estimate.factor.transpose());
   result.covariance.bottomRightCorner(m, m) = deviations_.cwiseAbs2().asDiagonal();
   return result;
 }
 
-Gaussian NoisyInputs::without_errors(const Gaussian& belief) const {
-  if (belief.mean.size() == 0) return belief;
-  Gaussian result{belief.mean.head(own()), {}, {}};
-  if (belief.covariance.size() > 0) result.covariance = belief.covariance.topLeftCorner(own(), own());
-  if (belief.factor.size() > 0) result.factor = belief.factor.topRows(own());
+Gaussian NoisyInputs::without_errors(const Gaussian& estimate) const {
+  if (estimate.mean.size() == 0) return estimate;
+  Gaussian result{estimate.mean.head(own()), {}, {}};
+  if (estimate.covariance.size() > 0) result.covariance = estimate.covariance.topLeftCorner(own(), own());
+  if (estimate.factor.size() > 0) result.factor = estimate.factor.topRows(own());
   return result;
 }
 

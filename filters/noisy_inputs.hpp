@@ -23,9 +23,9 @@ class NoisyInputs final : public DiscreteModel {
   /// @throws std::invalid_argument when one is negative.
   NoisyInputs(std::unique_ptr<DiscreteModel> model, Eigen::VectorXd deviations);
 
-  /// A belief about z, and the first error as uncertain as any; back again.
-  Gaussian with_errors(const Gaussian& belief) const;
-  Gaussian without_errors(const Gaussian& belief) const;
+  /// An estimate about z, and the first error as uncertain as any; back again.
+  Gaussian with_errors(const Gaussian& estimate) const;
+  Gaussian without_errors(const Gaussian& estimate) const;
 
   std::vector<Label> state_labels() const override;
   std::vector<Label> output_labels() const override { return model_->output_labels(); }

@@ -18,17 +18,17 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // The covariance times `inflation`, freed of what rounding has left below zero.
-Gaussian inflated(const Gaussian& belief) {
-  Gaussian result{belief.mean, {}, belief.factor * std::sqrt(RunningFilter::inflation)};
-  if (belief.covariance.size() == 0) return result;
-  if (belief.factor.size() > 0) {
+Gaussian inflated(const Gaussian& estimate) {
+  Gaussian result{estimate.mean, {}, estimate.factor * std::sqrt(RunningFilter::inflation)};
+  if (estimate.covariance.size() == 0) return result;
+  if (estimate.factor.size() > 0) {
     result.covariance = covariance_of(result.factor);
     return result;
   }
-  const VectorXd scale = belief.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const VectorXd scale = estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> correlation(
-      inverse.asDiagonal() * (0.5 * (belief.covariance + belief.covariance.transpose())) *
+      inverse.asDiagonal() * (0.5 * (estimate.covariance + estimate.covariance.transpose())) *
       inverse.asDiagonal());
   const VectorXd roots = (RunningFilter::inflation * correlation.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
   result.covariance = covariance_of(scale.asDiagonal() * correlation.eigenvectors() * roots.asDiagonal());
@@ -52,8 +52,8 @@ RunningFilter::~RunningFilter() {
   if (filter_.model().interval() != regular_) filter_.model().set_interval(regular_);
 }
 
-void RunningFilter::start(const Gaussian& belief, Start start) {
-  filter_.reset(belief);
+void RunningFilter::start(const Gaussian& estimate, Start start) {
+  filter_.reset(estimate);
   first_ = true;
   interval_before_ = start == Start::one_interval_before;
   step_ = 0;
@@ -64,7 +64,7 @@ void RunningFilter::start(const Gaussian& belief, Start start) {
 }
 
 void RunningFilter::resume(const SavedRun& saved) {
-  start(saved.belief);
+  start(saved.estimate);
   clock_.start(saved.time);
   first_ = false;
   step_ = saved.step;
@@ -73,7 +73,7 @@ void RunningFilter::resume(const SavedRun& saved) {
 }
 
 SavedRun RunningFilter::save() const {
-  return {filter_.belief(), clock_.time(), held_, step_, alarm_};
+  return {filter_.estimate(), clock_.time(), held_, step_, alarm_};
 }
 
 bool RunningFilter::take_in(const Sample& sample) {
@@ -90,7 +90,7 @@ bool RunningFilter::move_to(double time) {
     interval_ = clock_.advance(time);
   }
   first_ = false;
-  if (on_failure_ != OnFailure::stop) good_ = filter_.belief();
+  if (on_failure_ != OnFailure::stop) good_ = filter_.estimate();
   const auto trouble = attempt([&] { predict(); });
   if (!trouble) return true;
   if (on_failure_ != OnFailure::inflate) return end(*trouble);
@@ -104,7 +104,7 @@ bool RunningFilter::correct(const Sample& sample) {
   check(sample);
   output_ = sample.output;
   if (on_failure_ != OnFailure::stop) drop_infinite();
-  const Gaussian before = on_failure_ == OnFailure::report ? filter_.belief() : Gaussian{};
+  const Gaussian before = on_failure_ == OnFailure::report ? filter_.estimate() : Gaussian{};
   if (const auto trouble = attempt([&] { update(sample); })) {
     if (on_failure_ == OnFailure::stop) return end(*trouble);
     events_.push_back(*trouble);
@@ -123,7 +123,7 @@ bool RunningFilter::correct(const Sample& sample) {
   return !failure_;
 }
 
-// Where even the inflated belief cannot take the measurement: on from its prediction alone.
+// Where even the inflated estimate cannot take the measurement: on from its prediction alone.
 bool RunningFilter::go_on_without(const Failure& trouble) {
   if (on_failure_ == OnFailure::report) return end(trouble);
   events_.push_back(trouble);
@@ -138,17 +138,17 @@ void RunningFilter::predict() {
   filter_.predict(held_);
 }
 
-// A belief of its own that a filter refuses to start from is its failure, and not the caller's.
-void RunningFilter::reset(const Gaussian& belief) {
+// An estimate of its own that a filter refuses to start from is its failure, and not the caller's.
+void RunningFilter::reset(const Gaussian& estimate) {
   try {
-    filter_.reset(belief);
+    filter_.reset(estimate);
   } catch (const std::invalid_argument& refusal) {
-    throw FilterFailure(refusal.what(), smallest_covariance_eigenvalue(belief.covariance));
+    throw FilterFailure(refusal.what(), smallest_covariance_eigenvalue(estimate.covariance));
   }
 }
 
-void RunningFilter::restart(const Gaussian& belief) {
-  reset(belief);
+void RunningFilter::restart(const Gaussian& estimate) {
+  reset(estimate);
   alarm_.clear();
   predict();
 }
@@ -170,7 +170,7 @@ void RunningFilter::heed_divergence() {
                      smallest_covariance_eigenvalue(correction_.innovation_covariance)});
   if (on_failure_ != OnFailure::inflate) return;
   alarm_.clear();
-  if (const auto trouble = attempt([&] { reset(inflated(filter_.belief())); })) end(*trouble);
+  if (const auto trouble = attempt([&] { reset(inflated(filter_.estimate())); })) end(*trouble);
 }
 
 void RunningFilter::drop_infinite() {

@@ -22,11 +22,11 @@ struct Failure {
 /// What a run does when its filter fails.
 enum class OnFailure {
   stop,     ///< ends there. Innovations that diverge are listed, and change nothing
-  inflate,  ///< goes on from the last good belief, its covariance inflated; also where innovations diverge
-  report    ///< goes on from the belief before the measurement that it could not take, where there is one
+  inflate,  ///< goes on from the last good estimate, its covariance inflated; also where innovations diverge
+  report    ///< goes on from the estimate before the measurement that it could not take, where there is one
 };
 
-/// Whether the initial belief is about the first sample, or about one interval before it.
+/// Whether the initial estimate is about the first sample, or about one interval before it.
 enum class Start { at_first_sample, one_interval_before };
 
 /// One measurement.
@@ -39,7 +39,7 @@ struct Sample {
 
 /// All that a run needs to go on elsewhere with the same numbers.
 struct SavedRun {
-  Gaussian belief;        ///< about the last sample, which has been taken in
+  Gaussian estimate;      ///< about the last sample, which has been taken in
   double time = 0.0;      ///< of that sample [s]
   Eigen::VectorXd input;  ///< since then
   Eigen::Index step = 0;  ///< of the sample that comes next
@@ -51,7 +51,7 @@ struct SavedRun {
 /// SampleClock; the model gets its own interval and noise back at the end.
 ///
 /// Inflation multiplies the covariance by `inflation`, deviations by 10: the record then overrules what was
-/// believed, and the mean is kept as a guess. An infinite reading counts as not measured unless failures
+/// assumed, and the mean is kept as a guess. An infinite reading counts as not measured unless failures
 /// stop the run.
 class RunningFilter {
  public:
@@ -63,20 +63,20 @@ class RunningFilter {
   RunningFilter(const RunningFilter&) = delete;
   RunningFilter& operator=(const RunningFilter&) = delete;
 
-  /// @throws std::invalid_argument when the belief does not fit the model
-  void start(const Gaussian& belief, Start start = Start::at_first_sample);
+  /// @throws std::invalid_argument when the estimate does not fit the model
+  void start(const Gaussian& estimate, Start start = Start::at_first_sample);
   void resume(const SavedRun& saved);
   SavedRun save() const;
 
   /// move_to() and correct(); whether the run goes on.
   bool take_in(const Sample& sample);
-  /// belief() becomes that about this time, before its measurement.
+  /// estimate() becomes that about this time, before its measurement.
   /// @throws std::invalid_argument when the stamp is not finite or does not lie after the one before.
   bool move_to(double time);
-  /// belief() becomes that after the measurement. @throws std::invalid_argument when a size does not fit.
+  /// estimate() becomes that after the measurement. @throws std::invalid_argument when a size does not fit.
   bool correct(const Sample& sample);
 
-  const Gaussian& belief() const { return filter_.belief(); }
+  const Gaussian& estimate() const { return filter_.estimate(); }
   const Correction& correction() const {
     return correction_;
   }                                              ///< of the last sample; empty if it told nothing
@@ -91,8 +91,8 @@ class RunningFilter {
   std::optional<Failure> attempt(const Action& action);
   void predict();
   void update(const Sample& sample);
-  void reset(const Gaussian& belief);
-  void restart(const Gaussian& belief);  // about the sample before, to this one
+  void reset(const Gaussian& estimate);
+  void restart(const Gaussian& estimate);  // about the sample before, to this one
   bool go_on_without(const Failure& trouble);
   bool end(Failure failure);
   void heed_divergence();

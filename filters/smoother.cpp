@@ -33,7 +33,7 @@ MatrixXd compressed(const MatrixXd& factor) {
   return scale.asDiagonal() * (qr.colsPermutation() * upper.transpose());
 }
 
-struct Belief {
+struct Estimate {
   VectorXd mean;
   MatrixXd factor;
 
@@ -43,7 +43,7 @@ struct Belief {
   }
 };
 
-// From the belief about z_k+1 to that about z_k, or about what disturbed it on the way.
+// From the estimate about z_k+1 to that about z_k, or about what disturbed it on the way.
 class BackwardStep {
  public:
   BackwardStep(const Gaussian& filtered, TransitionSpread spread, const MatrixXd& process_noise)
@@ -64,15 +64,15 @@ class BackwardStep {
     free_ = MatrixXd::Identity(all, all) - inverse_.solve(scaled);
   }
 
-  Belief state(const Belief& after) const {
-    const Belief shift = of(state_, after);
+  Estimate state(const Estimate& after) const {
+    const Estimate shift = of(state_, after);
     return {mean_ + shift.mean, shift.factor};
   }
-  Belief noise(const Belief& after) const { return of(noise_, after); }
+  Estimate noise(const Estimate& after) const { return of(noise_, after); }
 
  private:
   // Of columns A with the coefficients e ~ N(0, I) before z_k+1 = next + B e was known.
-  Belief of(const MatrixXd& columns, const Belief& after) const {
+  Estimate of(const MatrixXd& columns, const Estimate& after) const {
     const VectorXd shift = inverse_.solve(scale_.asDiagonal() * (after.mean - next_));
     MatrixXd factor(columns.rows(), free_.cols() + after.factor.cols());
     factor << columns * free_, columns * inverse_.solve(scale_.asDiagonal() * after.factor);
@@ -84,14 +84,14 @@ class BackwardStep {
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse_;
 };
 
-Belief as_factor(const Gaussian& belief) {
-  return {belief.mean, factor_of(belief)};
+Estimate as_factor(const Gaussian& estimate) {
+  return {estimate.mean, factor_of(estimate)};
 }
 
 std::vector<BackwardStep> backward_steps(const FilterRun& run, DiscreteModel& model,
                                          const Measurements& measurements, Smoother& smoother) {
   if (run.filtered.empty())
-    throw std::invalid_argument("the run holds no filtered beliefs; expected one that keeps all");
+    throw std::invalid_argument("the run holds no filtered estimates; expected one that keeps all");
   const auto reached = static_cast<Index>(run.filtered.size());
   if (reached > measurements.size() || run.innovations.cols() != measurements.size())
     throw std::invalid_argument("the run is of " + std::to_string(run.innovations.cols()) +
@@ -123,13 +123,13 @@ SmoothedRun smooth(const FilterRun& run, DiscreteModel& model, const Measurement
   const auto smoother = smoother_registry().make(method, options);
   const std::vector<BackwardStep> steps = backward_steps(run, model, measurements, *smoother);
   SmoothedRun result;
-  result.beliefs = run.filtered;
+  result.estimates = run.filtered;
   if (what == Smooth::states_and_noises) result.noises.resize(steps.size());
-  Belief belief = as_factor(run.filtered.back());
+  Estimate estimate = as_factor(run.filtered.back());
   for (std::size_t k = steps.size(); k-- > 0;) {
-    if (what == Smooth::states_and_noises) result.noises[k] = steps[k].noise(belief).as(run.filtered[k]);
-    belief = steps[k].state(belief);
-    result.beliefs[k] = belief.as(run.filtered[k]);
+    if (what == Smooth::states_and_noises) result.noises[k] = steps[k].noise(estimate).as(run.filtered[k]);
+    estimate = steps[k].state(estimate);
+    result.estimates[k] = estimate.as(run.filtered[k]);
   }
   return result;
 }
@@ -143,9 +143,9 @@ std::vector<Gaussian> fixed_lag_smooth(const FilterRun& run, DiscreteModel& mode
   std::vector<Gaussian> result = run.filtered;
   for (std::size_t k = 0; k < steps.size() && lag > 0; ++k) {
     const std::size_t last = std::min(k + static_cast<std::size_t>(lag), steps.size());
-    Belief belief = as_factor(run.filtered[last]);
-    for (std::size_t j = last; j-- > k;) belief = steps[j].state(belief);
-    result[k] = belief.as(run.filtered[k]);
+    Estimate estimate = as_factor(run.filtered[last]);
+    for (std::size_t j = last; j-- > k;) estimate = steps[j].state(estimate);
+    result[k] = estimate.as(run.filtered[k]);
   }
   return result;
 }

@@ -8,7 +8,7 @@
 
 namespace beamid::filters {
 
-/// A belief about z_k with the next state, to first or second order: deviations of z_k and of F(z_k) from
+/// An estimate about z_k with the next state, to first or second order: deviations of z_k and of F(z_k) from
 /// their means, as columns that belong together,
 ///
 ///     cov(z_k) = X X^T,   cov(F(z_k)) = Y Y^T,   cov(z_k, F(z_k)) = X Y^T
@@ -18,7 +18,7 @@ struct TransitionSpread {
   Eigen::MatrixXd moved;  ///< Y (n x m)
 };
 
-/// How a smoother carries a belief through the model.
+/// How a smoother carries an estimate through the model.
 class Smoother {
  public:
   virtual ~Smoother() = default;
@@ -33,13 +33,13 @@ enum class Smooth { states, states_and_noises };
 
 /// z_k | y_0 ... y_N-1 for every sample k.
 struct SmoothedRun {
-  std::vector<Gaussian> beliefs;  ///< (N)
+  std::vector<Gaussian> estimates;  ///< (N)
   /// w_k | y_0 ... y_N-1, the process noise on the way from sample k to k + 1 (N - 1); empty unless asked
   /// for.
   std::vector<Gaussian> noises;
 };
 
-/// Rauch-Tung-Striebel recursion [rauch1965] backwards over the filtered beliefs:
+/// Rauch-Tung-Striebel recursion [rauch1965] backwards over the filtered estimates:
 ///
 ///     G = X Y^T (Y Y^T + Q)^-1,   m_s = m + G (m_s+ - E F(z)),   P_s = P - G (Y Y^T + Q) G^T + G P_s+ G^T
 ///
@@ -47,12 +47,12 @@ struct SmoothedRun {
 /// [X, 0] (I - B^+ B) and G P_s+^1/2. That is positive by construction, and right where Y Y^T + Q is singular
 /// (a parameter known exactly, no process noise).
 ///
-/// Where the run ended early, what was reached is smoothed. A state of thousands of entries whose beliefs are
-/// factors gets factors; without process noise their rank does not grow.
+/// Where the run ended early, what was reached is smoothed. A state of thousands of entries whose estimates
+/// are factors gets factors; without process noise their rank does not grow.
 /// @param model as the filter saw it, process noise included; it is left with the interval it had.
 /// @param method registered smoother: "rts", "urts"
-/// @throws std::invalid_argument when the run kept no beliefs or is not of this record; FilterFailure when a
-/// covariance is not positive.
+/// @throws std::invalid_argument when the run kept no estimates or is not of this record; FilterFailure when
+/// a covariance is not positive.
 SmoothedRun smooth(const FilterRun& run, DiscreteModel& model, const Measurements& measurements,
                    const std::string& method = "rts", const Options& options = {},
                    Smooth what = Smooth::states);

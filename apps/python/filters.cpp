@@ -50,7 +50,7 @@ py::dict run_filter(const std::string& name, const filters::Options& options, co
   {
     const py::gil_scoped_release release;
     run = filters::run(*filter, {mean, covariance, {}}, record,
-                       all ? filters::Keep::all_beliefs : filters::Keep::last_belief);
+                       all ? filters::Keep::all_estimates : filters::Keep::last_estimate);
   }
   return result_of(run, all);
 }

@@ -48,10 +48,10 @@ PythonFilter::~PythonFilter() {
   delete object_;
 }
 
-void PythonFilter::reset(const filters::Gaussian& belief) {
-  filters::check_belief(belief, model_);
-  filters::Gaussian whole = belief;
-  if (whole.covariance.size() == 0) whole.covariance = belief.factor * belief.factor.transpose();
+void PythonFilter::reset(const filters::Gaussian& estimate) {
+  filters::check_estimate(estimate, model_);
+  filters::Gaussian whole = estimate;
+  if (whole.covariance.size() == 0) whole.covariance = estimate.factor * estimate.factor.transpose();
   in_python([&] { object_->attr("reset")(whole.mean, whole.covariance); });
   read();
 }
@@ -74,9 +74,9 @@ void PythonFilter::take_in(const VectorXd& output, const VectorXd& input) {
 
 void PythonFilter::read() {
   in_python([&] {
-    belief_ = {object_->attr("mean").cast<VectorXd>(), object_->attr("covariance").cast<MatrixXd>(), {}};
+    estimate_ = {object_->attr("mean").cast<VectorXd>(), object_->attr("covariance").cast<MatrixXd>(), {}};
   });
-  filters::check_finite(belief_);
+  filters::check_finite(estimate_);
 }
 
 filters::FilterRegistry::Entry entry_of(std::string name, std::string summary, std::string source,

@@ -21,9 +21,9 @@ class PythonFilter final : public filters::Filter {
   PythonFilter& operator=(const PythonFilter&) = delete;
   ~PythonFilter() override;
 
-  void reset(const filters::Gaussian& belief) override;
+  void reset(const filters::Gaussian& estimate) override;
   void predict(const Eigen::VectorXd& input) override;
-  const filters::Gaussian& belief() const override { return belief_; }
+  const filters::Gaussian& estimate() const override { return estimate_; }
 
  protected:
   void take_in(const Eigen::VectorXd& output, const Eigen::VectorXd& input) override;
@@ -32,7 +32,7 @@ class PythonFilter final : public filters::Filter {
   void read();
 
   pybind11::object* object_ = nullptr;
-  filters::Gaussian belief_;
+  filters::Gaussian estimate_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 

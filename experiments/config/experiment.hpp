@@ -56,7 +56,7 @@ struct Experiment {
   std::vector<UnknownForce> unknown_forces;
   std::vector<VirtualSensor> virtual_sensors;
   std::optional<FatigueLaw> fatigue;
-  PriorBelief prior;
+  Prior prior;
   std::map<Quantity, double> noise;     ///< standard deviation per quantity [SI]; absent: from the record
   Choice noise_method{"residual", {}};  ///< how absent ones are found: residual, likelihood, before_event
   std::string estimator = "filter";     ///< of an identification: filter, batch or both

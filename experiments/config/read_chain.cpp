@@ -63,8 +63,7 @@ const Schema<StoreySpring>& storey_keys() {
           .required()
           .other("law", Key::Type::text,
                  "a name from `beamid list springs`; its parameters stand beside it, and the stiffness at "
-                 "rest is "
-                 "that of the chain",
+                 "rest is that of the chain",
                  "\"bouc_wen\"")
           .required("a name from `beamid list springs`");
   return keys;

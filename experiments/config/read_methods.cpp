@@ -38,7 +38,7 @@ const Schema<Experiment>& filter_keys() {
                   {std::pair{to_string(OnFailure::stop), OnFailure::stop},
                    {to_string(OnFailure::inflate), OnFailure::inflate},
                    {to_string(OnFailure::report), OnFailure::report}},
-                  "when the filter fails: end there; go on from the last good belief with deviations ten "
+                  "when the filter fails: end there; go on from the last good estimate with deviations ten "
                   "times as large, also where innovations diverge; or go on without the sample that it could "
                   "not take. All that happened is listed in `results.json` under `events`",
                   "\"inflate\"")

@@ -5,8 +5,8 @@
 namespace beamid::experiments {
 namespace {
 
-const Schema<PriorBelief>& prior_keys() {
-  using P = PriorBelief;
+const Schema<Prior>& prior_keys() {
+  using P = Prior;
   static const Schema<P> keys =
       Schema<P>("prior")
           .key("stiffness_n_per_m", &P::stiffness, positive, "mean of the stiffness", "515.8")
@@ -35,9 +35,8 @@ const Schema<NoiseValues>& noise_keys() {
           .key(
               "method", &N::method,
               "where the absent ones come from: what the modal analysis, or the nearest motion of the model, "
-              "leaves of the record; the level that makes the filter's innovations likeliest, given "
-              "with its standard error; the quiet part of the file before the first hit, refused where "
-              "there is "
+              "leaves of the record; the level that makes the filter's innovations likeliest, given with "
+              "its standard error; the quiet part of the file before the first hit, refused where there is "
               "none of 32 samples",
               "\"likelihood\"")
           .one_of({"residual", "likelihood", "before_event"})

@@ -80,8 +80,7 @@ const Schema<GivenSpaceMember>& space_member_keys() {
           .key("roll_deg", &M::roll_deg, "of the section about the member, from there", "45")
           .key("released_at_first", &M::released_at_first,
                "moments that do not pass there, about the member's own axes: `\"x\"` torsion, `\"y\"`, "
-               "`\"z\"` "
-               "bending",
+               "`\"z\"` bending",
                "[\"y\", \"z\"]")
           .fallback("none")
           .key("released_at_second", &M::released_at_second, "the same at its other end",

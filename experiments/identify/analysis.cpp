@@ -99,9 +99,8 @@ bool has_supports(const Record& record) {
 std::string aliased_text(double beam_hz, double rate, double shown) {
   return fmt::format(
       "ALIASED: the beam's first mode, at {:.5g} Hz, lies above half the sampling rate, {:.5g} Hz. The "
-      "record "
-      "shows it at {:.5g} Hz, as it would show any mode at a multiple of {:.5g} Hz plus or minus that: "
-      "which of them it is only the initial estimates say.",
+      "record shows it at {:.5g} Hz, as it would show any mode at a multiple of {:.5g} Hz plus or minus "
+      "that: which of them it is only the initial estimates say.",
       beam_hz, 0.5 * rate, shown, rate);
 }
 

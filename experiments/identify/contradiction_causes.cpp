@@ -62,7 +62,7 @@ std::string by_discretisation(const Record& record, const RecordIdentification& 
   }
 }
 
-std::string by_prior(const PriorBelief& prior, const RecordIdentification& found) {
+std::string by_prior(const Prior& prior, const RecordIdentification& found) {
   constexpr double surely = 3;
   const Oscillator modal = modal_oscillator(found);
   if (prior.damping_ratio && prior.damping_ratio_deviation &&
@@ -89,8 +89,7 @@ std::string by_companion(const RecordIdentification& found) {
   const CompanionMode& other = found.modal.companions.front();
   return fmt::format(
       "another mode at {:.2f} Hz has {:.0f} % of this one's amplitude, and a model of one mode takes its "
-      "decay "
-      "and beat for damping",
+      "decay and beat for damping",
       other.frequency_hz, 100.0 * other.amplitude / found.modal.amplitude);
 }
 
@@ -113,8 +112,7 @@ std::string by_unsteady_noise(const RecordIdentification& found) {
   if (!(first > much * last)) return {};
   return fmt::format(
       "what the model cannot follow is {:.2g} times as large at the beginning as at the end: rattle, "
-      "saturation, "
-      "or modes that die out; try a later window",
+      "saturation, or modes that die out; try a later window",
       std::sqrt(first / last));
 }
 

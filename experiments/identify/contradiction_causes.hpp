@@ -9,7 +9,7 @@ namespace beamid::experiments {
 
 // Each cause as part of a sentence; empty where it is not the one.
 std::string by_discretisation(const Record& record, const RecordIdentification& found);
-std::string by_prior(const PriorBelief& prior, const RecordIdentification& found);
+std::string by_prior(const Prior& prior, const RecordIdentification& found);
 std::string by_stated_noise(const RecordIdentification& found);
 std::string by_companion(const RecordIdentification& found);
 std::string by_amplitude(const RecordIdentification& found);

@@ -17,23 +17,23 @@ bool same(const std::vector<Unknown>& a, const std::vector<Unknown>& b) {
 
 }  // namespace
 
-RecordBelief record_belief(const ComparedRun& run) {
-  RecordBelief belief{run.unknown_state, run.unknown_start.covariance};
-  belief.start = run.unknown_start.mean;
-  belief.noise_ratio = run.noise_ratio;
-  belief.noise_freedom = run.noise_freedom;
+RecordEstimate record_estimate(const ComparedRun& run) {
+  RecordEstimate estimate{run.unknown_state, run.unknown_start.covariance};
+  estimate.start = run.unknown_start.mean;
+  estimate.noise_ratio = run.noise_ratio;
+  estimate.noise_freedom = run.noise_freedom;
   for (std::size_t j = 0; j < run.unknowns.size(); ++j) {
-    belief.nuisance.push_back(run.unknowns[j].nuisance);
+    estimate.nuisance.push_back(run.unknowns[j].nuisance);
     const auto place = static_cast<Index>(j);
     if (!run.unknowns[j].nuisance)
-      belief.start[place] = run.unknown_state.mean[place];  // the passes' fixed point
+      estimate.start[place] = run.unknown_state.mean[place];  // the passes' fixed point
   }
-  return belief;
+  return estimate;
 }
 
 JointComparison joint_comparison(std::vector<Comparison> records) {
   JointComparison joint{std::move(records), {}, {}};
-  std::vector<RecordBelief> beliefs;
+  std::vector<RecordEstimate> estimates;
   const ComparedRun* kept = nullptr;
   for (const Comparison& record : joint.records) {
     const ComparedRun& run = record.runs.at(0);
@@ -44,10 +44,10 @@ JointComparison joint_comparison(std::vector<Comparison> records) {
           "joint estimate: " + record.compared.name +
           " has other unknowns than the records before it; expected the same channels "
           "in all records");
-    beliefs.push_back(record_belief(run));
+    estimates.push_back(record_estimate(run));
   }
   if (!kept) return joint;
-  joint.estimate = joint_estimate(beliefs);
+  joint.estimate = joint_estimate(estimates);
   const Eigen::VectorXd deviations = joint.estimate.unknowns.deviations();
   for (std::size_t j = 0; j < kept->unknowns.size(); ++j) {
     const Unknown& unknown = kept->unknowns[j];

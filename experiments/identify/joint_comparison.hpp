@@ -7,7 +7,7 @@
 namespace beamid::experiments {
 
 /// What a run says of the unknowns; the noise near its mode counts.
-RecordBelief record_belief(const ComparedRun& run);
+RecordEstimate record_estimate(const ComparedRun& run);
 
 /// What all records say together. Each was identified by itself, in one way: own start, noise and window.
 struct JointComparison {

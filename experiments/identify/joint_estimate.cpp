@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-std::vector<Index> asked_of(const RecordBelief& record) {
+std::vector<Index> asked_of(const RecordEstimate& record) {
   std::vector<Index> asked;
   for (Index i = 0; i < record.unknowns.mean.size(); ++i)
     if (record.nuisance.empty() || !record.nuisance[static_cast<std::size_t>(i)]) asked.push_back(i);
@@ -21,15 +21,15 @@ std::vector<Index> asked_of(const RecordBelief& record) {
 }
 
 /// What is known beforehand of nuisance unknowns (q x q), zero elsewhere.
-MatrixXd prior_of_nuisance(const RecordBelief& record) {
+MatrixXd prior_of_nuisance(const RecordEstimate& record) {
   MatrixXd information = record.prior.inverse();
   for (const Index i : asked_of(record)) information.row(i).setZero(), information.col(i).setZero();
   return information;
 }
 
 /// Whether the records agree, and by how much they scatter where they do not.
-void judge_joint_estimate(const std::vector<RecordBelief>& records, const std::vector<MatrixXd>& information,
-                          JointEstimate& joint) {
+void judge_joint_estimate(const std::vector<RecordEstimate>& records,
+                          const std::vector<MatrixXd>& information, JointEstimate& joint) {
   constexpr double disagree_below = 0.05;
   const std::vector<Index> asked = asked_of(records[0]);
   const double others = static_cast<double>(records.size()) - 1;
@@ -53,7 +53,7 @@ void judge_joint_estimate(const std::vector<RecordBelief>& records, const std::v
 
 }  // namespace
 
-JointEstimate joint_estimate(const std::vector<RecordBelief>& records) {
+JointEstimate joint_estimate(const std::vector<RecordEstimate>& records) {
   if (records.empty()) throw std::invalid_argument("joint estimate: no record; expected one at least");
   const Index q = records[0].unknowns.mean.size();
   const MatrixXd nuisance = prior_of_nuisance(records[0]);
@@ -61,7 +61,7 @@ JointEstimate joint_estimate(const std::vector<RecordBelief>& records) {
   MatrixXd sum = MatrixXd::Zero(q, q);
   VectorXd weighted = VectorXd::Zero(q);
   if (records[0].start.size() > 0) weighted = nuisance * records[0].start;
-  for (const RecordBelief& record : records) {
+  for (const RecordEstimate& record : records) {
     const double weight = 1 / (record.noise_ratio * record.noise_ratio);
     information.push_back(weight * (record.unknowns.covariance.inverse() - record.prior.inverse()));
     sum += information.back();

@@ -9,7 +9,7 @@
 namespace beamid::experiments {
 
 /// What one record says of the unknowns that all share.
-struct RecordBelief {
+struct RecordEstimate {
   filters::Gaussian unknowns;  ///< at the end of the record, prior included (q)
   Eigen::MatrixXd prior;       ///< covariance that the record was begun with (q x q)
   std::vector<bool> nuisance =
@@ -47,6 +47,6 @@ struct JointEstimate {
 /// What is known beforehand of nuisance unknowns is information on m too, once; q, chi^2 and scatter are of
 /// the others.
 /// @throws std::invalid_argument without records, or where they say nothing of a combination of unknowns.
-JointEstimate joint_estimate(const std::vector<RecordBelief>& records);
+JointEstimate joint_estimate(const std::vector<RecordEstimate>& records);
 
 }  // namespace beamid::experiments

@@ -90,8 +90,7 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   if (alone)
     judgement.messages.push_back(
         fmt::format("No modal analysis stands beside this result: {}. The filter was started from {}, and "
-                    "takes for noise what "
-                    "its own motion leaves of the record.",
+                    "takes for noise what its own motion leaves of the record.",
                     found.modal_failure, experiment.prior.stiffness ? "[prior]" : "the beam"));
   const Identification& identification = found.identification;
   const std::string condition =

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/start_belief.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/measurements.hpp"
 

@@ -30,9 +30,9 @@ struct NoiseNearMode {
 /// S(f) = e^a, less its bias to first order [cordeiro1991]; freedom 2 / var a with (-L'')^-1 = cov(a, b). Q
 /// is an orthonormal basis of what the fit of amplitude, phase, frequency, damping and offset takes out of
 /// the noise, 1 - w_k the share of line k that goes with it. A companion mode is not taken out: to a filter
-/// of one mode it is noise. b^2 / 8 believes slopes beyond +-4 hardly, which few lines could not tell. The
-/// band grows upwards until the w_k sum to 2. Samples that are NaN were not measured: the mode takes their
-/// place, and what they would have left of the noise is added in proportion.
+/// of one mode it is noise. b^2 / 8 leaves slopes beyond +-4 hardly likely, which few lines could not tell.
+/// The band grows upwards until the w_k sum to 2. Samples that are NaN were not measured: the mode takes
+/// their place, and what they would have left of the noise is added in proportion.
 ///
 /// What weighs on frequency and damping is the density within a line or two of f, where light damping
 /// concentrates the response: the band's mean is another where the density falls through it.

@@ -1,8 +1,8 @@
 // The motion that a model with given parameters makes of a record: its best start, and what it leaves.
 #pragma once
 
+#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/start_belief.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/filter_run.hpp"
 

@@ -14,13 +14,11 @@ namespace beamid::experiments {
 /// difference D
 ///
 /// - is eight of its deviations and 0.3 % of the frequency,
-/// - is five times what the frequencies of neighbours, one to four periods further away, differ by: a
-/// frequency
-///   that follows the amplitude changes there, too, as do beats,
-/// - and both fits leave less than a quarter of what one damped sine and the companions, of constant
-/// frequencies over
-///   the whole record, leave there: beats that the modal analysis has found are no step; nor do two damped
-///   sines fitted to both windows and what lies between them: beats that it has not found.
+/// - is five times what the frequencies of neighbours, one to four periods further away, differ by: where a
+///   frequency follows the amplitude, or two modes beat, it changes there, too,
+/// - and both fits leave less than a quarter of what the mode and its companions, of constant frequencies
+///   over the whole record, leave there: beats that the modal analysis has found are no step; nor do two
+///   damped sines fitted to both windows and what lies between them: beats that it has not found.
 std::optional<FrequencyJump> frequency_step(const Eigen::VectorXd& signal, double interval,
                                             const ModalEstimate& mode);
 

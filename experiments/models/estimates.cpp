@@ -6,12 +6,12 @@ namespace beamid::experiments {
 
 using Eigen::Index, Eigen::VectorXd;
 
-std::vector<Estimate> estimates(const JointModel& model, const filters::Gaussian& belief) {
+std::vector<Estimate> estimates(const JointModel& model, const filters::Gaussian& estimate) {
   std::vector<Estimate> result;
   for (std::size_t j = 0; j < model.unknowns.size(); ++j) {
     const Unknown& unknown = model.unknowns[j];
     const Index place = model.unknown_places[j];
-    const double mean = belief.mean[place], deviation = std::sqrt(belief.marginal(place, 1)(0, 0));
+    const double mean = estimate.mean[place], deviation = std::sqrt(estimate.marginal(place, 1)(0, 0));
     result.push_back({unknown.name, unknown.unit, unknown.to_physical(mean),
                       std::abs(unknown.slope(mean)) * deviation,
                       unknown.to_physical(mean - quantile_95 * deviation),

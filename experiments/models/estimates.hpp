@@ -1,4 +1,4 @@
-// What a filter's last belief says about the unknowns, in physical units.
+// What a filter's last estimate says about the unknowns, in physical units.
 #pragma once
 
 #include <string>
@@ -20,9 +20,9 @@ struct Estimate {
 };
 
 /// One for each unknown, in the model's order.
-std::vector<Estimate> estimates(const JointModel& model, const filters::Gaussian& belief);
+std::vector<Estimate> estimates(const JointModel& model, const filters::Gaussian& estimate);
 
-/// Mean of the belief about the unknowns, in physical units (q).
+/// Mean of the estimate about the unknowns, in physical units (q).
 Eigen::VectorXd unknown_values(const JointModel& model, const Eigen::VectorXd& state);
 
 /// Normal quantile of 97.5 %.

@@ -42,12 +42,13 @@ void require_sample_memory(const IdentificationSettings& settings, Eigen::Index 
                      copies * sizeof(double) * static_cast<double>(states));
 }
 
-/// Of the beliefs before and after each sample, where they are kept.
-void require_belief_memory(const filters::Gaussian& initial, double samples, filters::Keep keep) {
-  if (keep != filters::Keep::all_beliefs) return;
+/// Of the estimates before and after each sample, where they are kept.
+void require_estimate_memory(const filters::Gaussian& initial, double samples, filters::Keep keep) {
+  if (keep != filters::Keep::all_estimates) return;
   const auto states = static_cast<double>(initial.mean.size());
   const auto columns = static_cast<double>(std::max(initial.factor.cols(), initial.covariance.cols()) + 1);
-  require_memory(2.0 * samples, fmt::format("beliefs of {} states, of which compare keeps the last,", states),
+  require_memory(2.0 * samples,
+                 fmt::format("estimates of {} states, of which compare keeps the last,", states),
                  columns * states * sizeof(double));
 }
 
@@ -59,11 +60,11 @@ filters::FilterRun filter_passes(filters::Filter& filter, const JointModel& mode
   for (int pass = 1; pass <= settings.passes; ++pass) {
     const bool last = pass == settings.passes;
     run = filters::run(filter, noisy ? noisy->with_errors(initial) : initial, record,
-                       {last ? keep : filters::Keep::last_belief, settings.start, {}, settings.on_failure});
+                       {last ? keep : filters::Keep::last_estimate, settings.start, {}, settings.on_failure});
     if (noisy) {
       run.last = noisy->without_errors(run.last);
-      for (auto* beliefs : {&run.predicted, &run.filtered})
-        for (filters::Gaussian& belief : *beliefs) belief = noisy->without_errors(belief);
+      for (auto* estimates : {&run.predicted, &run.filtered})
+        for (filters::Gaussian& estimate : *estimates) estimate = noisy->without_errors(estimate);
     }
     if (run.failure) break;
     initial = next_start(model, initial, run.last);
@@ -98,7 +99,7 @@ filters::FilterRun filter_record(const JointModel& model, const filters::Measure
   const auto filter =
       filters::filter_registry().make(settings.filter, settings.filter_options, std::move(discrete));
   require_sample_memory(settings, settings.initial.mean.size());
-  require_belief_memory(settings.initial, static_cast<double>(record.outputs.cols()), keep);
+  require_estimate_memory(settings.initial, static_cast<double>(record.outputs.cols()), keep);
   return filter_passes(*filter, model, record, settings, keep, noisy);
 }
 
@@ -109,10 +110,10 @@ bool is_oscillator(const JointModel& model) {
          dynamic_cast<const filters::LinearMotion*>(model.motion.get());
 }
 
-Identification identification_at(const JointModel& model, const filters::Gaussian& belief) {
+Identification identification_at(const JointModel& model, const filters::Gaussian& estimate) {
   Identification result;
-  const Eigen::VectorXd& mean = belief.mean;
-  const Eigen::Matrix2d covariance = belief.marginal(2, 2);
+  const Eigen::VectorXd& mean = estimate.mean;
+  const Eigen::Matrix2d covariance = estimate.marginal(2, 2);
   result.found = {model.equivalent_mass, mean[2], mean[3]};
   result.stiffness_deviation = deviation(covariance, 1.0, 0.0);
   result.damping_deviation = deviation(covariance, 0.0, 1.0);

@@ -14,8 +14,8 @@ struct IdentificationSettings {
   std::string filter = "ekf";
   filters::Options filter_options;
   std::string discretisation = "exponential";
-  filters::Gaussian initial;                               ///< belief about [x, v, K, C, ...]
-  filters::Start start = filters::Start::at_first_sample;  ///< what instant that belief is about
+  filters::Gaussian initial;                               ///< estimate about [x, v, K, C, ...]
+  filters::Start start = filters::Start::at_first_sample;  ///< what instant that estimate is about
   Eigen::MatrixXd output_noise;                            ///< R
   /// Times the record is filtered; each pass starts from the parameters the one before ended with, and from
   /// the same initial covariance (next_start). Repeating removes what is left of the linearisation about a
@@ -30,8 +30,8 @@ struct IdentificationSettings {
 /// Whether any input's samples are uncertain.
 bool has_noise(const Eigen::VectorXd& inputs);
 
-/// The belief that the next pass over the record starts from: `initial` with the constants that `last` found
-/// but for the nuisance parameters, what is known of which must not be counted twice.
+/// The estimate that the next pass over the record starts from: `initial` with the constants that `last`
+/// found but for the nuisance parameters, what is known of which must not be counted twice.
 filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& initial,
                              const filters::Gaussian& last);
 
@@ -39,7 +39,7 @@ filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& i
 /// @throws std::invalid_argument when the settings do not fit the model or the record.
 filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
                                  const IdentificationSettings& settings,
-                                 filters::Keep keep = filters::Keep::last_belief);
+                                 filters::Keep keep = filters::Keep::last_estimate);
 
 /// What was found of one degree of freedom.
 struct Identification {
@@ -54,13 +54,13 @@ struct Identification {
 /// Whether a model asks about K and C of one degree of freedom alone, in the state [x, v, K, C, ...].
 bool is_oscillator(const JointModel& model);
 
-/// K, C and what follows from them, at a belief about [x, v, K, C, ...]; without a run.
-Identification identification_at(const JointModel& model, const filters::Gaussian& belief);
+/// K, C and what follows from them, at an estimate about [x, v, K, C, ...]; without a run.
+Identification identification_at(const JointModel& model, const filters::Gaussian& estimate);
 
 /// K and C by model sdof. @throws std::invalid_argument when the settings do not fit the model or the record.
 Identification identify(const JointModel& model, const filters::Measurements& record,
                         const IdentificationSettings& settings,
-                        filters::Keep keep = filters::Keep::last_belief);
+                        filters::Keep keep = filters::Keep::last_estimate);
 
 /// Whether the filter lost the motion, without knowledge of the truth: whether divergence() has a reason.
 /// @param modal_frequency_hz of a modal analysis [Hz]

@@ -36,7 +36,7 @@ struct ModelSetting {
   std::vector<Eigen::Index> supports = {};  ///< which of these are accelerations imposed where they act
   std::vector<ParameterChoice> parameters = {};   ///< none: what the model asks about by itself
   fem::DampingLaw damping = {};                   ///< as described; guesses of damping ratios come from it
-  PriorBelief prior = {};                         ///< of one degree of freedom
+  Prior prior = {};                               ///< of one degree of freedom
   std::vector<StoreySpring> storey_springs = {};  ///< of a chain, those that follow laws
 
   /// What the system was assembled from, for models that ask about the beam itself.

@@ -24,21 +24,21 @@ constexpr double modal_damping_doubt = 1.0, usual_modal_ratio = 0.01;
 constexpr Index most_modal_modes = 100;
 
 // What drives omega and xi of every mode: an unknown, or -1 and a value.
-struct ModeBelief {
+struct ModePrior {
   VectorXd frequencies, ratios;  // (r) [rad/s], [-]
   std::vector<Index> frequency_unknown, ratio_unknown;
 };
 
 class ModalModelMotion final : public SecondOrderMotion {
  public:
-  ModalModelMotion(ModeBelief belief, MatrixXd inputs, MotionDescription description, MatrixXd rows)
+  ModalModelMotion(ModePrior estimate, MatrixXd inputs, MotionDescription description, MatrixXd rows)
       : SecondOrderMotion(std::move(description), std::move(rows), "mode"),
-        belief_(std::move(belief)),
+        estimate_(std::move(estimate)),
         inputs_(std::move(inputs)) {}
 
   void evaluate(const VectorXd& state, SecondOrderForm& form,
                 std::vector<SecondOrderForm>* slopes) const override {
-    const Index r = belief_.frequencies.size();
+    const Index r = estimate_.frequencies.size();
     const auto& unknowns = description().unknowns;
     form.stiffness.setZero(r, r);
     form.damping.setZero(r, r);
@@ -60,10 +60,10 @@ class ModalModelMotion final : public SecondOrderMotion {
       return unknowns[static_cast<std::size_t>(unknown)].slope(state[layout().unknowns + unknown]);
     };
     for (Index i = 0; i < r; ++i) {
-      const Index of_frequency = belief_.frequency_unknown[static_cast<std::size_t>(i)];
-      const Index of_ratio = belief_.ratio_unknown[static_cast<std::size_t>(i)];
-      const double omega = value(of_frequency, belief_.frequencies[i], 2.0 * pi);
-      const double ratio = value(of_ratio, belief_.ratios[i], 1.0);
+      const Index of_frequency = estimate_.frequency_unknown[static_cast<std::size_t>(i)];
+      const Index of_ratio = estimate_.ratio_unknown[static_cast<std::size_t>(i)];
+      const double omega = value(of_frequency, estimate_.frequencies[i], 2.0 * pi);
+      const double ratio = value(of_ratio, estimate_.ratios[i], 1.0);
       form.stiffness(i, i) = omega * omega;
       form.damping(i, i) = 2.0 * ratio * omega;
       if (!slopes) continue;
@@ -77,10 +77,10 @@ class ModalModelMotion final : public SecondOrderMotion {
     }
   }
   bool decoupled() const override { return true; }
-  VectorXd frequencies() const override { return belief_.frequencies; }
+  VectorXd frequencies() const override { return estimate_.frequencies; }
 
  private:
-  ModeBelief belief_;
+  ModePrior estimate_;
   MatrixXd inputs_;  // phi_i^T E / m_i (r x m)
 
   std::shared_ptr<const SecondOrderMotion> copy() const override {
@@ -136,20 +136,20 @@ std::unique_ptr<JointModel> make_modal(const ModelSetting& setting, const filter
     throw std::invalid_argument(
         "model 'modal' needs a structure that is held; this one moves without strain");
   const std::vector<ParameterChoice> choices = choices_of(setting, count);
-  ModeBelief belief{modes.angular_frequency, ratios_of(setting, small.system, modes),
-                    std::vector<Index>(static_cast<std::size_t>(count), -1),
-                    std::vector<Index>(static_cast<std::size_t>(count), -1)};
+  ModePrior estimate{modes.angular_frequency, ratios_of(setting, small.system, modes),
+                     std::vector<Index>(static_cast<std::size_t>(count), -1),
+                     std::vector<Index>(static_cast<std::size_t>(count), -1)};
   std::vector<ParameterDefault> defaults;
   for (const ParameterChoice& choice : choices) {
     const Index mode = choice.mode.value_or(1) - 1;
     defaults.push_back(choice.quantity == "frequency"
-                           ? ParameterDefault{0.5 * belief.frequencies[mode] / pi, frequency_doubt}
-                           : ParameterDefault{belief.ratios[mode], modal_damping_doubt});
+                           ? ParameterDefault{0.5 * estimate.frequencies[mode] / pi, frequency_doubt}
+                           : ParameterDefault{estimate.ratios[mode], modal_damping_doubt});
   }
   description.unknowns = unknowns_of(choices, defaults);
   for (std::size_t j = 0; j < choices.size(); ++j)
     for (Index i = 0; i < count; ++i) {
-      auto& driven = choices[j].quantity == "frequency" ? belief.frequency_unknown : belief.ratio_unknown;
+      auto& driven = choices[j].quantity == "frequency" ? estimate.frequency_unknown : estimate.ratio_unknown;
       Index& unknown = driven[static_cast<std::size_t>(i)];
       const bool its_own = choices[j].mode && *choices[j].mode == i + 1;
       if (its_own || (!choices[j].mode && unknown < 0)) unknown = static_cast<Index>(j);
@@ -171,7 +171,8 @@ std::unique_ptr<JointModel> make_modal(const ModelSetting& setting, const filter
   for (Index j = 0; j < static_cast<Index>(model->unknowns.size()); ++j)
     model->unknown_places.push_back(places.unknowns + j);
   model->offsets = places.offsets;
-  model->motion = std::make_shared<ModalModelMotion>(std::move(belief), inputs, std::move(description), rows);
+  model->motion =
+      std::make_shared<ModalModelMotion>(std::move(estimate), inputs, std::move(description), rows);
   return model;
 }
 

@@ -35,7 +35,7 @@ struct ParameterChoice {
   Place place = {};    ///< for messages
 };
 
-/// What a model believes of a parameter by itself.
+/// What a model assumes of a parameter by itself.
 struct ParameterDefault {
   double guess = 0.0;               ///< [unit of the quantity]
   double relative_deviation = 0.0;  ///< of the guess

@@ -6,7 +6,7 @@
 namespace beamid::experiments {
 
 /// Means and standard deviations; absent ones are worked out from the model and the record.
-struct PriorBelief {
+struct Prior {
   std::optional<double> stiffness, stiffness_deviation;  ///< [N/m]
   std::optional<double> damping_ratio, damping_ratio_deviation;
 

@@ -136,7 +136,7 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
 // or a parameter says otherwise.
 std::vector<Unknown> unknowns(const Known& known, double stiffness, const ModelSetting& setting) {
   constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1, usual_damping_ratio = 0.01;
-  const PriorBelief& prior = setting.prior;
+  const Prior& prior = setting.prior;
   stiffness = prior.stiffness.value_or(stiffness);
   const double omega = std::sqrt(stiffness / known.mass);
   const bool described = !std::holds_alternative<fem::Undamped>(setting.damping);

@@ -17,7 +17,7 @@ enum class Form { linear, logarithmic, bounded };
 
 const char* to_string(Form form);
 
-/// One parameter that a record is asked about, or that is believed to some accuracy.
+/// One parameter that a record is asked about, or that is known to some accuracy.
 struct Unknown {
   std::string name;        ///< key in results.json without its unit: "bending_stiffness", "damping_ratio_2"
   std::string unit;        ///< SI; empty when dimensionless

@@ -65,14 +65,12 @@ std::string curve_command(const Panel& panel, const Curve& curve, const std::str
     case CurveStyle::intervals:
       return fmt::format(
           "data skip 1 using {}:{}:{}:{} with xerrorbars linecolor rgb {} linewidth 1.4 pointtype {} "
-          "pointsize 0.8 "
-          "{}",
+          "pointsize 0.8 {}",
           x, y, y + 1, y + 2, colour, filled_marks[mark % 5], title);
     case CurveStyle::arrows:
       return fmt::format(
           "data skip 1 using {0}:{1}:(${2}-${0}):(0) with vectors head filled size screen 0.012,25 linecolor "
-          "rgb {3} "
-          "linewidth 1.6 {4}",
+          "rgb {3} linewidth 1.6 {4}",
           y + 1, y, y + 2, colour, title);
     case CurveStyle::band:
       break;

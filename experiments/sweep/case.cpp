@@ -84,7 +84,7 @@ Experiment experiment_of(const SweepSource& source, const SweepPlan& plan, std::
                          bool of_truth) {
   const ExperimentText& text = of_truth && source.truth ? *source.truth : source.config;
   std::vector<Override> overrides = overrides_of(plan, number, of_truth);
-  if (of_truth && source.truth)  // what is believed is not its business
+  if (of_truth && source.truth)  // what is assumed is not its business
     std::erase_if(overrides, [&](const Override& over) {
       return over.table != "simulation" &&
              std::none_of(plan.varied.begin(), plan.varied.end(),

@@ -29,8 +29,7 @@ SweepJob read_job(const std::string& text) {
   if (here != there)
     throw std::runtime_error(
         fmt::format("the sweep has the hash {} here; expected {}, with the same version of beamid and the "
-                    "same contents of "
-                    "the files that the experiment names",
+                    "same contents of the files that the experiment names",
                     here, there));
   return job;
 }

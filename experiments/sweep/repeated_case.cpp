@@ -31,7 +31,7 @@ void Repeats::Common::make_trial(std::uint64_t seed, filters::LaneTrial& made) c
       made.outputs.row(i) +=
           sensor_noise[i] * filters::normal_noise(samples, seed, static_cast<std::uint64_t>(i)).transpose();
   const double duration = clean.interval() * static_cast<double>(samples);
-  made.initial = start_belief(
+  made.initial = initial_estimate(
       model, start_directions(model, observations, start_scale(model, observations, made.outputs, duration)));
 }
 

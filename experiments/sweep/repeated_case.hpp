@@ -22,7 +22,7 @@ struct Repeats::Common {
   std::vector<std::optional<double>> truth, bound;
   double frequency_hz = 0.0;  ///< of the beam simulated
 
-  /// A record, and what is believed before it, in the memory of an earlier one.
+  /// A record, and what is assumed before it, in the memory of an earlier one.
   void make_trial(std::uint64_t seed, filters::LaneTrial& made) const;
   ComparedRun judged(const filters::Gaussian& last) const;
   /// By one filter and one discretisation, a run for every record.

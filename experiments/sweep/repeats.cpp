@@ -119,7 +119,7 @@ std::vector<std::optional<double>> Repeats::bounds(const Common& common) {
   const StartDirections directions =
       start_directions(model, common.observations,
                        start_scale(model, common.observations, clean.outputs, clean.time[clean.size() - 1]));
-  VectorXd state = start_belief(model, directions).mean;
+  VectorXd state = initial_estimate(model, directions).mean;
   for (std::size_t j = 0; j < found.size(); ++j) {
     if (!common.truth[j] || !std::isfinite(*common.truth[j])) return found;
     state[model.unknown_places[j]] = model.unknowns[j].to_state(*common.truth[j]);

@@ -17,7 +17,7 @@ namespace beamid::experiments {
 void require_once(const SweepSource& source, const SweepPlan& plan);
 
 /// The joint identification of the 2009 study [inverse2009], over and over: the record is simulated, the
-/// noise of its seed added, and the filter runs over it once, from what is believed of K and C
+/// noise of its seed added, and the filter runs over it once, from what is assumed of K and C
 /// ([[parameters]], else the beam as described) at rest anywhere within the record's amplitude. No first
 /// guess and no second pass, as compare() has them.
 ///

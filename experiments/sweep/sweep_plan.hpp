@@ -25,7 +25,7 @@ struct SweepPlan {
   int samples = 1;         ///< drawn for every point of the grid
   int seeds = 1;           ///< for every sample
   std::uint64_t seed = 1;  ///< of case 0's noise; case i has seed + i. Also of what is drawn
-  bool once = false;       ///< filter once from what is believed (repeats.hpp), not as `beamid compare` does
+  bool once = false;       ///< filter once from what is assumed (repeats.hpp), not as `beamid compare` does
 
   std::size_t points() const;  ///< of the grid; 1 without one
   std::size_t cases() const;

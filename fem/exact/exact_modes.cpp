@@ -97,8 +97,7 @@ std::optional<ExactModes> exact_modes(const Beam& beam, Index count, const Vecto
   if (!(start > 0.0 && std::isfinite(start)))
     throw std::invalid_argument(
         "exact modes: the beam's length, stiffness and mass lie too far apart for double precision; expected "
-        "all "
-        "of them in SI units");
+        "all of them in SI units");
   if (beam.axial_load > 0.0 && count_below(chains, rigid_count > 0 ? 1e-7 * start : 0.0) > rigid_count)
     throw std::runtime_error("exact modes: the beam is unstable, its axial load is beyond buckling");
 

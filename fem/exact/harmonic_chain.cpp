@@ -110,8 +110,7 @@ HarmonicChain::Sweep HarmonicChain::sweep(double omega, bool keep) const {
     if (!(waves < most_waves))
       throw std::invalid_argument(
           "exact modes: the beam's length, stiffness, mass and springs lie too far apart for double "
-          "precision; "
-          "expected all of them in SI units");
+          "precision; expected all of them in SI units");
     const int steps = std::max(1, static_cast<int>(std::ceil(waves)));
     const double step = piece.length / steps;
     const Matrix4d rate = piece.rate(omega, result.scale),

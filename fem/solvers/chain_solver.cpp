@@ -43,8 +43,7 @@ ChainSolver::ChainSolver(const StrainFactors& stiffness, StrainSweeps sweeps, co
   if (!small_.isInvertible())
     throw std::runtime_error(
         "the stiffness is singular in double precision: the mesh is too fine for so many supports and loops, "
-        "or an "
-        "axial load buckles the structure");
+        "or an axial load buckles the structure");
   constexpr Index worth_keeping = 4;  // columns as long as the chain
   if (system.rows() > worth_keeping) return;
   MatrixXd unit_coordinates(coordinates.size(), system.rows()), unit_forces(forces.size(), system.rows());

@@ -26,13 +26,13 @@ class RegisteredFilter final : public Filter {
   explicit RegisteredFilter(std::unique_ptr<DiscreteModel> model, const Arguments&... arguments)
       : Filter(std::move(model)), at_step_(model_), algorithm_(arguments...) {}
 
-  void reset(const Gaussian& belief) override {
-    check_belief(belief, model_);
-    algorithm_.mean = belief.mean;
+  void reset(const Gaussian& estimate) override {
+    check_estimate(estimate, model_);
+    algorithm_.mean = estimate.mean;
     if constexpr (carries_root)
-      set_root(belief);
+      set_root(estimate);
     else
-      algorithm_.covariance = with_covariance(belief).covariance;
+      algorithm_.covariance = with_covariance(estimate).covariance;
     formed_ = false;
   }
 
@@ -60,32 +60,32 @@ class RegisteredFilter final : public Filter {
     check();
   }
 
-  const Gaussian& belief() const override {
-    if (formed_) return belief_;
-    belief_.mean = algorithm_.mean;
+  const Gaussian& estimate() const override {
+    if (formed_) return estimate_;
+    estimate_.mean = algorithm_.mean;
     if constexpr (carries_root) {
-      belief_.factor = algorithm_.root;
-      belief_.covariance = covariance_of(algorithm_.root);
+      estimate_.factor = algorithm_.root;
+      estimate_.covariance = covariance_of(algorithm_.root);
     } else {
-      belief_.covariance = algorithm_.covariance;
+      estimate_.covariance = algorithm_.covariance;
     }
     formed_ = true;
-    return belief_;
+    return estimate_;
   }
 
  private:
   static constexpr bool carries_root = std::is_same_v<Algorithm, DynamicSquareRootKalman>;
 
-  void set_root(const Gaussian& belief) {
-    if (belief.factor.size() == 0) return lower_root(belief.covariance, algorithm_.root);
-    const Eigen::Index n = belief.factor.rows(), r = belief.factor.cols();
+  void set_root(const Gaussian& estimate) {
+    if (estimate.factor.size() == 0) return lower_root(estimate.covariance, algorithm_.root);
+    const Eigen::Index n = estimate.factor.rows(), r = estimate.factor.cols();
     Eigen::MatrixXd array = Eigen::MatrixXd::Zero(std::max(n, r), n);
-    array.topRows(r) = belief.factor.transpose();
+    array.topRows(r) = estimate.factor.transpose();
     triangularise(array, algorithm_.root);
   }
   void check() const {
     if constexpr (carries_root) {
-      if (!algorithm_.mean.allFinite() || !algorithm_.root.allFinite()) check_finite(belief());
+      if (!algorithm_.mean.allFinite() || !algorithm_.root.allFinite()) check_finite(estimate());
     } else {
       check_finite(algorithm_.mean, algorithm_.covariance);
     }
@@ -93,7 +93,7 @@ class RegisteredFilter final : public Filter {
 
   Observed at_step_;
   Algorithm algorithm_;
-  mutable Gaussian belief_;
+  mutable Gaussian estimate_;
   mutable bool formed_ = false;
 };
 

@@ -45,7 +45,7 @@ class SquareRootKalman {
     triangularise(move_, root);
   }
 
-  /// The innovation of y (p), and what it makes of the root; the belief stays as it is.
+  /// The innovation of y (p), and what it makes of the root; the estimate stays as it is.
   template <class Model>
   void look(Model& model, const Vector<Scalar, P>& y) {
     draw_points(mean, root, spread_, points_);

@@ -113,7 +113,7 @@ class TrialGroupRun {
     for (int i = 0; i < P; ++i) product_.multiply(select(alive_, seen.root(i, i), Scalar(1.0)));
   }
 
-  // A lane that failed stays at its last good belief, and marks when.
+  // A lane that failed stays at its last good estimate, and marks when.
   void keep_dead(std::int64_t k) {
     for (int i = 0; i < 4; ++i) {
       filter_.mean[i] = select(alive_, filter_.mean[i], mean_[i]);

@@ -39,7 +39,7 @@ class UnscentedKalman {
     mirror(covariance);
   }
 
-  /// The innovation of y (p) and its gain; the belief stays as it is.
+  /// The innovation of y (p) and its gain; the estimate stays as it is.
   template <class Model>
   void look(Model& model, const Vector<Scalar, P>& y) {
     draw();

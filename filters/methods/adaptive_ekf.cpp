@@ -31,8 +31,8 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
       throw std::invalid_argument("adaptive_ekf: adapt is '" + adapt + "'; expected output, process or both");
   }
 
-  void reset(const Gaussian& belief) override {
-    belief_ = as_matrix(belief, model_);
+  void reset(const Gaussian& estimate) override {
+    estimate_ = as_matrix(estimate, model_);
     model_.observe_all();
     told_ = noise_ = model_.output_noise();
     take_process_noise();
@@ -41,9 +41,9 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
 
   void predict(const VectorXd& input) override {
     if (process_noise_changes_ != model_.process_noise_changes()) take_process_noise();
-    model_.linearised_transition(belief_.mean, input, next_, tangent_);
-    belief_.mean.swap(next_);
-    step_.predict(belief_, tangent_, process_);
+    model_.linearised_transition(estimate_.mean, input, next_, tangent_);
+    estimate_.mean.swap(next_);
+    step_.predict(estimate_, tangent_, process_);
   }
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
@@ -52,19 +52,19 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
       replace_block(noise_, seen, model_.output_noise());
       told_(seen, seen) = model_.output_noise();
     }
-    model_.output(belief_.mean, input, expected_);
-    model_.output_jacobian(belief_.mean, input, sensor_);
+    model_.output(estimate_.mean, input, expected_);
+    model_.output_jacobian(estimate_.mean, input, sensor_);
     correction_.innovation = output - expected_;
     const MatrixXd noise = noise_(seen, seen);
-    step_.correct(belief_, sensor_, noise, correction_);
+    step_.correct(estimate_, sensor_, noise, correction_);
 
     readings_ += 1.0;
     const double share = 1.0 / std::min(window_, 0.2 * window_ + readings_);
     if (adapt_r_) {
-      model_.output(belief_.mean, input, expected_);
+      model_.output(estimate_.mean, input, expected_);
       const VectorXd residual = output - expected_;
       const MatrixXd said =
-          residual * residual.transpose() + sensor_ * belief_.covariance * sensor_.transpose();
+          residual * residual.transpose() + sensor_ * estimate_.covariance * sensor_.transpose();
       MatrixXd block = (1.0 - share) * noise + share * said;
       // Readings without noise: R must not vanish, lest S become singular.
       block.diagonal() = block.diagonal().cwiseMax(smallest_share_ * told_.diagonal()(seen));
@@ -77,7 +77,7 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
     }
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
   std::vector<std::string> remarks() const override {
     std::vector<std::string> result;
@@ -130,7 +130,7 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
   double window_, readings_ = 0.0;
   bool adapt_r_, adapt_q_;
   int process_noise_changes_ = 0;
-  Gaussian belief_;
+  Gaussian estimate_;
   LinearisedStep step_;
   VectorXd next_, expected_;
   MatrixXd told_, noise_, process_, tangent_, sensor_;  // noise_: R (p x p) as estimated, told_: as given

@@ -31,22 +31,22 @@ class DualExtendedKalmanFilter final : public Filter {
         coupled_(coupled),
         stated_(state_entries("dual_ekf: parameters", parameters, model_.state_labels().size())) {}
 
-  void reset(const Gaussian& belief) override {
-    belief_ = as_matrix(belief, model_);
+  void reset(const Gaussian& estimate) override {
+    estimate_ = as_matrix(estimate, model_);
     parameter_ = stated_;
     split_ = !stated_.empty();
     if (split_) split();
   }
 
   void predict(const VectorXd& input) override {
-    model_.linearised_transition(belief_.mean, input, next_, tangent_);
+    model_.linearised_transition(estimate_.mean, input, next_, tangent_);
     if (!split_) find_parameters();
-    belief_.mean.swap(next_);
+    estimate_.mean.swap(next_);
     sensitivity_ = tangent_(state_, state_) * sensitivity_ + tangent_(state_, parameter_);
     const MatrixXd& q = model_.process_noise();
     const bool noisy = q.size() > 0;
-    states_.mean = belief_.mean(state_);
-    parameters_.mean = belief_.mean(parameter_);
+    states_.mean = estimate_.mean(state_);
+    parameters_.mean = estimate_.mean(parameter_);
     step_.predict(states_, tangent_(state_, state_), noisy ? MatrixXd(q(state_, state_)) : MatrixXd());
     if (!noisy || (q(parameter_, Eigen::all).isZero(0.0))) return join();
     if (!coupled_) {
@@ -54,18 +54,18 @@ class DualExtendedKalmanFilter final : public Filter {
       return join();
     }
     join();  // parameters that wander: W is another one
-    belief_.covariance(parameter_, parameter_) += q(parameter_, parameter_);
-    belief_.covariance(parameter_, state_) += q(parameter_, state_);
-    belief_.covariance(state_, parameter_) += q(state_, parameter_);
+    estimate_.covariance(parameter_, parameter_) += q(parameter_, parameter_);
+    estimate_.covariance(parameter_, state_) += q(parameter_, state_);
+    estimate_.covariance(state_, parameter_) += q(state_, parameter_);
     split();
   }
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
-    model_.output(belief_.mean, input, expected_);
-    model_.output_jacobian(belief_.mean, input, sensor_);
+    model_.output(estimate_.mean, input, expected_);
+    model_.output_jacobian(estimate_.mean, input, sensor_);
     correction_.innovation = output - expected_;
     if (!split_) {  // nothing has moved yet: which are the parameters is not known
-      step_.correct(belief_, sensor_, model_.output_noise(), correction_);
+      step_.correct(estimate_, sensor_, model_.output_noise(), correction_);
       return;
     }
     const MatrixXd state_sensor = sensor_(Eigen::all, state_), other = sensor_(Eigen::all, parameter_);
@@ -77,10 +77,10 @@ class DualExtendedKalmanFilter final : public Filter {
     step_.correct(parameters_, through, given_parameters.innovation_covariance, correction_);
     if (coupled_) states_.mean.noalias() += sensitivity_ * (step_.gain() * correction_.innovation);
     join();
-    check_finite(belief_);
+    check_finite(estimate_);
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
   std::vector<std::string> remarks() const override {
     std::string names;
@@ -93,29 +93,29 @@ class DualExtendedKalmanFilter final : public Filter {
  private:
   // Entries that the transition leaves as they are, whatever the others.
   void find_parameters() {
-    const Index n = belief_.mean.size();
+    const Index n = estimate_.mean.size();
     for (Index i = 0; i < n; ++i) {
       VectorXd row = tangent_.row(i);
       row[i] -= 1.0;
       // The differences of a constant divide its rounding by their step.
       const bool constant = row.cwiseAbs().maxCoeff() <= 1e-9;
-      if (constant && next_[i] == belief_.mean[i]) parameter_.push_back(i);
+      if (constant && next_[i] == estimate_.mean[i]) parameter_.push_back(i);
     }
     split_ = true;
     split();
   }
 
   void split() {
-    const Index n = belief_.mean.size();
+    const Index n = estimate_.mean.size();
     state_.clear();
     for (Index i = 0; i < n; ++i)
       if (std::find(parameter_.begin(), parameter_.end(), i) == parameter_.end()) state_.push_back(i);
-    parameters_ = {belief_.mean(parameter_), belief_.covariance(parameter_, parameter_)};
-    states_ = {belief_.mean(state_), belief_.covariance(state_, state_)};
+    parameters_ = {estimate_.mean(parameter_), estimate_.covariance(parameter_, parameter_)};
+    states_ = {estimate_.mean(state_), estimate_.covariance(state_, state_)};
     sensitivity_.setZero(states_.mean.size(), parameters_.mean.size());
     if (!coupled_) return;
     // W = P_xt P_t^-1; where a parameter is known exactly it is not correlated with anything.
-    const MatrixXd cross = belief_.covariance(state_, parameter_);
+    const MatrixXd cross = estimate_.covariance(state_, parameter_);
     if (parameter_.empty() || cross.isZero(0.0)) return;
     const Eigen::LDLT<MatrixXd> factor(parameters_.covariance);
     sensitivity_ = factor.solve(cross.transpose()).transpose();
@@ -124,23 +124,23 @@ class DualExtendedKalmanFilter final : public Filter {
   }
 
   void join() {
-    belief_.mean(state_) = states_.mean;
-    belief_.mean(parameter_) = parameters_.mean;
-    belief_.covariance(parameter_, parameter_) = parameters_.covariance;
+    estimate_.mean(state_) = states_.mean;
+    estimate_.mean(parameter_) = parameters_.mean;
+    estimate_.covariance(parameter_, parameter_) = parameters_.covariance;
     MatrixXd cross = MatrixXd::Zero(states_.mean.size(), parameters_.mean.size()), all = states_.covariance;
     if (coupled_) {
       cross = sensitivity_ * parameters_.covariance;
       all.noalias() += cross * sensitivity_.transpose();
       symmetrise(all);
     }
-    belief_.covariance(state_, state_) = all;
-    belief_.covariance(state_, parameter_) = cross;
-    belief_.covariance(parameter_, state_) = cross.transpose();
+    estimate_.covariance(state_, state_) = all;
+    estimate_.covariance(state_, parameter_) = cross;
+    estimate_.covariance(parameter_, state_) = cross.transpose();
   }
 
   bool coupled_, split_ = false;
   std::vector<Index> stated_, state_, parameter_;
-  Gaussian belief_, states_, parameters_;
+  Gaussian estimate_, states_, parameters_;
   LinearisedStep step_;
   VectorXd next_, expected_;
   MatrixXd tangent_, sensor_, sensitivity_;

@@ -29,20 +29,20 @@ class DualKalmanFilter final : public Filter {
       if (std::find(unknown_.begin(), unknown_.end(), i) == unknown_.end()) rest_.push_back(i);
   }
 
-  void reset(const Gaussian& belief) override {
-    belief_ = as_matrix(belief, model_);
-    states_ = {{}, belief_.covariance(rest_, rest_)};
-    inputs_ = {{}, belief_.covariance(unknown_, unknown_)};
+  void reset(const Gaussian& estimate) override {
+    estimate_ = as_matrix(estimate, model_);
+    states_ = {{}, estimate_.covariance(rest_, rest_)};
+    inputs_ = {{}, estimate_.covariance(unknown_, unknown_)};
     join();
   }
 
   void predict(const VectorXd& input) override {
-    model_.linearised_transition(belief_.mean, input, next_, tangent_);
-    belief_.mean.swap(next_);
+    model_.linearised_transition(estimate_.mean, input, next_, tangent_);
+    estimate_.mean.swap(next_);
     const MatrixXd& q = model_.process_noise();
     const bool noisy = q.size() > 0;
-    states_.mean = belief_.mean(rest_);
-    inputs_.mean = belief_.mean(unknown_);
+    states_.mean = estimate_.mean(rest_);
+    inputs_.mean = estimate_.mean(unknown_);
     MatrixXd moved = MatrixXd::Zero(states_.mean.size(), states_.mean.size());
     if (coupled_) {
       const MatrixXd through = tangent_(rest_, unknown_);
@@ -56,8 +56,8 @@ class DualKalmanFilter final : public Filter {
   }
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
-    model_.output(belief_.mean, input, expected_);
-    model_.output_jacobian(belief_.mean, input, sensor_);
+    model_.output(estimate_.mean, input, expected_);
+    model_.output_jacobian(estimate_.mean, input, sensor_);
     const MatrixXd noise = model_.output_noise();
     const MatrixXd direct = sensor_(Eigen::all, unknown_), through = sensor_(Eigen::all, rest_);
     seen_ = seen_ || !direct.isZero(0.0);
@@ -67,15 +67,15 @@ class DualKalmanFilter final : public Filter {
     if (!unknown_.empty()) {
       Correction of_inputs;
       of_inputs.innovation = first;
-      inputs_.mean = belief_.mean(unknown_);
+      inputs_.mean = estimate_.mean(unknown_);
       step_.correct(inputs_, direct, coupled_ ? MatrixXd(shown + noise) : noise, of_inputs);
-      belief_.mean(unknown_) = inputs_.mean;
-      model_.output(belief_.mean, input, expected_);
+      estimate_.mean(unknown_) = inputs_.mean;
+      model_.output(estimate_.mean, input, expected_);
     }
-    states_.mean = belief_.mean(rest_);
+    states_.mean = estimate_.mean(rest_);
     correction_.innovation = output - expected_;
     step_.correct(states_, through, noise, correction_);
-    belief_.mean(rest_) = states_.mean;
+    estimate_.mean(rest_) = states_.mean;
     join();
     if (unknown_.empty()) return;
     correction_.innovation = first;  // what the reading said before either filter took it in
@@ -84,7 +84,7 @@ class DualKalmanFilter final : public Filter {
     weigh(correction_, cross, factor);
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
   std::vector<std::string> remarks() const override {
     if (unknown_.empty()) return {"no unknown input: this is the extended Kalman filter"};
@@ -96,13 +96,13 @@ class DualKalmanFilter final : public Filter {
 
  private:
   void join() {
-    belief_.covariance.setZero(belief_.mean.size(), belief_.mean.size());
-    belief_.covariance(rest_, rest_) = states_.covariance;
-    belief_.covariance(unknown_, unknown_) = inputs_.covariance;
+    estimate_.covariance.setZero(estimate_.mean.size(), estimate_.mean.size());
+    estimate_.covariance(rest_, rest_) = states_.covariance;
+    estimate_.covariance(unknown_, unknown_) = inputs_.covariance;
   }
 
   std::vector<Index> unknown_, rest_;
-  Gaussian belief_, states_, inputs_;
+  Gaussian estimate_, states_, inputs_;
   bool coupled_, seen_ = false;
   LinearisedStep step_;
   VectorXd next_, expected_;

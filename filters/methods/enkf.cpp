@@ -1,5 +1,5 @@
-// Ensemble Kalman filter [evensen2003]: N members z_i, the belief their mean and sample covariance. With the
-// anomalies A of the members and B of their outputs h(z_i), both over sqrt(N - 1),
+// Ensemble Kalman filter [evensen2003]: N members z_i, the estimate their mean and sample covariance. With
+// the anomalies A of the members and B of their outputs h(z_i), both over sqrt(N - 1),
 //
 //     predict      z_i = F(z_i, u) + w_i,   then anomalies times the inflation
 //     S = B B^T + R,   G = A B^T S^-1
@@ -41,19 +41,19 @@ class EnsembleKalmanFilter final : public Filter {
                                   "; expected at least 1");
   }
 
-  void reset(const Gaussian& belief) override {
-    check_belief(belief, model_);
+  void reset(const Gaussian& estimate) override {
+    check_estimate(estimate, model_);
     random_ = RandomStream(static_cast<std::uint64_t>(seed_));
     plain_draws_ = false;
-    const MatrixXd root = factor_of(belief);
-    belief_.mean = belief.mean;
+    const MatrixXd root = factor_of(estimate);
+    estimate_.mean = estimate.mean;
     anomalies_ = root * draw(root.cols(), MatrixXd(0, members_));
     form();
   }
 
   void predict(const VectorXd& input) override {
     const auto f = [&](const VectorXd& z, VectorXd& value) { model_.transition(z, input, value); };
-    spread(f, belief_.mean, anomalies_);
+    spread(f, estimate_.mean, anomalies_);
     const MatrixXd& q = model_.process_noise();
     if (q.size() > 0 && !q.isZero(0.0)) {
       const MatrixXd root = factor_of(q);
@@ -72,7 +72,7 @@ class EnsembleKalmanFilter final : public Filter {
     correction_.innovation_covariance.noalias() = scale * seen_ * seen_.transpose();
     correction_.innovation_covariance += noise;
     const MatrixXd gain = weigh(correction_, scale * anomalies_ * seen_.transpose(), factor_);
-    belief_.mean.noalias() += gain * correction_.innovation;
+    estimate_.mean.noalias() += gain * correction_.innovation;
     if (transform_) {
       turn(noise);
     } else {
@@ -83,7 +83,7 @@ class EnsembleKalmanFilter final : public Filter {
     form();
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
   std::vector<std::string> remarks() const override {
     if (!plain_draws_) return {};
@@ -105,7 +105,7 @@ class EnsembleKalmanFilter final : public Filter {
   void spread(const Function& f, VectorXd& mean, MatrixXd& anomalies) {
     MatrixXd values;
     for (Index i = 0; i < members_; ++i) {
-      point_ = belief_.mean + anomalies_.col(i);
+      point_ = estimate_.mean + anomalies_.col(i);
       f(point_, value_);
       if (i == 0) values.resize(value_.size(), members_);
       values.col(i) = value_;
@@ -132,15 +132,15 @@ class EnsembleKalmanFilter final : public Filter {
   }
 
   void form() {
-    belief_.covariance = covariance_of(anomalies_ / std::sqrt(static_cast<double>(members_ - 1)));
-    check_finite(belief_);
+    estimate_.covariance = covariance_of(anomalies_ / std::sqrt(static_cast<double>(members_ - 1)));
+    check_finite(estimate_);
   }
 
   Index members_, seed_;
   double inflation_;
   bool transform_, plain_draws_ = false;
   RandomStream random_;
-  Gaussian belief_;
+  Gaussian estimate_;
   VectorXd point_, value_, expected_;
   MatrixXd anomalies_, seen_;  // without 1 / sqrt(N - 1)
   Eigen::LLT<MatrixXd> factor_, noise_factor_;

@@ -42,48 +42,48 @@ class UnbiasedMinimumVarianceFilter final : public Filter {
   UnbiasedMinimumVarianceFilter(std::unique_ptr<DiscreteModel> model, const std::vector<double>& inputs)
       : Filter(std::move(model)), unknown_(find_unknown_inputs("gillijns_de_moor", model_, inputs)) {}
 
-  void reset(const Gaussian& belief) override {
-    belief_ = as_matrix(belief, model_);
-    given_ = without(belief_.covariance);
+  void reset(const Gaussian& estimate) override {
+    estimate_ = as_matrix(estimate, model_);
+    given_ = without(estimate_.covariance);
     directions_ = units();
     late_ = false;
   }
 
   void predict(const VectorXd& input) override {
     if (!unknown_.empty()) {
-      model_.output_jacobian(belief_.mean, input, sensor_);
+      model_.output_jacobian(estimate_.mean, input, sensor_);
       late_ = !has_full_column_rank(sensor_(Eigen::all, unknown_));
     }
-    model_.linearised_transition(belief_.mean, input, next_, tangent_);
-    belief_.mean.swap(next_);
+    model_.linearised_transition(estimate_.mean, input, next_, tangent_);
+    estimate_.mean.swap(next_);
     MatrixXd q = model_.process_noise();
-    const Index n = belief_.mean.size();
+    const Index n = estimate_.mean.size();
     if (q.size() == 0) q.setZero(n, n);
     if (late_) {
-      given_ = without(tangent_ * without(belief_.covariance) * tangent_.transpose() + q);
+      given_ = without(tangent_ * without(estimate_.covariance) * tangent_.transpose() + q);
       directions_ = tangent_(Eigen::all, unknown_);
     } else {
       directions_ = units() + along(q);
       const MatrixXd own = tangent_ - directions_ * tangent_(unknown_, Eigen::all);
       given_ =
-          without(own * belief_.covariance * own.transpose() + q - directions_ * q(unknown_, Eigen::all));
+          without(own * estimate_.covariance * own.transpose() + q - directions_ * q(unknown_, Eigen::all));
     }
-    step_.predict(belief_, tangent_, model_.process_noise());
+    step_.predict(estimate_, tangent_, model_.process_noise());
   }
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
-    model_.output(belief_.mean, input, expected_);
-    model_.output_jacobian(belief_.mean, input, sensor_);
+    model_.output(estimate_.mean, input, expected_);
+    model_.output_jacobian(estimate_.mean, input, sensor_);
     correction_.innovation = output - expected_;
     const MatrixXd& noise = model_.output_noise();
     const MatrixXd shown = sensor_ * directions_;
     if (unknown_.empty() || !has_full_column_rank(shown)) {
       ++unseen_;
-      step_.correct(belief_, sensor_, noise, correction_);
+      step_.correct(estimate_, sensor_, noise, correction_);
       return;
     }
     // Judged as if the input were the model's process: nothing else says how far a reading may be off.
-    const MatrixXd cross = belief_.covariance * sensor_.transpose();
+    const MatrixXd cross = estimate_.covariance * sensor_.transpose();
     correction_.innovation_covariance = sensor_ * cross + noise;
     weigh(correction_, cross, factor_);
 
@@ -95,17 +95,17 @@ class UnbiasedMinimumVarianceFilter final : public Filter {
     const MatrixXd spread =
         (white.transpose() * white).ldlt().solve(MatrixXd::Identity(white.cols(), white.cols()));
     const VectorXd moved = spread * white.transpose() * factor_.matrixL().solve(correction_.innovation);
-    belief_.mean += directions_ * moved + gain * (correction_.innovation - shown * moved);
+    estimate_.mean += directions_ * moved + gain * (correction_.innovation - shown * moved);
     const MatrixXd open = directions_ - gain * shown;
     MatrixXd kept = -gain * sensor_;
     kept.diagonal().array() += 1.0;
-    belief_.covariance = kept * given_ * kept.transpose() + gain * noise * gain.transpose();
-    belief_.covariance += open * spread * open.transpose();
-    symmetrise(belief_.covariance);
-    check_finite(belief_);
+    estimate_.covariance = kept * given_ * kept.transpose() + gain * noise * gain.transpose();
+    estimate_.covariance += open * spread * open.transpose();
+    symmetrise(estimate_.covariance);
+    check_finite(estimate_);
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
   std::vector<std::string> remarks() const override {
     std::vector<std::string> all;
@@ -134,12 +134,12 @@ class UnbiasedMinimumVarianceFilter final : public Filter {
     return g;
   }
   MatrixXd units() const {
-    const Index n = belief_.mean.size();
+    const Index n = estimate_.mean.size();
     return MatrixXd::Identity(n, n)(Eigen::all, unknown_);
   }
 
   std::vector<Index> unknown_;
-  Gaussian belief_;
+  Gaussian estimate_;
   MatrixXd given_, directions_;  // P of z where the inputs are known (n x n), G (n x m)
   bool late_ = false;
   Index unseen_ = 0;  // samples

@@ -31,36 +31,36 @@ class IteratedExtendedKalmanFilter final : public Filter {
                                   "; expected more than 0");
   }
 
-  void reset(const Gaussian& belief) override {
-    belief_ = as_matrix(belief, model_);
+  void reset(const Gaussian& estimate) override {
+    estimate_ = as_matrix(estimate, model_);
     unfinished_ = corrections_ = 0;
   }
 
   void predict(const VectorXd& input) override {
-    model_.linearised_transition(belief_.mean, input, next_, tangent_);
-    belief_.mean.swap(next_);
-    step_.predict(belief_, tangent_, model_.process_noise());
+    model_.linearised_transition(estimate_.mean, input, next_, tangent_);
+    estimate_.mean.swap(next_);
+    step_.predict(estimate_, tangent_, model_.process_noise());
   }
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
-    const VectorXd predicted = belief_.mean;
+    const VectorXd predicted = estimate_.mean;
     model_.output(predicted, input, expected_);
     model_.output_jacobian(predicted, input, sensor_);
     const VectorXd innovation = output - expected_;
     VectorXd estimate = minimise(output, input);
     // Weighs the innovation at the prediction, then gives the covariance at the minimum.
     Correction linear;
-    Gaussian moved = belief_;
+    Gaussian moved = estimate_;
     linear.innovation = innovation;
     step_.correct(moved, sensor_, model_.output_noise(), linear);
     correction_ = linear;
     model_.output_jacobian(estimate, input, sensor_);
-    step_.correct(belief_, sensor_, model_.output_noise(), linear);
-    belief_.mean.swap(estimate);
-    check_finite(belief_);
+    step_.correct(estimate_, sensor_, model_.output_noise(), linear);
+    estimate_.mean.swap(estimate);
+    check_finite(estimate_);
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
   std::vector<std::string> remarks() const override {
     if (unfinished_ == 0) return {};
@@ -71,14 +71,14 @@ class IteratedExtendedKalmanFilter final : public Filter {
  private:
   // m + L e at the minimum of V.
   VectorXd minimise(const VectorXd& output, const VectorXd& input) {
-    const MatrixXd root = square_root(belief_.covariance, covariance_factor_);
+    const MatrixXd root = square_root(estimate_.covariance, covariance_factor_);
     const MatrixXd& noise = model_.output_noise();
     noise_factor_.compute(noise);
     const bool noisy = noise_factor_.info() == Eigen::Success;  // else V is not finite: no line search
-    VectorXd point = belief_.mean, coefficients = VectorXd::Zero(root.cols());
+    VectorXd point = estimate_.mean, coefficients = VectorXd::Zero(root.cols());
     ++corrections_;
     const auto cost = [&](const VectorXd& e) {
-      model_.output(belief_.mean + root * e, input, expected_);
+      model_.output(estimate_.mean + root * e, input, expected_);
       const VectorXd residual = output - expected_;
       return e.squaredNorm() + noise_factor_.matrixL().solve(residual).squaredNorm();
     };
@@ -105,7 +105,7 @@ class IteratedExtendedKalmanFilter final : public Filter {
       }
       if (!lower) return point;  // the minimum, to rounding
       coefficients += step;
-      point = belief_.mean + root * coefficients;
+      point = estimate_.mean + root * coefficients;
       if (converged) return point;
     }
     ++unfinished_;
@@ -115,7 +115,7 @@ class IteratedExtendedKalmanFilter final : public Filter {
   Index iterations_;
   double tolerance_;
   Index unfinished_ = 0, corrections_ = 0;
-  Gaussian belief_;
+  Gaussian estimate_;
   LinearisedStep step_;
   VectorXd next_, expected_;
   MatrixXd tangent_, sensor_, jacobian_;

@@ -40,9 +40,9 @@ class KalmanFilter final : public Filter {
  public:
   explicit KalmanFilter(std::unique_ptr<DiscreteModel> model) : Filter(std::move(model)) {}
 
-  void reset(const Gaussian& belief) override {
-    check_belief(belief, model_);
-    belief_ = {belief.mean, {}, factor_of(belief)};
+  void reset(const Gaussian& estimate) override {
+    check_estimate(estimate, model_);
+    estimate_ = {estimate.mean, {}, factor_of(estimate)};
     transition_.forget();
     sensor_.forget();
     formed_ = false;
@@ -57,10 +57,10 @@ class KalmanFilter final : public Filter {
     require_constant(tangent_at, transition_, "transition");
     const MatrixXd& q = model_.process_noise();
     const MatrixXd noise = q.size() > 0 && !q.isZero(0.0) ? factor_of(q) : MatrixXd(next_.size(), 0);
-    MatrixXd wide(next_.size(), belief_.factor.cols() + noise.cols());
-    wide.leftCols(belief_.factor.cols()).noalias() = transition_.value * belief_.factor;
+    MatrixXd wide(next_.size(), estimate_.factor.cols() + noise.cols());
+    wide.leftCols(estimate_.factor.cols()).noalias() = transition_.value * estimate_.factor;
     wide.rightCols(noise.cols()) = noise;
-    belief_ = {next_, {}, triangle_of(wide)};
+    estimate_ = {next_, {}, triangle_of(wide)};
     formed_ = false;
     check();
   }
@@ -74,27 +74,27 @@ class KalmanFilter final : public Filter {
     observed_ = model_.observed();
     require_constant(sensor_at, sensor_, "output");
 
-    const Index n = belief_.mean.size(), p = output.size(), r = belief_.factor.cols();
+    const Index n = estimate_.mean.size(), p = output.size(), r = estimate_.factor.cols();
     const MatrixXd noise = factor_of(model_.output_noise());
     MatrixXd wide = MatrixXd::Zero(p + n, r + noise.cols());
-    wide.topLeftCorner(p, r).noalias() = sensor_.value * belief_.factor;
+    wide.topLeftCorner(p, r).noalias() = sensor_.value * estimate_.factor;
     wide.topRightCorner(p, noise.cols()) = noise;
-    wide.bottomLeftCorner(n, r) = belief_.factor;
+    wide.bottomLeftCorner(n, r) = estimate_.factor;
     const MatrixXd after = triangle_of(wide);
     const auto root = after.topLeftCorner(p, p).triangularView<Eigen::Lower>();
     correction_.innovation = output - next_;
     correction_.innovation_covariance = covariance_of(MatrixXd(root));
     weigh(correction_, MatrixXd(0, p), factor_);
-    belief_.mean.noalias() += after.bottomLeftCorner(n, p) * root.solve(correction_.innovation);
-    belief_.factor = after.bottomRightCorner(n, n);
+    estimate_.mean.noalias() += after.bottomLeftCorner(n, p) * root.solve(correction_.innovation);
+    estimate_.factor = after.bottomRightCorner(n, n);
     formed_ = false;
     check();
   }
 
-  const Gaussian& belief() const override {
-    if (!formed_) belief_.covariance = covariance_of(belief_.factor);
+  const Gaussian& estimate() const override {
+    if (!formed_) estimate_.covariance = covariance_of(estimate_.factor);
     formed_ = true;
-    return belief_;
+    return estimate_;
   }
 
  private:
@@ -113,12 +113,12 @@ class KalmanFilter final : public Filter {
       jacobian.rounding = 1e-8 * terms * state.cwiseAbs().cwiseMax(1e-3).cwiseInverse().transpose();
     };
     if (jacobian.known.size() == 0) {
-      const VectorXd deviation = belief_.deviations();
-      evaluate(belief_.mean + (deviation.array() > 0.0).select(deviation, 1.0));
+      const VectorXd deviation = estimate_.deviations();
+      evaluate(estimate_.mean + (deviation.array() > 0.0).select(deviation, 1.0));
       jacobian.known = jacobian.value;
       jacobian.known_rounding = jacobian.rounding;
     }
-    evaluate(belief_.mean);
+    evaluate(estimate_.mean);
     for (Index j = 0; j < jacobian.value.cols(); ++j)
       for (Index i = 0; i < jacobian.value.rows(); ++i) {
         const double now = jacobian.value(i, j), before = jacobian.known(i, j);
@@ -134,11 +134,11 @@ class KalmanFilter final : public Filter {
 
   void check() const {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    if (!belief_.mean.allFinite()) throw FilterFailure("the mean is not finite", unknown);
-    if (!belief_.factor.allFinite()) throw FilterFailure("the covariance is not finite", unknown);
+    if (!estimate_.mean.allFinite()) throw FilterFailure("the mean is not finite", unknown);
+    if (!estimate_.factor.allFinite()) throw FilterFailure("the covariance is not finite", unknown);
   }
 
-  mutable Gaussian belief_;
+  mutable Gaussian estimate_;
   mutable bool formed_ = false;
   double interval_ = 0.0;
   std::vector<Index> observed_;

@@ -9,7 +9,7 @@
 //     mean                    m += S (T Z^T (Z Z^T + R)^-1 (y - h(m)))
 //     factor                  T := T M, output after output of L^-1 y     [carlson1973], triangular_root.hpp
 //
-// S T itself is formed only when the belief is asked for, or when the directions have become so much alike
+// S T itself is formed only when the estimate is asked for, or when the directions have become so much alike
 // that what T makes of them cancels (docs/theory/low_rank.md).
 //
 // Process noise Q adds a square root of Q as further columns; RankLimit cuts them back.
@@ -32,12 +32,12 @@ class LowRankExtendedKalmanFilter final : public Filter {
   LowRankExtendedKalmanFilter(std::unique_ptr<DiscreteModel> model, double rank)
       : Filter(std::move(model)), limit_(rank, "low_rank_ekf") {}
 
-  void reset(const Gaussian& belief) override {
-    check_belief(belief, model_);
-    with_covariance_ = belief.covariance.size() > 0;
-    belief_ = {belief.mean, {}};
+  void reset(const Gaussian& estimate) override {
+    check_estimate(estimate, model_);
+    with_covariance_ = estimate.covariance.size() > 0;
+    estimate_ = {estimate.mean, {}};
     corrections_ = 0;
-    directions_ = factor_of(belief);
+    directions_ = factor_of(estimate);
     limit_.start(directions_);
     restart();
     factorise_process_noise();
@@ -45,8 +45,8 @@ class LowRankExtendedKalmanFilter final : public Filter {
 
   void predict(const VectorXd& input) override {
     if (process_noise_changes_ != model_.process_noise_changes()) factorise_process_noise();
-    model_.move(belief_.mean, input, next_, directions_);
-    belief_.mean.swap(next_);
+    model_.move(estimate_.mean, input, next_, directions_);
+    estimate_.mean.swap(next_);
     formed_ = false;
     if (process_.size() > 0) {
       MatrixXd wide(directions_.rows(), directions_.cols() + process_.cols());
@@ -59,8 +59,8 @@ class LowRankExtendedKalmanFilter final : public Filter {
   }
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
-    model_.output(belief_.mean, input, expected_);
-    model_.output_jacobian(belief_.mean, input, sensor_);
+    model_.output(estimate_.mean, input, expected_);
+    model_.output_jacobian(estimate_.mean, input, sensor_);
     correction_.innovation = output - expected_;
     seen_.noalias() = sensor_ * directions_;
     weighed_.noalias() = seen_ * triangle();
@@ -69,21 +69,21 @@ class LowRankExtendedKalmanFilter final : public Filter {
     cross_.noalias() = triangle() * weighed_.transpose();
     gain_ = weigh(correction_, cross_, innovation_factor_);
     step_.noalias() = gain_ * correction_.innovation;
-    belief_.mean.noalias() += directions_ * step_;
+    estimate_.mean.noalias() += directions_ * step_;
     take_in_outputs();
     formed_ = false;
     check();
   }
 
-  const Gaussian& belief() const override {
-    if (formed_) return belief_;
-    belief_.factor = formed_factor();
-    if (with_covariance_) belief_.covariance = covariance_of(belief_.factor);
+  const Gaussian& estimate() const override {
+    if (formed_) return estimate_;
+    estimate_.factor = formed_factor();
+    if (with_covariance_) estimate_.covariance = covariance_of(estimate_.factor);
     formed_ = true;
-    return belief_;
+    return estimate_;
   }
   Gaussian marginal(const std::vector<Index>& entries) const override {
-    return {belief_.mean(entries), {}, directions_(entries, Eigen::all) * root_.matrix()};
+    return {estimate_.mean(entries), {}, directions_(entries, Eigen::all) * root_.matrix()};
   }
   std::vector<std::string> remarks() const override { return limit_.remarks(); }
 
@@ -124,7 +124,7 @@ class LowRankExtendedKalmanFilter final : public Filter {
   }
 
   void check() const {
-    if (!belief_.mean.allFinite())
+    if (!estimate_.mean.allFinite())
       throw FilterFailure("the mean is not finite", std::numeric_limits<double>::quiet_NaN());
     if (!root_.matrix().allFinite())
       throw FilterFailure("the covariance is not finite", std::numeric_limits<double>::quiet_NaN());
@@ -132,7 +132,7 @@ class LowRankExtendedKalmanFilter final : public Filter {
 
   RankLimit limit_;
   TriangularRoot root_;
-  mutable Gaussian belief_;
+  mutable Gaussian estimate_;
   mutable bool formed_ = false;
   bool with_covariance_ = false;
   int process_noise_changes_ = 0;
@@ -150,7 +150,7 @@ const bool low_rank_ekf_registered = filter_registry().add(
      "[carlson1973], [jazwinski1970]",
      {{"rank", 0.0, "",
        "largest rank kept where process noise raises it; 0: the state's size up to 64, else the rank of the "
-       "initial belief"}},
+       "initial estimate"}},
      {contract::exact_on_linear_gaussian, contract::consistent},
      [](std::unique_ptr<DiscreteModel> model, const Options& options) {
        return std::make_unique<LowRankExtendedKalmanFilter>(std::move(model), options.number("rank"));

@@ -50,11 +50,11 @@ class LowRankUnscentedKalmanFilter final : public Filter {
     centre_root_ = std::sqrt(centre);
   }
 
-  void reset(const Gaussian& belief) override {
-    check_belief(belief, model_);
-    belief_ = {belief.mean, {}, factor_of(belief)};
-    with_covariance_ = belief.covariance.size() > 0;
-    limit_.start(belief_.factor);
+  void reset(const Gaussian& estimate) override {
+    check_estimate(estimate, model_);
+    estimate_ = {estimate.mean, {}, factor_of(estimate)};
+    with_covariance_ = estimate.covariance.size() > 0;
+    limit_.start(estimate_.factor);
     factorise_process_noise();
     formed_ = false;
   }
@@ -63,13 +63,13 @@ class LowRankUnscentedKalmanFilter final : public Filter {
     if (process_noise_changes_ != model_.process_noise_changes()) factorise_process_noise();
     const auto f = [&](const VectorXd& z, VectorXd& value) { model_.transition(z, input, value); };
     propagate(f, centre_);
-    belief_.mean = centre_ + shift_;
-    const Index n = belief_.mean.size(), r = odd_.cols();
+    estimate_.mean = centre_ + shift_;
+    const Index n = estimate_.mean.size(), r = odd_.cols();
     // Even parts below rounding of every variance would only widen the factor.
     const bool curved = (even_.rowwise().squaredNorm().array() >
                          std::numeric_limits<double>::epsilon() * odd_.rowwise().squaredNorm().array())
                             .any();
-    MatrixXd& factor = belief_.factor;
+    MatrixXd& factor = estimate_.factor;
     factor.resize(n, r + (curved ? r + 1 : 0) + process_.cols());
     factor.leftCols(r) = odd_;
     if (curved) factor.middleCols(r, r + 1) << even_, centre_root_ * shift_;
@@ -92,25 +92,25 @@ class LowRankUnscentedKalmanFilter final : public Filter {
     gain_ = weigh(correction_, odd_.transpose(), innovation_factor_);
 
     step_.noalias() = gain_ * correction_.innovation;
-    belief_.mean.noalias() += belief_.factor * step_;
+    estimate_.mean.noalias() += estimate_.factor * step_;
     const Index r = odd_.cols(), p = odd_.rows();
     wide_.resize(r, 2 * r + 1 + p);
     wide_ << -gain_ * odd_, gain_ * even_, gain_ * spread, gain_ * factor_of_noise();
     wide_.leftCols(r).diagonal().array() += 1.0;
     const Eigen::HouseholderQR<MatrixXd> qr(wide_.transpose());
     triangle_ = qr.matrixQR().topRows(r).triangularView<Eigen::Upper>();
-    belief_.factor *= triangle_.transpose();
+    estimate_.factor *= triangle_.transpose();
     formed_ = false;
     check();
   }
 
-  const Gaussian& belief() const override {
-    if (with_covariance_ && !formed_) belief_.covariance = covariance_of(belief_.factor);
+  const Gaussian& estimate() const override {
+    if (with_covariance_ && !formed_) estimate_.covariance = covariance_of(estimate_.factor);
     formed_ = true;
-    return belief_;
+    return estimate_;
   }
   Gaussian marginal(const std::vector<Index>& entries) const override {
-    return {belief_.mean(entries), {}, belief_.factor(entries, Eigen::all)};
+    return {estimate_.mean(entries), {}, estimate_.factor(entries, Eigen::all)};
   }
   std::vector<std::string> remarks() const override { return limit_.remarks(); }
 
@@ -124,15 +124,15 @@ class LowRankUnscentedKalmanFilter final : public Filter {
   // f at the mean, and the parts o, e and s of its differences.
   template <class Function>
   void propagate(const Function& f, VectorXd& centre) {
-    const Index r = belief_.factor.cols();
+    const Index r = estimate_.factor.cols();
     const double reach = alpha_ * std::sqrt(static_cast<double>(r) + kappa_);  // sqrt c
-    f(belief_.mean, centre);
+    f(estimate_.mean, centre);
     odd_.resize(centre.size(), r);
     even_.resize(centre.size(), r);
     for (Index i = 0; i < r; ++i) {
-      point_ = belief_.mean + reach * belief_.factor.col(i);
+      point_ = estimate_.mean + reach * estimate_.factor.col(i);
       f(point_, ahead_);
-      point_ = belief_.mean - reach * belief_.factor.col(i);
+      point_ = estimate_.mean - reach * estimate_.factor.col(i);
       f(point_, behind_);
       odd_.col(i) = (ahead_ - behind_) / (2.0 * reach);
       even_.col(i) = ((ahead_ - centre) + (behind_ - centre)) / (2.0 * reach);
@@ -152,13 +152,13 @@ class LowRankUnscentedKalmanFilter final : public Filter {
 
   void check() const {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    if (!belief_.mean.allFinite()) throw FilterFailure("the mean is not finite", unknown);
-    if (!belief_.factor.allFinite()) throw FilterFailure("the covariance is not finite", unknown);
+    if (!estimate_.mean.allFinite()) throw FilterFailure("the mean is not finite", unknown);
+    if (!estimate_.factor.allFinite()) throw FilterFailure("the covariance is not finite", unknown);
   }
 
   double alpha_, kappa_, centre_root_ = 0.0;
   RankLimit limit_;
-  mutable Gaussian belief_;
+  mutable Gaussian estimate_;
   mutable bool formed_ = false;
   bool with_covariance_ = false;
   int process_noise_changes_ = 0;
@@ -176,7 +176,7 @@ const bool low_rank_ukf_registered = filter_registry().add(
       {"kappa", 0.0, "", "secondary spread; 1 + kappa must be positive"},
       {"rank", 0.0, "",
        "largest rank kept where curvature or process noise raise it; 0: the state's size up to 64, else the "
-       "rank of the initial belief"}},
+       "rank of the initial estimate"}},
      {contract::exact_on_linear_gaussian, contract::consistent},
      [](std::unique_ptr<DiscreteModel> model, const Options& options) {
        return std::make_unique<LowRankUnscentedKalmanFilter>(std::move(model), options.number("alpha"),

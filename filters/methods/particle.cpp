@@ -1,4 +1,4 @@
-// Particle filter: N states z_i of weights w_i, the belief their mean and covariance [gordon1993].
+// Particle filter: N states z_i of weights w_i, the estimate their mean and covariance [gordon1993].
 //
 //     predict   z_i = F(z_i, u) + v_i,  v_i ~ N(0, Q)
 //     correct   w_i := w_i N(y; h(z_i), R),  scaled to sum to one
@@ -41,16 +41,16 @@ class ParticleFilter final : public Filter {
                                   "; expected a share between 0 and 1");
   }
 
-  void reset(const Gaussian& belief) override {
-    check_belief(belief, model_);
+  void reset(const Gaussian& estimate) override {
+    check_estimate(estimate, model_);
     random_ = RandomStream(static_cast<std::uint64_t>(seed_));
-    const MatrixXd root = factor_of(belief);
+    const MatrixXd root = factor_of(estimate);
     // Draws have the divisor N - 1, the cloud's covariance N.
     const double scale = std::sqrt(static_cast<double>(count_) / static_cast<double>(count_ - 1));
     cloud_.states = scale * root * exact_draws_of(root.cols());
-    cloud_.states.colwise() += belief.mean;
+    cloud_.states.colwise() += estimate.mean;
     cloud_.weights.setConstant(count_, 1.0 / static_cast<double>(count_));
-    belief_ = cloud_.moments();
+    estimate_ = cloud_.moments();
     smallest_size_ = static_cast<double>(count_);
     resamplings_ = corrections_ = powers_ = starved_ = 0;
   }
@@ -95,7 +95,7 @@ class ParticleFilter final : public Filter {
                                  0.5 * static_cast<double>(output.size()) * std::log(2.0 * std::numbers::pi);
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
   std::vector<std::string> remarks() const override {
     std::vector<std::string> result{
@@ -179,8 +179,8 @@ class ParticleFilter final : public Filter {
   }
 
   void form() {
-    belief_ = cloud_.moments();
-    check_finite(belief_);
+    estimate_ = cloud_.moments();
+    check_finite(estimate_);
   }
 
   Index count_, seed_;
@@ -188,7 +188,7 @@ class ParticleFilter final : public Filter {
   bool regularise_;
   RandomStream random_;
   ParticleCloud cloud_;
-  Gaussian belief_;
+  Gaussian estimate_;
   double smallest_size_ = 0.0;
   Index resamplings_ = 0, corrections_ = 0, powers_ = 0, starved_ = 0;
   VectorXd point_, value_, squares_;

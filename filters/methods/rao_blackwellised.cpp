@@ -40,10 +40,10 @@ class RaoBlackwellised final : public Filter {
                                   "; expected a number between 0 and 1");
   }
 
-  void reset(const Gaussian& belief) override {
-    check_belief(belief, model_);
-    Gaussian whole = belief;
-    if (whole.covariance.size() == 0) whole.covariance = belief.factor * belief.factor.transpose();
+  void reset(const Gaussian& estimate) override {
+    check_estimate(estimate, model_);
+    Gaussian whole = estimate;
+    if (whole.covariance.size() == 0) whole.covariance = estimate.factor * estimate.factor.transpose();
     random_ = RandomStream(static_cast<std::uint64_t>(seed_));
     motion_.reset(whole);
     record_.clear();
@@ -69,9 +69,9 @@ class RaoBlackwellised final : public Filter {
     formed_ = false;
   }
 
-  const Gaussian& belief() const override {
+  const Gaussian& estimate() const override {
     if (!formed_) form();
-    return belief_;
+    return estimate_;
   }
 
  protected:
@@ -177,16 +177,16 @@ class RaoBlackwellised final : public Filter {
   void form() const {
     const Index n = motion_.start().mean.size();
     const VectorXd weights = shares(1.0);
-    belief_ = {VectorXd::Zero(n), MatrixXd::Zero(n, n), {}};
+    estimate_ = {VectorXd::Zero(n), MatrixXd::Zero(n, n), {}};
     for (std::size_t i = 0; i < particles_.size(); ++i)
-      belief_.mean += weights[static_cast<Index>(i)] * motion_.state(particles_[i]);
+      estimate_.mean += weights[static_cast<Index>(i)] * motion_.state(particles_[i]);
     for (std::size_t i = 0; i < particles_.size(); ++i) {
-      const VectorXd off = motion_.state(particles_[i]) - belief_.mean;
+      const VectorXd off = motion_.state(particles_[i]) - estimate_.mean;
       MatrixXd own = off * off.transpose();
       own(motion_.free(), motion_.free()) += particles_[i].covariance;
-      belief_.covariance += weights[static_cast<Index>(i)] * own;
+      estimate_.covariance += weights[static_cast<Index>(i)] * own;
     }
-    symmetrise(belief_.covariance);
+    symmetrise(estimate_.covariance);
     formed_ = true;
   }
 
@@ -199,7 +199,7 @@ class RaoBlackwellised final : public Filter {
   std::size_t settled_steps_ = 0;  // of the record, whose likelihood the particles have as settled
   MatrixXd root_;
   Eigen::LLT<MatrixXd> factor_;
-  mutable Gaussian belief_;
+  mutable Gaussian estimate_;
   mutable bool formed_ = false;
 };
 

@@ -33,30 +33,30 @@ class RobustExtendedKalmanFilter final : public Filter {
                                   std::to_string(threshold) + "; expected more than 0");
   }
 
-  void reset(const Gaussian& belief) override {
-    belief_ = as_matrix(belief, model_);
+  void reset(const Gaussian& estimate) override {
+    estimate_ = as_matrix(estimate, model_);
     readings_ = outlying_ = 0;
   }
 
   void predict(const VectorXd& input) override {
-    model_.linearised_transition(belief_.mean, input, next_, tangent_);
-    belief_.mean.swap(next_);
-    step_.predict(belief_, tangent_, model_.process_noise());
+    model_.linearised_transition(estimate_.mean, input, next_, tangent_);
+    estimate_.mean.swap(next_);
+    step_.predict(estimate_, tangent_, model_.process_noise());
   }
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
-    model_.output(belief_.mean, input, expected_);
-    model_.output_jacobian(belief_.mean, input, sensor_);
+    model_.output(estimate_.mean, input, expected_);
+    model_.output_jacobian(estimate_.mean, input, sensor_);
     correction_.innovation = output - expected_;
-    innovation_covariance_.noalias() = sensor_ * belief_.covariance * sensor_.transpose();
+    innovation_covariance_.noalias() = sensor_ * estimate_.covariance * sensor_.transpose();
     innovation_covariance_ += model_.output_noise();
     weigh_outputs();
     noise_ = model_.output_noise();
     noise_.diagonal() += excess_;
-    step_.correct(belief_, sensor_, noise_, correction_);
+    step_.correct(estimate_, sensor_, noise_, correction_);
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
   std::vector<std::string> remarks() const override {
     if (outlying_ == 0) return {};
@@ -99,7 +99,7 @@ class RobustExtendedKalmanFilter final : public Filter {
   bool huber_;
   double degrees_, threshold_;
   Index readings_ = 0, outlying_ = 0;
-  Gaussian belief_;
+  Gaussian estimate_;
   LinearisedStep step_;
   VectorXd next_, expected_, excess_;
   MatrixXd tangent_, sensor_, innovation_covariance_, noise_;

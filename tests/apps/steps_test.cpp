@@ -60,18 +60,18 @@ TEST_F(Steps, OnAMeasuredRecordAreThoseOfAnIndependentProgram) {
 // Oracle: what identify finds with the scheme, and the truth.
 TEST_F(Steps, FindWhatLayBehindAPublishedValue) {
   const json found = json_of(
-      place_.run("steps --believed-xi 0.047900 --scheme forward_euler --config cantilever.toml --json"));
+      place_.run("steps --published-xi 0.047900 --scheme forward_euler --config cantilever.toml --json"));
   EXPECT_NEAR(found.at("damping_ratio").at("behind_it").get<double>(), 0.0045, 1e-5);
   EXPECT_NEAR(found.at("record").at("damping_ratio").get<double>(), 0.0045, 2e-5);
   const json stated = json_of(place_.run(
-      "steps --believed-xi 0.0479 --scheme forward_euler --interval 0.004 --frequency 3.453758 --json"));
+      "steps --published-xi 0.0479 --scheme forward_euler --interval 0.004 --frequency 3.453758 --json"));
   EXPECT_NEAR(stated.at("damping_ratio").at("behind_it").get<double>(), 0.0045, 1e-5);
   EXPECT_NEAR(stated.at("damping_ratio").at("upper").get<double>(), 0.0045 + 5e-5, 1e-5);
 }
 
 TEST_F(Steps, SayThatNoStructureGivesTheValue) {
   const Outcome outcome =
-      place_.run("steps --believed-xi 0.02 --scheme forward_euler --interval 0.004 --frequency 3.4555");
+      place_.run("steps --published-xi 0.02 --scheme forward_euler --interval 0.004 --frequency 3.4555");
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.out, HasSubstr("NOT POSSIBLE"));
 }
@@ -80,18 +80,18 @@ TEST_F(Steps, RefuseWhatMakesNoSense) {
   for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
            {"steps", "beamid: steps: --config FILE is missing"},
            {"steps --config cantilever.toml --discretisation euler", "unknown discretisation 'euler'"},
-           {"steps --config cantilever.toml --scheme forward_euler", "--scheme goes with --believed-xi"},
+           {"steps --config cantilever.toml --scheme forward_euler", "--scheme goes with --published-xi"},
            {"steps --config cantilever.toml --steps 9", "--steps is 9; expected a whole number from 1 to 8"},
-           {"steps --believed-xi 0.05", "--believed-xi of which filter? Add --scheme NAME"},
-           {"steps --believed-xi 1.5 --scheme forward_euler", "--believed-xi is 1.5"},
-           {"steps --believed-xi 0.05 --scheme forward_euler --interval 0.01",
-            "--believed-xi needs the filter's steps and frequency"},
-           {"steps --believed-xi 0.05 --scheme forward_euler --interval 0.2 --frequency 4",
+           {"steps --published-xi 0.05", "--published-xi of which filter? Add --scheme NAME"},
+           {"steps --published-xi 1.5 --scheme forward_euler", "--published-xi is 1.5"},
+           {"steps --published-xi 0.05 --scheme forward_euler --interval 0.01",
+            "--published-xi needs the filter's steps and frequency"},
+           {"steps --published-xi 0.05 --scheme forward_euler --interval 0.2 --frequency 4",
             "expected above 0 and less than half of one"},
-           {"steps --believed-xi 0.05 --scheme euler --interval 0.01 --frequency 4",
+           {"steps --published-xi 0.05 --scheme euler --interval 0.01 --frequency 4",
             "unknown discretisation 'euler'"},
-           {"steps --believed-xi 0.05 --scheme forward_euler --steps 2",
-            "--steps does not go with --believed-xi"},
+           {"steps --published-xi 0.05 --scheme forward_euler --steps 2",
+            "--steps does not go with --published-xi"},
        }) {
     const Outcome outcome = place_.run(words);
     EXPECT_EQ(outcome.code, 2) << words;

@@ -66,7 +66,7 @@ Problem make_problem(int elements) {
   return problem;
 }
 
-// A reading per sample of a motion that starts a hundredth off the belief, with parameters off the guess.
+// A reading per sample of a motion that starts a hundredth off the estimate, with parameters off the guess.
 VectorXd readings(const Problem& problem, filters::DiscreteModel& model, Index samples) {
   const Index n = problem.equations.system.size();
   VectorXd state = problem.start.mean, next, read, history(samples);
@@ -108,7 +108,7 @@ void record(int elements, double length) {
   }
   const double spent = processor_seconds() - from;
   std::printf("filtered in %.2f s, %.1f us per sample\n", spent, 1e6 * spent / static_cast<double>(samples));
-  const VectorXd mean = filter->belief().mean, deviation = filter->belief().deviations();
+  const VectorXd mean = filter->estimate().mean, deviation = filter->estimate().deviations();
   const Index first = layout(problem.description, problem.equations.system.size()).unknowns;
   const double truth[] = {1.03 * problem.start.mean[first], 0.99 * problem.start.mean[first + 1], 0.004};
   for (Index j = 0; j < 3; ++j)

@@ -130,7 +130,7 @@ void registered(benchmark::State& state, const char* name) {
       output = record().col(k);
       filter->correct(output, input);
     }
-    return filter->belief().mean[2];
+    return filter->estimate().mean[2];
   });
 }
 

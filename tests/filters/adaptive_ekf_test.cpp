@@ -74,7 +74,7 @@ TEST(AdaptiveEkf, KeepsItsNoisePositiveWhereOutputsComeAndGo) {
     if (k % 5 != 0) y[1] = std::numeric_limits<double>::quiet_NaN();
     const auto& correction = filter->correct(y, {});
     ASSERT_GT(correction.innovation_covariance.determinant(), 0.0);
-    ASSERT_TRUE(filter->belief().mean.allFinite());
+    ASSERT_TRUE(filter->estimate().mean.allFinite());
   }
 }
 

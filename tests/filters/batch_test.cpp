@@ -59,7 +59,7 @@ filters::FilterRun alone(const LaneTrial& trial, filters::Start start = filters:
       VectorXd::LinSpaced(trial.outputs.cols(), 0.0, dt * static_cast<double>(trial.outputs.cols() - 1)),
       trial.outputs,
       {}};
-  return run(*filter, trial.initial, record, filters::Keep::last_belief, start);
+  return run(*filter, trial.initial, record, filters::Keep::last_estimate, start);
 }
 
 void expect_same(const TrialResult& found, const filters::FilterRun& expected, double tolerance) {

@@ -36,7 +36,7 @@ class Cubic final : public filters::DiscreteModel {
   MatrixXd q_ = 0.01 * MatrixXd::Identity(3, 3), r_ = 0.1 * MatrixXd::Identity(2, 2);
 };
 
-filters::Gaussian belief() {
+filters::Gaussian estimate() {
   filters::Gaussian result{VectorXd(3), MatrixXd(3, 3)};
   result.mean << 0.4, -0.7, 1.1;
   result.covariance << 0.5, 0.1, 0.0, 0.1, 0.3, -0.1, 0.0, -0.1, 0.4;
@@ -68,17 +68,17 @@ class Cubature : public testing::TestWithParam<const char*> {};
 TEST_P(Cubature, IsTheSumOverItsPoints) {
   Cubic model;
   const auto filter = filter_registry().make(GetParam(), {}, std::make_unique<Cubic>());
-  filter->reset(belief());
+  filter->reset(estimate());
   filter->predict({});
   filters::Gaussian expected;
   MatrixXd cross, s;
   VectorXd y;
   cubature(
-      belief(), 3, [&](const VectorXd& z, VectorXd& v) { model.transition(z, {}, v); }, expected.mean,
+      estimate(), 3, [&](const VectorXd& z, VectorXd& v) { model.transition(z, {}, v); }, expected.mean,
       expected.covariance, cross);
   expected.covariance += model.process_noise();
-  EXPECT_LT((filter->belief().mean - expected.mean).norm(), 1e-14);
-  EXPECT_LT((filter->belief().covariance - expected.covariance).norm(), 1e-14);
+  EXPECT_LT((filter->estimate().mean - expected.mean).norm(), 1e-14);
+  EXPECT_LT((filter->estimate().covariance - expected.covariance).norm(), 1e-14);
 
   const VectorXd measured = VectorXd::Constant(2, 0.3);
   const auto correction = filter->correct(measured, {});
@@ -89,14 +89,14 @@ TEST_P(Cubature, IsTheSumOverItsPoints) {
   expected.mean += gain * (measured - y);
   expected.covariance -= gain * s * gain.transpose();
   EXPECT_LT((correction.innovation_covariance - s).norm(), 1e-13);
-  EXPECT_LT((filter->belief().mean - expected.mean).norm(), 1e-13);
-  EXPECT_LT((filter->belief().covariance - expected.covariance).norm(), 1e-13);
+  EXPECT_LT((filter->estimate().mean - expected.mean).norm(), 1e-13);
+  EXPECT_LT((filter->estimate().covariance - expected.covariance).norm(), 1e-13);
 }
 
 TEST_P(Cubature, TakesTwoPointsPerState) {
   int calls = 0;
   const auto filter = filter_registry().make(GetParam(), {}, std::make_unique<Cubic>(&calls));
-  filter->reset(belief());
+  filter->reset(estimate());
   filter->predict({});
   EXPECT_EQ(calls, 6);
 }

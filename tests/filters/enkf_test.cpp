@@ -36,8 +36,8 @@ TEST(Enkf, IsTheKalmanFilterFromTwoMembersAStateOn) {
       filter->correct(readings.col(k), {});
       expected.correct(readings.col(k));
     }
-    EXPECT_LT((filter->belief().mean - expected.mean).norm(), 1e-11) << update;
-    EXPECT_LT((filter->belief().covariance - expected.covariance).norm(), 1e-11) << update;
+    EXPECT_LT((filter->estimate().mean - expected.mean).norm(), 1e-11) << update;
+    EXPECT_LT((filter->estimate().covariance - expected.covariance).norm(), 1e-11) << update;
     EXPECT_TRUE(filter->remarks().empty());
   }
 }
@@ -52,7 +52,7 @@ TEST(Enkf, SaysWhereItsMembersAreTooFew) {
     filter->correct(VectorXd::Zero(1), {});
     ASSERT_EQ(filter->remarks().size(), 1u);
     EXPECT_NE(filter->remarks()[0].find("5 members are too few"), std::string::npos);
-    EXPECT_TRUE(filter->belief().mean.allFinite());
+    EXPECT_TRUE(filter->estimate().mean.allFinite());
   }
 }
 
@@ -66,7 +66,7 @@ TEST(Enkf, OfTooFewMembersDrawsDeviationsWithinOneOverTheRootOfTwiceTheirNumber)
   for (int seed = 1; seed <= 25; ++seed) {
     const auto filter = enkf("transform", members, model, seed);
     filter->reset({VectorXd::Zero(60), MatrixXd::Identity(60, 60)});
-    const Eigen::ArrayXd variance = filter->belief().covariance.diagonal().array();
+    const Eigen::ArrayXd variance = filter->estimate().covariance.diagonal().array();
     of_variance += (variance - 1.0).square().mean() / 25.0;
     of_deviation += (variance.sqrt() - 1.0).square().mean() / 25.0;
   }
@@ -107,7 +107,7 @@ TEST(Enkf, GivesTheSameNumbersForTheSameSeedOnly) {
       filter->predict({});
       filter->correct(VectorXd::Ones(1), {});
     }
-    return VectorXd(filter->belief().mean);
+    return VectorXd(filter->estimate().mean);
   };
   EXPECT_EQ(mean(1.0), mean(1.0));
   EXPECT_NE(mean(1.0), mean(2.0));
@@ -122,7 +122,7 @@ TEST(Enkf, InflatesItsAnomalies) {
   filter->reset({VectorXd::Zero(2), MatrixXd::Identity(2, 2)});
   filter->predict({});
   const MatrixXd expected = 1.21 * (model.a * model.a.transpose() + model.q);
-  EXPECT_LT((filter->belief().covariance - expected).norm(), 1e-12 * expected.norm());
+  EXPECT_LT((filter->estimate().covariance - expected).norm(), 1e-12 * expected.norm());
 }
 
 TEST(Enkf, RefusesOptionsThatMeanNothing) {

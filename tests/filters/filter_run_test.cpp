@@ -26,7 +26,7 @@ TEST(Run, KeepsWhatItHasWhenADiscretisationCannotTakeTheStep) {
   EXPECT_EQ(run.failure->time, 11.0);
   EXPECT_NE(run.failure->reason.find("CVode"), std::string::npos) << run.failure->reason;
   EXPECT_TRUE(std::isnan(run.failure->smallest_eigenvalue));
-  EXPECT_NEAR(run.last.mean[0], 1.0, 1e-12);  // the belief after the first sample
+  EXPECT_NEAR(run.last.mean[0], 1.0, 1e-12);  // the estimate after the first sample
 }
 
 TEST(Run, EndsWhereItsThreadWasAskedToStopAndOnlyThen) {

@@ -37,11 +37,11 @@ std::unique_ptr<filters::DiscreteModel> model(const std::string& sensors, double
 }
 
 filters::Gaussian start(double stiffness_deviation = 0.0, double stiffness = Oscillator::stiffness) {
-  filters::Gaussian belief{VectorXd::Zero(4), MatrixXd::Zero(4, 4), {}};
-  belief.mean[3] = stiffness;
-  belief.covariance.diagonal() << std::pow(start_deviations[0], 2), std::pow(start_deviations[1], 2), 1600.0,
-      stiffness_deviation * stiffness_deviation;
-  return belief;
+  filters::Gaussian estimate{VectorXd::Zero(4), MatrixXd::Zero(4, 4), {}};
+  estimate.mean[3] = stiffness;
+  estimate.covariance.diagonal() << std::pow(start_deviations[0], 2), std::pow(start_deviations[1], 2),
+      1600.0, stiffness_deviation * stiffness_deviation;
+  return estimate;
 }
 
 struct Simulated {
@@ -75,9 +75,9 @@ Simulated simulate(const std::string& sensors, Index samples, unsigned seed) {
 }
 
 filters::FilterRun filtered(const char* name, const std::string& sensors, const filters::Measurements& record,
-                            const filters::Gaussian& belief = start()) {
+                            const filters::Gaussian& estimate = start()) {
   const auto filter = filters::filter_registry().make(name, {}, model(sensors));
-  return filters::run(*filter, belief, record, filters::Keep::all_beliefs);
+  return filters::run(*filter, estimate, record, filters::Keep::all_estimates);
 }
 
 // All at once: x_0, the noise of every step and the force of every sample as the unknowns of one weighted

@@ -23,7 +23,7 @@ double corrected(const std::string& name, const filters::Options& options, doubl
   const auto filter = filter_registry().make(name, options, arc(noise));
   filter->reset({VectorXd::Constant(1, 1.5), MatrixXd::Ones(1, 1)});
   filter->correct(VectorXd::Constant(1, reading), {});
-  return filter->belief().mean[0];
+  return filter->estimate().mean[0];
 }
 
 TEST(Iekf, FindsTheMostProbableState) {

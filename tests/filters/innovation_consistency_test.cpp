@@ -14,12 +14,12 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using filters::innovation_consistency, filters::InnovationConsistency;
 
-// A run with these innovations (p x N), of which the filter said that they have the deviation `believed`.
-filters::FilterRun run_of(const MatrixXd& innovations, double believed = 1.0) {
+// A run with these innovations (p x N), of which the filter says that they have the deviation `assumed`.
+filters::FilterRun run_of(const MatrixXd& innovations, double assumed = 1.0) {
   filters::FilterRun run;
   run.innovations = innovations;
-  run.whitened_innovations = innovations / believed;
-  run.normalised_squares = innovations.colwise().squaredNorm().transpose() / (believed * believed);
+  run.whitened_innovations = innovations / assumed;
+  run.normalised_squares = innovations.colwise().squaredNorm().transpose() / (assumed * assumed);
   return run;
 }
 
@@ -65,12 +65,12 @@ TEST_F(Innovations, OfAConsistentFilterRaiseTheAlarmOnceInTwenty) {
 }
 
 TEST_F(Innovations, TellWhetherRIsTooLargeOrTooSmall) {
-  // Oracle: the mean normalised square is (true / believed deviation)^2.
-  for (const double believed : {0.8, 0.9, 1.1, 1.25}) {
-    const InnovationConsistency result = innovation_consistency(run_of(white(1, 2000), believed));
-    EXPECT_FALSE(result.size_is_right()) << believed;
-    EXPECT_NEAR(result.mean_normalised_square, 1.0 / (believed * believed), 0.2) << believed;
-    EXPECT_TRUE(result.white()) << believed;  // size and colour are different questions
+  // Oracle: the mean normalised square is (true / assumed deviation)^2.
+  for (const double assumed : {0.8, 0.9, 1.1, 1.25}) {
+    const InnovationConsistency result = innovation_consistency(run_of(white(1, 2000), assumed));
+    EXPECT_FALSE(result.size_is_right()) << assumed;
+    EXPECT_NEAR(result.mean_normalised_square, 1.0 / (assumed * assumed), 0.2) << assumed;
+    EXPECT_TRUE(result.white()) << assumed;  // size and colour are different questions
   }
 }
 

@@ -26,10 +26,10 @@ TEST(Kf, KeepsItsDigitsUnderAnInfinitelyWidePrior) {
   const auto filter = kf(std::make_unique<LinearModel>(model));
   filter->reset({VectorXd::Zero(2), 1e24 * MatrixXd::Identity(2, 2)});
   filter->correct(Eigen::Vector2d(1.0, 2.0), {});
-  EXPECT_NEAR(filter->belief().covariance(0, 0), 0.04, 1e-15);
-  EXPECT_NEAR(filter->belief().covariance(1, 1), 0.04, 1e-15);
-  EXPECT_NEAR(filter->belief().covariance(0, 1), 0.0, 1e-15);
-  EXPECT_NEAR(filter->belief().mean[0], 1.0, 1e-15);
+  EXPECT_NEAR(filter->estimate().covariance(0, 0), 0.04, 1e-15);
+  EXPECT_NEAR(filter->estimate().covariance(1, 1), 0.04, 1e-15);
+  EXPECT_NEAR(filter->estimate().covariance(0, 1), 0.0, 1e-15);
+  EXPECT_NEAR(filter->estimate().mean[0], 1.0, 1e-15);
 }
 
 TEST(Kf, KeepsDigitsThatJosephsFormRoundsAndTheShortFormLoses) {
@@ -43,7 +43,7 @@ TEST(Kf, KeepsDigitsThatJosephsFormRoundsAndTheShortFormLoses) {
     const auto filter = filter_registry().make(name, {}, std::make_unique<LinearModel>(model));
     filter->reset({VectorXd::Zero(2), wide * MatrixXd::Identity(2, 2)});
     filter->correct(Eigen::Vector2d(1.0, 2.0), {});
-    return filter->belief().covariance(0, 0);
+    return filter->estimate().covariance(0, 0);
   };
   for (const double wide : {1e20, 1e24, 3.7e24}) {
     EXPECT_NEAR(left("kf", wide), 0.04, 1e-15) << wide;
@@ -69,8 +69,8 @@ TEST(Kf, FollowsAModelThroughChangesOfItsIntervalAndOutputs) {
       each->correct(y, {});
     }
   }
-  EXPECT_LT((filter->belief().mean - extended->belief().mean).norm(), 1e-14);
-  EXPECT_LT((filter->belief().covariance - extended->belief().covariance).norm(), 1e-18);
+  EXPECT_LT((filter->estimate().mean - extended->estimate().mean).norm(), 1e-14);
+  EXPECT_LT((filter->estimate().covariance - extended->estimate().covariance).norm(), 1e-18);
 }
 
 TEST(Kf, TakesLinearModelsWhoseJacobiansAreDifferences) {

@@ -39,10 +39,10 @@ filters::FilterRun run_of(const std::string& filter, std::unique_ptr<filters::Di
                           const Gaussian& initial, const filters::Measurements& record,
                           const filters::Options& options = {}, const filters::Trace& trace = {}) {
   const auto made = filter_registry().make(filter, options, std::move(model));
-  return run(*made, initial, record, filters::Keep::last_belief, filters::Start::at_first_sample, trace);
+  return run(*made, initial, record, filters::Keep::last_estimate, filters::Start::at_first_sample, trace);
 }
 
-// Largest difference of two beliefs, in standard deviations.
+// Largest difference of two estimates, in standard deviations.
 double difference(const Gaussian& a, const Gaussian& b) {
   const VectorXd inverse = b.deviations().cwiseInverse();
   const Index n = b.mean.size();
@@ -68,7 +68,7 @@ TEST(LowRankEkf, EqualsTheDenseEkfAfter25000Steps) {
   EXPECT_TRUE(factor.remarks.empty());
 }
 
-TEST(LowRankEkf, EqualsTheDenseEkfWhereTheInitialBeliefHasFewDirections) {
+TEST(LowRankEkf, EqualsTheDenseEkfWhereTheInitialEstimateHasFewDirections) {
   // Oracle: the EKF on the singular matrix L L^T. Uncertain: one direction of the start, and K alone.
   const double noise = 1e-4;
   const auto record = decay(Eigen::Vector4d(0.012, 0.0, 515.8, 7.9), 3000, noise);
@@ -179,23 +179,23 @@ TEST_P(FiltersOnFactors, StartFromAFactorAsFromItsCovariance) {
   EXPECT_LT(difference(from_factor.last, matrix.last), GetParam() == "low_rank_ukf" ? 1e-3 : 1e-7);
 }
 
-TEST_P(FiltersOnFactors, TraceWhatABeliefSays) {
-  // Oracle: all beliefs, kept.
+TEST_P(FiltersOnFactors, TraceWhatAnEstimateSays) {
+  // Oracle: all estimates, kept.
   const double noise = 1e-4;
   const auto record = decay(Eigen::Vector4d(0.012, 0.0, 515.8, 7.9), 200, noise);
   const Eigen::Vector4d mean(0.0115, -0.01, 500.0, 7.0), variance(1e-6, 4e-4, 900.0, 4.0);
   const auto filter = filter_registry().make(GetParam(), {}, oscillator(noise));
-  const auto result = run(*filter, {mean, variance.asDiagonal()}, record, filters::Keep::all_beliefs,
+  const auto result = run(*filter, {mean, variance.asDiagonal()}, record, filters::Keep::all_estimates,
                           filters::Start::at_first_sample, {{2, 0}});
   ASSERT_EQ(result.means.rows(), 2);
   ASSERT_EQ(result.means.cols(), 200);
   for (Index k = 0; k < 200; ++k) {
-    const Gaussian& belief = result.filtered[static_cast<std::size_t>(k)];
-    EXPECT_EQ(result.means(0, k), belief.mean[2]);
-    EXPECT_NEAR(result.deviations(0, k) / belief.deviations()[2], 1.0, 1e-12);
-    EXPECT_NEAR(result.deviations(1, k) / belief.deviations()[0], 1.0, 1e-12);
+    const Gaussian& estimate = result.filtered[static_cast<std::size_t>(k)];
+    EXPECT_EQ(result.means(0, k), estimate.mean[2]);
+    EXPECT_NEAR(result.deviations(0, k) / estimate.deviations()[2], 1.0, 1e-12);
+    EXPECT_NEAR(result.deviations(1, k) / estimate.deviations()[0], 1.0, 1e-12);
   }
-  EXPECT_THROW(run(*filter, {mean, variance.asDiagonal()}, record, filters::Keep::last_belief,
+  EXPECT_THROW(run(*filter, {mean, variance.asDiagonal()}, record, filters::Keep::last_estimate,
                    filters::Start::at_first_sample, {{4}}),
                std::invalid_argument);
 }

@@ -26,7 +26,7 @@ std::unique_ptr<filters::DiscreteModel> oscillator() {
 
 const Eigen::Vector4d motion(0.012, -0.03, 515.8, 1.2);
 
-// A noisy free decay, started with the bound's own prior: the truth is drawn from what the filter believes.
+// A noisy free decay, started with the bound's own prior: the truth is drawn from what the filter assumes.
 Trial decay(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -94,7 +94,7 @@ TEST(MonteCarlo, FindsTheFilterConsistentAndAtTheBound) {
   const MatrixXd information = filters::fisher_information(*model, motion, 150) +
                                MatrixXd(deviation.cwiseAbs2().cwiseInverse().asDiagonal());
   const VectorXd bound = filters::cramer_rao_bound(information).tail(2);
-  const auto filter = filters::last_belief_of(
+  const auto filter = filters::last_estimate_of(
       [] { return filters::filter_registry().make("ekf", {}, oscillator()); }, {2, 3});
   const auto result = monte_carlo(decay, filter, {.runs = 2000, .bound = bound});
   EXPECT_TRUE(result.consistent()) << result.nees;

@@ -25,7 +25,7 @@ double moved(const Options& options, double error, double prior, int outputs = 2
   VectorXd y = VectorXd::Zero(outputs);
   y[0] = error;
   filter->correct(y, {});
-  return filter->belief().mean[0] / prior;
+  return filter->estimate().mean[0] / prior;
 }
 
 TEST(RobustEkf, LimitsOrIgnoresASingleOutlierHoweverLarge) {
@@ -38,7 +38,7 @@ TEST(RobustEkf, LimitsOrIgnoresASingleOutlierHoweverLarge) {
   }
 }
 
-TEST(RobustEkf, BelievesTheOtherOutputWhereThePriorIsWide) {
+TEST(RobustEkf, FollowsTheOtherOutputWhereThePriorIsWide) {
   // Oracle: the mean lies at the good reading, at 0. Its deviation is 1, the prior's 100: told by either
   // alone both readings would do.
   EXPECT_LT(std::abs(moved({}, 50.0, 100.0)) * 100.0, 26.0);  // two that disagree, equally likely: between

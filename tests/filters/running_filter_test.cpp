@@ -62,13 +62,13 @@ TEST(RunningFilter, HasTheNumbersOfTheWholeRecord) {
   filters::Measurements record = decay(stamps(500));
   record.outputs(0, 77) = nan;
   const auto whole = oscillator(), part = oscillator();
-  const filters::FilterRun run = filters::run(*whole, guess, record, filters::Keep::all_beliefs);
+  const filters::FilterRun run = filters::run(*whole, guess, record, filters::Keep::all_estimates);
   RunningFilter running(*part);
   running.start(guess);
   for (Index k = 0; k < 500; ++k) {
     ASSERT_TRUE(running.take_in({record.time[k], record.outputs.col(k)}));
-    ASSERT_EQ(running.belief().mean, run.filtered[static_cast<std::size_t>(k)].mean);
-    ASSERT_EQ(running.belief().covariance, run.filtered[static_cast<std::size_t>(k)].covariance);
+    ASSERT_EQ(running.estimate().mean, run.filtered[static_cast<std::size_t>(k)].mean);
+    ASSERT_EQ(running.estimate().covariance, run.filtered[static_cast<std::size_t>(k)].covariance);
   }
 }
 
@@ -82,8 +82,8 @@ TEST(RunningFilter, GoesOnFromASavedStateAsIfItHadNotStopped) {
     for (Index k = 0; k < 213; ++k) before.take_in({record.time[k], record.outputs.col(k)});
     after.resume(before.save());
     for (Index k = 213; k < 500; ++k) after.take_in({record.time[k], record.outputs.col(k)});
-    EXPECT_EQ(after.belief().mean, run.last.mean) << name;
-    EXPECT_EQ(after.belief().covariance, run.last.covariance) << name;
+    EXPECT_EQ(after.estimate().mean, run.last.mean) << name;
+    EXPECT_EQ(after.estimate().covariance, run.last.covariance) << name;
     EXPECT_EQ(after.step(), 500);
   }
 }
@@ -183,7 +183,7 @@ TEST(Run, TakesStampsWithinTheirResolutionToBeRegular) {
 }
 
 TEST(Run, ThatInflatesGoesOnAfterAFailure) {
-  // An infinite reading counts as missing; a covariance that fails starts again from the last good belief.
+  // An infinite reading counts as missing; a covariance that fails starts again from the last good estimate.
   filters::Measurements record = decay(stamps(600));
   record.outputs(0, 60) = infinity;
   for (const OnFailure on_failure : {OnFailure::inflate, OnFailure::report}) {

@@ -24,14 +24,14 @@ TEST_P(SquareRoot, KeepsEveryDigitOfAMeasurementAfterAPriorOfTenToThe24) {
         filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(test::two_state_model()));
     filter->reset({VectorXd::Zero(2), wide * MatrixXd::Identity(2, 2)});
     filter->correct(VectorXd::Constant(1, 3.0), {});
-    EXPECT_NEAR(filter->belief().covariance(0, 0) / 0.04, 1.0, 1e-12) << wide;
-    EXPECT_NEAR(filter->belief().covariance(1, 1) / wide, 1.0, 1e-12) << wide;
-    EXPECT_NEAR(filter->belief().mean[0], 3.0, 1e-12);
+    EXPECT_NEAR(filter->estimate().covariance(0, 0) / 0.04, 1.0, 1e-12) << wide;
+    EXPECT_NEAR(filter->estimate().covariance(1, 1) / wide, 1.0, 1e-12) << wide;
+    EXPECT_NEAR(filter->estimate().mean[0], 3.0, 1e-12);
   }
 }
 
-TEST_P(SquareRoot, GoesOnFromTheFactorOfItsOwnBelief) {
-  // Stopped and started again from the belief, as from one that never stopped.
+TEST_P(SquareRoot, GoesOnFromTheFactorOfItsOwnEstimate) {
+  // Stopped and started again from the estimate, as from one that never stopped.
   const auto filter =
       filter_registry().make(GetParam(), {}, std::make_unique<test::LinearModel>(test::two_state_model()));
   const auto other =
@@ -40,13 +40,13 @@ TEST_P(SquareRoot, GoesOnFromTheFactorOfItsOwnBelief) {
   for (int k = 0; k < 20; ++k) {
     filter->correct(VectorXd::Constant(1, std::sin(0.3 * k)), {});
     filter->predict({});
-    if (k == 9) other->reset(filter->belief());
+    if (k == 9) other->reset(filter->estimate());
     if (k < 10) continue;
     other->correct(VectorXd::Constant(1, std::sin(0.3 * k)), {});
     other->predict({});
   }
-  EXPECT_LT((filter->belief().mean - other->belief().mean).norm(), 1e-14);
-  EXPECT_LT((filter->belief().covariance - other->belief().covariance).norm(), 1e-14);
+  EXPECT_LT((filter->estimate().mean - other->estimate().mean).norm(), 1e-14);
+  EXPECT_LT((filter->estimate().covariance - other->estimate().covariance).norm(), 1e-14);
 }
 
 TEST_P(SquareRoot, IsTheFilterOnTheCovarianceItself) {
@@ -88,10 +88,10 @@ TEST_P(SquareRoot, TakesInASensorWithoutNoise) {
   prior << 2.0, 0.5, 0.5, 1.0;
   filter->reset({VectorXd::Zero(2), prior});
   filter->correct(VectorXd::Constant(1, 1.5), {});
-  EXPECT_NEAR(filter->belief().mean[0], 1.5, 1e-15);
-  EXPECT_NEAR(filter->belief().mean[1], 1.5 * 0.25, 1e-15);
-  EXPECT_NEAR(filter->belief().covariance(0, 0), 0.0, 1e-30);
-  EXPECT_NEAR(filter->belief().covariance(1, 1), 1.0 - 0.125, 1e-15);
+  EXPECT_NEAR(filter->estimate().mean[0], 1.5, 1e-15);
+  EXPECT_NEAR(filter->estimate().mean[1], 1.5 * 0.25, 1e-15);
+  EXPECT_NEAR(filter->estimate().covariance(0, 0), 0.0, 1e-30);
+  EXPECT_NEAR(filter->estimate().covariance(1, 1), 1.0 - 0.125, 1e-15);
 }
 
 TEST_P(SquareRoot, SeesOnlyWhatWasMeasuredAndTheNoiseOfTheStep) {
@@ -112,8 +112,8 @@ TEST_P(SquareRoot, SeesOnlyWhatWasMeasuredAndTheNoiseOfTheStep) {
       each->predict({});
     }
   }
-  EXPECT_LT((filter->belief().mean - exact->belief().mean).norm(), 1e-13);
-  EXPECT_LT((filter->belief().covariance - exact->belief().covariance).norm(), 1e-13);
+  EXPECT_LT((filter->estimate().mean - exact->estimate().mean).norm(), 1e-13);
+  EXPECT_LT((filter->estimate().covariance - exact->estimate().covariance).norm(), 1e-13);
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, SquareRoot, testing::Values("srukf", "srckf"),

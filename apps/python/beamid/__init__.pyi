@@ -257,7 +257,7 @@ def check(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., m
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     window: Sequence[_Number] | None = ..., discretisation: str | Sequence[str] | None = ...,
-    steps: int | None = ..., believed_xi: _Number | None = ..., scheme: str | None = ...,
+    steps: int | None = ..., published_xi: _Number | None = ..., scheme: str | None = ...,
     interval: _Number | None = ..., frequency: _Number | None = ..., out: _Path | None = ...,
     force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def sense(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., at: str | Sequence[str] | None = ...,

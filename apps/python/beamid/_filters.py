@@ -59,7 +59,7 @@ def run_filter(filter, model, outputs, mean, covariance, *, inputs=None, keep="l
         raise InputError(f"inputs have {len(inputs)} rows; expected {samples}, as the outputs")
     if keep not in ("last", "all"):
         raise InputError(f"keep is {keep!r}; expected 'last' or 'all'")
-    mean, covariance = _belief(mean, covariance)
+    mean, covariance = _estimate(mean, covariance)
     interval = float(getattr(model, "interval", 1.0))
     inputs = inputs if inputs.shape[1] > 0 else np.zeros((0, 0))
     try:
@@ -89,7 +89,7 @@ def run_oscillator(outputs, interval_s, *, mass_kg, mean, covariance, noise, obs
     observed = [observed] if isinstance(observed, str) else list(observed)
     if discretisation not in ("exponential", "forward_euler"):
         raise InputError(f"discretisation is {discretisation!r}; expected 'exponential' or 'forward_euler'")
-    mean, covariance = _belief(mean, covariance)
+    mean, covariance = _estimate(mean, covariance)
     noise = np.broadcast_to(np.asarray(noise, dtype=float), (len(observed),))
     try:
         mean, covariance, likelihood, failed = _beamid.run_oscillator(
@@ -132,7 +132,7 @@ def _columns(values, name):
     return values.reshape(len(values), -1)
 
 
-def _belief(mean, covariance):
+def _estimate(mean, covariance):
     mean, covariance = np.asarray(mean, dtype=float), np.asarray(covariance, dtype=float)
     if covariance.ndim == 1:
         covariance = np.diag(covariance**2)

@@ -25,29 +25,29 @@ class FadingMemoryFilter final : public Filter {
                                   " s; expected more than 0");
   }
 
-  void reset(const Gaussian& belief) override {
-    belief_ = as_matrix(belief, model_);  // checked against the model
+  void reset(const Gaussian& estimate) override {
+    estimate_ = as_matrix(estimate, model_);  // checked against the model
   }
 
   void predict(const VectorXd& input) override {
-    model_.linearised_transition(belief_.mean, input, next_, tangent_);
-    belief_.mean.swap(next_);
-    belief_.covariance *= std::exp(model_.interval() / memory_);
-    step_.predict(belief_, tangent_, model_.process_noise());
+    model_.linearised_transition(estimate_.mean, input, next_, tangent_);
+    estimate_.mean.swap(next_);
+    estimate_.covariance *= std::exp(model_.interval() / memory_);
+    step_.predict(estimate_, tangent_, model_.process_noise());
   }
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
-    model_.output(belief_.mean, input, expected_);
-    model_.output_jacobian(belief_.mean, input, sensor_);
+    model_.output(estimate_.mean, input, expected_);
+    model_.output_jacobian(estimate_.mean, input, sensor_);
     correction_.innovation = output - expected_;
-    step_.correct(belief_, sensor_, model_.output_noise(), correction_);
+    step_.correct(estimate_, sensor_, model_.output_noise(), correction_);
   }
 
-  const Gaussian& belief() const override { return belief_; }
+  const Gaussian& estimate() const override { return estimate_; }
 
  private:
   double memory_;  // T [s]
-  Gaussian belief_;
+  Gaussian estimate_;
   LinearisedStep step_;  // Joseph's form: the covariance stays symmetric and positive
   VectorXd next_, expected_;
   MatrixXd tangent_, sensor_;

@@ -77,8 +77,8 @@ std::unique_ptr<JointModel> make(const ModelSetting& setting, const filters::Opt
 
   const double reading = system.outputs.coeff(0, 0);  // output per unit of the coordinate
   const double mass = system.mass.coeff(0, 0) / (reading * reading);
-  const double believed = system.stiffness.assembled().coeff(0, 0) / (reading * reading);
-  const double given = options.number("stiffness"), stiffness = given > 0.0 ? given : believed;
+  const double assumed = system.stiffness.assembled().coeff(0, 0) / (reading * reading);
+  const double given = options.number("stiffness"), stiffness = given > 0.0 ? given : assumed;
   const double damping = 2.0 * 0.01 * std::sqrt(stiffness * mass);
 
   auto model = std::make_unique<JointModel>();

@@ -85,14 +85,12 @@ std::string damping_trend_text(const DampingTrend& trend, const std::vector<Ampl
     case DampingTrend::Kind::drag:
       return fmt::format(
           "{}, as of a drag {:.3g} +- {:.2g} N s2/m2 times the square of the velocity, or of a spring's "
-          "loop, beside {:.3g} N "
-          "s/m. No one C holds for the whole record.",
+          "loop, beside {:.3g} N s/m. No one C holds for the whole record.",
           change, trend.coefficient, half, trend.constant);
     default:
       return change +
              ", neither as of friction nor as of drag: a loop of the spring, another mode beside this one "
-             "(beats), "
-             "or motion that is no free decay.";
+             "(beats), or motion that is no free decay.";
   }
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/start_belief.hpp"
 #include "filters/information_factor.hpp"
 
 namespace beamid::experiments {

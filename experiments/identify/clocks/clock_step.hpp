@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/identify/clocks/own_clock.hpp"
-#include "experiments/models/start_belief.hpp"
+#include "experiments/models/initial_estimate.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/measurements.hpp"
 

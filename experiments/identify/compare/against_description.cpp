@@ -90,11 +90,9 @@ bool is_no_coincidence(const CommonFactor& found, const std::vector<ComparedPara
 std::string scale_text(const CommonFactor& found, bool contradicts) {
   return fmt::format(
       "{} come out {:.4g} times as large as described{}{}: the measured force's unit, gain or sign is the "
-      "likely "
-      "cause, or the motion's. A force read {:.4g} times too large does this, and the record itself cannot "
-      "show "
-      "it; {} are wrong by that factor then, while frequency and damping ratio are not. Check [record], or "
-      "{}",
+      "likely cause, or the motion's. A force read {:.4g} times too large does this, and the record itself "
+      "cannot show it; {} are wrong by that factor then, while frequency and damping ratio are not. Check "
+      "[record], or {}",
       listed(found.names), found.factor,
       found.factor < 0.0 ? ", the force or the motion with its sign turned"
                          : usual_scale(found.factor, std::min(3.0 * found.deviation, 0.1)),

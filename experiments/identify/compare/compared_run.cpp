@@ -53,7 +53,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
         "the modes of a mesh far above the sampling rate do not follow forces that are held, and its "
         "accelerations come out wrong; expected input = \"band_limited\" or \"linear\", or a reduction");
   // `identify` answers; a comparison shows what each filter does.
-  const bool answers = settings.keep == filters::Keep::all_beliefs;
+  const bool answers = settings.keep == filters::Keep::all_estimates;
   try {
     passes.begin();
     bool whole = passes.filter();

@@ -12,7 +12,7 @@ struct RunSettings {
   std::string discretisation;
   int passes = 3;
   double true_mass = 0.0;  ///< of one degree of freedom of the beam simulated, by true_mass() [kg]
-  filters::Keep keep = filters::Keep::last_belief;
+  filters::Keep keep = filters::Keep::last_estimate;
 };
 
 /// What every run of a comparison shares.

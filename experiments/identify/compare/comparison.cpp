@@ -209,8 +209,8 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
   if (!experiment.unknown_forces.empty())
     throw std::invalid_argument(
         "[[unknown_forces]] are followed by beamid identify (of one RECORD), sense and posterior, which find "
-        "the "
-        "structure's parameters beside them; expected none where forces are measured or the motion is free");
+        "the structure's parameters beside them; expected none where forces are measured or the motion is "
+        "free");
   if (!record.record.own_clock.empty())
     record = aligned_clocks(experiment, std::move(record), folder, progress);
   Comparison comparison{std::move(record), {}, {}};
@@ -262,7 +262,7 @@ Comparison identify_with_model(Experiment experiment, ComparedRecord record,
   experiment.reductions = {experiment.reduction};
   experiment.filters = {experiment.filter};
   experiment.discretisations = {experiment.discretisation};
-  return compare(experiment, std::move(record), folder, progress, filters::Keep::all_beliefs);
+  return compare(experiment, std::move(record), folder, progress, filters::Keep::all_estimates);
 }
 
 }  // namespace beamid::experiments

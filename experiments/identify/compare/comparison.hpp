@@ -134,10 +134,10 @@ Eigen::MatrixXd covariance_of_parameters(const ComparedRun& run);
 /// less than the sensor's own: what a reduced model cannot follow is noise to it. Each run is judged beside
 /// the modal analysis (run_verdict.hpp).
 /// @param folder in which the files of given shapes are looked for.
-/// @param keep beliefs of every sample, for histories; a smoother asks for them anyway
+/// @param keep estimates of every sample, for histories; a smoother asks for them anyway
 /// @throws InputError, std::invalid_argument when no run can be made of the experiment at all.
 Comparison compare(const Experiment& experiment, ComparedRecord record, const std::filesystem::path& folder,
-                   const Progress& progress, filters::Keep keep = filters::Keep::last_belief);
+                   const Progress& progress, filters::Keep keep = filters::Keep::last_estimate);
 
 /// The experiment's own reduction, filter and discretisation: a comparison of one run, what was not measured
 /// counted at every sample.

@@ -54,8 +54,8 @@ std::string described_response_text(const RunContext& context, const ComparedRun
     if (!(gain > 0.0) || (!turned && gain < far && far * gain > 1.0)) return {};
     return fmt::format(
         "The structure as described, moved by the measured input, moves {:.3g} times as much as the record "
-        "shows{}{}. "
-        "The unit, gain or sign of the input or of the motion is the likely cause: check [record].",
+        "shows{}{}. The unit, gain or sign of the input or of the motion is the likely cause: check "
+        "[record].",
         gain, turned ? ", and against it" : "", usual_scale(gain, near));
   } catch (const std::exception&) {  // a guess that has no motion
     return {};

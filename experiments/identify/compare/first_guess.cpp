@@ -23,9 +23,9 @@ constexpr double guess_widening = 30.0;  // of the deviations found
 constexpr double well_left = 0.25;  // of the variance of guess_noise, where the levels have led somewhere
 
 // Covariance of the unknowns alone.
-MatrixXd covariance_of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
-  if (belief.covariance.size() > 0) return belief.covariance(model.unknown_places, model.unknown_places);
-  const MatrixXd rows = belief.factor(model.unknown_places, Eigen::all);
+MatrixXd covariance_of_unknowns(const JointModel& model, const filters::Gaussian& estimate) {
+  if (estimate.covariance.size() > 0) return estimate.covariance(model.unknown_places, model.unknown_places);
+  const MatrixXd rows = estimate.factor(model.unknown_places, Eigen::all);
   return rows * rows.transpose();
 }
 
@@ -72,7 +72,7 @@ std::unique_ptr<filters::DiscreteModel> finest(const JointModel& model, double i
 
 FirstGuess own_guess(const JointModel& model, const std::vector<Observation>& observations,
                      const MatrixXd& outputs) {
-  const filters::Gaussian known = start_belief(
+  const filters::Gaussian known = initial_estimate(
       model, start_directions(model, observations, start_scale(model, observations, outputs, 1.0)));
   return {known.mean, covariance_of_unknowns(model, known)};
 }

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "experiments/identify/compare/low_mode_fit.hpp"
+#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/start_belief.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/filter_run.hpp"
 

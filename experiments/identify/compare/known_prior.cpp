@@ -9,17 +9,17 @@ namespace beamid::experiments {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-filters::Gaussian of_unknowns(const JointModel& model, const filters::Gaussian& belief) {
+filters::Gaussian of_unknowns(const JointModel& model, const filters::Gaussian& estimate) {
   const auto q = static_cast<Index>(model.unknown_places.size());
   filters::Gaussian part{VectorXd(q), MatrixXd(q, q)};
   for (Index i = 0; i < q; ++i) {
     const Index at = model.unknown_places[i];
-    part.mean[i] = belief.mean[at];
+    part.mean[i] = estimate.mean[at];
     for (Index j = 0; j < q; ++j) {
       const Index other = model.unknown_places[j];
-      part.covariance(i, j) = belief.covariance.size() > 0
-                                  ? belief.covariance(at, other)
-                                  : belief.factor.row(at).dot(belief.factor.row(other));
+      part.covariance(i, j) = estimate.covariance.size() > 0
+                                  ? estimate.covariance(at, other)
+                                  : estimate.factor.row(at).dot(estimate.factor.row(other));
     }
   }
   return part;

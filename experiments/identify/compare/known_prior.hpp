@@ -8,7 +8,7 @@
 namespace beamid::experiments {
 
 /// Of the unknowns alone, as the state carries them (q).
-filters::Gaussian of_unknowns(const JointModel& model, const filters::Gaussian& belief);
+filters::Gaussian of_unknowns(const JointModel& model, const filters::Gaussian& estimate);
 
 /// How far the unknown that moved most is from where it was linearised, `from` (n), in standard deviations.
 double move_of(const JointModel& model, const Eigen::VectorXd& from, const filters::Gaussian& to);

@@ -1,8 +1,8 @@
 // The nearest motion in the lowest modes of a model, whatever its unknowns are.
 #pragma once
 
+#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/start_belief.hpp"
 #include "filters/filter_run.hpp"
 
 namespace beamid::experiments {

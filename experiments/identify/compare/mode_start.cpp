@@ -17,7 +17,7 @@ constexpr Index stiffness_place = 2, damping_place = 3;
 
 }  // namespace
 
-std::optional<StartedModel> started_from_mode(const JointModel& model, const PriorBelief& prior,
+std::optional<StartedModel> started_from_mode(const JointModel& model, const Prior& prior,
                                               const ModalEstimate& modal, const std::string& scheme,
                                               double interval) {
   constexpr double counted_twice = 30, least = 0.01, most = 0.3, usual_ratio = 0.01, largest_ratio = 0.5;

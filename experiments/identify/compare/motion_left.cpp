@@ -27,7 +27,7 @@ std::string innovations_text(const filters::InnovationConsistency& c, double mis
       "The innovations are {} (Ljung-Box p = {:.2g}, mean normalised square {:.3g}): {} motion that the "
       "model does not{}, and the intervals are a lower limit of the uncertainty{}.",
       what, c.whiteness_p_value, c.mean_normalised_square, motion, misfit_percent > 0.0 ? " make" : "",
-      misfit_percent > 0.0 ? ": a mass, a place or a gain believed wrongly moves estimates by more" : "");
+      misfit_percent > 0.0 ? ": a wrong mass, place or gain moves estimates by more" : "");
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ FirstGuess nonlinear_guess(const JointModel& model, const std::vector<Observatio
   const Index samples = part.size();
   const StartDirections directions = start_directions(
       model, observations, start_scale(model, observations, part.outputs, part.time[samples - 1]));
-  VectorXd state = start_belief(model, directions).mean;
+  VectorXd state = initial_estimate(model, directions).mean;
   const MatrixXd unknowns = directions.unknowns(model.unknown_places, Eigen::all);
   FirstGuess known{state, unknowns * unknowns.transpose()};
   take_frequency(model, frequency_hz, state);

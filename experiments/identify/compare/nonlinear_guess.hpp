@@ -10,7 +10,7 @@ namespace beamid::experiments {
 /// over parts of the record that double in length. A record that is low-passed and decimated, as linear
 /// models hear it first, would be another motion to a nonlinear one.
 ///
-/// As there, what is found bounds what filters believe with 30 times its deviations.
+/// As there, what is found bounds what filters start from with 30 times its deviations.
 /// @param frequency_hz of the first mode, as the record shows it
 /// @returns the guesses themselves where no motion of the model is near the record. Unlike that of linear
 /// models, the mean holds the motion too.

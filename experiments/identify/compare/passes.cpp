@@ -89,7 +89,7 @@ void Passes::begin() {
   const bool at_guess = started_.linearised_at.size() == 0;
   begin_at(at_guess ? started_.guess.mean : started_.linearised_at);
   run_.response_seconds += seconds_since(start);
-  if (context_.experiment.estimator != "filter" && settings_.keep == filters::Keep::all_beliefs)
+  if (context_.experiment.estimator != "filter" && settings_.keep == filters::Keep::all_estimates)
     first_start_ = motion_.initial_state;
 }
 
@@ -109,7 +109,7 @@ void Passes::finish() {
   const bool drifts = has_noise(run_.settings.input_noise);  // what one motion leaves is not the noise then
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
   run_.response_seconds += seconds_since(start);
-  if (settings_.keep == filters::Keep::last_belief) return;
+  if (settings_.keep == filters::Keep::last_estimate) return;
   if (first_start_.size() > 0)
     run_.batch = identify_batch(*run_.model, run_.settings, first_start_, directions_.all(), record_);
   if (!context_.experiment.smoother.empty() && has_noise(run_.settings.input_noise))
@@ -117,7 +117,7 @@ void Passes::finish() {
   else if (!context_.experiment.smoother.empty()) {
     const auto filtered = filters::discretise(run_.model->motion, dt_, run_.settings.discretisation,
                                               {{}, run_.settings.output_noise});
-    run_.smoothed = filters::smooth(run_.run, *filtered, record_, context_.experiment.smoother).beliefs;
+    run_.smoothed = filters::smooth(run_.run, *filtered, record_, context_.experiment.smoother).estimates;
   }
 }
 
@@ -193,7 +193,7 @@ void Passes::begin_at(const VectorXd& state) {
   const StartScale scale = start_scale(model, setting_.observations, record_.outputs,
                                        dt_ * static_cast<double>(record_.time.size()));
   directions_ = start_directions(model, setting_.observations, scale);
-  next_ = start_belief(model, with_guess(directions_, model, working_guess()));
+  next_ = initial_estimate(model, with_guess(directions_, model, working_guess()));
   const auto discrete = discretised(unit_noise(record_.outputs));
   motion_ = is_nonlinear(model) ? reproduce_nonlinear(model, *discrete, state, directions_, record_)
                                 : reproduce(*discrete, state, directions_, record_);

@@ -37,7 +37,7 @@ bool Passes::is_overconfident() const {
   return false;
 }
 
-// Elsewhere within what was believed: two modes that are taken for each other are a minimum of their own. Of
+// Elsewhere within the prior: two modes that are taken for each other are a minimum of their own. Of
 // many unknowns or coordinates none: a few draws say little there, and each descent is long.
 std::vector<VectorXd> Passes::further_starts() const {
   constexpr Index draws = 12, most_unknowns = 12, most_work = 10'000'000;

@@ -16,7 +16,7 @@ void Passes::fit_inputs_noise() {
   if (!has_noise(run_.settings.input_noise)) return;
   const auto start = std::chrono::steady_clock::now();
   const JointModel& model = *run_.model;
-  filters::Gaussian known = start_belief(model, with_guess(directions_, model, started_.guess));
+  filters::Gaussian known = initial_estimate(model, with_guess(directions_, model, started_.guess));
   known.mean(model.unknown_places) = started_.guess.mean(started_.model.unknown_places);
   const NoisyInputFit fit = fit_noisy_inputs(model, run_.settings, known, run_.run.last.mean, record_);
   run_.seconds += seconds_since(start);

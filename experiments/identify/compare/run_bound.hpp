@@ -1,8 +1,8 @@
 // The Cramer-Rao bound of a run.
 #pragma once
 
+#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/start_belief.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/measurements.hpp"
 

@@ -127,7 +127,7 @@ void judge_channels(const RunContext& context, ComparedRun& run) {
 }  // namespace
 
 void judge_what_is_said(ComparedRun& run) {
-  // Of the deviation believed: half of the information is the belief's.
+  // Of the prior deviation: half of the information is the prior's.
   constexpr double next_to_nothing = 0.7;
   std::string text;
   for (const ComparedParameter& p : run.parameters)
@@ -136,8 +136,8 @@ void judge_what_is_said(ComparedRun& run) {
       text += fmt::format("{}{} ({:.2g})", text.empty() ? "" : ", ", p.estimate.name, share);
   if (!text.empty())
     run.warnings.push_back("NOT DETERMINED: the record says next to nothing of " + text +
-                           "; what is printed is what was believed beforehand, in brackets the deviation "
-                           "over the one believed.");
+                           "; what is printed is the prior, in brackets the standard deviation "
+                           "over the prior one.");
 }
 
 void judge_run(const RunContext& context, ComparedRun& run) {

@@ -22,7 +22,7 @@ constexpr double settled_move = 1.0;  ///< of an unknown by the last pass, at mo
 /// three, the last.
 void judge_run(const RunContext& context, ComparedRun& run);
 
-/// A warning where the deviation of a parameter asked about, no nuisance, is nearly the one believed
+/// A warning where the deviation of a parameter asked about, no nuisance, is nearly the one assumed
 /// beforehand.
 void judge_what_is_said(ComparedRun& run);
 

@@ -26,7 +26,7 @@ struct StartedModel {
 /// The modal analysis saw the same record. Standard deviations are 30 of its own at least, so that this
 /// counts a thousandth of the record twice: of K 1 % at least, of C the whole of it.
 /// @returns nothing for other models, and where the analysis has no such mode
-std::optional<StartedModel> started_from_mode(const JointModel& model, const PriorBelief& prior,
+std::optional<StartedModel> started_from_mode(const JointModel& model, const Prior& prior,
                                               const ModalEstimate& modal, const std::string& scheme,
                                               double interval);
 

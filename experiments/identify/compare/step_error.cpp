@@ -63,10 +63,8 @@ std::string step_error(const RunContext& context, const ComparedRun& run) {
   if (!(std::abs(worst) > std::max(rounding, narrowest_interval(run)))) return {};
   return fmt::format(
       "WRONG BY THE STEP: at {:.3g} ms {} makes the stiffness of the mode at {:.4g} Hz {:.2g} % too {}, more "
-      "than "
-      "the narrowest interval here; what that mode determines comes out wrong by as much. Expected a "
-      "reduction, such "
-      "as modal_truncation, with the discretisation exponential, or a higher sampling rate.",
+      "than the narrowest interval here; what that mode determines comes out wrong by as much. Expected a "
+      "reduction, such as modal_truncation, with the discretisation exponential, or a higher sampling rate.",
       1e3 * interval, run.discretisation, at_hz, 100 * std::abs(worst), worst > 0 ? "large" : "small");
 }
 

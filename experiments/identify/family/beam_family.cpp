@@ -29,8 +29,8 @@ Comparison identified(const FamilyMember& member, const Progress& progress) {
   return found;
 }
 
-NamedBelief named_belief(const ComparedRun& run) {
-  NamedBelief named{{}, record_belief(run)};
+NamedEstimate named_estimate(const ComparedRun& run) {
+  NamedEstimate named{{}, record_estimate(run)};
   for (const Unknown& unknown : run.unknowns) named.names.push_back(unknown.name);
   return named;
 }
@@ -74,9 +74,9 @@ Estimate estimate_of(const Unknown& unknown, double mean, double deviation) {
 
 // What all say, and the physical numbers at it.
 void add_up(BeamFamily& family) {
-  std::vector<NamedBelief> beliefs;
-  for (const Comparison& one : family.alone) beliefs.push_back(named_belief(run_of(one)));
-  family.estimate = shared_estimate(beliefs);
+  std::vector<NamedEstimate> estimates;
+  for (const Comparison& one : family.alone) estimates.push_back(named_estimate(run_of(one)));
+  family.estimate = shared_estimate(estimates);
   const Eigen::VectorXd deviations = family.estimate.unknowns.deviations();
   family.parameters.clear();
   for (std::size_t j = 0; j < family.estimate.names.size(); ++j)

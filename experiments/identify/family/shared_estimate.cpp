@@ -21,11 +21,11 @@ struct EstimatePart {
 };
 
 // Positive semidefinite: rounding of the difference taken off, and its rank.
-MatrixXd information_of(const RecordBelief& belief, Index& rank) {
-  const VectorXd scale = belief.prior.diagonal().cwiseSqrt();
+MatrixXd information_of(const RecordEstimate& estimate, Index& rank) {
+  const VectorXd scale = estimate.prior.diagonal().cwiseSqrt();
   const VectorXd inverse = scale.cwiseInverse();
-  const MatrixXd after = inverse.asDiagonal() * belief.unknowns.covariance * inverse.asDiagonal(),
-                 before = inverse.asDiagonal() * belief.prior * inverse.asDiagonal();
+  const MatrixXd after = inverse.asDiagonal() * estimate.unknowns.covariance * inverse.asDiagonal(),
+                 before = inverse.asDiagonal() * estimate.prior * inverse.asDiagonal();
   const MatrixXd raw = after.inverse() - before.inverse(), scaled = 0.5 * (raw + raw.transpose());
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
   rank = (solver.eigenvalues().array() > determined).count();
@@ -36,28 +36,28 @@ MatrixXd information_of(const RecordBelief& belief, Index& rank) {
 
 }  // namespace
 
-SharedEstimate shared_estimate(const std::vector<NamedBelief>& records) {
+SharedEstimate shared_estimate(const std::vector<NamedEstimate>& records) {
   if (records.empty()) throw std::invalid_argument("shared estimate: no record; expected one at least");
   SharedEstimate result;
   std::vector<EstimatePart> parts;
   std::vector<double> prior_mean, prior_information;
   Index told_in_all = 0;
-  for (const NamedBelief& record : records) {
+  for (const NamedEstimate& record : records) {
     EstimatePart part;
     Index rank = 0;
     part.information =
-        information_of(record.belief, rank) / (record.belief.noise_ratio * record.belief.noise_ratio);
+        information_of(record.estimate, rank) / (record.estimate.noise_ratio * record.estimate.noise_ratio);
     told_in_all += rank;
     for (std::size_t i = 0; i < record.names.size(); ++i) {
       const auto found = std::find(result.names.begin(), result.names.end(), record.names[i]);
       part.places.push_back(found - result.names.begin());
       if (found != result.names.end()) continue;
       const auto at = static_cast<Index>(i);
-      const bool nuisance = !record.belief.nuisance.empty() && record.belief.nuisance[i];
+      const bool nuisance = !record.estimate.nuisance.empty() && record.estimate.nuisance[i];
       result.names.push_back(record.names[i]);
-      prior_information.push_back((nuisance ? 1.0 : weak_prior) / record.belief.prior(at, at));
-      prior_mean.push_back(nuisance && record.belief.start.size() > 0 ? record.belief.start[at]
-                                                                      : record.belief.unknowns.mean[at]);
+      prior_information.push_back((nuisance ? 1.0 : weak_prior) / record.estimate.prior(at, at));
+      prior_mean.push_back(nuisance && record.estimate.start.size() > 0 ? record.estimate.start[at]
+                                                                        : record.estimate.unknowns.mean[at]);
     }
     parts.push_back(std::move(part));
   }
@@ -70,7 +70,7 @@ SharedEstimate shared_estimate(const std::vector<NamedBelief>& records) {
   for (std::size_t r = 0; r < parts.size(); ++r) {
     const std::vector<Index>& at = parts[r].places;
     sum(at, at) += parts[r].information;
-    weighted(at) += parts[r].information * (records[r].belief.unknowns.mean - before(at));
+    weighted(at) += parts[r].information * (records[r].estimate.unknowns.mean - before(at));
   }
   // In units of the prior no eigenvalue is below 1; where rounding says otherwise the records tell nothing.
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scale.asDiagonal() * sum * scale.asDiagonal());
@@ -81,7 +81,7 @@ SharedEstimate shared_estimate(const std::vector<NamedBelief>& records) {
       scale.asDiagonal();
   result.unknowns.mean = before + result.unknowns.covariance * weighted;
   for (std::size_t r = 0; r < parts.size(); ++r) {
-    const VectorXd off = records[r].belief.unknowns.mean - result.unknowns.mean(parts[r].places);
+    const VectorXd off = records[r].estimate.unknowns.mean - result.unknowns.mean(parts[r].places);
     result.chi_squared += off.dot(parts[r].information * off);
   }
   result.freedom = std::max(0.0, static_cast<double>(told_in_all - all));

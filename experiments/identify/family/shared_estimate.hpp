@@ -9,9 +9,9 @@
 namespace beamid::experiments {
 
 /// What one record says of the unknowns that its own model has.
-struct NamedBelief {
+struct NamedEstimate {
   std::vector<std::string> names;  ///< of its unknowns (q_r)
-  RecordBelief belief;             ///< nuisance, start and prior included
+  RecordEstimate estimate;         ///< nuisance, start and prior included
 };
 
 struct SharedEstimate {
@@ -32,6 +32,6 @@ struct SharedEstimate {
 /// says, once; of the others 1e-8 of it, so that what no record says anything of remains as uncertain as
 /// before. A single record need not determine its own unknowns: I_r may be singular.
 /// @throws std::invalid_argument without records.
-SharedEstimate shared_estimate(const std::vector<NamedBelief>& records);
+SharedEstimate shared_estimate(const std::vector<NamedEstimate>& records);
 
 }  // namespace beamid::experiments

@@ -27,11 +27,11 @@ FilteredRows filtered_rows(SensingForm form, const Choice& filter, const filters
     if (!run.take_in({record.time[k], record.outputs.col(k), input}))
       throw std::runtime_error(
           fmt::format("{} failed at {:.6g} s: {}", filter.name, run.failure()->time, run.failure()->reason));
-    const filters::Gaussian belief = made->marginal(form.moving);
-    result.rows.means.col(k) = rows * belief.mean;
+    const filters::Gaussian estimate = made->marginal(form.moving);
+    result.rows.means.col(k) = rows * estimate.mean;
     if (input.size() > 0) result.rows.means.col(k) += feed * input;
     result.rows.deviations.col(k) =
-        (rows * belief.covariance * rows.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+        (rows * estimate.covariance * rows.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
   }
   result.remarks = made->remarks();
   return result;

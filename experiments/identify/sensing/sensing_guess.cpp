@@ -163,7 +163,7 @@ void SensingModel::add_constants(const Experiment& experiment) {
 }
 
 void SensingModel::make_start() {
-  start_ = start_belief(model_, start_directions(model_, setting_.observations, scale_));
+  start_ = initial_estimate(model_, start_directions(model_, setting_.observations, scale_));
 }
 
 void SensingModel::make_prior() {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "experiments/identify/sensing/sensing_record.hpp"
+#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/start_belief.hpp"
 #include "filters/innovation_likelihood.hpp"
 #include "filters/latent_inputs.hpp"
 

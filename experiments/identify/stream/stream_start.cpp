@@ -6,7 +6,7 @@
 
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/models/start_belief.hpp"
+#include "experiments/models/initial_estimate.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -43,7 +43,7 @@ StreamStart stream_start(const Experiment& experiment, const Record& earlier) {
   const JointModel& model = *run.model;
   StreamStart start{model, run.settings, run.interval_factor, run.status == ComparedRun::Status::converged,
                     run.warnings};
-  start.settings.initial = start_belief(
+  start.settings.initial = initial_estimate(
       model, start_directions(model, observations,
                               start_scale(model, observations, measurements(record).outputs, duration)));
   if (start.settings.initial.covariance.size() > 0) start.settings.initial.factor.resize(0, 0);

@@ -41,13 +41,13 @@ StreamedIdentification::StreamedIdentification(const Experiment& experiment, con
 
 bool StreamedIdentification::take_in(const filters::Sample& sample) {
   const bool moved = running_->move_to(sample.time);
-  const filters::Gaussian predicted = moved ? running_->belief() : filters::Gaussian{};
+  const filters::Gaussian predicted = moved ? running_->estimate() : filters::Gaussian{};
   const bool goes_on = moved && running_->correct(sample);
   list_failures();
   if (!goes_on) {
     if (good_.step == 0 || !watch_.begin_anew_after_failure()) return false;
     filters::SavedRun again = good_;
-    again.belief = first_belief(at_first());
+    again.estimate = first_estimate(at_first());
     again.alarm = {};
     running_->resume(again);
     told_ = 0;
@@ -100,7 +100,7 @@ void StreamedIdentification::heed(const filters::Sample& sample, const filters::
     newer_ = known_now();
     remembered_ = 0;
   } else if (status_ == Status::undetermined && (at_rest_ += outputs) >= InnovationWatch::most_patience) {
-    filter_->reset(first_belief(at_first()));  // what noise has taught it
+    filter_->reset(first_estimate(at_first()));  // what noise has taught it
     motion_.begin_anew();
     at_rest_ = 0;
   }
@@ -120,10 +120,8 @@ void StreamedIdentification::begin_anew(InnovationWatch::Verdict why) {
   else
     said = fmt::format(
         "At {:.6g} s the innovations do not agree with the filter: their mean normalised square over {} "
-        "outputs "
-        "is {:.3g}; expected 1. Motion that the model does not have, more noise than in the earlier record, "
-        "or "
-        "another structure.",
+        "outputs is {:.3g}; expected 1. Motion that the model does not have, more noise than in the earlier "
+        "record, or another structure.",
         time, InnovationWatch::window, square);
   if (why == Watched::left) newer_ = older_;
   Known start = at_first();
@@ -140,28 +138,28 @@ void StreamedIdentification::begin_anew(InnovationWatch::Verdict why) {
     at_rest_ = 0;
     said += " The filter begins anew, the unknowns as uncertain as at first.";
   }
-  filter_->reset(first_belief(start));
+  filter_->reset(first_estimate(start));
   news_.push_back(said);
 }
 
 StreamedIdentification::Known StreamedIdentification::known_now() const {
-  const filters::Gaussian belief = filter_->marginal(prepared_.model.unknown_places);
-  return {belief.mean, belief.marginal(0, belief.mean.size())};
+  const filters::Gaussian estimate = filter_->marginal(prepared_.model.unknown_places);
+  return {estimate.mean, estimate.marginal(0, estimate.mean.size())};
 }
 
 StreamedIdentification::Known StreamedIdentification::at_first() const {
-  const filters::Gaussian& belief = prepared_.settings.initial;
+  const filters::Gaussian& estimate = prepared_.settings.initial;
   const auto& places = prepared_.model.unknown_places;
-  return {belief.mean(places), belief.covariance(places, places)};
+  return {estimate.mean(places), estimate.covariance(places, places)};
 }
 
 // About the sample just taken in: the motion as unknown as at first.
-filters::Gaussian StreamedIdentification::first_belief(const Known& unknowns) const {
-  filters::Gaussian belief = prepared_.settings.initial;
+filters::Gaussian StreamedIdentification::first_estimate(const Known& unknowns) const {
+  filters::Gaussian estimate = prepared_.settings.initial;
   const auto& places = prepared_.model.unknown_places;
-  belief.mean(places) = unknowns.mean;
-  belief.covariance(places, places) = unknowns.covariance;
-  return belief;
+  estimate.mean(places) = unknowns.mean;
+  estimate.covariance(places, places) = unknowns.covariance;
+  return estimate;
 }
 
 std::vector<std::string> StreamedIdentification::news() {
@@ -191,12 +189,12 @@ const char* word(StreamedIdentification::Status status) {
 
 std::vector<StreamedIdentification::Shown> StreamedIdentification::shown() const {
   const bool at_rest = watch_.settled() && !motion_.seen();
-  const filters::Gaussian belief = at_rest ? prepared_.settings.initial : running_->belief();
+  const filters::Gaussian estimate = at_rest ? prepared_.settings.initial : running_->estimate();
   std::vector<Shown> all;
-  for (const Estimate& one : estimates(prepared_.model, belief))
+  for (const Estimate& one : estimates(prepared_.model, estimate))
     all.push_back({one.name, one.unit, one.value, one.deviation});
   if (!is_oscillator(prepared_.model)) return all;
-  const Identification found = identification_at(prepared_.model, belief);
+  const Identification found = identification_at(prepared_.model, estimate);
   all.push_back({"frequency", "Hz", found.found.frequency_hz(), found.frequency_deviation_hz});
   all.push_back({"damping_ratio", "", found.found.damping_ratio(), found.damping_ratio_deviation});
   return all;

@@ -69,11 +69,11 @@ class StreamedIdentification {
   /// than the noise says; at least 1.
   double interval_factor() const;
 
-  /// @throws std::invalid_argument when the filter holds more than its belief
+  /// @throws std::invalid_argument when the filter holds more than its estimate
   void check_can_be_saved() const;
   /// What goes on elsewhere with the same numbers, about the last sample that did not end the stream: filter,
-  /// state labels, sampling interval, the belief, its time and step, and the health of its innovations.
-  /// @throws std::invalid_argument before the first sample, and when the filter holds more than its belief.
+  /// state labels, sampling interval, the estimate, its time and step, and the health of its innovations.
+  /// @throws std::invalid_argument before the first sample, and when the filter holds more than its estimate.
   nlohmann::ordered_json save() const;
   /// @throws std::invalid_argument when what was saved is of another filter, model or interval, or is none
   /// that a filter can have: a variance that is not above 0, a step that is no count.
@@ -90,7 +90,7 @@ class StreamedIdentification {
   void heed(const filters::Sample& sample, const filters::Gaussian& predicted);
   void begin_anew(InnovationWatch::Verdict why);
   Known known_now() const;
-  filters::Gaussian first_belief(const Known& unknowns) const;
+  filters::Gaussian first_estimate(const Known& unknowns) const;
   Known at_first() const;
 
   std::vector<std::string> names_;  // of the outputs

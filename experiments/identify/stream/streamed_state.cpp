@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Filters whose belief is all that they carry from sample to sample.
-bool carries_its_belief_alone(const std::string& filter) {
+// Filters whose estimate is all that they carry from sample to sample.
+bool carries_its_estimate_alone(const std::string& filter) {
   const auto& contracts = filters::filter_registry().find(filter).contracts;
   return contracts.contains(filters::contract::exact_on_linear_gaussian) &&
          !contracts.contains(filters::contract::sampled_on_linear_gaussian);
@@ -50,10 +50,10 @@ void check_deviations(const char* of, const VectorXd& deviations) {
 }  // namespace
 
 void StreamedIdentification::check_can_be_saved() const {
-  if (carries_its_belief_alone(choice_.name)) return;
-  throw std::invalid_argument(
-      "filter '" + choice_.name +
-      "' holds more than its belief, and its state cannot be saved; ekf, iekf, ukf, srukf and the like can");
+  if (carries_its_estimate_alone(choice_.name)) return;
+  throw std::invalid_argument("filter '" + choice_.name +
+                              "' holds more than its estimate, and its state cannot be saved; ekf, iekf, "
+                              "ukf, srukf and the like can");
 }
 
 nlohmann::ordered_json StreamedIdentification::save() const {
@@ -67,9 +67,9 @@ nlohmann::ordered_json StreamedIdentification::save() const {
           {"interval_s", interval_},
           {"step", good_.step},
           {"time_s", good_.time},
-          {"mean", numbers(good_.belief.mean)},
-          {"covariance", numbers(good_.belief.covariance)},
-          {"factor", numbers(good_.belief.factor)},
+          {"mean", numbers(good_.estimate.mean)},
+          {"covariance", numbers(good_.estimate.covariance)},
+          {"factor", numbers(good_.estimate.factor)},
           {"health", watch_.save()},
           {"motion", motion_.save()},
           {"saw_motion", saw_motion_},
@@ -96,9 +96,9 @@ void StreamedIdentification::resume(const nlohmann::json& saved) {
     const auto n = static_cast<Index>(state_names(prepared_.model).size()),
                q = static_cast<Index>(prepared_.model.unknown_places.size());
     filters::SavedRun run;
-    run.belief = {matrix(saved, "mean", n, 1), matrix(saved, "covariance", n, -1),
-                  matrix(saved, "factor", n, -1)};
-    check_deviations("the state", run.belief.deviations());
+    run.estimate = {matrix(saved, "mean", n, 1), matrix(saved, "covariance", n, -1),
+                    matrix(saved, "factor", n, -1)};
+    check_deviations("the state", run.estimate.deviations());
     run.time = saved.at("time_s").get<double>();
     const double step = saved.at("step").get<double>();
     if (!(step >= 1.0 && step <= 1e15 && step == std::floor(step)))

@@ -64,20 +64,20 @@ filters::Noise ringing_noise(const Ringing& ringing, double noise, double force,
   return result;
 }
 
-filters::Gaussian fresh_belief(const Ringing& ringing, Index first) {
+filters::Gaussian fresh_estimate(const Ringing& ringing, Index first) {
   const Index wanted = std::min(ringing.size(), ringing.cycles(look_ahead));
   const VectorXd ahead = ringing.signal.segment(std::min(first, ringing.size() - wanted), wanted);
   const double amplitude = std::max(3.0 * ringing.noise, (ahead.array() - ahead.mean()).abs().maxCoeff());
   const double f = peak(ahead, ringing.interval, ringing.band_hz);
-  filters::Gaussian belief{VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
-  belief.mean[stiffness] = 2.0 * std::log(f / ringing.centre_hz);
-  belief.mean[damping] = damping_guess;
-  belief.mean[offset] = ahead.mean();
+  filters::Gaussian estimate{VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+  estimate.mean[stiffness] = 2.0 * std::log(f / ringing.centre_hz);
+  estimate.mean[damping] = damping_guess;
+  estimate.mean[offset] = ahead.mean();
   VectorXd deviation(size);
   deviation << amplitude, tau * f * amplitude, 0.0, 0.0, tracked_stiffness_doubt, tracked_damping_doubt,
       amplitude;
-  belief.covariance = deviation.cwiseAbs2().asDiagonal();
-  return belief;
+  estimate.covariance = deviation.cwiseAbs2().asDiagonal();
+  return estimate;
 }
 
 double typical_noise(const Ringing& ringing) {
@@ -116,7 +116,7 @@ Segments find_segments(const Ringing& ringing, double walk, double false_alarms)
   const VectorXd none;
   for (Index begin = 0; begin < ringing.size();) {
     found.begins.push_back(begin);
-    filter->reset(fresh_belief(ringing, begin));
+    filter->reset(fresh_estimate(ringing, begin));
     std::vector<double> squares;
     Index k = begin, change = ringing.size();
     for (; k < ringing.size(); ++k) {

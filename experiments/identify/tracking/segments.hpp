@@ -34,7 +34,7 @@ filters::Noise ringing_noise(const Ringing& ringing, double noise, double force,
 
 /// What is assumed of a span before it is seen: the frequency of the strongest oscillation in its first six
 /// cycles with a deviation of 7 %, at rest give or take what the signal does there.
-filters::Gaussian fresh_belief(const Ringing& ringing, Eigen::Index first);
+filters::Gaussian fresh_estimate(const Ringing& ringing, Eigen::Index first);
 
 /// The median over spans of six cycles of what a damped sine leaves of each. @throws std::invalid_argument
 /// when no span can be fitted.

@@ -62,19 +62,19 @@ Levels tuned(const Ringing& ringing, const filters::Measurements& span, const fi
 std::vector<filters::Gaussian> smoothed(const Ringing& ringing, const filters::Measurements& span,
                                         const filters::Gaussian& initial, const filters::Noise& noise) {
   const auto filter = ringing_filter(ringing, noise);
-  const filters::FilterRun run = filters::run(*filter, initial, span, filters::Keep::all_beliefs);
+  const filters::FilterRun run = filters::run(*filter, initial, span, filters::Keep::all_estimates);
   if (run.failure) return run.filtered;
   const auto model = ringing_model(ringing.centre_hz, ringing.interval, noise);
-  return filters::smooth(run, *model, span).beliefs;
+  return filters::smooth(run, *model, span).estimates;
 }
 
-void enter(const std::vector<filters::Gaussian>& beliefs, Index first, double centre_hz, Tracking& result) {
-  for (std::size_t i = 0; i < beliefs.size(); ++i) {
-    const VectorXd deviation = beliefs[i].deviations();
+void enter(const std::vector<filters::Gaussian>& estimates, Index first, double centre_hz, Tracking& result) {
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    const VectorXd deviation = estimates[i].deviations();
     const Index k = first + static_cast<Index>(i);
-    result.frequency_hz[k] = centre_hz * std::exp(0.5 * beliefs[i].mean[ringing::stiffness]);
+    result.frequency_hz[k] = centre_hz * std::exp(0.5 * estimates[i].mean[ringing::stiffness]);
     result.frequency_deviation[k] = 0.5 * deviation[ringing::stiffness];
-    result.damping_ratio[k] = beliefs[i].mean[ringing::damping];
+    result.damping_ratio[k] = estimates[i].mean[ringing::damping];
     result.damping_ratio_deviation[k] = deviation[ringing::damping];
   }
 }
@@ -114,23 +114,23 @@ double significant_walk(double walk, double span, double deviation) {
   return walk * std::sqrt(span) < next_to_nothing * deviation ? 0.0 : walk;
 }
 
-Plateau plateau_of(const Ringing& ringing, const std::vector<filters::Gaussian>& beliefs, Index first,
+Plateau plateau_of(const Ringing& ringing, const std::vector<filters::Gaussian>& estimates, Index first,
                    const Levels& levels) {
   Plateau plateau;
-  plateau.first = first, plateau.last = first + static_cast<Index>(beliefs.size()) - 1;
+  plateau.first = first, plateau.last = first + static_cast<Index>(estimates.size()) - 1;
   plateau.from = ringing.time[plateau.first], plateau.to = ringing.time[plateau.last];
   const double span = plateau.to - plateau.from;
-  const filters::Gaussian& end = beliefs.back();
+  const filters::Gaussian& end = estimates.back();
   const VectorXd deviation = end.deviations();
   plateau.frequency_hz = ringing.centre_hz * std::exp(0.5 * end.mean[ringing::stiffness_integral] / span);
   plateau.frequency_deviation_hz = plateau.frequency_hz * 0.5 * deviation[ringing::stiffness_integral] / span;
   plateau.damping_ratio = end.mean[ringing::damping_integral] / span;
   plateau.damping_ratio_deviation = deviation[ringing::damping_integral] / span;
   const double w = 2.0 * std::numbers::pi * plateau.frequency_hz;
-  const auto amplitude = [&](const filters::Gaussian& belief) {
-    return std::hypot(belief.mean[ringing::signal], belief.mean[ringing::slope] / w);
+  const auto amplitude = [&](const filters::Gaussian& estimate) {
+    return std::hypot(estimate.mean[ringing::signal], estimate.mean[ringing::slope] / w);
   };
-  plateau.amplitude_from = amplitude(beliefs.front()), plateau.amplitude_to = amplitude(end);
+  plateau.amplitude_from = amplitude(estimates.front()), plateau.amplitude_to = amplitude(end);
   compare_with_modal_analysis(ringing, plateau);
   plateau.noise = std::sqrt(levels.noise.output(0, 0));
   plateau.noise_relative_deviation = levels.output_share;
@@ -234,7 +234,7 @@ Tracking track(const VectorXd& signal, double start, double interval, const Trac
     const Index first = segments.begins[i];
     const Index last = (i + 1 < segments.begins.size() ? segments.begins[i + 1] : samples) - 1;
     const filters::Measurements span = ringing.span(first, last);
-    const filters::Gaussian initial = fresh_belief(ringing, first);
+    const filters::Gaussian initial = fresh_estimate(ringing, first);
     if (last - first < 1) {
       enter({initial}, first, ringing.centre_hz, result);
       continue;
@@ -244,10 +244,10 @@ Tracking track(const VectorXd& signal, double start, double interval, const Trac
     const Levels levels = plateau ? tuned(ringing, span, initial, settings)
                                   : Levels{ringing_noise(ringing, ringing.noise, typical_force(ringing),
                                                          settings.walk.value_or(first_walk))};
-    const auto beliefs = smoothed(ringing, span, initial, levels.noise);
-    enter(beliefs, first, ringing.centre_hz, result);
-    if (plateau && std::ssize(beliefs) == last - first + 1)
-      result.plateaus.push_back(plateau_of(ringing, beliefs, first, levels));
+    const auto estimates = smoothed(ringing, span, initial, levels.noise);
+    enter(estimates, first, ringing.centre_hz, result);
+    if (plateau && std::ssize(estimates) == last - first + 1)
+      result.plateaus.push_back(plateau_of(ringing, estimates, first, levels));
   }
   return result;
 }

@@ -123,8 +123,7 @@ void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found
   else if (found.free_decay && motion_goes_on(found))
     found.warnings.push_back(
         fmt::format("The motion goes on: the modes leave {:.2g} % of it, at their own frequencies and to the "
-                    "end, which no "
-                    "decay does. {}",
+                    "end, which no decay does. {}",
                     100.0 * (found.target - found.reproduced).norm() / motion.norm(), no_decay));
   else if (found.free_decay && moved_before(whole, found))
     found.warnings.push_back(
@@ -152,8 +151,7 @@ void take_lines_out(const VectorXd& scales, CoarseRecord& coarse, RecordModes& f
   const bool several = frequencies.size() > 1;
   found.warnings.push_back(
       fmt::format("{} at {}, {:.2g} % of the motion's root mean square, {} over the whole record, as no mode "
-                  "does that is "
-                  "shaken at random: a machine or the mains. {} before modes were sought.",
+                  "does that is shaken at random: a machine or the mains. {} before modes were sought.",
                   several ? "Lines" : "A line", frequencies_text(frequencies), 100.0 * std::sqrt(squares),
                   several ? "last" : "lasts", several ? "They were taken out" : "It was taken out"));
 }

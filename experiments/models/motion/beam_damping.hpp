@@ -8,7 +8,7 @@
 
 namespace beamid::experiments {
 
-/// What is believed of damping choices beforehand: the law's ratio of the mode, or of the first one for all
+/// What is assumed of damping choices beforehand: the law's ratio of the mode, or of the first one for all
 /// modes together, 1 % where no damping is described; alpha and beta of Rayleigh's law, else 0; all of them
 /// to as much again. Other choices are left alone.
 /// @param frequencies omega of the modes that are damped, ascending [rad/s]

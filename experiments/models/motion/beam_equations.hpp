@@ -16,7 +16,7 @@ std::optional<fem::BeamParameter::Quantity> beam_quantity(const std::string& nam
 /// What [[parameters]] may ask the structure itself about, its damping included.
 const std::vector<std::string>& structure_quantities();
 
-/// What the model believes of each choice about the structure by itself: the value described, stiffnesses,
+/// What the model assumes of each choice about the structure by itself: the value described, stiffnesses,
 /// factors and the axial load to 30 %, masses to 10 %; of dampings nothing.
 /// @throws std::invalid_argument, or an InputError at a choice's place, when the structure has no such thing.
 std::vector<ParameterDefault> beam_defaults(const fem::Structure& structure,

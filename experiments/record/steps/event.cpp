@@ -49,8 +49,7 @@ class Event final : public PreparationStep {
     const std::string unit = si_unit(record.channels[row].quantity);
     return fmt::format(
         "Cut to {:.4f} to {:.4f} s, {:g} s after event {} of {} at {:.4f} s in {} (noise before the first: "
-        "{:.3g} "
-        "{}).",
+        "{:.3g} {}).",
         record.time[0], record.time[record.size() - 1], delay_, number_, found.samples.size(), at,
         to_string(record.channels[row].quantity), found.noise, unit);
   }
@@ -79,8 +78,7 @@ class Event final : public PreparationStep {
     if (found.samples.size() < static_cast<std::size_t>(number_))
       throw std::invalid_argument(
           fmt::format("{} event{} in {}, above {:g} times the noise of {:.3g} {} and {:g} of the largest "
-                      "deviation; expected "
-                      "{} or more, after a quiet start of 8 samples or more",
+                      "deviation; expected {} or more, after a quiet start of 8 samples or more",
                       found.samples.size(), found.samples.size() == 1 ? "" : "s",
                       to_string(record.channels[row].quantity), settings_.threshold, found.noise,
                       si_unit(record.channels[row].quantity), settings_.smallest, number_));

@@ -57,11 +57,9 @@ Panel hold_panel(const HoldPage& page, double Bias::*of, const char* label) {
 std::string hold_text(const HoldPage& page) {
   std::string text =
       "A measured force is known at samples only. A filter that holds it until the next one applies it half "
-      "a "
-      "step late, and takes the delay for stiffness; one that runs it straight loses a part of it, and takes "
-      "that for less damping (with the mass unknown: for less of everything). Steady motion at the "
-      "resonance, "
-      "mass known, exact discretisation.";
+      "a step late, and takes the delay for stiffness; one that runs it straight loses a part of it, and "
+      "takes that for less damping (with the mass unknown: for less of everything). Steady motion at the "
+      "resonance, mass known, exact discretisation.";
   for (const HoldPoint& p : page.own)
     if (p.path == InputPath::held)
       text += fmt::format(" At this step a held force makes K {:+.3g} % and C {:+.3g} % wrong.",

@@ -154,8 +154,7 @@ Results report(const Atlas& atlas) {
   results.table(harmless_table(atlas, "harmless_rate_0_1_percent", 0.1));
   results.paragraph(
       "2 stands for any rate that shows the motion at all. A mode at 3.5 Hz that needs 1000 samples per "
-      "period "
-      "needs a sampling rate of 3500 Hz.");
+      "period needs a sampling rate of 3500 Hz.");
   results.paragraph(
       "A filter that moves its model by a scheme finds the oscillator whose motion the scheme turns into the "
       "record's. Figures: the closed form (lines) and an extended Kalman filter on noise-free displacements "

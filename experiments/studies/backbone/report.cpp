@@ -97,8 +97,7 @@ Table model_table(const RecordFits& record) {
   table.note = fmt::format(
       "Gaussian output-error likelihood, all samples at once, no prior, one noise of {:.3g} (SI) for all: "
       "what the best of them leaves. Elastic, masing and between have a spring of any shape: mu is the part "
-      "of "
-      "it that is Masing's loop.",
+      "of it that is Masing's loop.",
       record.noise);
   return table;
 }
@@ -123,8 +122,7 @@ Table loop_table(const BackboneStudy& study, double mass) {
   }
   table.note =
       "Windows: what the backbone's energy loses while the amplitude falls. If Masing: the loop of the "
-      "backbone "
-      "alone, without viscous damping. D: energy over 2 pi F(A) A.";
+      "backbone alone, without viscous damping. D: energy over 2 pi F(A) A.";
   return table;
 }
 
@@ -189,8 +187,7 @@ Results report(const BackboneSettings& settings, const Record& record, const std
   const double rate = 1 / record.interval();
   results.paragraph(
       fmt::format("{}: {} samples from {:.4f} to {:.4f} s, {} windows, after which {}. Sampled at {:.4g} Hz "
-                  "for the windows "
-                  "and {:.4g} Hz for the whole record, of {:.4g} Hz.",
+                  "for the windows and {:.4g} Hz for the whole record, of {:.4g} Hz.",
                   record_name, record.size(), record.time[0], record.time[record.size() - 1],
                   study.windows.windows.size(), study.windows.ended, rate / study.windows.decimation,
                   rate / study.record.decimation, rate));

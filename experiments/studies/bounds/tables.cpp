@@ -44,8 +44,7 @@ Table bound_table(const Identifiability& found) {
   }
   table.note =
       "Bound: Cramer-Rao, on the standard deviation of any unbiased estimate. Others known: the same were "
-      "all "
-      "other parameters known. 95 %: what an interval from the best estimate would be.";
+      "all other parameters known. 95 %: what an interval from the best estimate would be.";
   if (of_deviation) table.note += " Of a parameter that is zero per cent are of its deviation beforehand.";
   return table;
 }

@@ -135,8 +135,7 @@ std::string length_text(const Identifiability& found) {
   if (found.slowest_decay > 0.0)
     text += fmt::format(
         "{}Mode 1 decays with a time constant of {:.3g} s: of what a free decay can ever tell of its "
-        "damping, "
-        "91 % is there after three of them; this record has {:.2g}.",
+        "damping, 91 % is there after three of them; this record has {:.2g}.",
         text.empty() ? "" : " ", found.slowest_decay, found.duration / found.slowest_decay);
   return text;
 }

@@ -238,8 +238,7 @@ Results report(const ModelCheck& check) {
   }
   results.paragraph(
       fmt::format("Each predicted frequency is trusted to {:.2g} % (one standard deviation, --model-error) "
-                  "beside what the "
-                  "record leaves open{}.",
+                  "beside what the record leaves open{}.",
                   100 * check.settings.model_error, shapes_text(check)));
   results.heading("What would explain the difference");
   results.table(single_table(check));

@@ -68,8 +68,7 @@ std::string misfit_text(const Comparison& comparison) {
   if (!poor.empty())
     text = "Large residual: much of the record is left by " + poor +
            ". The model lacks modes that the record has, or the filter has settled on a wrong answer. If a "
-           "larger "
-           "model leaves as much, start from nearer initial estimates or smaller deviations.";
+           "larger model leaves as much, start from nearer initial estimates or smaller deviations.";
   if (!wrong.empty())
     text += (text.empty() ? "" : " ") + std::string("More of the record than a smaller model is left by ") +
             wrong +
@@ -83,8 +82,7 @@ std::string why_surer(const Comparison& comparison, const ComparedRun& run) {
   constexpr double clearly = 0.8;
   if (run.filter.starts_with("particle"))
     return "its particles have collapsed onto a few values, so that neither estimate nor deviation counts: "
-           "use "
-           "a filter of the Kalman family";
+           "use a filter of the Kalman family";
   if (run.last_move > settled_move) return "its estimate has not settled";
   if (comparison.compared.sensor_noise.size() > 0)
     for (Eigen::Index i = 0; i < run.noise.size(); ++i)
@@ -92,8 +90,7 @@ std::string why_surer(const Comparison& comparison, const ComparedRun& run) {
         return fmt::format("[noise] assumes {:.2g} of what the motion leaves of the record",
                            run.noise[i] / run.noise_left[i]);
   return "the filter was linearised too far from its estimate: filter more often ([compare] passes), or "
-         "start "
-         "from nearer initial estimates";
+         "start from nearer initial estimates";
 }
 
 // Deviations below the bound, by more than what was known beforehand explains.
@@ -107,8 +104,7 @@ std::string surer_text(const Comparison& comparison) {
     if (!surer.empty())
       text += fmt::format(
           "{}Overconfident: the filter's standard deviations of {} were, as parts of the Cramer-Rao bound: "
-          "{}; "
-          "{}. They are widened to the bound.",
+          "{}; {}. They are widened to the bound.",
           text.empty() ? "" : " ", name_of(comparison, run), surer, why_surer(comparison, run));
   }
   return text;

@@ -80,9 +80,8 @@ std::string conclusion(const std::vector<StudiedRecord>& records, const std::vec
     return "One law holds: what each record says of its damping, the others show at the same amplitudes.";
   return fmt::format(
       "The records disagree at the same amplitude: the law of {} is {:+.2g} % off in {} at {:.3g} mm. "
-      "Damping "
-      "is not a function of amplitude alone here; temperature, clamping or time have changed it, and no law "
-      "of one record is that of the beam.",
+      "Damping is not a function of amplitude alone here; temperature, clamping or time have changed it, "
+      "and no law of one record is that of the beam.",
       records[worst->law].name, 100 * worst->misfit.largest, records[worst->sections].name,
       1e3 * worst->misfit.at_amplitude);
 }

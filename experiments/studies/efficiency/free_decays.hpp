@@ -43,7 +43,7 @@ class FreeDecays {
 
   /// The model, sampled exactly, with the noise as it is.
   std::unique_ptr<filters::DiscreteModel> model() const;
-  /// A noisy record, and a first belief: at rest, deviations of x and v twice what the largest reading may
+  /// A noisy record, and a first estimate: at rest, deviations of x and v twice what the largest reading may
   /// mean, K and C at the guess with deviations of 3/4 and 1 of it. The same seed gives the same trial.
   filters::Trial trial(std::uint64_t seed) const;
 

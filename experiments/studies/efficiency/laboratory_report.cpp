@@ -48,10 +48,9 @@ Table kind_table(const LaboratoryRecords& all) {
              count(all, outcomes[2]), count(all, outcomes[3])});
   table.note =
       "right: frequency within 0.5 % or 1.5 half widths of its interval (5 % at most), damping ratio within "
-      "15 "
-      "% or 1.5 half widths (itself at most) of what it was over the window. refused: no number, or one that "
-      "is off under a first line that names the cause. unexplained: the same without the cause. wrong: off, "
-      "and nothing said.";
+      "15 % or 1.5 half widths (itself at most) of what it was over the window. refused: no number, or one "
+      "that is off under a first line that names the cause. unexplained: the same without the cause. wrong: "
+      "off, and nothing said.";
   return table;
 }
 
@@ -106,8 +105,7 @@ std::string coverage_text(const LaboratoryRecords& all) {
   }
   return fmt::format(
       "Of the {} right ones whose damping does not depend on amplitude the 95 % interval holds the frequency "
-      "in "
-      "{} and the damping ratio in {}.",
+      "in {} and the damping ratio in {}.",
       records, frequency, ratio);
 }
 
@@ -145,10 +143,9 @@ Results report(const LaboratoryRecords& all) {
   results.heading("Told nothing but the beam");
   results.paragraph(fmt::format(
       "{} simulated laboratory records: cantilevers of 0.25 to 1.2 m with tip masses, released, hit or let "
-      "go "
-      "by hand, damping ratio 0.2 to 2 %, 50 to 2000 Hz, noise of 0.05 to 2 % of the first mode, what cheap "
-      "sensors do on top. Each written to a file and identified as `beamid identify` does with an experiment "
-      "file that says nothing but the beam, whose stiffness there is up to 12 % wrong.",
+      "go by hand, damping ratio 0.2 to 2 %, 50 to 2000 Hz, noise of 0.05 to 2 % of the first mode, what "
+      "cheap sensors do on top. Each written to a file and identified as `beamid identify` does with an "
+      "experiment file that says nothing but the beam, whose stiffness there is up to 12 % wrong.",
       all.settings.records));
   results.table(kind_table(all));
   results.paragraph(coverage_text(all));

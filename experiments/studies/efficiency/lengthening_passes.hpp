@@ -26,7 +26,7 @@ struct LengtheningSettings {
 /// of the constants c, motion as unknown as at first, is a Gauss-Newton step with a small prior about the
 /// present estimate: where the passes converge, the prior pulls nowhere, and all that remains of it is that
 /// told deviations are too small by 1/(2 w^2). Nothing but the filter is used.
-/// @param constants entries of the state that do not move. @returns the last belief; nothing where a pass
+/// @param constants entries of the state that do not move. @returns the last estimate; nothing where a pass
 /// failed. @throws std::invalid_argument when a number is out of range or sizes disagree.
 std::optional<filters::Gaussian> lengthening_passes(filters::Filter& filter, const filters::Gaussian& initial,
                                                     const filters::Measurements& record,

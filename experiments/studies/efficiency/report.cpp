@@ -126,9 +126,8 @@ Results report(const Efficiency& all) {
   results.heading("Filters against the Cramer-Rao bound");
   results.paragraph(fmt::format(
       "Free decays of an oscillator of {:g} Hz, displacement read {:g} times a cycle over {:g} cycles or "
-      "{:g} "
-      "time constants with white noise of {:g} % of the amplitude. Initial state unknown; K and C guessed at "
-      "{} half {} twice the truth.",
+      "{:g} time constants with white noise of {:g} % of the amplitude. Initial state unknown; K and C "
+      "guessed at {} half {} twice the truth.",
       decay.frequency_hz, decay.samples_per_cycle, decay.cycles, decay.time_constants, 100.0 * decay.noise,
       decay.guess == Guess::drawn ? "between" : "either", decay.guess == Guess::drawn ? "and" : "or"));
   results.table(efficiency_table(all));

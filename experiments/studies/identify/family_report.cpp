@@ -55,10 +55,8 @@ std::string agreement(const BeamFamily& family) {
     return fmt::format("The beams agree on what they share within their noise ({}).", measured);
   return fmt::format(
       "THE BEAMS DISAGREE by more than their noise ({}): a clamp that gives way, a length or a mass that is "
-      "not as "
-      "described, or motion that the models do not have. All intervals are widened by {:.3g} (Birge's "
-      "ratio), which "
-      "is itself known from few records only.",
+      "not as described, or motion that the models do not have. All intervals are widened by {:.3g} "
+      "(Birge's ratio), which is itself known from few records only.",
       measured, e.scatter);
 }
 

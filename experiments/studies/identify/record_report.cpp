@@ -70,21 +70,19 @@ std::string unmodelled_text(const RecordIdentification& found) {
   if (by.damping.varies() || by.frequency.varies())
     return fmt::format(
         ". With the amplitude {} (fits in {} sections): the filter's intervals are too short for that, and "
-        "are "
-        "widened to hold the values of 95 % of the decay, by {:.3g} for frequency and K, {:.3g} for damping",
+        "are widened to hold the values of 95 % of the decay, by {:.3g} for frequency and K, {:.3g} for "
+        "damping",
         variation_text(by), by.sections.size(), found.frequency_factor(), found.damping_factor());
   if (!found.modal.companions.empty() && found.modal_failure.empty()) {
     const double off = std::abs(found.identification.found.damping_ratio() - found.modal.damping_ratio) /
                        (quantile_95 * found.damping_factor() * found.identification.damping_ratio_deviation);
     return fmt::format(
         ". The record holds another mode: the modal analysis, which fits both, differs by {:.2g} of the "
-        "interval "
-        "of the damping ratio",
+        "interval of the damping ratio",
         off);
   }
   return ". The record holds motion that the model does not have; what of it lies near the mode is counted "
-         "in the "
-         "intervals";
+         "in the intervals";
 }
 
 std::string verdict(const RecordIdentification& found) {

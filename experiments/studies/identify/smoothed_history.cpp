@@ -16,13 +16,13 @@ struct History {
   VectorXd mean, deviation;
 };
 
-History history(const std::vector<filters::Gaussian>& beliefs, Index state) {
-  const auto samples = static_cast<Index>(beliefs.size());
+History history(const std::vector<filters::Gaussian>& estimates, Index state) {
+  const auto samples = static_cast<Index>(estimates.size());
   History result{VectorXd(samples), VectorXd(samples)};
   for (Index k = 0; k < samples; ++k) {
-    const filters::Gaussian& belief = beliefs[static_cast<std::size_t>(k)];
-    result.mean[k] = belief.mean[state];
-    result.deviation[k] = std::sqrt(std::max(0.0, belief.marginal(state, 1)(0, 0)));
+    const filters::Gaussian& estimate = estimates[static_cast<std::size_t>(k)];
+    result.mean[k] = estimate.mean[state];
+    result.deviation[k] = std::sqrt(std::max(0.0, estimate.marginal(state, 1)(0, 0)));
   }
   return result;
 }

@@ -99,8 +99,7 @@ std::string sentence(const Dependence& one, const RecordModes& found) {
                             last.damping_ratio_deviation);
   return fmt::format(
       "Mode {} of {}: as the amplitude falls from {:.3g} to {:.3g} {}, the damping ratio {} and the "
-      "frequency "
-      "{}.",
+      "frequency {}.",
       one.mode + 1, found.name, first.amplitude, last.amplitude,
       si_unit(found.record.channels[one.channel].quantity),
       ratio ? fmt::format("goes from {} to {} %",

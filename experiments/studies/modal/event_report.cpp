@@ -107,8 +107,7 @@ Table events_table(const std::vector<Event>& events) {
   }
   table.note =
       "PGA: the largest acceleration at the surface. Left: of the motion relative to the base in the band "
-      "fitted, "
-      "what one mode does not explain.";
+      "fitted, what one mode does not explain.";
   return table;
 }
 

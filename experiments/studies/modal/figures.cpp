@@ -62,8 +62,7 @@ Figure diagram(const RecordModes& found, const std::string& suffix) {
   Figure figure{"stabilisation" + suffix, {panel}, 1, 1, 900, 520};
   figure.caption =
       "Stabilisation diagram: poles by model order, the modes chosen, and behind them the spectrum "
-      "(logarithmic, four "
-      "decades at most).";
+      "(logarithmic, four decades at most).";
   return figure;
 }
 

@@ -218,8 +218,7 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   if (study.responses.window_rate > 0)
     text += fmt::format(
         ". The exponential window adds {:.4g} 1/s to every damping rate ({:.3g} % to a damping ratio at "
-        "{:.4g} "
-        "Hz), taken off again",
+        "{:.4g} Hz), taken off again",
         study.responses.window_rate,
         study.modes.empty() ? 0 : 100 * study.responses.window_rate / std::abs(study.modes[0].pole.rate),
         study.modes.empty() ? 0 : study.modes[0].pole.frequency_hz());

@@ -21,8 +21,7 @@ std::string introduction(const ModalStudySettings& settings, const RecordModes& 
   const Record& record = found.record;
   std::string text = fmt::format(
       "{}: {} samples of {} channel{} from {:.4f} to {:.4f} s at {:.2f} Hz, taken as {}. Band {:.4g} to "
-      "{:.4g} "
-      "Hz, sampled at {:.4g} Hz for it. Method {}",
+      "{:.4g} Hz, sampled at {:.4g} Hz for it. Method {}",
       found.name, record.size(), record.channels.size(), record.channels.size() > 1 ? "s" : "",
       record.time[0], record.time[record.size() - 1], 1 / record.interval(),
       found.free_decay ? "a free decay" : "random vibration", found.band_hz.first, found.band_hz.second,

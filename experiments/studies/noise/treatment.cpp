@@ -47,17 +47,17 @@ std::vector<BankMember> members_of(const ModalMotion& motion, const ModalRecord&
 filters::Gaussian start_of(const std::vector<BankMember>& members, const ModalMotion& motion) {
   const auto count = static_cast<Index>(members.size());
   const auto unknown = std::count_if(members.begin(), members.end(), [](const auto& m) { return m.unknown; });
-  filters::Gaussian belief{VectorXd::Zero(2 * count + 2 * unknown), {}};
-  VectorXd deviation(belief.mean.size());
+  filters::Gaussian estimate{VectorXd::Zero(2 * count + 2 * unknown), {}};
+  VectorXd deviation(estimate.mean.size());
   for (Index i = 0; i < count; ++i) {
     const double a = std::abs(motion.amplitude[i]), k = members[i].stiffness, c = members[i].damping;
     deviation.segment<2>(2 * i) << a, a * std::sqrt(k);
     if (!members[i].unknown) continue;
-    belief.mean.segment<2>(2 * count + 2 * i) << k, c;
+    estimate.mean.segment<2>(2 * count + 2 * i) << k, c;
     deviation.segment<2>(2 * count + 2 * i) << (i == 0 ? 0.03 : 0.02) * k, c;
   }
-  belief.covariance = deviation.cwiseAbs2().asDiagonal();
-  return belief;
+  estimate.covariance = deviation.cwiseAbs2().asDiagonal();
+  return estimate;
 }
 
 }  // namespace
@@ -88,13 +88,13 @@ FirstMode identify_first_mode(const ModalRecord& record, const ModalMotion& moti
   const auto count = static_cast<double>(samples.size() - 1);
   const filters::Measurements measured{
       VectorXd::LinSpaced(samples.size(), 0.0, count * interval), samples.transpose(), {}};
-  filters::Gaussian belief = start_of(members, motion);
-  const Index places = 2 * static_cast<Index>(members.size()), unknown = belief.mean.size() - places;
+  filters::Gaussian estimate = start_of(members, motion);
+  const Index places = 2 * static_cast<Index>(members.size()), unknown = estimate.mean.size() - places;
   filters::FilterRun run;
   for (int pass = 0; pass < treatment_passes; ++pass) {
-    run = filters::run(*filter, belief, measured);
+    run = filters::run(*filter, estimate, measured);
     if (run.failure) break;
-    belief.mean.tail(unknown) = run.last.mean.tail(unknown);
+    estimate.mean.tail(unknown) = run.last.mean.tail(unknown);
   }
   const double none = std::numeric_limits<double>::quiet_NaN();
   if (run.failure) return {none, none, none, none, none, variance};

@@ -56,8 +56,8 @@ Table alternative_table(const std::vector<AlternativeCase>& cases) {
                one.noisy_damping_error_percent.minCoeff(), one.noisy_damping_error_percent.maxCoeff()});
   table.note =
       "The chain of 2009 (high-pass at 0.5 Hz, R = 1e-5 I, P0 of K and C 1e5) on 25 s of the first mode "
-      "alone, no "
-      "noise. With Q: process noise of 1e-8 of x and v per step, which the digits of table 2 exclude.";
+      "alone, no noise. With Q: process noise of 1e-8 of x and v per step, which the digits of table 2 "
+      "exclude.";
   return table;
 }
 

@@ -14,7 +14,7 @@ namespace beamid::experiments::paper {
 
 inline constexpr double sensor_noise = 0.05;  // standard deviation of the accelerometer [m/s2]
 
-/// How acceleration becomes what the filter reads, and with what belief it starts.
+/// How acceleration becomes what the filter reads, and with what estimate it starts.
 struct BeamSettings {
   double high_pass_hz = 0.0, low_pass_hz = 0.0;  ///< second order each, causal, once; 0: none
   bool zero_phase = false;                       ///< forwards and backwards instead

@@ -46,8 +46,7 @@ Table chain_table(const Outcome& outcome) {
   }
   table.note =
       "2009: high-pass at 0.5 Hz, no low-pass, nothing left out, R = 1e-5 I, P0 = diag(1, 1, 1e5, 1e5). "
-      "Tuned: "
-      "the settings above table 3. One seed; the records are the same.";
+      "Tuned: the settings above table 3. One seed; the records are the same.";
   return table;
 }
 

@@ -32,7 +32,7 @@ Panel convergence(const Outcome& outcome, const char* scheme, const char* title,
     settings.duration = shown;
     settings.first_stiffness = first_stiffness;
     settings.first_damping = first_damping;
-    const Identification result = validate("ekf", scheme, settings, filters::Keep::all_beliefs);
+    const Identification result = validate("ekf", scheme, settings, filters::Keep::all_estimates);
     const auto count = static_cast<Index>(result.run.filtered.size());
     VectorXd time(count + 1), value(count + 1);
     time[0] = 0.0;

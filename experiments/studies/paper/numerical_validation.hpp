@@ -40,7 +40,8 @@ struct ValidationSettings {
 
 /// The filter's K and C, and its history when kept. The first sample used is one interval after the release.
 Identification validate(const std::string& filter, const std::string& scheme,
-                        const ValidationSettings& settings, filters::Keep keep = filters::Keep::last_belief);
+                        const ValidationSettings& settings,
+                        filters::Keep keep = filters::Keep::last_estimate);
 
 /// Settings under which neither prior nor linearisation leaves a trace: displacement alone, R = 1e-12, two
 /// passes.

@@ -82,8 +82,7 @@ Figure prediction_figure(const std::vector<Prediction>& predictions) {
   Figure figure{"predicted_differences", {points, fall}, 1, 2, 900};
   figure.caption =
       "What forward Euler predicts for the measured beams without an assumed damping ratio: the article's "
-      "table "
-      "3 and figures 5 and 6 decide.";
+      "table 3 and figures 5 and 6 decide.";
   return figure;
 }
 

@@ -135,8 +135,7 @@ Figure start_figure(const StartOutcome& outcome) {
   Figure figure{"error_by_start", {panel}};
   figure.caption = fmt::format(
       "{} with the settings of 2009: error of C against the sample at which the record starts. Runs that "
-      "lost "
-      "the motion stand at the bottom; what lies above the frame is not drawn.",
+      "lost the motion stand at the bottom; what lies above the frame is not drawn.",
       outcome.beam);
   return figure;
 }

@@ -73,10 +73,8 @@ Table step_table(const StepOutcome& outcome) {
                100.0 * one.predicted_ratio, one.exact_square, one.euler_square});
   table.note = fmt::format(
       "Every sample, every second, fourth, ... of the processed record of table 3, with its settings. "
-      "Predicted: "
-      "the closed form from what the exact scheme found at the same step. Forward Euler extrapolated to dt = "
-      "0: "
-      "{:.4f} %.",
+      "Predicted: the closed form from what the exact scheme found at the same step. Forward Euler "
+      "extrapolated to dt = 0: {:.4f} %.",
       100.0 * outcome.extrapolated_ratio);
   return table;
 }

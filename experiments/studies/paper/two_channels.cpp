@@ -81,10 +81,8 @@ Table channel_table(const std::vector<ChannelCase>& cases) {
                one.euler_correlation, one.exact_correlation});
   table.note =
       "Released from 12 mm, two passes, K0 = 0.95 K, C0 = C: 5 s of the oscillator of table 2, 25 s of the "
-      "beam's first mode. 1: "
-      "as large as "
-      "R "
-      "says. The motion dies out and the fault with it: a shorter record shows it more.";
+      "beam's first mode. 1: as large as R says. The motion dies out and the fault with it: a shorter "
+      "record shows it more.";
   return table;
 }
 

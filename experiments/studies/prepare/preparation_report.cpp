@@ -125,8 +125,7 @@ Table cost_table(const PreparationCost& cost) {
       "What the steps make of a clean decay at {:.4f} Hz with a damping ratio of {:.4f} %, the mode that "
       "dominates the prepared record, begun abruptly. Gain and phase: closed form. Changes of frequency and "
       "damping ratio: a least-squares fit where transients are below 1e-3 (settled) and over all that is "
-      "left "
-      "(whole), and the logarithmic decrement over the whole.",
+      "left (whole), and the logarithmic decrement over the whole.",
       cost.frequency_hz, 100 * cost.damping_ratio);
   return table;
 }

@@ -132,8 +132,7 @@ Table parameters_side_by_side(const std::vector<NamedResults>& results) {
   if (two)
     table.note =
         "Combined standard deviation: the root of the sum of both variances, as of independent records; on "
-        "the same "
-        "record it is too large. Beyond 2 the two differ significantly (95 %).";
+        "the same record it is too large. Beyond 2 the two differ significantly (95 %).";
   return table;
 }
 

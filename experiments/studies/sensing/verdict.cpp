@@ -109,8 +109,7 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
     results.warning(fmt::format(
         "From sample to sample the sensors read {:.2f} times as far from what is expected of them as they "
         "should: the noise is larger than stated, or forces are; deviations and intervals are too small by "
-        "as "
-        "much.",
+        "as much.",
         std::sqrt(square)));
 }
 

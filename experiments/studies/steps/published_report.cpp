@@ -92,7 +92,7 @@ Results report(const BehindPublished& found) {
   Results results;
   results.command = "steps";
   results.configuration = {
-      {"believed_xi", p.ratio},
+      {"published_xi", p.ratio},
       {"scheme", p.scheme},
       {"interval_s", p.interval},
       {"frequency_hz", p.frequency_hz},

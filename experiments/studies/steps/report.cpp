@@ -67,8 +67,7 @@ std::string innovations_note(const StepsStudy& study) {
         "exact discretisation, as no motion of the scheme has all that is observed; intervals do not.",
         most);
   return "Intervals and innovations (mean NIS, 1 of a consistent filter) are a filter's own and do not show "
-         "a "
-         "bias: a biased value is no estimate of the structure's damping, however narrow its interval.";
+         "a bias: a biased value is no estimate of the structure's damping, however narrow its interval.";
 }
 
 Table steps_table(const StepsStudy& study) {

@@ -100,8 +100,7 @@ void add_verdict(const PartedIdentification& found, Results& results) {
   if (good == 0 || exact.count == 0) return;
   results.paragraph(
       fmt::format("Were the motion at the sections taken for exact, {} would be {:.3g} of its own deviations "
-                  "{}; mean square "
-                  "of all {}: {:.3g} (1 where deviations are right).",
+                  "{}; mean square of all {}: {:.3g} (1 where deviations are right).",
                   exact.parameter, exact.largest,
                   is_simulated(found) ? "off the truth" : "off what is found with its noise", exact.count,
                   exact.mean_square));

@@ -170,10 +170,8 @@ std::string below_bound_text(const SweepPlan& plan, const std::vector<PointStati
   if (count > shown) beyond += fmt::format(" and {} more", count - shown);
   return fmt::format(
       "{}{}Errors below the Cramer-Rao bound, rms / bound: {}. No unbiased estimate from the records alone "
-      "can do "
-      "that: the initial estimates, which are information that the bound leaves out, are at or near the "
-      "truth. "
-      "Such rows say nothing of how good the filter is.",
+      "can do that: the initial estimates, which are information that the bound leaves out, are at or near "
+      "the truth. Such rows say nothing of how good the filter is.",
       chance, chance.empty() ? "" : " ", beyond);
 }
 

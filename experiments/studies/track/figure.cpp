@@ -96,8 +96,7 @@ Figure tracking_figure(const Tracking& found, const Channel& channel) {
   for (Panel& panel : figure.panels) panel.across(begin, end);
   figure.caption =
       "Signal, frequency and damping ratio in time. Where the record holds no information about the damping "
-      "ratio its "
-      "curve is left out.";
+      "ratio its curve is left out.";
   return figure;
 }
 

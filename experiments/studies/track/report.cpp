@@ -93,8 +93,7 @@ std::string companions(const Tracking& found) {
   if (list.empty()) return {};
   return "Other modes ring beside it: " + list +
          ". The history of frequency and damping ratio shows the beat with them; the mean over a plateau "
-         "does not, but "
-         "for its ends.";
+         "does not, but for its ends.";
 }
 
 Json interval(double estimate, double deviation) {
@@ -172,8 +171,7 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
   results.heading(record_name);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. One mode from {:.4g} to {:.4g} Hz "
-                  "({}) is followed at "
-                  "{:.1f} Hz; its stiffness and damping wander {}.",
+                  "({}) is followed at {:.1f} Hz; its stiffness and damping wander {}.",
                   record_name, record.size(), record.time[0], record.time[record.size() - 1],
                   1.0 / record.interval(), found.band_hz.first, found.band_hz.second,
                   settings.band_hz ? "as given" : "from the record", 1.0 / found.interval,
@@ -189,10 +187,9 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
   if (!between.empty()) results.table(change_table(between));
   results.paragraph(fmt::format(
       "{} alarms: the squares of {} innovations in succession above {:.1f}, which in a record without "
-      "changes and "
-      "with white noise of {:.3g} {} happens with a probability below {:g}. Alarms nearer to each other than "
-      "{:g} "
-      "cycles belong to one change; while it lasts the band of history.csv is what so few samples tell.",
+      "changes and with white noise of {:.3g} {} happens with a probability below {:g}. Alarms nearer to "
+      "each other than {:g} cycles belong to one change; while it lasts the band of history.csv is what so "
+      "few samples tell.",
       found.alarms.size(), found.test_samples, found.threshold, found.noise, si_unit(channel.quantity),
       settings.false_alarms, settings.shortest_cycles));
   results.figures.push_back(tracking_figure(found, channel));

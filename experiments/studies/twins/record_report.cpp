@@ -52,8 +52,7 @@ void warn_of_twins(Comparison& found, const RecordTwins& twins) {
   const std::size_t others = twins.sets.size();
   std::string text = fmt::format(
       "NOT UNIQUE: at least {} other set{} of parameters explain{} this record as well, and {}. The "
-      "intervals "
-      "are those of one of {} answers.",
+      "intervals are those of one of {} answers.",
       others, others == 1 ? "" : "s", others == 1 ? "s" : "", prior_text(twins.sets.front()), others + 1);
   std::vector<std::string>& warnings = found.runs.front().warnings;
   warnings.insert(warnings.begin(), std::move(text));

@@ -164,9 +164,8 @@ std::string twins_warning(const Experiment& experiment) {
 
 std::string described_text() {
   return "All that is not asked about counts as described, exactly. Frequencies and shapes know only the "
-         "ratio "
-         "of stiffness to mass: masses described 1 % too large make every stiffness 1 % too large, and no "
-         "interval counts that.";
+         "ratio of stiffness to mass: masses described 1 % too large make every stiffness 1 % too large, and "
+         "no interval counts that.";
 }
 
 std::vector<std::string> update_sentences(const UpdateStudy& study) {

@@ -272,7 +272,7 @@ TEST(ReadExperiment, RefusesBadRecordTables) {
         "mm/s2, g"}});
 }
 
-TEST(ReadExperiment, RefusesBadBeliefs) {
+TEST(ReadExperiment, RefusesBadEstimates) {
   expect_refused({{BEAM "[prior]\ndamping_ratio = 1\n",
                    "bad.toml:6:17: prior.damping_ratio is 1; expected a number from 0 to below 1"},
                   {BEAM "[prior]\nstiffness_deviation_n_per_m = 0\n",

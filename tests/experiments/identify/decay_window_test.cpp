@@ -36,13 +36,13 @@ Record released_at(const std::vector<double>& times, std::uint64_t seed) {
 TEST(DecayWindow, BeginsThreePeriodsBehindTheLastEventAndSpansTwoTimeConstants) {
   const test::SimulatedBeam simulated;
   const Experiment experiment = simulated.experiment();
-  const double believed_hz = std::sqrt(1.1) * simulated.mode.angular_frequency() / (2.0 * std::numbers::pi);
+  const double described_hz = std::sqrt(1.1) * simulated.mode.angular_frequency() / (2.0 * std::numbers::pi);
   const double time_constant = 1.0 / (damping_ratio * simulated.mode.angular_frequency());
   for (const auto& times : std::vector<std::vector<double>>{{1.0}, {0.5, 2.0}}) {
     const auto window = decay_window(experiment, released_at(times, 11));
     ASSERT_TRUE(window);
     EXPECT_NEAR(window->event, times.back(), 1.5 * interval);
-    EXPECT_NEAR(window->from - window->event, 3.0 / believed_hz, 1e-3);
+    EXPECT_NEAR(window->from - window->event, 3.0 / described_hz, 1e-3);
     EXPECT_NEAR(window->time_constant, time_constant, 0.01 * time_constant);
     EXPECT_NEAR(window->to - window->from, 2.0 * window->time_constant, 1e-9);
   }

@@ -23,14 +23,14 @@ IdentifiedRecord identified(const Record& record, const std::string& name = "rec
   return {name, record, identify_record(simulated.experiment(), record)};
 }
 
-RecordBelief belief(double mean, double deviation) {
+RecordEstimate estimate(double mean, double deviation) {
   return {{VectorXd::Constant(1, mean), MatrixXd::Constant(1, 1, deviation * deviation)},
           MatrixXd::Constant(1, 1, 1e12)};
 }
 
 TEST(JointEstimate, WeighsByInverseVariance) {
   // 10 +- 1 and 11 +- 2: (10 + 11/4) / (5/4), variance 4/5, chi^2 = 1/5
-  const JointEstimate joint = joint_estimate({belief(10, 1), belief(11, 2)});
+  const JointEstimate joint = joint_estimate({estimate(10, 1), estimate(11, 2)});
   EXPECT_NEAR(joint.unknowns.mean[0], 10.2, 1e-9);
   EXPECT_NEAR(joint.unknowns.covariance(0, 0), 0.8, 1e-6);
   EXPECT_NEAR(joint.chi_squared, 0.2, 1e-9);
@@ -41,7 +41,7 @@ TEST(JointEstimate, WeighsByInverseVariance) {
 
 TEST(JointEstimate, WidensByTheScatterOfRecordsThatDisagree) {
   // 0, 0, 9 +- 1 each: chi^2 = 54 on 2 degrees of freedom; the deviation is that of the mean of three
-  const JointEstimate joint = joint_estimate({belief(0, 1), belief(0, 1), belief(9, 1)});
+  const JointEstimate joint = joint_estimate({estimate(0, 1), estimate(0, 1), estimate(9, 1)});
   EXPECT_FALSE(joint.agree());
   EXPECT_NEAR(joint.scatter[0], std::sqrt(27.0), 1e-6);
   EXPECT_NEAR(std::sqrt(joint.unknowns.covariance(0, 0)), std::sqrt(27.0 / 3), 1e-4);
@@ -49,7 +49,7 @@ TEST(JointEstimate, WidensByTheScatterOfRecordsThatDisagree) {
 
 TEST(JointEstimate, CountsThePriorOnce) {
   // Both began with variance 4 and were told 1: each record's own information is 3/4.
-  const RecordBelief one{{VectorXd::Zero(1), MatrixXd::Ones(1, 1)}, MatrixXd::Constant(1, 1, 4.0)};
+  const RecordEstimate one{{VectorXd::Zero(1), MatrixXd::Ones(1, 1)}, MatrixXd::Constant(1, 1, 4.0)};
   EXPECT_NEAR(joint_estimate({one, one}).unknowns.covariance(0, 0), 1 / (0.25 + 2 * 0.75), 1e-8);
   EXPECT_NEAR(joint_estimate({one}).unknowns.covariance(0, 0), 1.0, 1e-8);
 }
@@ -59,9 +59,9 @@ TEST(JointEstimate, CountsThePriorOnce) {
 TEST(JointEstimate, CountsWhatIsKnownOfNuisanceParametersOnce) {
   const MatrixXd prior = Eigen::Vector2d(1e6, 4.0).asDiagonal();
   const Eigen::Matrix2d covariance = (Eigen::Matrix2d::Ones() + Eigen::Matrix2d(prior.inverse())).inverse();
-  std::vector<RecordBelief> records;
+  std::vector<RecordEstimate> records;
   for (const double read : {1.0, 3.0}) {
-    RecordBelief record{{Eigen::Vector2d(read, 0.0), covariance}, prior};
+    RecordEstimate record{{Eigen::Vector2d(read, 0.0), covariance}, prior};
     record.nuisance = {false, true};
     record.start = Eigen::Vector2d(read, 0.0);
     records.push_back(record);

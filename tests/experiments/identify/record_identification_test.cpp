@@ -137,10 +137,10 @@ TEST(RecordIdentification, FindsTheSensorsBias) {
   shifted.samples.array() += 0.5;
   const RecordIdentification without = identify_record(simulated.experiment(), record),
                              with = identify_record(simulated.experiment(), shifted);
-  const filters::Gaussian& belief = with.identification.run.last;
+  const filters::Gaussian& estimate = with.identification.run.last;
   ASSERT_EQ(with.model.motion->state_labels().back().name, "sensor_bias");
-  EXPECT_NEAR(belief.mean[4], 0.5, normal_999 * std::sqrt(belief.covariance(4, 4)));
-  EXPECT_LT(std::sqrt(belief.covariance(4, 4)), 0.01);
+  EXPECT_NEAR(estimate.mean[4], 0.5, normal_999 * std::sqrt(estimate.covariance(4, 4)));
+  EXPECT_LT(std::sqrt(estimate.covariance(4, 4)), 0.01);
   EXPECT_NEAR(with.identification.found.stiffness, without.identification.found.stiffness,
               0.1 * without.identification.stiffness_deviation);
   EXPECT_NEAR(with.identification.found.damping, without.identification.found.damping,

@@ -43,7 +43,7 @@ struct Case {
       model->motion, dt, "exponential", {{}, Eigen::Vector2d(1e-4, 1e-10).asDiagonal().toDenseMatrix()});
 
   VectorXd state(double stiffness, double damping) const {
-    VectorXd z = start_belief(*model, directions).mean;
+    VectorXd z = initial_estimate(*model, directions).mean;
     z[model->unknown_places[0]] = stiffness;
     z[model->unknown_places[1]] = damping;
     return z;
@@ -78,14 +78,14 @@ TEST(StartScale, IsTheAmplitudeBehindTheReadings) {
   EXPECT_NEAR(scale.displacement, amplitude, 0.2 * amplitude);  // the bias adds to one reading
 }
 
-TEST(StartBelief, CoversTheMotionTheOffsetsAndTheGuesses) {
+TEST(InitialEstimate, CoversTheMotionTheOffsetsAndTheGuesses) {
   const Case test;
-  const filters::Gaussian belief = start_belief(*test.model, test.directions);
-  const VectorXd deviations = belief.deviations();
-  EXPECT_NEAR((belief.factor * belief.factor.transpose() - belief.covariance).norm(), 0.0,
-              1e-15 * belief.covariance.norm());
+  const filters::Gaussian estimate = initial_estimate(*test.model, test.directions);
+  const VectorXd deviations = estimate.deviations();
+  EXPECT_NEAR((estimate.factor * estimate.factor.transpose() - estimate.covariance).norm(), 0.0,
+              1e-15 * estimate.covariance.norm());
   EXPECT_NEAR(deviations[1] / deviations[0], 13.0, 1e-9);
-  EXPECT_NEAR(deviations[2] / belief.mean[2], 0.3, 1e-12);
+  EXPECT_NEAR(deviations[2] / estimate.mean[2], 0.3, 1e-12);
   EXPECT_GT(deviations[4], 0.0);
 }
 

@@ -52,7 +52,7 @@ TEST(OnFailure, GoesOnWhereItIsAskedTo) {
 }
 
 // Oracle: the record says as much of the first sample as of the last: K and C, which are constant without
-// process noise, are smoothed to what the filter ends with; the last belief is the filter's own.
+// process noise, are smoothed to what the filter ends with; the last estimate is the filter's own.
 TEST(Smoothed, TellsAtTheStartWhatTheFilterKnowsAtTheEnd) {
   const Record record = simulated.record({Quantity::displacement}, 0.01, 14).window(0, 4);
   for (const char* smoother : {"rts", "urts"}) {

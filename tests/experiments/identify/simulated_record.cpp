@@ -4,9 +4,9 @@ namespace beamid::test {
 
 experiments::Experiment SimulatedBeam::experiment() const {
   experiments::Experiment experiment;
-  fem::Cantilever believed = beam;
-  believed.bending_stiffness *= 1.1;
-  experiment.structure = fem::Beam(believed);
+  fem::Cantilever assumed = beam;
+  assumed.bending_stiffness *= 1.1;
+  experiment.structure = fem::Beam(assumed);
   return experiment;
 }
 

@@ -21,7 +21,7 @@ struct SimulatedBeam {
   experiments::Oscillator truth = experiments::Oscillator::from_frequency(
       33.0 / 140.0 * beam.mass() + beam.tip_mass, mode.angular_frequency(), damping_ratio);
 
-  /// The beam as its owner believes it to be: 10 % stiffer than it is, so that the frequency is 5 % off.
+  /// The beam as its owner describes it: 10 % stiffer than it is, so that the frequency is 5 % off.
   experiments::Experiment experiment() const;
 
   /// Channels of the quantities with white noise of `relative_noise` times each one's amplitude.

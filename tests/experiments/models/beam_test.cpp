@@ -37,7 +37,7 @@ TEST(BeamModel, FollowsTheExactFrequencyThroughAFewModes) {
   // error of second order: two of them, by their deflections and more, leave 1e-6; exact modes follow.
   fem::Cantilever steel = test::steel_beam(1.338090);
   const ModelSetting plain = test::beam_setting(steel, 40, {{Quantity::displacement, 1.1}});
-  const double believed = steel.tip_mass;
+  const double assumed = steel.tip_mass;
   steel.tip_mass *= 1.2;
   const double exact = fem::ExactMode(steel, 1).angular_frequency();
   const auto error_of = [&](const std::string& reduction, const filters::Options& options) {
@@ -46,7 +46,7 @@ TEST(BeamModel, FollowsTheExactFrequencyThroughAFewModes) {
     setting.parameters = {test::parameter("tip_mass")};
     const auto model = beam_model(setting);
     VectorXd state = state_at_guess(*model);
-    set_unknown(*model, state, 0, 1.2 * believed);
+    set_unknown(*model, state, 0, 1.2 * assumed);
     return std::abs(upper_eigenvalues(*model, state)[0].imag() / exact - 1.0);
   };
   EXPECT_LT(error_of("modal_truncation", {{"modes", 3.0}, {"static_correction", true}}), 2e-6);

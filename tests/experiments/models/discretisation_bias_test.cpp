@@ -153,7 +153,7 @@ struct ObservedTwice {
     const Eigen::Vector4d variance(1, 1, parameters, parameters);
     const filters::FilterRun run =
         filters::run(*filter, {Eigen::Vector4d(0.012, 0, 300, 2), variance.asDiagonal()}, record,
-                     filters::Keep::last_belief, filters::Start::one_interval_before);
+                     filters::Keep::last_estimate, filters::Start::one_interval_before);
     return {percent(run.last.mean[2], truth.stiffness), percent(run.last.mean[3], truth.damping)};
   }
 };

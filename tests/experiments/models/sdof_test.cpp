@@ -105,7 +105,7 @@ TEST(Sdof, LearnsNothingOfItsMassFromAMovingBase) {
   EXPECT_NEAR(output[0], 0.0, 1e-15);
 }
 
-TEST(Sdof, TakesOtherBeliefsFromParameters) {
+TEST(Sdof, TakesOtherEstimatesFromParameters) {
   ModelSetting setting = at_one_point(test::one_coordinate(3.0, 515.8), {Quantity::displacement});
   setting.parameters.resize(1);
   setting.parameters[0].quantity = "stiffness";

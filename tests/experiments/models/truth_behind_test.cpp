@@ -25,8 +25,8 @@ TEST_P(TruthBehind, IsWhatTheClosedFormWasGiven) {
 TEST_P(TruthBehind, IsFoundFromTheRatioAtATrueFrequency) {
   constexpr double dt = 0.02, omega = 13.0, ratio = 0.02;
   const auto seen = [&](const Oscillator& truth) { return seen_through(GetParam(), truth, dt); };
-  const double believed = seen(Oscillator::from_frequency(1.0, omega, ratio)).damping_ratio();
-  const Oscillator behind = truth_with_ratio(believed, omega, seen);
+  const double assumed = seen(Oscillator::from_frequency(1.0, omega, ratio)).damping_ratio();
+  const Oscillator behind = truth_with_ratio(assumed, omega, seen);
   EXPECT_NEAR(behind.damping_ratio(), ratio, 1e-11);
   EXPECT_NEAR(behind.angular_frequency(), omega, 1e-11);
 }

@@ -66,7 +66,7 @@ TEST(Repeats, GiveWhatTheFilterGivesEachRecord) {
   }
 }
 
-// Oracle: the Cramer-Rao bound, and the filter's own promise; bands as above. A stiffness believed to 5 % is
+// Oracle: the Cramer-Rao bound, and the filter's own promise; bands as above. A stiffness known to 5 % is
 // near enough for a single pass.
 TEST(Repeats, AreAsNearToTheTruthAsTheBoundSays) {
   const std::string doubt = "[[parameters]]\nquantity = \"stiffness\"\nrelative_deviation = 0.05\n";

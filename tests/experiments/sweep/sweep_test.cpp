@@ -67,10 +67,10 @@ TEST(Sweep, ReachesTablesWithinTablesAndTheTruthAlone) {
   const SweepPlan plan =
       plan_with({"sensors[1].noise_m=0.001,0.002", "truth.beam.tip_mass_kg=0.4", "beam.elements=12"});
   const SweepSource source{{"rig.toml", test::exact_rig}, {}, {}};
-  const Experiment believed = experiment_of(source, plan, 1), truth = experiment_of(source, plan, 1, true);
-  EXPECT_EQ(believed.sensors[0].noise, 0.002);
-  EXPECT_EQ(believed.elements, 12);
-  EXPECT_EQ(believed.structure.beam().tip_mass(), 0.36);
+  const Experiment assumed = experiment_of(source, plan, 1), truth = experiment_of(source, plan, 1, true);
+  EXPECT_EQ(assumed.sensors[0].noise, 0.002);
+  EXPECT_EQ(assumed.elements, 12);
+  EXPECT_EQ(assumed.structure.beam().tip_mass(), 0.36);
   EXPECT_EQ(truth.structure.beam().tip_mass(), 0.4);
   EXPECT_EQ(truth.simulation.seed, 2u);
   EXPECT_THAT([&] { experiment_of(source, plan_with({"sensors[2].noise_m=1"}), 0); },

@@ -2,7 +2,8 @@
 //
 //     x_k+1 = x/2 + 25 x/(1 + x^2) + 8 cos(1.2 k) + w,   y = x^2/20 + v,   w ~ N(0, 10), v ~ N(0, 1)
 //
-// The reading does not tell the sign: beliefs have two peaks. Gaussian filters that linearise lose the truth.
+// The reading does not tell the sign: estimates have two peaks. Gaussian filters that linearise lose the
+// truth.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,7 +55,7 @@ Score score(const std::string& name, const filters::Options& options) {
     }
     const auto filter = filter_registry().make(name, options, growth());
     const auto run = filters::run(*filter, {VectorXd::Zero(1), MatrixXd::Constant(1, 1, 5.0)}, data,
-                                  filters::Keep::all_beliefs);
+                                  filters::Keep::all_estimates);
     result.failures += run.failure.has_value();
     for (std::size_t k = 0; k < run.filtered.size(); ++k) {
       const double error = run.filtered[k].mean[0] - truth[static_cast<Index>(k)];

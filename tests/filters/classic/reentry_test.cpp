@@ -81,12 +81,12 @@ double nees(const std::string& name, double bearing) {
     mean[4] = 0.0;
     const auto filter = filter_registry().make(name, {}, model(1e-6, bearing));
     const auto run =
-        filters::run(*filter, {mean, MatrixXd(variance.asDiagonal())}, data, filters::Keep::all_beliefs);
+        filters::run(*filter, {mean, MatrixXd(variance.asDiagonal())}, data, filters::Keep::all_estimates);
     if (run.failure) return std::numeric_limits<double>::infinity();
     for (Index k = 200; k < 1200; k += 10) {
-      const auto& belief = run.filtered[static_cast<std::size_t>(k)];
-      const Vector5d error = belief.mean - truth.col(k);
-      result += error.dot(belief.marginal(0, 5).ldlt().solve(error));
+      const auto& estimate = run.filtered[static_cast<std::size_t>(k)];
+      const Vector5d error = estimate.mean - truth.col(k);
+      result += error.dot(estimate.marginal(0, 5).ldlt().solve(error));
       count += 1.0;
     }
   }

@@ -47,7 +47,7 @@ TEST(AgainstDescription, AForceInAnotherUnitIsNamed) {
   }
 }
 
-// The filter may lose such a record, three orders from what was believed, or one whose sign is turned.
+// The filter may lose such a record, three orders from the prior, or one whose sign is turned.
 TEST(AgainstDescription, AForceThatMakesNoMotionIsNamedAsTheCause) {
   for (const auto& [gain, name] : {Unit{1000.0, "a force in N taken for kN"},
                                    Unit{0.001, "a force in kN taken for N"}, Unit{-1.0, "against it"}}) {
@@ -80,10 +80,10 @@ ComparedParameter parameter(const char* name, const char* unit, double value, do
   return p;
 }
 
-TEST(AgainstDescription, OneParameterFarFromItsBeliefIsNamedAlone) {
+TEST(AgainstDescription, OneParameterFarFromItsEstimateIsNamedAlone) {
   const auto found =
       against_description({parameter("mass", "kg", 100, 100, 10), parameter("stiffness", "N/m", 250, 100, 30),
-                           parameter("damping", "N s/m", 50, 1, 1)},  // no belief
+                           parameter("damping", "N s/m", 50, 1, 1)},  // no estimate
                           true);
   EXPECT_EQ(found.scale, "");
   ASSERT_EQ(found.differences.size(), 1u);

@@ -26,15 +26,15 @@ Experiment damaged() {
       "damaged.toml"));
 }
 
-// The four quarters asked about, each believed to be whole, to 20 %.
-Experiment believed() {
+// The four quarters asked about, each described as whole, to 20 %.
+Experiment assumed() {
   std::string text = beam + "[damping]\nratio = 0.005\n[model]\nname = \"beam\"\n";
   for (const char* part : {"from_m = 0\nto_m = 0.275", "from_m = 0.275\nto_m = 0.55",
                            "from_m = 0.55\nto_m = 0.825", "from_m = 0.825\nto_m = 1.1"})
     text += std::string("[[parameters]]\nquantity = \"bending_stiffness\"\n") + part +
             "\nrelative_deviation = 0.2\n";
   Experiment e = read_experiment(
-      TomlTable::parse(text + "[[parameters]]\nquantity = \"damping_ratio\"\n", "believed.toml"));
+      TomlTable::parse(text + "[[parameters]]\nquantity = \"damping_ratio\"\n", "described.toml"));
   e.reductions = {parse_reduction("modal_truncation:modes=10", "test")};
   e.filters = {e.filter};
   e.discretisations = {e.discretisation};
@@ -42,7 +42,7 @@ Experiment believed() {
 }
 
 TEST(DamagedRegion, IsFoundFromGuessesAFifthOff) {
-  const Comparison found = compare(believed(), simulated_record(damaged(), {}, silent), {}, silent);
+  const Comparison found = compare(assumed(), simulated_record(damaged(), {}, silent), {}, silent);
   const ComparedRun& run = found.runs[0];
   ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
   for (const ComparedParameter& p : run.parameters)
@@ -53,7 +53,7 @@ TEST(DamagedRegion, IsFoundFromGuessesAFifthOff) {
 // Exact modes follow the stiffness of the regions: held in the shapes of the whole beam, twelve of them
 // converged 0.5 % and 9 standard deviations off.
 TEST(DamagedRegion, IsFoundOnTwelveModesWithinTheirInterval) {
-  Experiment asked = believed();
+  Experiment asked = assumed();
   asked.reductions = {parse_reduction("modal_truncation:modes=12", "test")};
   asked.passes = 5;
   const Comparison found = compare(asked, simulated_record(damaged(), {}, silent), {}, silent);
@@ -69,7 +69,7 @@ TEST(DamagedRegion, IsFoundOnTwelveModesWithinTheirInterval) {
 
 // The mesh of the truth, in its own modes: nothing is left of the reduction's error.
 TEST(DamagedRegion, IsFoundOnTheMeshItself) {
-  Experiment asked = believed();
+  Experiment asked = assumed();
   asked.reductions = {parse_reduction("none", "test")};
   asked.passes = 5;
   const Comparison found = compare(asked, simulated_record(damaged(), {}, silent), {}, silent);

@@ -118,7 +118,7 @@ TEST(WholeFrame, ThatHasNotSettledIsSaidOrMended) {
   }
 }
 
-// Columns believed half as stiff and girders half as stiff again: the first two modes lie where the record's
+// Columns described half as stiff and girders half as stiff again: the first two modes lie where the record's
 // are not, and the descent from there ends with 36 % left. Oracle: the frame simulated.
 TEST(WholeFrame, IsFoundFromOtherStartsWhereTheNearestMinimumIsNotTheRecord) {
   const auto portal = [](double columns, double girders) {

@@ -16,15 +16,15 @@ struct Linear {
   VectorXd found;  // with noise of unit deviation
 
   // What a Kalman filter makes of it, from a prior that says next to nothing; mean without the prior.
-  NamedBelief belief(std::vector<std::string> names, double prior = 1e4) const {
+  NamedEstimate estimate(std::vector<std::string> names, double prior = 1e4) const {
     const MatrixXd before = prior * prior * MatrixXd::Identity(rows.cols(), rows.cols());
     const MatrixXd information = rows.transpose() * rows;
-    NamedBelief result;
+    NamedEstimate result;
     result.names = std::move(names);
-    result.belief.prior = before;
-    result.belief.unknowns.covariance = (information + before.inverse()).inverse();
-    result.belief.unknowns.mean = result.belief.unknowns.covariance * (rows.transpose() * found);
-    result.belief.start = VectorXd::Zero(rows.cols());
+    result.estimate.prior = before;
+    result.estimate.unknowns.covariance = (information + before.inverse()).inverse();
+    result.estimate.unknowns.mean = result.estimate.unknowns.covariance * (rows.transpose() * found);
+    result.estimate.start = VectorXd::Zero(rows.cols());
     return result;
   }
 };
@@ -35,8 +35,8 @@ TEST(SharedEstimate, IsThatOfAllMeasurementsAtOnce) {
   const Linear first{MatrixXd{{3.0, 1.0}}, VectorXd::Constant(1, 5.1)},
       second{MatrixXd{{2.0, -1.0, 0.5}, {0.0, 0.0, 4.0}}, Eigen::Vector2d(0.4, 8.2)},
       third{MatrixXd{{1.0, 1.0}}, VectorXd::Constant(1, 3.0)};
-  const SharedEstimate joint =
-      shared_estimate({first.belief({"a", "b"}), second.belief({"a", "b", "c"}), third.belief({"b", "a"})});
+  const SharedEstimate joint = shared_estimate(
+      {first.estimate({"a", "b"}), second.estimate({"a", "b", "c"}), third.estimate({"b", "a"})});
   EXPECT_EQ(joint.names, (std::vector<std::string>{"a", "b", "c"}));
   MatrixXd all(4, 3);
   all << 3.0, 1.0, 0.0, 2.0, -1.0, 0.5, 0.0, 0.0, 4.0, 1.0, 1.0, 0.0;
@@ -51,7 +51,7 @@ TEST(SharedEstimate, IsThatOfAllMeasurementsAtOnce) {
 TEST(SharedEstimate, SaysThatRecordsDisagree) {
   const Linear first{MatrixXd::Identity(1, 1), VectorXd::Constant(1, 0.0)},
       second{MatrixXd::Identity(1, 1), VectorXd::Constant(1, 10.0)};
-  const SharedEstimate joint = shared_estimate({first.belief({"a"}), second.belief({"a"})});
+  const SharedEstimate joint = shared_estimate({first.estimate({"a"}), second.estimate({"a"})});
   EXPECT_LT(joint.probability, 1e-9);
   EXPECT_NEAR(joint.scatter, std::sqrt(50.0), 1e-3);
   EXPECT_NEAR(std::sqrt(joint.unknowns.covariance(0, 0)), 5.0, 1e-3);
@@ -59,7 +59,7 @@ TEST(SharedEstimate, SaysThatRecordsDisagree) {
 
 TEST(SharedEstimate, LeavesUncertainWhatNoRecordTells) {
   const Linear first{(MatrixXd(1, 2) << 1.0, 1.0).finished(), VectorXd::Constant(1, 2.0)};
-  const SharedEstimate joint = shared_estimate({first.belief({"a", "b"}), first.belief({"a", "b"})});
+  const SharedEstimate joint = shared_estimate({first.estimate({"a", "b"}), first.estimate({"a", "b"})});
   EXPECT_GT(joint.unknowns.deviations().minCoeff(), 1e4);
 }
 

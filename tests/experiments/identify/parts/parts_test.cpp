@@ -14,7 +14,7 @@
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/parts/cut_chain.hpp"
-#include "experiments/models/start_belief.hpp"
+#include "experiments/models/initial_estimate.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "filters/innovation_likelihood.hpp"
 #include "filters/noisy_inputs.hpp"
@@ -101,7 +101,7 @@ VectorXd bounds_percent(const Experiment& experiment, const PartOfStructure& par
   filters::NoisyInputs noisy(filters::discretise(model->motion, own.record.interval(), "exponential",
                                                  {{}, MatrixXd(r.cwiseAbs2().asDiagonal())}),
                              u);
-  const filters::Gaussian start = start_belief(
+  const filters::Gaussian start = initial_estimate(
       *model,
       start_directions(*model, setting.observations,
                        start_scale(*model, setting.observations, record.outputs, record.time.maxCoeff())));

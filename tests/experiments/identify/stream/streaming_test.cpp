@@ -26,7 +26,7 @@ class EveryFilter : public testing::TestWithParam<const char*> {
   filters::FilterRun batch() const {
     const StreamStart prepared = stream_start(experiment_, record_);
     return filter_record(prepared.model, measurements(record_), prepared.settings,
-                         filters::Keep::all_beliefs);
+                         filters::Keep::all_estimates);
   }
 
   filters::Sample sample(Index k) const { return {record_.time[k], record_.samples.col(k)}; }
@@ -41,9 +41,9 @@ TEST_P(EveryFilter, HasTheNumbersOfTheBatch) {
   StreamedIdentification stream(experiment_, record_);
   for (Index k = 0; k < record_.size(); ++k) {
     ASSERT_TRUE(stream.take_in(sample(k)));
-    ASSERT_EQ(stream.running().belief().mean, whole.filtered[static_cast<std::size_t>(k)].mean) << k;
+    ASSERT_EQ(stream.running().estimate().mean, whole.filtered[static_cast<std::size_t>(k)].mean) << k;
   }
-  EXPECT_EQ(stream.running().belief().covariance, whole.last.covariance);
+  EXPECT_EQ(stream.running().estimate().covariance, whole.last.covariance);
 }
 
 TEST_P(EveryFilter, RefusesAMeasuredForce) {
@@ -69,10 +69,10 @@ TEST_P(EveryFilter, GoesOnFromASavedState) {
   second.resume(nlohmann::json::parse(first.save().dump()));
   for (Index k = half; k < record_.size(); ++k) ASSERT_TRUE(second.take_in(sample(k)));
   EXPECT_EQ(second.running().step(), record_.size());
-  const Eigen::VectorXd error = second.running().belief().mean - whole.last.mean,
+  const Eigen::VectorXd error = second.running().estimate().mean - whole.last.mean,
                         deviation = whole.last.deviations();
   if (std::string(GetParam()) == "ekf")
-    EXPECT_EQ(second.running().belief().mean, whole.last.mean);
+    EXPECT_EQ(second.running().estimate().mean, whole.last.mean);
   else
     for (Index i = 0; i < error.size(); ++i) EXPECT_LT(std::abs(error[i]), 1e-6 * deviation[i]) << i;
 }
@@ -89,7 +89,7 @@ TEST(Stream, LeavesOutWhatWasNotMeasured) {
   record.samples.middleCols(100, 20).setConstant(std::nan(""));
   const filters::FilterRun whole = filter_record(prepared.model, measurements(record), prepared.settings);
   for (Index k = 0; k < record.size(); ++k) stream.take_in({record.time[k], record.samples.col(k)});
-  EXPECT_EQ(stream.running().belief().mean, whole.last.mean);
+  EXPECT_EQ(stream.running().estimate().mean, whole.last.mean);
 }
 
 // Oracle: the stiffness of the beam that was simulated.
@@ -162,7 +162,7 @@ TEST_F(Disturbed, OneSpikeIsLeftOut) {
   EXPECT_EQ(stream.watch().left_out(), 1);
   EXPECT_EQ(stream.watch().starts(), 0);
   record_.samples(0, 1000) = std::nan("");  // oracle: the reading that was not there
-  EXPECT_EQ(streamed().running().belief().mean, stream.running().belief().mean);
+  EXPECT_EQ(streamed().running().estimate().mean, stream.running().estimate().mean);
 }
 
 TEST_F(Disturbed, ASpikeBeforeTheFilterHasSettledIsForgotten) {
@@ -199,8 +199,8 @@ TEST_F(Disturbed, MoreNoiseThanExpectedIsNeverSettled) {
   EXPECT_GT(stream.interval_factor(), 7.0);
 }
 
-// Oracle: the first belief, since noise says nothing. Before: 96 % of the rows settled, K = 386 +- 20 for 509
-// N/m in tutorial 2.
+// Oracle: the first estimate, since noise says nothing. Before: 96 % of the rows settled, K = 386 +- 20 for
+// 509 N/m in tutorial 2.
 TEST_F(Disturbed, AtRestNothingIsDetermined) {
   const double noise = 0.01 * record_.samples.cwiseAbs().maxCoeff();
   const StreamedIdentification fresh(experiment_, simulated.record({Quantity::acceleration}, 0.01, 22));

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// What a filter estimates from a record of a motion in the first two modes, with the last belief's mean and
+// What a filter estimates from a record of a motion in the first two modes, with the last estimate's mean and
 // deviations.
 std::pair<VectorXd, VectorXd> identify(const BandedCase& given, const std::string& filter_name,
                                        std::unique_ptr<filters::DiscreteModel> model,
@@ -48,7 +48,7 @@ std::pair<VectorXd, VectorXd> identify(const BandedCase& given, const std::strin
     filter->correct(record.col(k), input);
     filter->predict(input);
   }
-  return {filter->belief().mean, filter->belief().deviations()};
+  return {filter->estimate().mean, filter->estimate().deviations()};
 }
 
 // Noisy readings of a motion in the first two modes, the parameters 2 % off their guess.

@@ -60,7 +60,7 @@ TEST(Table2, ConvergesAsFastAsThePaperSaw) {
   for (const double stiffness : {300.0, 700.0}) {
     ValidationSettings settings;
     settings.first_stiffness = stiffness;
-    const Identification result = validate("ekf", "forward_euler", settings, filters::Keep::all_beliefs);
+    const Identification result = validate("ekf", "forward_euler", settings, filters::Keep::all_estimates);
     for (std::size_t k = 200; k < result.run.filtered.size(); ++k) {
       EXPECT_NEAR(result.run.filtered[k].mean[2] / result.found.stiffness, 1.0, 0.03) << k;
       EXPECT_NEAR(result.run.filtered[k].mean[3] / result.found.damping, 1.0, 0.05) << k;

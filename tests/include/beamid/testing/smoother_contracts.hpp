@@ -49,7 +49,7 @@ inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 inline filters::FilterRun filtered(const LinearModel& model, const Gaussian& initial,
                                    const filters::Measurements& record) {
   const auto filter = filters::filter_registry().make("ekf", {}, std::make_unique<LinearModel>(model));
-  return filters::run(*filter, initial, record, Keep::all_beliefs);
+  return filters::run(*filter, initial, record, Keep::all_estimates);
 }
 
 TEST_P(EverySmoother, IsLeastSquaresOfTheWholeTrajectoryOnLinearModels) {
@@ -87,10 +87,10 @@ TEST_P(EverySmoother, IsLeastSquaresOfTheWholeTrajectoryOnLinearModels) {
     const filters::SmoothedRun smoothed =
         filters::smooth(run, model, record, GetParam(), {}, filters::Smooth::states_and_noises);
     for (Index k = 0; k < samples; ++k) {
-      const Gaussian& belief = smoothed.beliefs[static_cast<std::size_t>(k)];
+      const Gaussian& estimate = smoothed.estimates[static_cast<std::size_t>(k)];
       const MatrixXd block = covariance.block(n * k, n * k, n, n);
-      EXPECT_LT((belief.mean - mean.segment(n * k, n)).norm(), 1e-10 * (1.0 + mean.norm()));
-      EXPECT_LT((belief.covariance - block).norm(), 1e-10 * block.norm());
+      EXPECT_LT((estimate.mean - mean.segment(n * k, n)).norm(), 1e-10 * (1.0 + mean.norm()));
+      EXPECT_LT((estimate.covariance - block).norm(), 1e-10 * block.norm());
       if (k + 1 == samples) continue;
       MatrixXd motion = MatrixXd::Zero(n, n * samples);  // w_k = z_k+1 - A z_k
       motion.middleCols(n * k, n) = -model.a;
@@ -119,7 +119,7 @@ TEST_P(EverySmoother, OfAFixedLagIsThatOfTheShortenedRecord) {
     const filters::Measurements part{record.time.head(length), record.outputs.leftCols(length), {}};
     const filters::SmoothedRun smoothed =
         filters::smooth(filtered(model, initial, part), model, part, GetParam());
-    const Gaussian& expected = smoothed.beliefs[static_cast<std::size_t>(k)];
+    const Gaussian& expected = smoothed.estimates[static_cast<std::size_t>(k)];
     EXPECT_EQ(lagged[static_cast<std::size_t>(k)].mean, expected.mean) << k;
     EXPECT_EQ(lagged[static_cast<std::size_t>(k)].covariance, expected.covariance) << k;
   }
@@ -144,9 +144,9 @@ TEST_P(EverySmoother, WorksWhereParametersAreKnownExactly) {
   const auto smoothed = filters::smooth(filtered(whole, three, record), whole, record, GetParam());
   const auto expected = filters::smooth(filtered(part, two, record), part, record, GetParam());
   for (std::size_t k = 0; k < 30; ++k) {
-    EXPECT_LT((smoothed.beliefs[k].mean.head(2) - expected.beliefs[k].mean).norm(), 1e-12);
-    EXPECT_LT((smoothed.beliefs[k].marginal(0, 2) - expected.beliefs[k].covariance).norm(), 1e-12);
-    EXPECT_EQ(smoothed.beliefs[k].covariance(2, 2), 0.0);
+    EXPECT_LT((smoothed.estimates[k].mean.head(2) - expected.estimates[k].mean).norm(), 1e-12);
+    EXPECT_LT((smoothed.estimates[k].marginal(0, 2) - expected.estimates[k].covariance).norm(), 1e-12);
+    EXPECT_EQ(smoothed.estimates[k].covariance(2, 2), 0.0);
   }
 }
 
@@ -168,12 +168,12 @@ TEST_P(EverySmoother, OfADeterministicMotionIsTheBatchEstimate) {
   const Eigen::Vector4d mean(0.0122, 0.001, 514.0, 1.25), deviation(1e-3, 1e-2, 5.0, 0.1);
   const Gaussian initial{mean, deviation.cwiseAbs2().asDiagonal()};
   const auto filter = filters::filter_registry().make("ekf", {}, model());
-  const filters::FilterRun run = filters::run(*filter, initial, record, Keep::all_beliefs);
+  const filters::FilterRun run = filters::run(*filter, initial, record, Keep::all_estimates);
   const filters::SmoothedRun smoothed = filters::smooth(run, *discrete, record, GetParam());
   const filters::BatchEstimate batch =
       filters::estimate_batch(*discrete, mean, MatrixXd::Identity(4, 4), record,
                               {.prior_factor = deviation.cwiseInverse().asDiagonal()});
-  const Gaussian& first = smoothed.beliefs.front();
+  const Gaussian& first = smoothed.estimates.front();
   for (Index i = 0; i < 4; ++i) {
     const double spread = std::sqrt(batch.covariance(i, i));
     EXPECT_NEAR((first.mean[i] - batch.state[i]) / spread, 0.0, 0.05) << i;
@@ -183,7 +183,7 @@ TEST_P(EverySmoother, OfADeterministicMotionIsTheBatchEstimate) {
 }
 
 TEST_P(EverySmoother, KeepsFactorsForStatesThatAreCarriedByFactors) {
-  // Oracle: the same beliefs as matrices.
+  // Oracle: the same estimates as matrices.
   LinearModel model;
   model.a = 0.4 * gaussian(5, 5);
   model.c = gaussian(1, 5);
@@ -193,20 +193,20 @@ TEST_P(EverySmoother, KeepsFactorsForStatesThatAreCarriedByFactors) {
   const filters::Measurements record{VectorXd::LinSpaced(8, 0, 7), gaussian(1, 8), {}};
   const auto filter =
       filters::filter_registry().make("low_rank_ekf", {}, std::make_unique<LinearModel>(model));
-  const auto low_rank = filters::run(*filter, {VectorXd::Zero(5), {}, factor}, record, Keep::all_beliefs);
+  const auto low_rank = filters::run(*filter, {VectorXd::Zero(5), {}, factor}, record, Keep::all_estimates);
   const auto smoothed = filters::smooth(low_rank, model, record, GetParam());
   const auto expected = filters::smooth(
       filtered(model, {VectorXd::Zero(5), factor * factor.transpose()}, record), model, record, GetParam());
   for (std::size_t k = 0; k < 8; ++k) {
-    EXPECT_EQ(smoothed.beliefs[k].covariance.size(), 0);
-    EXPECT_LE(smoothed.beliefs[k].factor.cols(), 2);
-    const MatrixXd& covariance = expected.beliefs[k].covariance;
-    EXPECT_LT((smoothed.beliefs[k].mean - expected.beliefs[k].mean).norm(), 1e-7);
-    EXPECT_LT((smoothed.beliefs[k].marginal(0, 5) - covariance).norm(), 1e-7 * covariance.norm());
+    EXPECT_EQ(smoothed.estimates[k].covariance.size(), 0);
+    EXPECT_LE(smoothed.estimates[k].factor.cols(), 2);
+    const MatrixXd& covariance = expected.estimates[k].covariance;
+    EXPECT_LT((smoothed.estimates[k].mean - expected.estimates[k].mean).norm(), 1e-7);
+    EXPECT_LT((smoothed.estimates[k].marginal(0, 5) - covariance).norm(), 1e-7 * covariance.norm());
   }
 }
 
-TEST_P(EverySmoother, RefusesRunsWithoutBeliefsAndOfOtherRecords) {
+TEST_P(EverySmoother, RefusesRunsWithoutEstimatesAndOfOtherRecords) {
   LinearModel model;
   model.a = model.c = model.q = model.r = MatrixXd::Ones(1, 1);
   const filters::Measurements record{VectorXd::LinSpaced(8, 0, 7), gaussian(1, 8), {}};

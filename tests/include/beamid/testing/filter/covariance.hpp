@@ -13,8 +13,8 @@ namespace beamid::test::covariance {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-inline void expect_symmetric_and_positive(const filters::Gaussian& belief) {
-  const MatrixXd covariance = belief.marginal(0, belief.mean.size());
+inline void expect_symmetric_and_positive(const filters::Gaussian& estimate) {
+  const MatrixXd covariance = estimate.marginal(0, estimate.mean.size());
   ASSERT_EQ((covariance - covariance.transpose()).norm(), 0.0);
   const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   ASSERT_TRUE(scale.allFinite());
@@ -29,10 +29,11 @@ TEST_P(EveryFilter, KeepsItsCovarianceSymmetricAndPositive) {
   std::mt19937 random(3);
   const auto record = decay(2, 2000, 1e-3, 0.0, random);
   const auto initial = start({0.012, 0.0, 300.0, 2.0}, {1.0, 1.0, 1e5, 1e5});
-  const auto result = run(*oscillator(2, 1e-3, std::sqrt(1e-5)), initial, record, filters::Keep::all_beliefs);
+  const auto result =
+      run(*oscillator(2, 1e-3, std::sqrt(1e-5)), initial, record, filters::Keep::all_estimates);
   ASSERT_FALSE(result.failure) << result.failure->reason;
-  for (const auto& belief : result.predicted) expect_symmetric_and_positive(belief);
-  for (const auto& belief : result.filtered) expect_symmetric_and_positive(belief);
+  for (const auto& estimate : result.predicted) expect_symmetric_and_positive(estimate);
+  for (const auto& estimate : result.filtered) expect_symmetric_and_positive(estimate);
 }
 
 TEST_P(EveryFilter, TakesStatesThatAreKnownExactly) {

@@ -43,14 +43,15 @@ TEST_P(EveryFilter, ErrsAsMuchAsItSays) {
     const Eigen::Vector4d truth(0.012, 0.0, stiffness, damping), deviation(2e-4, 2e-3, 15.0, 1.0);
     const Eigen::Vector4d mean =
         truth + deviation.cwiseProduct(Eigen::Vector4d::NullaryExpr([&] { return normal(random); }));
-    const auto result = run(*filter, start(mean, deviation.cwiseAbs2()), record, filters::Keep::all_beliefs);
+    const auto result =
+        run(*filter, start(mean, deviation.cwiseAbs2()), record, filters::Keep::all_estimates);
     ASSERT_FALSE(result.failure);
-    // K and C do not move, so the last belief about them has an error of two degrees of freedom; where they
+    // K and C do not move, so the last estimate about them has an error of two degrees of freedom; where they
     // are known, so has the motion at the first sample.
     const Index first = linear_only() ? 0 : 2;
-    const Gaussian& belief = linear_only() ? result.filtered.front() : result.last;
-    const Eigen::Vector2d error = belief.mean.segment<2>(first) - truth.segment<2>(first);
-    sum += error.dot(belief.marginal(first, 2).inverse() * error);
+    const Gaussian& estimate = linear_only() ? result.filtered.front() : result.last;
+    const Eigen::Vector2d error = estimate.mean.segment<2>(first) - truth.segment<2>(first);
+    sum += error.dot(estimate.marginal(first, 2).inverse() * error);
   }
   const double freedoms = 2.0 * runs, spread = 3.29 * std::sqrt(2.0 / (9.0 * freedoms));
   const double centre = 1.0 - 2.0 / (9.0 * freedoms);
@@ -77,8 +78,9 @@ TEST_P(EveryFilter, ChangesNothingWhenUnitsChange) {
 }
 
 TEST_P(EveryFilter, SurvivesAStartThatIsOneSampleLateOrSaysSo) {
-  // Oracle: the truth. The record starts one sample after the motion that the belief is about, and the prior
-  // is wide. A filter may be misled by it, but not in silence: it fails, or its innovations are too large.
+  // Oracle: the truth. The record starts one sample after the motion that the estimate is about, and the
+  // prior is wide. A filter may be misled by it, but not in silence: it fails, or its innovations are too
+  // large.
   if (linear_only()) GTEST_SKIP() << "the model is not linear";
   std::mt19937 random(41);
   auto record = decay(2, 2001, 1e-3, 1e-4, random);

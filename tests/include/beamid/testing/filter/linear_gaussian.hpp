@@ -30,7 +30,7 @@ TEST_P(EveryFilter, ReproducesThePublishedCase) {
   filters::Measurements record{VectorXd::LinSpaced(3, 0, 2), MatrixXd(1, 3), {}};
   record.outputs << 1, 2, 3;
   const auto result =
-      run(*filter, initial, record, filters::Keep::all_beliefs, filters::Start::one_interval_before);
+      run(*filter, initial, record, filters::Keep::all_estimates, filters::Start::one_interval_before);
   ASSERT_FALSE(result.failure);
   const MatrixXd covariance = result.last.marginal(0, 2);
   EXPECT_NEAR(result.last.mean[0], 6.71906243590896, 1e-13);
@@ -97,7 +97,7 @@ TEST_P(EveryFilter, ApproachesTheKalmanFilterAsItsSampleGrows) {
   }
 }
 
-TEST_P(EveryFilter, GoesOnFromItsBeliefAsIfNeverInterrupted) {
+TEST_P(EveryFilter, GoesOnFromItsEstimateAsIfNeverInterrupted) {
   // Oracle: the run without interruption.
   if (!declares(filters::contract::exact_on_linear_gaussian)) GTEST_SKIP() << "not promised";
   std::mt19937 random(23);
@@ -109,17 +109,17 @@ TEST_P(EveryFilter, GoesOnFromItsBeliefAsIfNeverInterrupted) {
   whole->reset(initial);
   part->reset(initial);
   for (Index k = 0; k < readings.cols(); ++k) {
-    if (k == 17) {  // another filter goes on from what this one believes
-      const Gaussian belief = part->belief();
+    if (k == 17) {  // another filter goes on from what this one has found
+      const Gaussian estimate = part->estimate();
       part = make(std::make_unique<LinearModel>(model));
-      part->reset(belief);
+      part->reset(estimate);
     }
     for (const auto& filter : {whole.get(), part.get()}) {
       filter->predict({});
       filter->correct(readings.col(k), {});
     }
   }
-  const Gaussian expected = whole->belief(), found = part->belief();
+  const Gaussian expected = whole->estimate(), found = part->estimate();
   EXPECT_LT((found.mean - expected.mean).norm(), 1e-12 * (1.0 + expected.mean.norm()));
   EXPECT_LT((found.marginal(0, 3) - expected.marginal(0, 3)).norm(), 1e-12 * expected.marginal(0, 3).norm());
 }

@@ -18,7 +18,7 @@ TEST_P(EveryFilter, ReportsWhereItFailed) {
   auto record = decay(1, 100, 1e-3, 0.0, random);
   record.outputs(0, 60) = std::numeric_limits<double>::infinity();
   const auto initial = start({0.012, 0.0, 500.0, 9.0}, {1e-6, 1e-4, 1e2, 1.0});
-  const auto result = run(*oscillator(1, 1e-3, 1e-4), initial, record, filters::Keep::all_beliefs);
+  const auto result = run(*oscillator(1, 1e-3, 1e-4), initial, record, filters::Keep::all_estimates);
   ASSERT_TRUE(result.failure);
   EXPECT_EQ(result.failure->step, 60);
   EXPECT_NEAR(result.failure->time, 0.060, 1e-12);
@@ -26,7 +26,7 @@ TEST_P(EveryFilter, ReportsWhereItFailed) {
   EXPECT_EQ(result.filtered.size(), 60u);  // the partial run is kept
 }
 
-TEST_P(EveryFilter, RefusesBeliefsThatDoNotFit) {
+TEST_P(EveryFilter, RefusesEstimatesThatDoNotFit) {
   const auto filter = make(joint_model(1, 1e-3, 1e-4));
   EXPECT_THROW(filter->reset({VectorXd::Zero(3), MatrixXd::Identity(3, 3)}), std::invalid_argument);
   MatrixXd lopsided = MatrixXd::Identity(4, 4);

@@ -36,26 +36,26 @@ TEST_P(EveryFilter, EqualsTheKalmanFilterOfWhatWasMeasured) {
     log_likelihood += filter->correct(readings.col(k), {}).log_likelihood;
     expected.correct(readings.col(k));
   }
-  const Gaussian& found = filter->belief();
+  const Gaussian& found = filter->estimate();
   EXPECT_LT((found.mean - expected.mean).norm(), 1e-10 * (1 + expected.mean.norm()));
   EXPECT_LT((found.marginal(0, n) - expected.covariance).norm(), 1e-10 * expected.covariance.norm());
   EXPECT_NEAR(log_likelihood / expected.log_likelihood, 1.0, 1e-10);
 }
 
 TEST_P(EveryFilter, LearnsNothingFromNothing) {
-  // Oracle: the belief before.
+  // Oracle: the estimate before.
   const auto filter = oscillator(2, 1e-3, 1e-4);
   filter->reset(start({0.012, 0.0, 500.0, 9.0}, {1e-6, 1e-4, 1e2, 1.0}));
   for (int k = 0; k < 3; ++k) {
     filter->predict({});
-    const Gaussian before = filter->belief();
+    const Gaussian before = filter->estimate();
     const auto& correction = filter->correct(VectorXd::Constant(2, missing), {});
     EXPECT_EQ(correction.innovation.size(), 0);
     EXPECT_EQ(correction.log_likelihood, 0.0);
-    EXPECT_EQ(filter->belief().mean, before.mean);
-    EXPECT_EQ(filter->belief().deviations(), before.deviations());
+    EXPECT_EQ(filter->estimate().mean, before.mean);
+    EXPECT_EQ(filter->estimate().deviations(), before.deviations());
     filter->correct(Eigen::Vector2d(0.0119, missing), {});
-    EXPECT_LT(filter->belief().deviations()[0], before.deviations()[0]);
+    EXPECT_LT(filter->estimate().deviations()[0], before.deviations()[0]);
   }
 }
 
@@ -73,9 +73,9 @@ TEST_P(EveryFilter, TakesAnOutputThatIsNeverMeasuredAsAbsent) {
     one->correct(record.outputs.col(k), {});
     two->correct(Eigen::Vector2d(record.outputs(0, k), missing), {});
   }
-  const VectorXd deviation = one->belief().deviations();
-  EXPECT_LT((two->belief().mean - one->belief().mean).cwiseQuotient(deviation).norm(), 1e-9);
-  EXPECT_LT((two->belief().deviations() - deviation).cwiseQuotient(deviation).norm(), 1e-9);
+  const VectorXd deviation = one->estimate().deviations();
+  EXPECT_LT((two->estimate().mean - one->estimate().mean).cwiseQuotient(deviation).norm(), 1e-9);
+  EXPECT_LT((two->estimate().deviations() - deviation).cwiseQuotient(deviation).norm(), 1e-9);
 }
 
 TEST_P(EveryFilter, CarriesOnOverGaps) {
@@ -93,7 +93,7 @@ TEST_P(EveryFilter, CarriesOnOverGaps) {
     filter->correct(record.outputs.col(k), {});
   }
   if (linear_only()) return;
-  const Gaussian& found = filter->belief();
+  const Gaussian& found = filter->estimate();
   EXPECT_NEAR(found.mean[2], stiffness, 5.0 * found.deviations()[2]);
   EXPECT_NEAR(found.mean[3], damping, 5.0 * found.deviations()[3]);
 }

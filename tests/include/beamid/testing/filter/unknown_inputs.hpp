@@ -45,11 +45,11 @@ TEST_P(EveryFilter, FindsAnInputThatNobodyMeasuredIfItEstimatesInputs) {
     plant->transition(z, VectorXd::Zero(1), next);
     z = next;
   }
-  filters::Gaussian belief{VectorXd::Zero(4), MatrixXd::Zero(4, 4), {}};
-  belief.mean[3] = ForcedOscillator::stiffness;
-  belief.covariance.diagonal() << 1e-6, 1e-4, size * size, 0.0;
+  filters::Gaussian estimate{VectorXd::Zero(4), MatrixXd::Zero(4, 4), {}};
+  estimate.mean[3] = ForcedOscillator::stiffness;
+  estimate.covariance.diagonal() << 1e-6, 1e-4, size * size, 0.0;
   const auto filter = filters::filter_registry().make(GetParam(), {}, model());
-  const filters::FilterRun found = filters::run(*filter, belief, record, filters::Keep::last_belief,
+  const filters::FilterRun found = filters::run(*filter, estimate, record, filters::Keep::last_estimate,
                                                 filters::Start::at_first_sample, {{2}});
   ASSERT_FALSE(found.failure);
   const VectorXd error = (found.means.row(0).transpose() - force).tail(samples - 200);

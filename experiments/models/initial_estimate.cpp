@@ -1,4 +1,4 @@
-#include "experiments/models/start_belief.hpp"
+#include "experiments/models/initial_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -101,13 +101,13 @@ StartDirections start_directions(const JointModel& model, const std::vector<Obse
   return directions;
 }
 
-filters::Gaussian start_belief(const JointModel& model, const StartDirections& directions) {
-  filters::Gaussian belief{VectorXd::Zero(state_size(model)), {}, directions.all()};
+filters::Gaussian initial_estimate(const JointModel& model, const StartDirections& directions) {
+  filters::Gaussian estimate{VectorXd::Zero(state_size(model)), {}, directions.all()};
   for (std::size_t j = 0; j < model.unknowns.size(); ++j)
-    belief.mean[model.unknown_places[j]] = model.unknowns[j].to_state(model.unknowns[j].guess);
-  if (belief.mean.size() <= largest_dense_state)
-    belief.covariance = belief.factor * belief.factor.transpose();
-  return belief;
+    estimate.mean[model.unknown_places[j]] = model.unknowns[j].to_state(model.unknowns[j].guess);
+  if (estimate.mean.size() <= largest_dense_state)
+    estimate.covariance = estimate.factor * estimate.factor.transpose();
+  return estimate;
 }
 
 }  // namespace beamid::experiments

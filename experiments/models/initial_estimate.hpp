@@ -1,4 +1,4 @@
-// What is believed before the record is seen.
+// What is assumed before the record is seen.
 #pragma once
 
 #include "experiments/models/joint_model.hpp"
@@ -34,6 +34,6 @@ StartDirections start_directions(const JointModel& model, const std::vector<Obse
 
 /// At rest, the unknowns at their guesses; uncertain in the start directions. The covariance itself is formed
 /// for small states only.
-filters::Gaussian start_belief(const JointModel& model, const StartDirections& directions);
+filters::Gaussian initial_estimate(const JointModel& model, const StartDirections& directions);
 
 }  // namespace beamid::experiments
