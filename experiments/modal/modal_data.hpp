@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,9 +25,7 @@ struct ModalData {
   std::vector<std::string> warnings = {};  ///< of the analysis that found them, sentences
 
   bool has_shapes() const {
-    for (const MeasuredMode& mode : modes)
-      if (mode.shape.size() > 1) return true;
-    return false;
+    return std::ranges::any_of(modes, [](const MeasuredMode& mode) { return mode.shape.size() > 1; });
   }
 };
 

@@ -25,7 +25,8 @@ std::vector<double> by_mode(const RunContext& context, ComparedRun& run) {
         "deviation assumed: intervals are widened by {:.3g}.",
         near.lines, density, factor));
   }
-  return std::vector<double>(run.parameters.size(), run.interval_factor);
+  std::vector<double> factors(run.parameters.size(), run.interval_factor);
+  return factors;
 }
 
 std::vector<double> by_influence(ComparedRun& run) {

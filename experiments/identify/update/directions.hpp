@@ -18,6 +18,6 @@ struct Directions {
 };
 
 /// @param columns of J that may change; what is held has no part
-Directions directions_of(const Eigen::MatrixXd& jacobian, const std::vector<Eigen::Index>& columns);
+Directions directions_of(const Eigen::MatrixXd& derivative, const std::vector<Eigen::Index>& columns);
 
 }  // namespace beamid::experiments
