@@ -1,6 +1,5 @@
 #include "experiments/modal/frequency_step.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "experiments/modal/damped_sine_fit.hpp"
+#include "experiments/modal/shape_fit.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/sway.hpp"
@@ -53,19 +53,14 @@ LocalSine sine_in(const VectorXd& samples, double interval, const ModalEstimate&
 VectorXd left_by_modes(const DecimatedSignal& coarse, const ModalEstimate& mode) {
   std::vector<std::complex<double>> rates{mode.rate()};
   for (const CompanionMode& other : mode.companions) rates.push_back(other.rate());
-  MatrixXd basis = MatrixXd::Ones(coarse.samples.size(), 2 * static_cast<Index>(rates.size()) + 1);
-  Index column = 1;
-  for (const std::complex<double> rate : rates) {
-    for (Index k = 0; k < basis.rows(); ++k) {
-      const std::complex<double> motion = std::exp(rate * (coarse.interval * static_cast<double>(k)));
-      basis(k, column) = motion.real(), basis(k, column + 1) = motion.imag();
-    }
-    column += 2;
-  }
-  return coarse.samples - basis * basis.colPivHouseholderQr().solve(coarse.samples);
+  std::vector<bool> oscillating(rates.size(), true);
+  rates.emplace_back(0);
+  oscillating.push_back(false);
+  const MatrixXd signal = coarse.samples.transpose();
+  return (signal - fit_shapes(signal, coarse.interval, rates, oscillating).reconstruction).transpose();
 }
 
-/// D over what tells against it, above 5 where the frequency steps between windows i and j; 0 elsewhere.
+/// D over what speaks against it, above 5 where the frequency steps between windows i and j; 0 elsewhere.
 double step_between(const std::vector<LocalSine>& sines, Index i, Index j, Index far, double w) {
   constexpr double significant = 8, least = 0.003, still = 5, alike = 2;
   const auto of = [&](Index k) { return sines[static_cast<std::size_t>(k)]; };

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "experiments/identify/in_double.hpp"
+#include "experiments/identify/measured_force.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -146,11 +147,8 @@ AgainstDescription against_description(const std::vector<ComparedParameter>& par
 }
 
 void judge_description(const RunContext& context, ComparedRun& run) {
-  const std::vector<Channel>& channels = context.analysis.record.channels;
-  const bool by_force = std::any_of(channels.begin(), channels.end(), [](const Channel& channel) {
-    return channel.quantity == Quantity::force;
-  });
-  const AgainstDescription found = against_description(run.parameters, by_force);
+  const AgainstDescription found =
+      against_description(run.parameters, measures_force(context.analysis.record));
   run.warnings.insert(run.warnings.end(), found.differences.begin(), found.differences.end());
   if (found.scale.empty()) return;
   if (!found.contradicts) {

@@ -53,7 +53,7 @@ std::vector<double> by_influence(ComparedRun& run) {
   return factors;
 }
 
-// A filter that is surer than record and prior allow has been linearised elsewhere, or has lost its spread:
+// A filter more certain than record and prior allow has been linearised elsewhere, or has lost its spread:
 // its deviation becomes the least there is.
 double to_bound(ComparedParameter& p, double factor) {
   if (!p.bound) return factor;

@@ -7,6 +7,7 @@
 
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
+#include "experiments/identify/measured_force.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/record_inputs.hpp"
 #include "experiments/studies/compare/clock_report.hpp"
@@ -95,15 +96,13 @@ Table parameter_table(const Comparison& comparison, const std::string& name) {
 
 // Of motion without a measured force: it shows the ratio of stiffness to mass alone.
 std::string mass_note(const ComparedRun& run, const Record& record) {
-  const bool forced = std::any_of(record.channels.begin(), record.channels.end(),
-                                  [](const Channel& channel) { return channel.quantity == Quantity::force; });
   const auto any_in = [&](const char* unit) {
     return std::any_of(run.unknowns.begin(), run.unknowns.end(),
                        [&](const Unknown& unknown) { return unknown.unit.starts_with(unit); });
   };
   const bool factors = std::any_of(run.unknowns.begin(), run.unknowns.end(),
                                    [](const Unknown& unknown) { return unknown.quantity == "factor"; });
-  if (forced || any_in("kg") || !(any_in("N") || factors)) return {};
+  if (measures_force(record) || any_in("kg") || !(any_in("N") || factors)) return {};
   return " No force was measured: masses described 1 % too large make every stiffness and dashpot 1 % too "
          "large, and no interval counts that.";
 }

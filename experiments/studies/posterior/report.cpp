@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/identify/measured_force.hpp"
 #include "experiments/studies/sensing/report.hpp"
 #include "experiments/studies/update/report.hpp"
 
@@ -23,9 +24,7 @@ nlohmann::ordered_json record_configuration(const Experiment& experiment, const 
 std::string mass_sentence(const Experiment& experiment, const PosteriorStudy& study) {
   for (const ParameterChoice& one : experiment.parameters)
     if (one.quantity.find("mass") != std::string::npos || one.quantity == "factor") return "";
-  if (study.source)
-    for (const Channel& channel : study.source->record.record.channels)
-      if (channel.quantity == Quantity::force) return "";
+  if (study.source && measures_force(study.source->record.record)) return "";
   return "Masses are taken as described: where all are wrong by 1 %, so is every stiffness, and nothing here "
          "shows it.";
 }

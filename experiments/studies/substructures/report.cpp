@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/config/description.hpp"
+#include "experiments/identify/measured_force.hpp"
 #include "experiments/results/forest_plot.hpp"
 
 namespace beamid::experiments {
@@ -110,10 +111,8 @@ void add_verdict(const PartedIdentification& found, Results& results) {
 std::string without_forces(const PartedIdentification& found) {
   std::string names;
   for (const IdentifiedPart& part : found.parts) {
-    const auto& channels = part.noisy.compared.record.channels;
-    const bool forced = std::any_of(channels.begin(), channels.end(),
-                                    [](const Channel& one) { return one.quantity == Quantity::force; });
-    if (part.converged() && !forced) names += (names.empty() ? "" : ", ") + part.part.name;
+    if (part.converged() && !measures_force(part.noisy.compared.record))
+      names += (names.empty() ? "" : ", ") + part.part.name;
   }
   if (names.empty()) return {};
   return fmt::format(

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "experiments/identify/update/update_study.hpp"
-#include "filters/random.hpp"
 #include "tests/experiments/identify/update/update_cases.hpp"
 
 namespace beamid::experiments::remedies_test {
@@ -16,15 +15,7 @@ using Eigen::VectorXd, testing::Contains, testing::HasSubstr;
 const VectorXd truth = lbf_per_in * VectorXd{{7.18, 8.08, 9.03, 14.69}};
 
 ModalData measured(std::uint64_t seed) {
-  ModalData data = predicted_data(four_storeys(), truth, 4);
-  filters::RandomStream random(31, seed);
-  for (MeasuredMode& mode : data.modes) {
-    mode.deviation_hz = 0.002 * mode.frequency_hz;
-    mode.frequency_hz += mode.deviation_hz * random.normal(1, 1)(0, 0);
-    mode.shape += 0.02 * random.normal(4, 1);
-    mode.shape_deviation = 0.02;
-  }
-  return data;
+  return with_errors(predicted_data(four_storeys(), truth, 4), 0.002, 31, seed);
 }
 
 UpdateStudy studied(const ModalData& data) {

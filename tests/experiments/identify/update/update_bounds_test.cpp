@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "experiments/identify/update/update_study.hpp"
-#include "filters/random.hpp"
 #include "tests/experiments/identify/update/update_cases.hpp"
 
 namespace beamid::experiments::update_bounds_test {
@@ -31,14 +30,7 @@ TEST(UpdateBounds, IntervalsHoldATruthBesideTheBound) {
   double widest = 0.0;
   constexpr int cases = 60;
   for (std::uint64_t seed = 0; seed < cases; ++seed) {
-    ModalData data = exact;
-    filters::RandomStream random(23, seed);
-    for (MeasuredMode& mode : data.modes) {
-      mode.deviation_hz = 0.005 * mode.frequency_hz;
-      mode.frequency_hz += mode.deviation_hz * random.normal(1, 1)(0, 0);
-      mode.shape += 0.02 * random.normal(3, 1);
-      mode.shape_deviation = 0.02;
-    }
+    const ModalData data = with_errors(exact, 0.005, 23, seed);
     const UpdateStudy study = study_update(experiment, data, {{0.0, 0.0}, 4});
     contradicted += study.updating.refuted ? 1 : 0;
     for (const UpdatedParameter& one : study.updating.parameters) {

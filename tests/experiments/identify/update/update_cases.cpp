@@ -4,6 +4,7 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/update/modal_model.hpp"
+#include "filters/random.hpp"
 
 namespace beamid::experiments {
 
@@ -45,6 +46,18 @@ ModalData predicted_data(const Experiment& experiment, const Eigen::VectorXd& va
     MeasuredMode mode{modes.frequency_hz[i]};
     mode.shape = modes.shapes.col(i) / modes.shapes.col(i).cwiseAbs().maxCoeff();
     data.modes.push_back(mode);
+  }
+  return data;
+}
+
+ModalData with_errors(ModalData data, double frequency_share, std::uint64_t seed, std::uint64_t stream) {
+  constexpr double of_shapes = 0.02;
+  filters::RandomStream random(seed, stream);
+  for (MeasuredMode& mode : data.modes) {
+    mode.deviation_hz = frequency_share * mode.frequency_hz;
+    mode.frequency_hz += mode.deviation_hz * random.normal(1, 1)(0, 0);
+    mode.shape += of_shapes * random.normal(mode.shape.size(), 1);
+    mode.shape_deviation = of_shapes;
   }
   return data;
 }

@@ -1,6 +1,7 @@
 // Structures and measured modes for tests of updating.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,8 @@ inline const std::vector<double> three_frequencies{7.203, 20.961, 30.435};
 
 /// The lowest modes of a structure at these values, with shapes at its sensors.
 ModalData predicted_data(const Experiment& experiment, const Eigen::VectorXd& values, Eigen::Index count);
+
+/// With normal errors of 0.02 in the shapes' components and of a share of each frequency, stated likewise.
+ModalData with_errors(ModalData data, double frequency_share, std::uint64_t seed, std::uint64_t stream);
 
 }  // namespace beamid::experiments

@@ -111,14 +111,7 @@ TEST(Updating, HasIntervalsThatHoldTheTruthAsOftenAsTheySay) {
   int held = 0;
   constexpr int cases = 200;
   for (std::uint64_t seed = 0; seed < cases; ++seed) {
-    ModalData data = exact;
-    filters::RandomStream random(11, seed);
-    for (MeasuredMode& mode : data.modes) {
-      mode.deviation_hz = 0.01 * mode.frequency_hz;
-      mode.frequency_hz += mode.deviation_hz * random.normal(1, 1)(0, 0);
-      mode.shape += 0.02 * random.normal(3, 1);
-      mode.shape_deviation = 0.02;
-    }
+    const ModalData data = with_errors(exact, 0.01, 11, seed);
     const UpdateStudy study = study_update(experiment, data, few_starts(4, {0.0, 0.0}));
     for (Index j = 0; j < 3; ++j) {
       const UpdatedParameter& one = study.updating.parameters[static_cast<std::size_t>(j)];

@@ -1,0 +1,16 @@
+// Whether a record knows the scale of masses.
+#pragma once
+
+#include <algorithm>
+
+#include "experiments/record/record.hpp"
+
+namespace beamid::experiments {
+
+/// Whether a force was measured. Without one, motion knows stiffness and damping over mass alone.
+inline bool measures_force(const Record& record) {
+  return std::any_of(record.channels.begin(), record.channels.end(),
+                     [](const Channel& channel) { return channel.quantity == Quantity::force; });
+}
+
+}  // namespace beamid::experiments
