@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+#include <stdexcept>
+
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/json_file.hpp"
@@ -88,8 +91,12 @@ SweepPlan plan_of(const Json& manifest, const std::filesystem::path& file) {
   try {
     const Json& told = manifest.at("plan");
     for (const Json& text : told.at("vary")) plan.varied.push_back(parse_varied(text.get<std::string>()));
-    plan.samples = told.at("random").get<int>();
-    plan.seeds = told.at("seeds").get<int>();
+    const auto count = [&](const char* key) {
+      return static_cast<int>(whole_number(told.at(key), key, 0, std::numeric_limits<int>::max()));
+    };
+    plan.samples = count("random");
+    plan.seeds = count("seeds");
+    if (!told.at("seed").is_number_unsigned()) throw std::invalid_argument("seed is no whole number");
     plan.seed = told.at("seed").get<std::uint64_t>();
     plan.once = told.value("identify", "") == "once";
     check(plan);

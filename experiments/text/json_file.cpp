@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/text_file.hpp"
@@ -34,6 +35,18 @@ Json read_json(const std::filesystem::path& file, const std::string& expected) {
   } catch (const Json::exception&) {
     throw InputError({file.string()}, "a number beyond double precision; expected " + expected);
   }
+}
+
+std::int64_t whole_number(const nlohmann::json& value, const std::string& key, std::int64_t least,
+                          std::int64_t most) {
+  const bool fits = value.is_number_unsigned()
+                        ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(most)
+                        : value.is_number_integer() && value.get<std::int64_t>() <= most;
+  if (!fits || value.get<std::int64_t>() < least)
+    throw std::invalid_argument(fmt::format("{} is {}; expected a whole number from {} to {}", key,
+                                            value.is_primitive() ? value.dump() : value.type_name(), least,
+                                            most));
+  return value.get<std::int64_t>();
 }
 
 }  // namespace beamid::experiments

@@ -21,6 +21,7 @@
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/json_file.hpp"
 #include "experiments/text/method_choice.hpp"
+#include "experiments/text/text_file.hpp"
 
 namespace beamid::fuzz {
 namespace {
@@ -209,11 +210,31 @@ constexpr const char* own_results = R"({"program": "beamid", "version": "0.1.0",
  "standard_deviation": 0.02}}, "tables": {"runs": [{"filter": "ekf", "rms": 0.1}]}, "files": []})";
 
 void join(const std::string& results, const std::string& page) {
+  static const fs::path second = [] {
+    folder().write("b/results.json", own_results);
+    return folder().write("b/report.html", own_page()).parent_path();
+  }();
   folder().write("a/results.json", results);
-  folder().write("b/results.json", own_results);
-  folder().write("b/report.html", own_page());
   const fs::path first = folder().write("a/report.html", page).parent_path();
-  refusable([&] { write_joined_report({first, first.parent_path() / "b"}, first / "joined.html", true); });
+  refusable([&] { write_joined_report({first, second}, folder().write("joined.html", ""), true); });
+}
+
+constexpr int page_ways = 16;  // joining takes ten times as long as reading
+
+/// What a page is taken apart into is put together and taken apart again; in one of its ways it is joined
+/// with another.
+void read_page(const std::string& bytes, int way) {
+  if (way == 0) return join(own_results, bytes);
+  refusable([&] {
+    const auto sections = sections_of(read_text(folder().write("page.html", bytes), "a page"));
+    for (const ReportSection& section : sections) {
+      if (!foreign_tag(section.html).empty()) return;
+      command_of(section);
+    }
+    const auto again = sections_of(report_page(sections));
+    promise(again.size() == sections.size());
+    for (std::size_t i = 0; i < again.size(); ++i) promise(again[i].html == sections[i].html);
+  });
 }
 
 }  // namespace
@@ -233,7 +254,7 @@ const std::vector<Target>& targets() {
       {"samples", read_samples},
       {"state", read_state},
       {"results", [](const std::string& bytes, int) { join(bytes, own_page()); }},
-      {"page", [](const std::string& bytes, int) { join(own_results, bytes); }}};
+      {"page", read_page, page_ways}};
   return all;
 }
 

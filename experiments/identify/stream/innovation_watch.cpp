@@ -7,6 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "experiments/text/json_file.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -102,11 +104,9 @@ nlohmann::ordered_json InnovationWatch::save() const {
 }
 
 void InnovationWatch::resume(const nlohmann::json& saved) {
-  const auto count = [&](const char* key) {
-    const auto value = saved.at(key).get<std::int64_t>();
-    if (!saved.at(key).is_number_integer() || value < 0)
-      throw std::invalid_argument(std::string("health.") + key + " is no count; expected a whole number");
-    return static_cast<Index>(value);
+  constexpr Index most_outputs = 1'000'000'000'000'000, most_in_window = 1'000'000;
+  const auto count = [&](const char* key) -> Index {
+    return whole_number(saved.at(key), std::string("health.") + key, 0, most_outputs);
   };
   InnovationWatch read;
   read.settled_ = saved.at("settled").get<bool>();
@@ -120,10 +120,10 @@ void InnovationWatch::resume(const nlohmann::json& saved) {
   read.left_out_ = count("left_out");
   read.starts_ = count("starts");
   for (const auto& one : saved.at("window")) {
-    read.squares_.emplace_back(one.at(0).get<double>(), one.at(1).get<Index>());
+    read.squares_.emplace_back(one.at(0).get<double>(),
+                               whole_number(one.at(1), "outputs of health.window", 1, most_in_window));
     const auto& [square, outputs] = read.squares_.back();
-    if (!(square >= 0.0) || outputs < 1 || outputs > 1000000)
-      throw std::invalid_argument("health.window holds what is no square of some outputs");
+    if (!(square >= 0.0)) throw std::invalid_argument("health.window holds what is no square");
     read.degrees_ += outputs;
   }
   if (read.degrees_ > read.since_ || !(read.sum_ >= 0.0))

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "experiments/identify/stream/streamed_identification.hpp"
+#include "experiments/text/json_file.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -100,10 +100,8 @@ void StreamedIdentification::resume(const nlohmann::json& saved) {
                     matrix(saved, "factor", n, -1)};
     check_deviations("the state", run.estimate.deviations());
     run.time = saved.at("time_s").get<double>();
-    const double step = saved.at("step").get<double>();
-    if (!(step >= 1.0 && step <= 1e15 && step == std::floor(step)))
-      throw std::invalid_argument(fmt::format("step is {:g}; expected a count of samples", step));
-    run.step = static_cast<Index>(step);
+    constexpr Index most = 1'000'000'000'000'000;
+    run.step = whole_number(saved.at("step"), "step", 1, most);
     InnovationWatch watch;
     watch.resume(saved.at("health"));
     MotionEvidence motion;
@@ -114,12 +112,15 @@ void StreamedIdentification::resume(const nlohmann::json& saved) {
       check_deviations("known", known.back().covariance.diagonal());
     }
     if (known.size() > 2) throw std::invalid_argument("known holds more than two; expected what was saved");
-    remembered_ = std::clamp<Index>(saved.at("outputs_since_known").get<Index>(), 0, InnovationWatch::window);
+    remembered_ =
+        std::min<Index>(whole_number(saved.at("outputs_since_known"), "outputs_since_known", 0, most),
+                        InnovationWatch::window);
     running_->resume(run);
     watch_ = watch;
     motion_ = motion;
     saw_motion_ = saved.at("saw_motion").get<bool>();
-    at_rest_ = std::clamp<Index>(saved.at("outputs_at_rest").get<Index>(), 0, InnovationWatch::most_patience);
+    at_rest_ = std::min<Index>(whole_number(saved.at("outputs_at_rest"), "outputs_at_rest", 0, most),
+                               InnovationWatch::most_patience);
     status_ = !watch_.settled() ? Status::settling : motion_.seen() ? Status::settled : Status::undetermined;
     newer_ = known.empty() ? std::nullopt : std::optional(known.back());
     older_ = known.size() < 2 ? std::nullopt : std::optional(known.front());

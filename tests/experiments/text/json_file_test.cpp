@@ -32,5 +32,25 @@ TEST(JsonFile, IsRefusedWhereItNestsWithoutEnd) {
   EXPECT_EQ(error_of("{\"a\":" + std::string(60, '[') + std::string(60, ']') + "}"), "no error");
 }
 
+// 1e92 as a count was whatever the conversion made of it.
+TEST(JsonFile, HoldsWholeNumbersOrIsRefused) {
+  const auto read = [](const char* text) {
+    try {
+      return std::to_string(whole_number(nlohmann::json::parse(text), "steps", 0, 1000));
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(read("0"), "0");
+  EXPECT_EQ(read("1000"), "1000");
+  EXPECT_EQ(read("1001"), "steps is 1001; expected a whole number from 0 to 1000");
+  EXPECT_EQ(read("-1"), "steps is -1; expected a whole number from 0 to 1000");
+  EXPECT_EQ(read("18446744073709551615"),
+            "steps is 18446744073709551615; expected a whole number from 0 to 1000");
+  EXPECT_EQ(read("1e92"), "steps is 1e+92; expected a whole number from 0 to 1000");
+  EXPECT_EQ(read("2.5"), "steps is 2.5; expected a whole number from 0 to 1000");
+  EXPECT_EQ(read("[3]"), "steps is array; expected a whole number from 0 to 1000");
+}
+
 }  // namespace
 }  // namespace beamid::experiments::json_file_test

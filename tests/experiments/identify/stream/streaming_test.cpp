@@ -285,8 +285,8 @@ TEST(Stream, RefusesAStateThatNoFilterHas) {
   };
   EXPECT_EQ(refusal("covariance", std::vector<double>(16, 0.0)),
             "a deviation of the state is 0; expected more than 0");
-  EXPECT_EQ(refusal("step", 1e30), "step is 1e+30; expected a count of samples");
-  EXPECT_EQ(refusal("step", -3), "step is -3; expected a count of samples");
+  EXPECT_EQ(refusal("step", 1e30), "step is 1e+30; expected a whole number from 1 to 1000000000000000");
+  EXPECT_EQ(refusal("step", -3), "step is -3; expected a whole number from 1 to 1000000000000000");
   EXPECT_NE(refusal("mean", nlohmann::json::array()).find("mean has 0 numbers"), std::string::npos);
   EXPECT_NE(refusal("covariance", nlohmann::json::array()), "taken");
   EXPECT_NE(refusal("filter", nlohmann::json::array({nlohmann::json::array()})), "taken");
