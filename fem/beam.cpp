@@ -4,14 +4,24 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace beamid::fem {
 namespace {
 
-void require(bool valid, const std::string& name, double value, const std::string& expected) {
+/// Words of a message in two parts, put together only where there is one: beams are checked at every set of
+/// parameters that a search tries.
+struct Words {
+  std::string_view first, second;
+  Words(const char* words) : first(words) {}
+  Words(std::string_view one, std::string_view other) : first(one), second(other) {}
+};
+
+void require(bool valid, const Words& name, double value, const Words& expected) {
   if (valid && std::isfinite(value)) return;
   std::ostringstream message;
-  message << name << " is " << value << "; expected " << expected;
+  message << name.first << name.second << " is " << value << "; expected " << expected.first
+          << expected.second;
   throw std::invalid_argument(message.str());
 }
 
@@ -19,10 +29,11 @@ void require(bool valid, const std::string& name, double value, const std::strin
 void validate(const Section& section, const std::string& where) {
   const auto positive = [&](const Variation& quantity, const char* name, const char* unit) {
     const double rounding = 1e-12 * std::abs(quantity(0.5));
+    if (quantity.is_constant())
+      return require(quantity(0.5) > 0.0, {where, name}, quantity(0.5), {"a positive number of ", unit});
     for (const double s : {0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0})
-      require(
-          (s == 0.0 || s == 1.0) && !quantity.is_constant() ? quantity(s) >= -rounding : quantity(s) > 0.0,
-          where + name, quantity(s), std::string("a positive number of ") + unit);
+      require(s == 0.0 || s == 1.0 ? quantity(s) >= -rounding : quantity(s) > 0.0, {where, name}, quantity(s),
+              {"a positive number of ", unit});
   };
   positive(section.bending_stiffness, "bending stiffness", "N m2");
   positive(section.mass_per_length, "mass per length", "kg/m");
@@ -30,7 +41,7 @@ void validate(const Section& section, const std::string& where) {
   if (section.axial_stiffness) positive(*section.axial_stiffness, "axial stiffness", "N");
   for (const double s : {0.0, 0.5, 1.0})
     require(section.rotary_inertia(s) >= -1e-12 * std::abs(section.rotary_inertia(0.5)),
-            where + "rotary inertia", section.rotary_inertia(s), "zero or a positive number of kg m");
+            {where, "rotary inertia"}, section.rotary_inertia(s), "zero or a positive number of kg m");
 }
 
 }  // namespace
@@ -59,15 +70,16 @@ void validate(const Beam& beam) {
   if (beam.segments.empty()) throw std::invalid_argument("the beam has no segment; expected at least one");
   for (std::size_t i = 0; i < beam.segments.size(); ++i) {
     const std::string where = beam.segments.size() == 1 ? "" : "segment " + std::to_string(i + 1) + ": ";
-    require(beam.segments[i].length > 0.0, where + "length", beam.segments[i].length,
+    require(beam.segments[i].length > 0.0, {where, "length"}, beam.segments[i].length,
             "a positive number of metres");
     validate(beam.segments[i].section, where);
   }
   const double length = beam.length();
-  std::ostringstream span;
-  span << "between 0 and the beam's length, " << length << " m";
   const auto on_beam = [&](double x, const char* what) {
-    require(x >= 0.0 && x <= length, what, x, span.str());
+    if (x >= 0.0 && x <= length) return;
+    std::ostringstream span;
+    span << "between 0 and the beam's length, " << length << " m";
+    require(false, what, x, span.str().c_str());
   };
   // The deflection there under a force, the integral of x^2 / EI, has no bound.
   const bool sharp_root = beam.segments.front().section.bending_stiffness(0.0) <= 0.0,
@@ -84,10 +96,10 @@ void validate(const Beam& beam) {
   for (const Body& body : beam.bodies) {
     const char* const name = body.position == length ? "tip" : "body";
     carried(body.position, "position of a body");
-    require(body.mass >= 0.0, std::string(name) + " mass", body.mass, "zero or a positive number of kg");
-    require(body.rotary_inertia >= 0.0, std::string(name) + " rotary inertia", body.rotary_inertia,
+    require(body.mass >= 0.0, {name, " mass"}, body.mass, "zero or a positive number of kg");
+    require(body.rotary_inertia >= 0.0, {name, " rotary inertia"}, body.rotary_inertia,
             "zero or a positive number of kg m2");
-    require(true, std::string(name) + " eccentricity", body.eccentricity, "a finite number of metres");
+    require(true, {name, " eccentricity"}, body.eccentricity, "a finite number of metres");
   }
   for (const AddedMass& added : beam.added_masses) {
     stretch(added.from, added.to, "added mass");
