@@ -13,4 +13,9 @@ inline bool measures_force(const Record& record) {
                      [](const Channel& channel) { return channel.quantity == Quantity::force; });
 }
 
+/// What that makes of masses that are described and asked about nowhere: the end of a sentence.
+inline constexpr const char* of_unweighed_masses =
+    "masses described 1 % too large make every stiffness and dashpot 1 % too large, and no interval counts "
+    "that.";
+
 }  // namespace beamid::experiments

@@ -103,8 +103,7 @@ std::string mass_note(const ComparedRun& run, const Record& record) {
   const bool factors = std::any_of(run.unknowns.begin(), run.unknowns.end(),
                                    [](const Unknown& unknown) { return unknown.quantity == "factor"; });
   if (measures_force(record) || any_in("kg") || !(any_in("N") || factors)) return {};
-  return " No force was measured: masses described 1 % too large make every stiffness and dashpot 1 % too "
-         "large, and no interval counts that.";
+  return std::string(" No force was measured: ") + of_unweighed_masses;
 }
 
 // Of a single run, all parameters.

@@ -25,8 +25,9 @@ std::string mass_sentence(const Experiment& experiment, const PosteriorStudy& st
   for (const ParameterChoice& one : experiment.parameters)
     if (one.quantity.find("mass") != std::string::npos || one.quantity == "factor") return "";
   if (study.source && measures_force(study.source->record.record)) return "";
-  return "Masses are taken as described: where all are wrong by 1 %, so is every stiffness, and nothing here "
-         "shows it.";
+  return (study.source ? "No force was measured: "
+                       : "Frequencies know the ratio of stiffness to mass alone: ") +
+         std::string(of_unweighed_masses);
 }
 
 }  // namespace

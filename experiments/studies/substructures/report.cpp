@@ -116,10 +116,9 @@ std::string without_forces(const PartedIdentification& found) {
   }
   if (names.empty()) return {};
   return fmt::format(
-      "No measured force acts inside {}: motion alone knows stiffness and damping over mass. Masses count as "
-      "described: 1 % too large, they make all stiffnesses and dashpots 1 % too large, which no deviation "
-      "counts.",
-      names);
+      "No measured force acts inside {}, and motion alone knows the ratios of stiffness and damping to mass: "
+      "{}",
+      names, of_unweighed_masses);
 }
 
 Table joined_table(const PartedIdentification& found) {

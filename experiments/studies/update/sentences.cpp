@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/measured_force.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/studies/update/report.hpp"
 #include "experiments/text/spelling.hpp"
@@ -164,8 +165,8 @@ std::string twins_warning(const Experiment& experiment) {
 
 std::string described_text() {
   return "All that is not asked about counts as described, exactly. Frequencies and shapes know only the "
-         "ratio of stiffness to mass: masses described 1 % too large make every stiffness 1 % too large, and "
-         "no interval counts that.";
+         "ratio of stiffness to mass: " +
+         std::string(of_unweighed_masses);
 }
 
 std::vector<std::string> update_sentences(const UpdateStudy& study) {
