@@ -52,6 +52,91 @@ MatrixXd next_covariance(const LinearGaussian& model, const KalmanStep& step) {
   return next;
 }
 
+// Means, innovations and cost of a record through steps that are known.
+void follow(const LinearGaussian& model, const Measurements& record, KalmanPass& pass) {
+  const Index p = record.outputs.rows(), n = model.a.rows(), samples = record.size();
+  pass.means.resize(n, samples);
+  pass.innovations.setConstant(p, samples, std::nan(""));
+  pass.cost = 0.0;
+  VectorXd x = model.start.mean, residual;
+  MatrixXd h;
+  Eigen::LLT<MatrixXd> factor;
+  double log_determinant = 0.0;
+  for (Index k = 0; k < samples; ++k) {
+    const KalmanStep& step = pass.step(k);
+    if (k == 0 || &step != &pass.step(k - 1)) {
+      h = model.h(step.seen, Eigen::all);
+      factor.compute(step.innovation_covariance);
+      log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+    }
+    pass.means.col(k) = x;
+    if (!step.seen.empty()) {
+      residual = record.outputs.col(k)(step.seen);
+      residual.noalias() -= h * x;
+      if (model.d.cols() > 0) residual -= model.d(step.seen, Eigen::all) * record.inputs.col(k);
+      pass.innovations.col(k)(step.seen) = residual;
+      pass.cost += 0.5 * (factor.matrixL().solve(residual).squaredNorm() + log_determinant);
+      x.noalias() += step.gain * residual;
+    }
+    x = (model.a * x).eval();
+    if (model.g.cols() > 0) x.noalias() += model.g * record.inputs.col(k);
+  }
+  if (!std::isfinite(pass.cost)) throw std::runtime_error("the likelihood is not finite");
+}
+
+// What a step of the smoother is made of, backwards.
+class StepBack {
+ public:
+  StepBack(const LinearGaussian& model, const KalmanPass& pass) : model_(model), pass_(pass) {}
+
+  /// Whether sample k has the matrices of the sample behind it.
+  bool to(Index k) {
+    const bool same = k + 1 < pass_.means.cols() && &pass_.step(k) == &pass_.step(k + 1);
+    if (same) return true;
+    const KalmanStep& step = pass_.step(k);
+    h_ = model_.h(step.seen, Eigen::all);
+    shown_ = step.innovation_covariance.llt().solve(h_);
+    l_ = model_.a - model_.a * step.gain * h_;
+    return false;
+  }
+  const MatrixXd& shown() const { return shown_; }  // S^-1 H (p' x n)
+  const MatrixXd& l() const { return l_; }          // A (I - K H) (n x n)
+  MatrixXd information() const { return h_.transpose() * shown_; }
+
+ private:
+  const LinearGaussian& model_;
+  const KalmanPass& pass_;
+  MatrixXd h_, shown_, l_;
+};
+
+// Of C x_k (c x N): P_k - P_k W P_k, the same from the steady state's end on.
+MatrixXd smoothed_deviations(const LinearGaussian& model, const KalmanPass& pass, const MatrixXd& rows) {
+  const Index samples = pass.means.cols(), n = model.a.rows();
+  MatrixXd deviations(rows.rows(), samples), w = MatrixXd::Zero(n, n), information;
+  StepBack back(model, pass);
+  bool steady = false;
+  for (Index k = samples - 1; k >= 0; --k) {
+    const MatrixXd& p = pass.step(k).covariance;
+    const bool same = back.to(k);
+    if (!same) information = back.information();
+    if (!same || !steady) {
+      MatrixXd next = information + back.l().transpose() * w * back.l();
+      next = (0.5 * (next + next.transpose())).eval();
+      steady = same && settled(w, next);
+      w = std::move(next);
+    }
+    if (same && steady) {
+      deviations.col(k) = deviations.col(k + 1);
+      continue;
+    }
+    const MatrixXd reach = rows * p;
+    deviations.col(k) = ((reach * rows.transpose()).diagonal() - (reach * w * reach.transpose()).diagonal())
+                            .cwiseMax(0.0)
+                            .cwiseSqrt();
+  }
+  return deviations;
+}
+
 }  // namespace
 
 void require_even_stamps(const Measurements& record, double interval) {
@@ -99,89 +184,53 @@ LinearGaussian linear_gaussian(DiscreteModel& model, const std::vector<Index>& h
 
 KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, double interval) {
   require_even_stamps(record, interval);
-  const Index p = record.outputs.rows(), n = model.a.rows(), samples = record.size();
-  KalmanPass pass{MatrixXd(n, samples), MatrixXd::Constant(p, samples, std::nan("")), {}, {}, 0.0};
-  VectorXd x = model.start.mean, residual;
-  MatrixXd covariance = model.start.covariance, h;
-  Eigen::LLT<MatrixXd> factor;
-  double log_determinant = 0.0;
+  KalmanPass pass;
+  MatrixXd covariance = model.start.covariance;
   bool steady = false;
-  for (Index k = 0; k < samples; ++k) {
+  for (Index k = 0; k < record.size(); ++k) {
     std::vector<Index> seen = outputs_read(record, k);
     if (!steady || seen != pass.steps.back().seen) {
       if (steady) covariance = next_covariance(model, pass.steps.back());  // a gap ends the steady state
       steady = false;
       pass.steps.push_back(step_at(model, covariance, std::move(seen)));
-      const KalmanStep& step = pass.steps.back();
-      h = model.h(step.seen, Eigen::all);
-      factor.compute(step.innovation_covariance);
-      log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
     }
-    const KalmanStep& step = pass.steps.back();
     pass.step_of.push_back(pass.steps.size() - 1);
-    pass.means.col(k) = x;
-    if (!step.seen.empty()) {
-      residual = record.outputs.col(k)(step.seen);
-      residual.noalias() -= h * x;
-      if (model.d.cols() > 0) residual -= model.d(step.seen, Eigen::all) * record.inputs.col(k);
-      pass.innovations.col(k)(step.seen) = residual;
-      pass.cost += 0.5 * (factor.matrixL().solve(residual).squaredNorm() + log_determinant);
-      x.noalias() += step.gain * residual;
-    }
-    if (k + 1 == samples) break;
-    x = (model.a * x).eval();
-    if (model.g.cols() > 0) x.noalias() += model.g * record.inputs.col(k);
     if (steady) continue;
-    MatrixXd next = next_covariance(model, step);
-    steady = settled(step.covariance, next);
+    MatrixXd next = next_covariance(model, pass.steps.back());
+    steady = settled(pass.steps.back().covariance, next);
     covariance = std::move(next);
   }
-  if (!std::isfinite(pass.cost)) throw std::runtime_error("the likelihood is not finite");
+  follow(model, record, pass);
   return pass;
+}
+
+KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, const KalmanPass& like) {
+  KalmanPass pass;
+  pass.steps = like.steps;
+  pass.step_of = like.step_of;
+  follow(model, record, pass);
+  return pass;
+}
+
+MatrixXd smoothed_means(const LinearGaussian& model, const Measurements& record, const KalmanPass& pass,
+                        const MatrixXd& rows, const MatrixXd& feed) {
+  MatrixXd means(rows.rows(), record.size());
+  VectorXd r = VectorXd::Zero(model.a.rows());
+  StepBack back(model, pass);
+  for (Index k = record.size() - 1; k >= 0; --k) {
+    const KalmanStep& step = pass.step(k);
+    back.to(k);
+    r = (back.l().transpose() * r).eval();
+    if (!step.seen.empty()) r.noalias() += back.shown().transpose() * pass.innovations.col(k)(step.seen);
+    means.col(k) = rows * (pass.means.col(k) + step.covariance * r);
+    if (feed.cols() > 0) means.col(k) += feed * record.inputs.col(k);
+  }
+  return means;
 }
 
 SmoothedRows smoothed_rows(const LinearGaussian& model, const Measurements& record, const KalmanPass& pass,
                            const MatrixXd& rows, const MatrixXd& feed) {
-  const Index samples = record.size(), n = model.a.rows();
-  SmoothedRows found{MatrixXd(rows.rows(), samples), MatrixXd(rows.rows(), samples)};
-  VectorXd r = VectorXd::Zero(n), weighed;
-  MatrixXd w = MatrixXd::Zero(n, n), l, shown, information;
-  bool steady = false;
-  std::size_t known = pass.steps.size();
-  Eigen::LLT<MatrixXd> factor;
-  for (Index k = samples - 1; k >= 0; --k) {
-    const KalmanStep& step = pass.step(k);
-    const MatrixXd& p = step.covariance;
-    const bool same = pass.step_of[static_cast<std::size_t>(k)] == known;
-    if (!same) {
-      known = pass.step_of[static_cast<std::size_t>(k)];
-      const MatrixXd h = model.h(step.seen, Eigen::all);
-      factor.compute(step.innovation_covariance);
-      shown = factor.solve(h);  // S^-1 H
-      information = h.transpose() * shown;
-      l = model.a - model.a * step.gain * h;
-    }
-    r = (l.transpose() * r).eval();
-    if (!step.seen.empty()) r.noalias() += shown.transpose() * pass.innovations.col(k)(step.seen);
-    if (!same || !steady) {
-      MatrixXd next = information + l.transpose() * w * l;
-      next = (0.5 * (next + next.transpose())).eval();
-      steady = same && settled(w, next);
-      w = std::move(next);
-    }
-    found.means.col(k) = rows * (pass.means.col(k) + p * r);
-    if (feed.cols() > 0) found.means.col(k) += feed * record.inputs.col(k);
-    if (same && steady && k + 1 < samples) {
-      found.deviations.col(k) = found.deviations.col(k + 1);
-      continue;
-    }
-    const MatrixXd reach = rows * p;
-    found.deviations.col(k) =
-        ((reach * rows.transpose()).diagonal() - (reach * w * reach.transpose()).diagonal())
-            .cwiseMax(0.0)
-            .cwiseSqrt();
-  }
-  return found;
+  return {smoothed_means(model, record, pass, rows, feed), smoothed_deviations(model, pass, rows)};
 }
 
 }  // namespace beamid::filters

@@ -46,6 +46,10 @@ struct KalmanPass {
 /// @throws std::invalid_argument where stamps are uneven; std::runtime_error where the covariance of an
 /// innovation is not positive definite, or the likelihood is not finite.
 KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, double interval);
+/// Another record through the covariances and gains of a pass, which no reading changes: n^2 a sample.
+/// @param record as long as the one of `like`, its outputs read where those were
+/// @throws std::runtime_error where the likelihood is not finite
+KalmanPass kalman_pass(const LinearGaussian& model, const Measurements& record, const KalmanPass& like);
 
 /// @throws std::invalid_argument where stamps are not this far apart
 void require_even_stamps(const Measurements& record, double interval);
@@ -64,5 +68,9 @@ struct SmoothedRows {
 /// @param rows C (c x n); @param feed D (c x m), empty: none
 SmoothedRows smoothed_rows(const LinearGaussian& model, const Measurements& record, const KalmanPass& pass,
                            const Eigen::MatrixXd& rows, const Eigen::MatrixXd& feed);
+/// Their means alone (c x N).
+Eigen::MatrixXd smoothed_means(const LinearGaussian& model, const Measurements& record,
+                               const KalmanPass& pass, const Eigen::MatrixXd& rows,
+                               const Eigen::MatrixXd& feed);
 
 }  // namespace beamid::filters

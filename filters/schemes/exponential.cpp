@@ -103,6 +103,8 @@ class Exponential final : public Scheme {
     if (!tangent) return;
     tangent->setIdentity(state.size(), state.size());
     tangent->topLeftCorner(l, l) = value.topLeftCorner(l, l);
+    // What rests and is not pushed rests whatever the parameters: linear_gaussian() reads its matrices there.
+    if (state.head(l).isZero(0.0) && augmented.topRightCorner(l, chain).isZero(0.0)) return;
     MatrixXd direction = MatrixXd::Zero(l + chain, l + chain);
     for (Index j = 0; j < linear_->parameter_size(); ++j) {
       linear_->motion_matrix_derivative(state, j, derivative_);

@@ -103,6 +103,24 @@ TEST(LinearGaussian, IsTheJointGaussianOfAllStatesAndReadings) {
   }
 }
 
+TEST(LinearGaussian, TakesAnotherRecordThroughTheSameSteps) {
+  // Oracle: the dense covariance again, of other readings with the same gaps.
+  const filters::LinearGaussian model = some_model();
+  filters::Measurements record = some_record(120);
+  record.outputs(0, 50) = record.outputs(1, 50) = record.outputs(1, 70) =
+      std::numeric_limits<double>::quiet_NaN();
+  filters::Measurements other = record;
+  other.outputs = (0.5 - 3.0 * record.outputs.array()).matrix();
+  other.inputs *= -2.0;
+  const filters::KalmanPass pass =
+      filters::kalman_pass(model, other, filters::kalman_pass(model, record, 1.0));
+  const Dense dense = all_at_once(model, other);
+  EXPECT_NEAR(pass.cost, dense.cost, 1e-9 * std::abs(dense.cost));
+  const MatrixXd rows = MatrixXd::Identity(2, 2);
+  const MatrixXd means = filters::smoothed_means(model, other, pass, rows, {});
+  EXPECT_LT((means.reshaped() - dense.mean).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(LinearGaussian, RefusesUnevenStamps) {
   filters::Measurements record = some_record(20);
   record.time[7] += 0.1;

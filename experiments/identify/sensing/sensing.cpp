@@ -198,8 +198,8 @@ SensingStudy sensed(const Experiment& experiment, const SensingRecord& record, c
   } else {
     add_histories(experiment, record, form, smoothed, rows, study);
   }
-  study.sole_zeros = sole_zeros(model, found.theta, form, record.record.channels, rows, feed);
-  if (experiment.fatigue) add_damages(experiment, model, form, rows.topRows(virtuals), feed, study);
+  study.sole_zeros = sole_zeros(model, found.theta, form, pass, record.record.channels, rows, feed);
+  if (experiment.fatigue) add_damages(experiment, model, form, pass, rows.topRows(virtuals), feed, study);
 
   const VectorXd noise = model.noise_at(found.theta);
   for (Index i = 0; i < model.measured(); ++i) {

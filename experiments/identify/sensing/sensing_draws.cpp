@@ -18,8 +18,9 @@ MatrixXd symmetric_root(const MatrixXd& p) {
 
 }  // namespace
 
-MatrixXd drawn_rows(const SensingModel& model, const filters::LinearGaussian& form, const MatrixXd& rows,
-                    const MatrixXd& feed, filters::RandomStream& random) {
+MatrixXd drawn_rows(const SensingModel& model, const filters::LinearGaussian& form,
+                    const filters::KalmanPass& pass, const MatrixXd& rows, const MatrixXd& feed,
+                    filters::RandomStream& random) {
   filters::Measurements record = model.record();
   const Index n = form.a.rows(), samples = record.size();
   const MatrixXd moved = symmetric_root(form.q), noise = symmetric_root(form.r);
@@ -30,12 +31,12 @@ MatrixXd drawn_rows(const SensingModel& model, const filters::LinearGaussian& fo
     record.outputs.col(k) -= form.h * x + noise * random.normal(form.h.rows(), 1);
     x = (form.a * x + moved * random.normal(n, 1)).eval();
   }
-  const filters::KalmanPass pass = filters::kalman_pass(form, record, model.interval());
-  return filters::smoothed_rows(form, record, pass, rows, feed).means + own;
+  return filters::smoothed_means(form, record, filters::kalman_pass(form, record, pass), rows, feed) + own;
 }
 
 void add_damages(const Experiment& experiment, const SensingModel& model, const filters::LinearGaussian& form,
-                 const MatrixXd& rows, const MatrixXd& feed, SensingStudy& study) {
+                 const filters::KalmanPass& pass, const MatrixXd& rows, const MatrixXd& feed,
+                 SensingStudy& study) {
   constexpr int draws = 40;
   const std::vector<VirtualSensor>& sensors = experiment.virtual_sensors;
   const auto fails = [](const VirtualSensor& one) {
@@ -45,7 +46,7 @@ void add_damages(const Experiment& experiment, const SensingModel& model, const 
   std::vector<std::vector<FatigueDamage>> found(sensors.size());
   for (int draw = 0; draw < draws; ++draw) {
     filters::RandomStream random(1, static_cast<std::uint64_t>(draw));
-    const MatrixXd histories = drawn_rows(model, form, rows, feed.topRows(rows.rows()), random);
+    const MatrixXd histories = drawn_rows(model, form, pass, rows, feed.topRows(rows.rows()), random);
     for (std::size_t i = 0; i < sensors.size(); ++i)
       if (fails(sensors[i]))
         found[i].push_back(

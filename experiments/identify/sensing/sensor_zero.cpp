@@ -11,8 +11,9 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 // The smoother is linear in the readings, and its gains do not depend on them: what it makes of a constant
 // beside nothing is what a zero that is off adds.
 std::vector<SoleZero> sole_zeros(const SensingModel& model, const VectorXd& theta,
-                                 const filters::LinearGaussian& form, const std::vector<Channel>& channels,
-                                 const MatrixXd& rows, const MatrixXd& feed) {
+                                 const filters::LinearGaussian& form, const filters::KalmanPass& pass,
+                                 const std::vector<Channel>& channels, const MatrixXd& rows,
+                                 const MatrixXd& feed) {
   std::vector<SoleZero> found;
   filters::LinearGaussian still = form;
   still.start.mean.setZero();
@@ -26,8 +27,8 @@ std::vector<SoleZero> sole_zeros(const SensingModel& model, const VectorXd& thet
     for (auto& reading : shifted.outputs.reshaped())
       if (std::isfinite(reading)) reading = 0.0;
     shifted.outputs.row(i).array() += zero.off;
-    const filters::KalmanPass pass = filters::kalman_pass(still, shifted, model.interval());
-    const VectorXd means = filters::smoothed_rows(still, shifted, pass, rows, feed).means.rowwise().mean();
+    const filters::KalmanPass of_shifted = filters::kalman_pass(still, shifted, pass);
+    const VectorXd means = filters::smoothed_means(still, shifted, of_shifted, rows, feed).rowwise().mean();
     zero.shifts.assign(means.begin(), means.end());
     found.push_back(std::move(zero));
   }

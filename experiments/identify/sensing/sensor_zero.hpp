@@ -16,9 +16,10 @@ struct SoleZero {
   std::vector<double> shifts;  ///< mean of every history over the record where the zero is off by that
 };
 
-/// @param rows, feed of the histories, as for smoothed_rows
+/// @param pass of the record through the filter; @param rows, feed of the histories, as for smoothed_rows
 std::vector<SoleZero> sole_zeros(const SensingModel& model, const Eigen::VectorXd& theta,
-                                 const filters::LinearGaussian& form, const std::vector<Channel>& channels,
-                                 const Eigen::MatrixXd& rows, const Eigen::MatrixXd& feed);
+                                 const filters::LinearGaussian& form, const filters::KalmanPass& pass,
+                                 const std::vector<Channel>& channels, const Eigen::MatrixXd& rows,
+                                 const Eigen::MatrixXd& feed);
 
 }  // namespace beamid::experiments
