@@ -98,9 +98,9 @@ Command posterior_command() {
       "bounds "
       "(uniform). Where\nnothing is stated, log-uniform within a factor of 10 of the initial estimate is "
       "assumed.\n",
-      "3  the temperings, the humps or the chains disagree, or the record contradicts the structure: the "
-      "first "
-      "lines say by how much.\n"};
+      "3  the temperings, the humps or the chains disagree, no values explain the modes, or the record "
+      "contradicts "
+      "the structure: the first lines say by how much.\n"};
 }
 
 }  // namespace beamid::apps

@@ -12,6 +12,7 @@
 #include "experiments/record/record_columns.hpp"
 #include "experiments/record/record_places.hpp"
 #include "experiments/record/record_reader.hpp"
+#include "experiments/record/rounded_stamps.hpp"
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
@@ -78,8 +79,8 @@ Eigen::VectorXd counted(double start, double interval, std::size_t size, const s
   return times;
 }
 
-/// The instants (N) [s].
-Eigen::VectorXd instants(const Stamps& stamps) {
+/// The instants (N) [s]. @param remarks to which it adds what was done to them
+Eigen::VectorXd instants(const Stamps& stamps, std::vector<std::string>& remarks) {
   const RecordTable& table = *stamps.table;
   const std::size_t size = table.rows();
   const std::optional<double>& rate = stamps.format->sampling_rate;
@@ -97,7 +98,18 @@ Eigen::VectorXd instants(const Stamps& stamps) {
   if (!fault && !(stamps.format->irregular && stamps.show_intervals()))
     fault = find_sampling_fault(times, stamps.precision());
   if (fault) throw InputError(table.place(fault->sample, stamps.column->index), fault->message);
-  return Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(size)) * stamps.factor();
+  const auto in_seconds = [&](const std::vector<double>& values) -> Eigen::VectorXd {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(size)) *
+           stamps.factor();
+  };
+  const double printed = std::max(stamps.rounding(0), stamps.rounding(size - 1));
+  const auto even = without_rounding(times, printed / stamps.factor());
+  if (!even) return in_seconds(times);
+  remarks.push_back(fmt::format(
+      "The stamps are printed to {:.3g} s and lie on even instants within that: those of the line "
+      "through all of them are taken, {:.8g} Hz.",
+      printed, 1.0 / (even->interval * stamps.factor())));
+  return in_seconds(even->times);
 }
 
 /// How finely the instants were printed [s]; 0 where coarser than half of their interval, which the stamps
@@ -168,7 +180,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
 
   Record record;
   const Stamps stamps{&table, columns.time, &format};
-  record.time = instants(stamps);
+  record.time = instants(stamps, table.remarks);
   record.samples.resize(static_cast<Eigen::Index>(columns.channels.size()),
                         static_cast<Eigen::Index>(table.rows()));
   for (std::size_t channel = 0; channel < columns.channels.size(); ++channel) {

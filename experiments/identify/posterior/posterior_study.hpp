@@ -63,10 +63,10 @@ struct PosteriorStudy {
   const std::vector<Unknown>& unknowns() const { return asked; }
   /// Whether the structure explains what was measured as well as the assumed errors say.
   bool explains() const { return update ? update->updating.explains() : !source->sensing.contradicted(); }
-  /// Whether a record, at the best draw, contradicts the structure or its noise is so far from white that all
-  /// intervals are too narrow.
+  /// Whether no values of the parameters explain the modes by more than chance, or a record, at the best
+  /// draw, contradicts the structure or its noise is so far from white that all intervals are too narrow.
   bool contradicted() const {
-    return source && (source->sensing.contradicted() || source->sensing.correlated());
+    return update ? update->updating.refuted : source->sensing.contradicted() || source->sensing.correlated();
   }
   /// Of one parameter (draws x chains).
   Eigen::MatrixXd draws(std::size_t parameter) const;

@@ -134,6 +134,27 @@ void add_strange_shapes(const UpdateStudy& study, std::vector<std::string>& warn
                                      study.data().modes[i].frequency_hz, mac));
 }
 
+// Where two modes are nearly one frequency a test measures any two shapes of their plane. Within 1 % shapes
+// are held against the plane, beyond it one against one: near that border the estimate hangs on where it
+// lies.
+void add_close_pairs(const UpdateStudy& study, std::vector<std::string>& warnings) {
+  constexpr double nearest = 0.005, farthest = 0.02;
+  std::vector<double> frequencies;
+  for (const MeasuredMode& mode : study.data().modes)
+    if (mode.shape.size() > 1) frequencies.push_back(mode.frequency_hz);
+  std::sort(frequencies.begin(), frequencies.end());
+  for (std::size_t i = 1; i < frequencies.size(); ++i) {
+    const double gap = frequencies[i] / frequencies[i - 1] - 1.0;
+    if (gap < nearest || gap > farthest) continue;
+    warnings.push_back(fmt::format(
+        "The modes at {:.5g} and {:.5g} Hz are so close that a test may have mixed their shapes. What rests "
+        "on "
+        "which is which, x and y exchanged for one, may be wrong by more than its interval: do the estimates "
+        "stay without these two shapes?",
+        frequencies[i - 1], frequencies[i]));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> update_warnings(const UpdateStudy& study) {
@@ -146,6 +167,7 @@ std::vector<std::string> update_warnings(const UpdateStudy& study) {
   add_signs(study, warnings);
   add_common_factor(study, warnings);
   add_strange_shapes(study, warnings);
+  add_close_pairs(study, warnings);
   return warnings;
 }
 

@@ -47,7 +47,7 @@ Results posterior_report(const Experiment& experiment, const PosteriorStudy& stu
   if (converged && study.explains() && study.posterior.notable_humps() == 1)
     results.paragraph(posterior_verdict(study));
   else
-    results.warning(posterior_verdict(study), !converged);
+    results.warning(posterior_verdict(study), study.posterior.disagrees() || study.contradicted());
   if (study.update)
     add_doubts_of_modes(study, results);
   else

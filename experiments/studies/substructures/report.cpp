@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "experiments/config/description.hpp"
@@ -14,7 +15,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double disagrees = 4.0;  // deviations of a difference
+// The largest of n differences in their deviations is beyond this once in 1,000 times.
+double disagreement_limit(std::size_t n) {
+  constexpr double chance = 1e-3;
+  return boost::math::quantile(
+      boost::math::complement(boost::math::normal(), 0.5 * chance / static_cast<double>(n)));
+}
 
 const ComparedParameter* find(const ComparedRun& run, const std::string& name) {
   if (!run.has_estimate()) return nullptr;
@@ -85,7 +91,9 @@ void add_verdict(const PartedIdentification& found, Results& results) {
   const auto worst =
       std::max_element(found.joined.begin(), found.joined.end(),
                        [](const auto& a, const auto& b) { return a.disagreement < b.disagreement; });
-  if (worst != found.joined.end() && worst->disagreement > disagrees)
+  const auto compared = std::count_if(found.joined.begin(), found.joined.end(),
+                                      [](const auto& one) { return one.disagreement > 0.0; });
+  if (compared > 0 && worst->disagreement > disagreement_limit(static_cast<std::size_t>(compared)))
     results.warning(
         fmt::format("The parts disagree about {}: by {:.2g} of the deviations of their difference. "
                     "Something between them, or a sensor they share, is not as described.",
