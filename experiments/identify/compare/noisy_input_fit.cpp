@@ -1,11 +1,13 @@
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "filters/identifiability.hpp"
 #include "filters/innovation_likelihood.hpp"
+#include "filters/innovation_passes.hpp"
 #include "filters/noisy_inputs.hpp"
 
 namespace beamid::experiments {
@@ -27,26 +29,74 @@ VectorXd bounds_of_unknowns(const MatrixXd& information, const VectorXd& known, 
   return bounds;
 }
 
+namespace {
+
+// The record under this much noise of the outputs.
+class NoisyProblem {
+ public:
+  NoisyProblem(const JointModel& model, const IdentificationSettings& settings, const MatrixXd& output_noise,
+               const filters::Gaussian& start, const filters::Measurements& record)
+      : noisy_(
+            filters::discretise(model.motion, record.interval(), settings.discretisation, {{}, output_noise}),
+            settings.input_noise),
+        problem_(filters::held_problem(noisy_, record, model.unknown_places, noisy_.with_errors(start))) {
+    problem_.free_inputs = true;
+  }
+  filters::InnovationFit fit(const VectorXd& begin) const {
+    return filters::fit_innovations(problem_, begin);
+  }
+  /// Of the innovations, 1 where the noises are what they are said to be.
+  double mean_square(const VectorXd& theta) const {
+    const auto pass =
+        filters::innovation_passes({problem_.model(theta)}, problem_.record, problem_.interval, false);
+    return pass.front().squares / static_cast<double>(problem_.record.outputs.array().isFinite().count());
+  }
+
+ private:
+  filters::NoisyInputs noisy_;
+  filters::InnovationProblem problem_;
+};
+
+}  // namespace
+
 NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSettings& settings,
                                const filters::Gaussian& start, const VectorXd& found,
-                               const filters::Measurements& record) {
+                               const filters::Measurements& record, const std::vector<bool>& noise_is_known) {
+  constexpr double enough = 0.02, least_scale = 1e-6;
+  constexpr int most_fits = 4, halvings = 20;
   if (!dynamic_cast<const filters::LinearMotion*>(model.motion.get()))
     return {{}, {}, "the model is not linear in its motion"};
-  filters::NoisyInputs noisy(filters::discretise(model.motion, record.interval(), settings.discretisation,
-                                                 {{}, settings.output_noise}),
-                             settings.input_noise);
-  filters::InnovationProblem problem =
-      filters::held_problem(noisy, record, model.unknown_places, noisy.with_errors(start));
-  problem.free_inputs = true;
+  const auto problem_at = [&](double scale) {
+    VectorXd root = VectorXd::Ones(settings.output_noise.rows());
+    for (Index i = 0; i < root.size(); ++i)
+      if (!noise_is_known[static_cast<std::size_t>(i)]) root[i] = std::sqrt(scale);
+    return NoisyProblem(model, settings, root.asDiagonal() * settings.output_noise * root.asDiagonal(), start,
+                        record);
+  };
+  const bool all_known =
+      std::find(noise_is_known.begin(), noise_is_known.end(), false) == noise_is_known.end();
   try {
-    const filters::InnovationFit fit = filters::fit_innovations(problem, found(model.unknown_places));
+    double scale = 1.0;
+    filters::InnovationFit fit = problem_at(scale).fit(found(model.unknown_places));
+    for (int i = 1; i < most_fits && !all_known; ++i) {
+      const double square = problem_at(scale).mean_square(fit.constants);
+      if (std::abs(square - 1.0) < enough || (scale == 1.0 && square > 1.0)) break;
+      double low = std::log(least_scale), high = 0.0;  // the square falls as the noise grows
+      for (int k = 0; k < halvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (problem_at(std::exp(middle)).mean_square(fit.constants) > 1.0 ? low : high) = middle;
+      }
+      scale = std::exp(high);
+      fit = problem_at(scale).fit(fit.constants);
+    }
     const MatrixXd prior = start.covariance(model.unknown_places, model.unknown_places);
     const MatrixXd one = MatrixXd::Identity(prior.rows(), prior.cols());
     const MatrixXd whole = fit.information + prior.llt().solve(one);
     NoisyInputFit result{
         {fit.constants, whole.ldlt().solve(one), {}},
         bounds_of_unknowns(fit.information, prior.diagonal().cwiseSqrt(), model, fit.constants),
-        {}};
+        {},
+        scale};
     if (!fit.converged) result.failure = "its likelihood has no maximum near the filter's estimate";
     return result;
   } catch (const std::invalid_argument& error) {

@@ -1,5 +1,8 @@
 // The unknowns by all samples at once, where the filter's end is not to be had or not to be kept.
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
+#include <cmath>
 #include <optional>
 
 #include "experiments/identify/compare/known_prior.hpp"
@@ -18,7 +21,10 @@ void Passes::fit_inputs_noise() {
   const JointModel& model = *run_.model;
   filters::Gaussian known = initial_estimate(model, with_guess(directions_, model, started_.guess));
   known.mean(model.unknown_places) = started_.guess.mean(started_.model.unknown_places);
-  const NoisyInputFit fit = fit_noisy_inputs(model, run_.settings, known, run_.run.last.mean, record_);
+  std::vector<bool> noise_is_known;
+  for (const double configured : known_.configured) noise_is_known.push_back(configured > 0.0);
+  const NoisyInputFit fit =
+      fit_noisy_inputs(model, run_.settings, known, run_.run.last.mean, record_, noise_is_known);
   run_.seconds += seconds_since(start);
   if (!fit.failure.empty()) {
     run_.remarks.push_back(
@@ -27,6 +33,13 @@ void Passes::fit_inputs_noise() {
   }
   take_unknowns(fit.unknowns);
   input_bounds_ = fit.bounds;
+  constexpr double mostly = 0.5;
+  if (fit.noise_scale < mostly)
+    run_.remarks.push_back(fmt::format(
+        "Most of what the motion leaves of the record is its answer to the noise of the inputs: the noise of "
+        "the outputs is taken for {:.2g} times as much as is left, so that the innovations are as large as "
+        "both make them.",
+        std::sqrt(fit.noise_scale)));
 }
 
 // In place of the filter's.
