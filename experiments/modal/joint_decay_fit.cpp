@@ -1,9 +1,11 @@
 #include "experiments/modal/joint_decay_fit.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
@@ -127,12 +129,27 @@ MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& noise_varia
   return inverse * middle * inverse;
 }
 
+void take_own_shifts(const JointLinearisation& at, JointDecayFit& fit) {
+  const Index modes = fit.noise_variance.cols(), channels = at.residuals.cols();
+  fit.own_shift.setZero(channels, modes);
+  fit.own_shift_deviation.setConstant(channels, modes, std::numeric_limits<double>::infinity());
+  for (Index c = 0; c < channels; ++c)
+    for (Index m = 0; m < modes; ++m) {
+      const auto slope = at.slopes[static_cast<std::size_t>(c)].middleCols<2>(2 * m);
+      const Eigen::Matrix2d inverse = (slope.transpose() * slope).inverse();
+      const double variance = fit.noise_variance(c, m) * inverse(0, 0);
+      if (!std::isfinite(variance) || !(variance > 0.0)) continue;
+      fit.own_shift(c, m) = (inverse * (slope.transpose() * at.residuals.col(c)))[0];
+      fit.own_shift_deviation(c, m) = std::sqrt(variance);
+    }
+}
+
 }  // namespace
 
 JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
                                  const std::vector<Complex>& start) {
   check_joint_decay_fit(outputs, interval, start);
-  const Index modes = static_cast<Index>(start.size());
+  const auto modes = static_cast<Index>(start.size());
   const MatrixXd y = outputs.transpose();
   VectorXd rates(2 * modes);
   for (Index m = 0; m < modes; ++m) rates.segment<2>(2 * m) << start[m].imag(), -start[m].real();
@@ -166,6 +183,7 @@ JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
       at.residuals.colwise().norm().transpose() / std::sqrt(static_cast<double>(y.rows() - 4 * modes - 1));
   fit.noise_variance = noise_near_modes(at, interval, rates);
   fit.covariance = covariance_of(at, fit.noise_variance);
+  take_own_shifts(at, fit);
   return fit;
 }
 

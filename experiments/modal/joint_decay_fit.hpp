@@ -15,6 +15,9 @@ struct JointDecayFit {
   Eigen::MatrixXd reconstruction;               ///< (p x N)
   Eigen::VectorXd residual_standard_deviation;  ///< (p)
   Eigen::MatrixXd noise_variance;  ///< (p x K) of white noise as dense as the residual near each mode
+  /// (p x K) by what each channel alone would change the damped angular frequencies, one Gauss-Newton step
+  /// for each mode, and the deviation of that, infinite where it does not show the mode [rad/s].
+  Eigen::MatrixXd own_shift, own_shift_deviation;
   /// (2K x 2K) of damped angular frequency and damping rate of each mode [rad/s], for noise as dense as the
   /// residual is near each mode's frequency.
   Eigen::MatrixXd covariance;

@@ -2,6 +2,8 @@
 // is in by then, beginning at the repository's root, and prints what the page shows.
 #include <gmock/gmock.h>
 
+#include <iostream>
+
 #include "tests/docs/page.hpp"
 #include "tests/docs/printed_output.hpp"
 #include "tests/docs/shell.hpp"
@@ -27,6 +29,9 @@ class Pages : public testing::TestWithParam<std::string> {
   /// Runs what stands in the page; false where it was left out.
   bool run(const Block& block) {
     const bool data_missing = std::exchange(missing_data_, false);
+    if (data_missing)
+      std::cout << "[ LEFT OUT ] " << GetParam() << ":" << block.line
+                << ": the measured record that it needs is not here\n";
     if (block.skipped || data_missing || (block.is_long && !is_set("BEAMID_LONG_PAGES"))) return false;
     std::string lines = "set -e\n";
     for (const std::string& line : block.text) lines += line + "\n";

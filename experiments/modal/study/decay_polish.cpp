@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "experiments/modal/study/channel_clocks.hpp"
 #include "experiments/modal/study/drifting_mode.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
 
@@ -146,6 +147,8 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
     std::sort(found.modes.begin(), found.modes.end(),
               [](const auto& a, const auto& b) { return a.pole.frequency_hz() < b.pole.frequency_hz(); });
     found.polished = true;
+    if (found.free_decay && found.target.rows() > 1)
+      if (const auto last = fit_or_reject(found); last) compare_clocks(*last, found);
     return;
   }
   if (any)
