@@ -99,8 +99,7 @@ Command posterior_command() {
       "(uniform). Where\nnothing is stated, log-uniform within a factor of 10 of the initial estimate is "
       "assumed.\n",
       "3  the temperings, the humps or the chains disagree, no values explain the modes, or the record "
-      "contradicts "
-      "the structure: the first lines say by how much.\n"};
+      "contradicts the structure: the first lines say by how much.\n"};
 }
 
 }  // namespace beamid::apps

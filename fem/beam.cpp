@@ -9,15 +9,15 @@
 namespace beamid::fem {
 namespace {
 
-/// Words of a message in two parts, put together only where there is one: beams are checked at every set of
-/// parameters that a search tries.
-struct Words {
+/// A phrase of a message in two parts, put together only where there is one: beams are checked at every set
+/// of parameters that a search tries.
+struct Phrase {
   std::string_view first, second;
-  Words(const char* words) : first(words) {}
-  Words(std::string_view one, std::string_view other) : first(one), second(other) {}
+  Phrase(const char* words) : first(words) {}
+  Phrase(std::string_view one, std::string_view other) : first(one), second(other) {}
 };
 
-void require(bool valid, const Words& name, double value, const Words& expected) {
+void require(bool valid, const Phrase& name, double value, const Phrase& expected) {
   if (valid && std::isfinite(value)) return;
   std::ostringstream message;
   message << name.first << name.second << " is " << value << "; expected " << expected.first

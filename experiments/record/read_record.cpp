@@ -27,11 +27,14 @@ struct Stamps {
   const std::vector<double>& values() const { return table->columns[column->index]; }
   const PrintedPrecision& precision() const { return table->precision[column->index]; }
   double factor() const { return column->factor; }
+  /// How finely they are printed where they are printed most coarsely.
+  double resolution() const {
+    return std::max(precision().resolution(values().front()), precision().resolution(values().back()));
+  }
   /// Whether their rounding leaves an interval to be seen.
   bool show_intervals() const {
     const double mean = (values().back() - values().front()) / static_cast<double>(values().size() - 1);
-    return std::max(precision().resolution(values().front()), precision().resolution(values().back())) <
-           0.5 * mean;
+    return resolution() < 0.5 * mean;
   }
   double rounding(std::size_t sample) const { return precision().resolution(values()[sample]) * factor(); }
 };
@@ -102,20 +105,19 @@ Eigen::VectorXd instants(const Stamps& stamps, std::vector<std::string>& remarks
     return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(size)) *
            stamps.factor();
   };
-  const double printed = std::max(stamps.rounding(0), stamps.rounding(size - 1));
-  const auto even = without_rounding(times, printed / stamps.factor());
+  const auto even = without_rounding(times, stamps.resolution());
   if (!even) return in_seconds(times);
   remarks.push_back(fmt::format(
       "The stamps are printed to {:.3g} s and lie on even instants within that: those of the line "
       "through all of them are taken, {:.8g} Hz.",
-      printed, 1.0 / (even->interval * stamps.factor())));
+      stamps.resolution() * stamps.factor(), 1.0 / (even->interval * stamps.factor())));
   return in_seconds(even->times);
 }
 
 /// How finely the instants were printed [s]; 0 where coarser than half of their interval, which the stamps
 /// then are multiples of.
 double resolution(const Stamps& stamps, const Record& record) {
-  const double printed = std::max(stamps.rounding(0), stamps.rounding(stamps.table->rows() - 1));
+  const double printed = stamps.resolution() * stamps.factor();
   return printed < 0.5 * record.interval() ? printed : 0.0;
 }
 

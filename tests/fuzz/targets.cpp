@@ -216,7 +216,7 @@ void join(const std::string& results, const std::string& page) {
   }();
   folder().write("a/results.json", results);
   const fs::path first = folder().write("a/report.html", page).parent_path();
-  refusable([&] { write_joined_report({first, second}, folder().write("joined.html", ""), true); });
+  refusable([&] { write_joined_report({first, second}, first / "joined.html", true); });
 }
 
 constexpr int page_ways = 16;  // joining takes ten times as long as reading

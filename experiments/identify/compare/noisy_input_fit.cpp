@@ -42,6 +42,9 @@ class NoisyProblem {
         problem_(filters::held_problem(noisy_, record, model.unknown_places, noisy_.with_errors(start))) {
     problem_.free_inputs = true;
   }
+  NoisyProblem(const NoisyProblem&) = delete;  // the problem refers to its model
+  NoisyProblem& operator=(const NoisyProblem&) = delete;
+
   filters::InnovationFit fit(const VectorXd& begin) const {
     return filters::fit_innovations(problem_, begin);
   }

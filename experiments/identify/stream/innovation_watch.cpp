@@ -104,7 +104,7 @@ nlohmann::ordered_json InnovationWatch::save() const {
 }
 
 void InnovationWatch::resume(const nlohmann::json& saved) {
-  constexpr Index most_outputs = 1'000'000'000'000'000, most_in_window = 1'000'000;
+  constexpr Index most_in_window = 1'000'000;
   const auto count = [&](const char* key) -> Index {
     return whole_number(saved.at(key), std::string("health.") + key, 0, most_outputs);
   };

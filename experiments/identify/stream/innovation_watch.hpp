@@ -23,6 +23,7 @@ class InnovationWatch {
  public:
   static constexpr Eigen::Index window = 50, settling = 200, patience = 400, most_patience = 3200,
                                 several = 5;
+  static constexpr Eigen::Index most_outputs = 1'000'000'000'000'000;  ///< that a saved state may have seen
   static constexpr double unlikely = 1e-15, outlying = 1e-12;
 
   enum class Verdict {

@@ -100,7 +100,7 @@ void StreamedIdentification::resume(const nlohmann::json& saved) {
                     matrix(saved, "factor", n, -1)};
     check_deviations("the state", run.estimate.deviations());
     run.time = saved.at("time_s").get<double>();
-    constexpr Index most = 1'000'000'000'000'000;
+    constexpr Index most = InnovationWatch::most_outputs;
     run.step = whole_number(saved.at("step"), "step", 1, most);
     InnovationWatch watch;
     watch.resume(saved.at("health"));

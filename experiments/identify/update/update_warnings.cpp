@@ -148,8 +148,8 @@ void add_close_pairs(const UpdateStudy& study, std::vector<std::string>& warning
     if (gap < nearest || gap > farthest) continue;
     warnings.push_back(fmt::format(
         "The modes at {:.5g} and {:.5g} Hz are so close that a test may have mixed their shapes. What rests "
-        "on "
-        "which is which, x and y exchanged for one, may be wrong by more than its interval: do the estimates "
+        "on which is which, x and y exchanged for one, may be wrong by more than its interval: do the "
+        "estimates "
         "stay without these two shapes?",
         frequencies[i - 1], frequencies[i]));
   }

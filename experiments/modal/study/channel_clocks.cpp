@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "experiments/signal/chi_square_limit.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -66,9 +67,7 @@ void compare_clocks(const JointDecayFit& fit, RecordModes& found) {
     modes.push_back(scatter_of(fit.own_shift.col(m), fit.own_shift_deviation.col(m)));
     squares += modes.back().squares, freedom += static_cast<double>(modes.back().freedom);
   }
-  if (freedom < 1.0) return;
-  const boost::math::chi_squared law(freedom);
-  if (!(squares > quantile(complement(law, by_chance)))) return;
+  if (freedom < 1.0 || !(squares > chi_square_limit(freedom, 1.0 - by_chance))) return;
   for (std::size_t m = 0; m < modes.size(); ++m) {
     double& deviation = found.modes[m].pole.frequency_deviation_hz;
     deviation = std::hypot(deviation, modes[m].farthest / (2.0 * std::numbers::pi));
@@ -79,8 +78,8 @@ void compare_clocks(const JointDecayFit& fit, RecordModes& found) {
   const auto& channels = found.record.channels;
   found.warnings.push_back(fmt::format(
       "The channels do not ring at one frequency (chi^2 = {:.3g} of {:.0f}): {} runs {:.2g} ppm faster than "
-      "{}, "
-      "with a standard deviation of {:.2g}. Were they sampled by clocks of their own? A frequency cannot say "
+      "{}, with a standard deviation of {:.2g}. Were they sampled by clocks of their own? A frequency cannot "
+      "say "
       "which is right; its deviations are widened by how far its channels are from it.",
       squares, freedom, channels[static_cast<std::size_t>(slow)].name, 1e6 * apart,
       channels[static_cast<std::size_t>(fast)].name, 1e6 * std::hypot(deviations[fast], deviations[slow])));

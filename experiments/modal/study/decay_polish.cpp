@@ -104,8 +104,8 @@ std::vector<Pole> poles_of(const JointDecayFit& fit) {
 }
 
 /// What was rejected for the company it was in, the strongest first, is tried once more with those that
-/// stayed: all of them have to.
-void try_again(Modes lost, const StabilisationSettings& settings, RecordModes& found) {
+/// stayed: all of them have to. @param last the fit of found's modes, before and after
+void try_again(Modes lost, const StabilisationSettings& settings, RecordModes& found, JointDecayFit& last) {
   std::sort(lost.begin(), lost.end(),
             [](const ModeEstimate& a, const ModeEstimate& b) { return a.strength > b.strength; });
   for (const ModeEstimate& one : lost) {
@@ -116,12 +116,13 @@ void try_again(Modes lost, const StabilisationSettings& settings, RecordModes& f
     });
     const std::size_t rejected = tried.stabilisation.rejected.size();
     if (reject_twin(poles_of(tried.modes), tried)) continue;
-    const auto fit = fit_or_reject(tried);
+    auto fit = fit_or_reject(tried);
     if (!fit || reject_least_certain(*fit, settings, tried) || reject_twin(poles_of(*fit), tried) ||
         reject_drifting(*fit, tried) || tried.stabilisation.rejected.size() != rejected)
       continue;
     for (std::size_t m = 0; m < tried.modes.size(); ++m) tried.modes[m].pole = fitted_pole(*fit, m);
     found = std::move(tried);
+    last = std::move(*fit);
   }
 }
 
@@ -133,7 +134,7 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
   }
   const Modes all = found.modes;
   while (!found.modes.empty()) {
-    const auto fit = fit_or_reject(found);
+    auto fit = fit_or_reject(found);
     if (!fit || reject_least_certain(*fit, settings, found)) continue;
     const std::vector<Pole> poles = poles_of(*fit);
     if (reject_twin(poles, found) || reject_drifting(*fit, found)) continue;
@@ -143,12 +144,11 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
                        [&](const ModeEstimate& one) { return one.pole.rate == mode.pole.rate; }))
         lost.push_back(mode);
     for (std::size_t m = 0; m < poles.size(); ++m) found.modes[m].pole = poles[m];
-    try_again(lost, settings, found);
+    try_again(lost, settings, found, *fit);
+    if (found.free_decay) compare_clocks(*fit, found);
     std::sort(found.modes.begin(), found.modes.end(),
               [](const auto& a, const auto& b) { return a.pole.frequency_hz() < b.pole.frequency_hz(); });
     found.polished = true;
-    if (found.free_decay && found.target.rows() > 1)
-      if (const auto last = fit_or_reject(found); last) compare_clocks(*last, found);
     return;
   }
   if (any)

@@ -129,10 +129,10 @@ std::string sampling_text(const Inspection& found) {
   if (!found.has_time) return fmt::format("{} samples. {}", count, found.time_text);
   std::string text = fmt::format("{} samples from {:.6g} to {:.6g} s ({:.6g} s). {} ", count,
                                  found.time.front(), found.time.back(), duration, found.time_text);
+  const double rate = static_cast<double>(count - 1) / duration;
   const auto even = without_rounding(found.time, found.resolution);
-  const double rate = even ? 1.0 / even->interval : static_cast<double>(count - 1) / duration;
   if (s.uniform)
-    text += fmt::format("Evenly sampled at {:.8g} Hz.", rate);
+    text += fmt::format("Evenly sampled at {:.8g} Hz.", even ? 1.0 / even->interval : rate);
   else
     text += fmt::format("Not evenly sampled: {:.6g} samples a second in the mean, median interval {:.6g} s.",
                         rate, s.interval);

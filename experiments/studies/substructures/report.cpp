@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "experiments/config/description.hpp"
 #include "experiments/identify/measured_force.hpp"
 #include "experiments/results/forest_plot.hpp"
+#include "experiments/signal/chi_square_limit.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -18,8 +18,7 @@ using Json = nlohmann::ordered_json;
 // The largest of n differences in their deviations is beyond this once in 1,000 times.
 double disagreement_limit(std::size_t n) {
   constexpr double chance = 1e-3;
-  return boost::math::quantile(
-      boost::math::complement(boost::math::normal(), 0.5 * chance / static_cast<double>(n)));
+  return std::sqrt(chi_square_limit(1.0, 1.0 - chance / static_cast<double>(n)));
 }
 
 const ComparedParameter* find(const ComparedRun& run, const std::string& name) {
