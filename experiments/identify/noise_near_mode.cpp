@@ -8,10 +8,10 @@
 #include <numbers>
 #include <vector>
 
-#include "experiments/identify/in_double.hpp"
 #include "experiments/identify/mode_residual.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/decimation.hpp"
+#include "experiments/signal/in_double.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,6 +1,7 @@
 #include "experiments/identify/clocks/clock_step.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -26,10 +27,11 @@ MatrixXd slopes(const VectorXd& time, const MatrixXd& outputs) {
   return result;
 }
 
-// Of the unknowns (q), the lags (g) and what is left (1), the start unknown: R^T R of the rows [S, Y', r].
-MatrixXd gathered(filters::DiscreteModel& discrete, const VectorXd& initial_state,
-                  const StartDirections& directions, const filters::Measurements& record,
-                  const MatrixXd& outputs, const std::vector<OwnClock>& clocks) {
+}  // namespace
+
+MatrixXd clock_information(filters::DiscreteModel& discrete, const VectorXd& initial_state,
+                           const StartDirections& directions, const filters::Measurements& record,
+                           const MatrixXd& outputs, const std::vector<OwnClock>& clocks) {
   const MatrixXd all = directions.all(), moving = slopes(record.time, outputs);
   const auto g = static_cast<Index>(clocks.size());
   const Index starts = directions.motion.cols(), q = directions.unknowns.cols(), columns = starts + q + g + 1;
@@ -60,27 +62,26 @@ MatrixXd gathered(filters::DiscreteModel& discrete, const VectorXd& initial_stat
   return factor.without(start).information();
 }
 
-}  // namespace
-
-ClockStep clock_step(filters::DiscreteModel& discrete, const VectorXd& initial_state,
-                     const StartDirections& directions, const filters::Measurements& record,
-                     const MatrixXd& outputs, const std::vector<OwnClock>& clocks) {
-  const MatrixXd all = gathered(discrete, initial_state, directions, record, outputs, clocks);
-  const auto g = static_cast<Index>(clocks.size());
-  const Index q = all.rows() - g - 1;
+ClockStep clock_step(const MatrixXd& information, Index clocks) {
+  const Index g = clocks, q = information.rows() - g - 1;
   // To a unit diagonal: seconds beside shares of deviations.
-  const VectorXd scale = all.diagonal().head(q + g).cwiseSqrt();
+  const VectorXd scale = information.diagonal().head(q + g).cwiseSqrt();
   if (!(scale.tail(g).array() > 0.0).all())
     throw std::runtime_error("a channel with a clock of its own does not move: its lag cannot be determined");
-  const MatrixXd scaled =
-      scale.cwiseInverse().asDiagonal() * all.topLeftCorner(q + g, q + g) * scale.cwiseInverse().asDiagonal();
+  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * information.topLeftCorner(q + g, q + g) *
+                          scale.cwiseInverse().asDiagonal();
   const MatrixXd covariance = Eigen::LDLT<MatrixXd>(scaled).solve(MatrixXd::Identity(q + g, q + g));
-  const VectorXd right = all.col(q + g).head(q + g).cwiseQuotient(scale);
-  ClockStep step;
-  step.lag = (covariance * right).tail(g).cwiseQuotient(scale.tail(g));
-  step.deviation = covariance.diagonal().tail(g).cwiseMax(0.0).cwiseSqrt().cwiseQuotient(scale.tail(g));
   const MatrixXd known = Eigen::LDLT<MatrixXd>(scaled.topLeftCorner(q, q)).solve(MatrixXd::Identity(q, q));
+  const VectorXd right = information.col(q + g).head(q + g).cwiseQuotient(scale);
+  const VectorXd with = covariance * right, without = known * right.head(q);
+  ClockStep step;
+  step.lag = with.tail(g).cwiseQuotient(scale.tail(g));
+  step.deviation = covariance.diagonal().tail(g).cwiseMax(0.0).cwiseSqrt().cwiseQuotient(scale.tail(g));
   step.widening = (covariance.diagonal().head(q).array() / known.diagonal().array()).max(1.0).sqrt();
+  step.shift = (with.head(q) - without).cwiseQuotient(known.diagonal().cwiseSqrt());
+  const double all = information(q + g, q + g), left = all - right.dot(with),
+               before = all - right.head(q).dot(without);
+  if (before > 0.0) step.left_share = std::clamp(left / before, 0.0, 1.0);
   return step;
 }
 

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numeric>
 
-#include "experiments/identify/in_double.hpp"
 #include "experiments/identify/measured_force.hpp"
+#include "experiments/signal/chi_square_limit.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -64,8 +63,7 @@ CommonFactor common_factor(const std::vector<ComparedParameter>& parameters) {
     squares += weights[j] * (logs[j] - g) * (logs[j] - g);
     found.log_apart = std::max(found.log_apart, std::abs(logs[j] - g));
   }
-  const boost::math::chi_squared_distribution<double, InDouble> law(count - 1);
-  found.common = squares < boost::math::quantile(law, point);
+  found.common = squares < chi_square_limit(count - 1, point);
   found.factor = (turned > 0 ? -1.0 : 1.0) * std::exp(g);
   found.deviation = 1.0 / std::sqrt(whole);
   return found;

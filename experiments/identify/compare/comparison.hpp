@@ -10,7 +10,8 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/analysis.hpp"
 #include "experiments/identify/batch.hpp"
-#include "experiments/identify/clocks/clock_step.hpp"
+#include "experiments/identify/clocks/likeliest_lag.hpp"
+#include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/noise_in_estimates.hpp"
 #include "experiments/models/divergence.hpp"
 #include "experiments/models/estimates.hpp"
@@ -100,9 +101,11 @@ struct ComparedRun {
   filters::Gaussian unknown_state, unknown_start;  ///< of what the filter's state carries for them: at the
                                                    ///< end, and at the start of the last pass (q)
   std::optional<ClockStep> clocks;  ///< of channels with clocks of their own; absent: there are none
-  std::optional<filters::Diagnostics> diagnostics;  ///< of the last pass; absent below 100 samples
-  std::vector<filters::Gaussian> smoothed;          ///< of every sample, where a smoother was asked for
-  std::optional<BatchIdentification> batch;         ///< where it was asked for
+  std::optional<LikeliestLag> likeliest_lag;                 ///< of a driven record without such channels
+  std::optional<LikeliestInputNoise> likeliest_input_noise;  ///< likewise, of exact inputs; by `identify`
+  std::optional<filters::Diagnostics> diagnostics;           ///< of the last pass; absent below 100 samples
+  std::vector<filters::Gaussian> smoothed;   ///< of every sample, where a smoother was asked for
+  std::optional<BatchIdentification> batch;  ///< where it was asked for
   std::vector<std::string> remarks;
   std::vector<std::string> warnings;  ///< for the first lines of a report, the worst first
   std::shared_ptr<const RecordIdentification> oscillator;  ///< K and C of a free decay, judged; else absent

@@ -3,8 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
+#include "experiments/signal/missing_samples.hpp"
 #include "filters/identifiability.hpp"
 #include "filters/innovation_likelihood.hpp"
 #include "filters/innovation_passes.hpp"
@@ -31,32 +33,41 @@ VectorXd bounds_of_unknowns(const MatrixXd& information, const VectorXd& known, 
 
 namespace {
 
-// The record under this much noise of the outputs.
+// The record under noise of its inputs, and of its outputs times a root.
 class NoisyProblem {
  public:
-  NoisyProblem(const JointModel& model, const IdentificationSettings& settings, const MatrixXd& output_noise,
+  NoisyProblem(const JointModel& model, const IdentificationSettings& settings,
                const filters::Gaussian& start, const filters::Measurements& record)
-      : noisy_(
-            filters::discretise(model.motion, record.interval(), settings.discretisation, {{}, output_noise}),
-            settings.input_noise),
+      : noisy_(filters::discretise(model.motion, record.interval(), settings.discretisation,
+                                   {{}, settings.output_noise}),
+               settings.input_noise),
+        root_(VectorXd::Ones(settings.output_noise.rows())),
         problem_(filters::held_problem(noisy_, record, model.unknown_places, noisy_.with_errors(start))) {
     problem_.free_inputs = true;
+    problem_.model = [this, of_one = problem_.model](const VectorXd& theta) {
+      filters::LinearGaussian scaled = of_one(theta);
+      scaled.r = root_.asDiagonal() * scaled.r * root_.asDiagonal();
+      return scaled;
+    };
   }
   NoisyProblem(const NoisyProblem&) = delete;  // the problem refers to its model
   NoisyProblem& operator=(const NoisyProblem&) = delete;
 
+  void scale_outputs(const VectorXd& root) { root_ = root; }
   filters::InnovationFit fit(const VectorXd& begin) const {
     return filters::fit_innovations(problem_, begin);
   }
-  /// Of the innovations, 1 where the noises are what they are said to be.
-  double mean_square(const VectorXd& theta) const {
-    const auto pass =
-        filters::innovation_passes({problem_.model(theta)}, problem_.record, problem_.interval, false);
-    return pass.front().squares / static_cast<double>(problem_.record.outputs.array().isFinite().count());
+  filters::InnovationPass pass(const VectorXd& theta) const {
+    return filters::innovation_passes({problem_.model(theta)}, problem_.record, problem_.interval, false)
+        .front();
   }
+  double readings() const { return static_cast<double>(problem_.record.outputs.array().isFinite().count()); }
+  /// Of the innovations, 1 where the noises are what they are said to be.
+  double mean_square(const VectorXd& theta) const { return pass(theta).squares / readings(); }
 
  private:
   filters::NoisyInputs noisy_;
+  VectorXd root_;  // of R's scale (p)
   filters::InnovationProblem problem_;
 };
 
@@ -69,28 +80,29 @@ NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSett
   constexpr int most_fits = 4, halvings = 20;
   if (!dynamic_cast<const filters::LinearMotion*>(model.motion.get()))
     return {{}, {}, "the model is not linear in its motion"};
-  const auto problem_at = [&](double scale) {
-    VectorXd root = VectorXd::Ones(settings.output_noise.rows());
-    for (Index i = 0; i < root.size(); ++i)
-      if (!noise_is_known[static_cast<std::size_t>(i)]) root[i] = std::sqrt(scale);
-    return NoisyProblem(model, settings, root.asDiagonal() * settings.output_noise * root.asDiagonal(), start,
-                        record);
-  };
   const bool all_known =
       std::find(noise_is_known.begin(), noise_is_known.end(), false) == noise_is_known.end();
   try {
+    NoisyProblem problem(model, settings, start, record);
+    const auto take = [&](double scale) {
+      VectorXd root = VectorXd::Ones(settings.output_noise.rows());
+      for (Index i = 0; i < root.size(); ++i)
+        if (!noise_is_known[static_cast<std::size_t>(i)]) root[i] = std::sqrt(scale);
+      problem.scale_outputs(root);
+    };
     double scale = 1.0;
-    filters::InnovationFit fit = problem_at(scale).fit(found(model.unknown_places));
+    filters::InnovationFit fit = problem.fit(found(model.unknown_places));
     for (int i = 1; i < most_fits && !all_known; ++i) {
-      const double square = problem_at(scale).mean_square(fit.constants);
+      const double square = problem.mean_square(fit.constants);
       if (std::abs(square - 1.0) < enough || (scale == 1.0 && square > 1.0)) break;
       double low = std::log(least_scale), high = 0.0;  // the square falls as the noise grows
       for (int k = 0; k < halvings; ++k) {
         const double middle = 0.5 * (low + high);
-        (problem_at(std::exp(middle)).mean_square(fit.constants) > 1.0 ? low : high) = middle;
+        take(std::exp(middle));
+        (problem.mean_square(fit.constants) > 1.0 ? low : high) = middle;
       }
-      scale = std::exp(high);
-      fit = problem_at(scale).fit(fit.constants);
+      take(scale = std::exp(high));
+      fit = problem.fit(fit.constants);
     }
     const MatrixXd prior = start.covariance(model.unknown_places, model.unknown_places);
     const MatrixXd one = MatrixXd::Identity(prior.rows(), prior.cols());
@@ -106,6 +118,39 @@ NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSett
     return {{}, {}, error.what()};
   } catch (const std::runtime_error& error) {
     return {{}, {}, error.what()};
+  }
+}
+
+std::optional<LikeliestInputNoise> likeliest_input_noise(const JointModel& model,
+                                                         const IdentificationSettings& settings,
+                                                         const filters::Gaussian& start,
+                                                         const VectorXd& found,
+                                                         const filters::Measurements& record) {
+  constexpr double least_share = 1e-4, most_share = 1.0, finer = 2.0;
+  if (!dynamic_cast<const filters::LinearMotion*>(model.motion.get())) return {};
+  const VectorXd size = root_mean_squares(record.inputs), theta = found(model.unknown_places);
+  double scale = 1.0;  // of all noises, the likeliest at each share
+  const auto cost = [&](double share) {
+    IdentificationSettings noisy = settings;
+    noisy.input_noise = share * size;
+    const NoisyProblem problem(model, noisy, start, record);
+    const filters::InnovationPass pass = problem.pass(theta);
+    if (pass.failed) return std::numeric_limits<double>::infinity();
+    scale = pass.squares / problem.readings();
+    return 0.5 * (problem.readings() * std::log(scale) + pass.log_determinants);
+  };
+  try {
+    const double exact = cost(0.0);
+    LikeliestInputNoise best{VectorXd::Zero(size.size()), 0.0, {}};
+    for (double share = least_share; share <= most_share; share *= finer) {
+      const double gain = exact - cost(share);
+      if (gain > best.gain) best = {std::sqrt(scale) * share * size, gain, {}};
+    }
+    return best;
+  } catch (const std::invalid_argument&) {  // uneven stamps
+    return {};
+  } catch (const std::runtime_error&) {
+    return {};
   }
 }
 

@@ -1,6 +1,7 @@
 // The unknowns of a run whose inputs are noisy.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 namespace beamid::experiments {
 
+/// What becomes of the unknowns of a run where its inputs' noise counts.
 struct NoisyInputFit {
   filters::Gaussian unknowns;  ///< of what the state carries for them (q)
   Eigen::VectorXd bounds;      ///< Cramer-Rao, in their units; infinite: not determined (q)
@@ -25,6 +27,22 @@ struct NoisyInputFit {
 NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSettings& settings,
                                const filters::Gaussian& start, const Eigen::VectorXd& found,
                                const filters::Measurements& record, const std::vector<bool>& noise_is_known);
+
+/// Noise of inputs that nobody stated.
+struct LikeliestInputNoise {
+  Eigen::VectorXd deviation;  ///< of the inputs, all the same share of their rms (m)
+  double gain = 0.0;          ///< of the logarithm of the likelihood, over that of exact inputs
+  Eigen::VectorXd moved;      ///< by it, the unknowns in their deviations (q); empty: not fitted
+};
+
+/// The noise of the inputs that makes the innovations likeliest at unknowns as found, and noise of the
+/// outputs as large as that leaves it. Absent where the model is not linear in its motion, or its filter
+/// fails.
+std::optional<LikeliestInputNoise> likeliest_input_noise(const JointModel& model,
+                                                         const IdentificationSettings& settings,
+                                                         const filters::Gaussian& start,
+                                                         const Eigen::VectorXd& found,
+                                                         const filters::Measurements& record);
 
 /// Cramer-Rao bounds by an information about what the state carries, in units of the unknowns; infinite: not
 /// determined (q). @param known deviations beforehand, which bring all unknowns to one size; @param values of

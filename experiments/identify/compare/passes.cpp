@@ -107,7 +107,12 @@ void Passes::finish() {
             ? input_bounds_
             : run_bounds(*discrete, *run_.model, motion_.initial_state, directions_, record_));
   const bool drifts = has_noise(run_.settings.input_noise);  // what one motion leaves is not the noise then
+  if (!drifts && context_.analysis.forced() && context_.compared.clocks.empty() && is_weighed_at_once())
+    run_.likeliest_lag =
+        likeliest_lag(*discrete, motion_.initial_state, directions_, record_, motion_.outputs);
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
+  if (settings_.keep == filters::Keep::all_estimates && !drifts && context_.compared.clocks.empty())
+    look_for_input_noise();
   run_.response_seconds += seconds_since(start);
   if (settings_.keep == filters::Keep::last_estimate) return;
   if (first_start_.size() > 0)
@@ -201,11 +206,16 @@ void Passes::begin_at(const VectorXd& state) {
   run_.noise_left = motion_.residual_deviation;
 }
 
-// Where no one mode says what of the noise counts.
-void Passes::weigh_noise() {
+// Whether the sensitivities of all samples are no more than can be held together.
+bool Passes::is_weighed_at_once() const {
   constexpr Index most_numbers = 20'000'000;
   const Index columns = directions_.motion.cols() + directions_.unknowns.cols();
-  if (record_.outputs.size() * columns > most_numbers) return;
+  return record_.outputs.size() * columns <= most_numbers;
+}
+
+// Where no one mode says what of the noise counts.
+void Passes::weigh_noise() {
+  if (!is_weighed_at_once()) return;
   const auto discrete = finest(*run_.model, dt_, run_.settings.output_noise);
   run_.noise_in = noise_in_estimates(*discrete, motion_.initial_state, directions_, record_,
                                      record_.outputs - motion_.outputs);
@@ -236,8 +246,10 @@ bool Passes::filter_once() {
 
 // Lags that are unknown too leave less of the record to the unknowns.
 void Passes::take_clocks(filters::DiscreteModel& discrete) {
-  run_.clocks = clock_step(discrete, motion_.initial_state, directions_, record_, motion_.outputs,
-                           context_.compared.clocks);
+  const std::vector<OwnClock>& clocks = context_.compared.clocks;
+  run_.clocks = clock_step(
+      clock_information(discrete, motion_.initial_state, directions_, record_, motion_.outputs, clocks),
+      static_cast<Index>(clocks.size()));
   const VectorXd& w = run_.clocks->widening;
   MatrixXd& own = run_.unknown_state.covariance;
   own = w.asDiagonal() * own * w.asDiagonal();

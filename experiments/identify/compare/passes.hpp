@@ -61,6 +61,10 @@ class Passes {
   const Eigen::VectorXd& noise_shown() const;
   FirstGuess working_guess() const;
   void begin_at(const Eigen::VectorXd& state);
+  void look_for_input_noise();
+  filters::Gaussian known_beforehand() const;
+  NoisyInputFit fit_with_input_noise(const IdentificationSettings& settings) const;
+  bool is_weighed_at_once() const;
   void weigh_noise();
   void take_clocks(filters::DiscreteModel& discrete);
   std::optional<filters::Gaussian> output_error(Eigen::VectorXd state, Eigen::Index first_samples = 0);

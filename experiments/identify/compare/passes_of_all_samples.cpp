@@ -8,23 +8,53 @@
 #include "experiments/identify/compare/known_prior.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/compare/passes.hpp"
+#include "experiments/models/finest_discretisation.hpp"
 #include "filters/batch_estimator.hpp"
 
 namespace beamid::experiments {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+// Of the whole state, before the record.
+filters::Gaussian Passes::known_beforehand() const {
+  const JointModel& model = *run_.model;
+  filters::Gaussian known = initial_estimate(model, with_guess(directions_, model, started_.guess));
+  known.mean(model.unknown_places) = started_.guess.mean(started_.model.unknown_places);
+  return known;
+}
+
+NoisyInputFit Passes::fit_with_input_noise(const IdentificationSettings& settings) const {
+  std::vector<bool> noise_is_known;
+  for (const double configured : known_.configured) noise_is_known.push_back(configured > 0.0);
+  return fit_noisy_inputs(*run_.model, settings, known_beforehand(), run_.run.last.mean, record_,
+                          noise_is_known);
+}
+
+// Of inputs that are said to be exact, beside innovations that exact ones do not leave.
+void Passes::look_for_input_noise() {
+  constexpr double not_white = 1e-3, hardly = 3.0;
+  if (!context_.analysis.forced() || is_nonlinear(*run_.model) || is_whole_mesh(*run_.model)) return;
+  if (run_.diagnostics && run_.diagnostics->consistency &&
+      run_.diagnostics->consistency->whiteness_p_value > not_white)
+    return;
+  IdentificationSettings noisy = run_.settings;
+  noisy.discretisation = finest_discretisation(*run_.model, dt_);
+  run_.likeliest_input_noise =
+      likeliest_input_noise(*run_.model, noisy, known_beforehand(), run_.run.last.mean, record_);
+  if (!run_.likeliest_input_noise || !(run_.likeliest_input_noise->gain > hardly)) return;
+  noisy.input_noise = run_.likeliest_input_noise->deviation;
+  const NoisyInputFit fit = fit_with_input_noise(noisy);
+  const filters::Gaussian& found = run_.unknown_state;
+  if (fit.failure.empty())
+    run_.likeliest_input_noise->moved =
+        (fit.unknowns.mean - found.mean).cwiseQuotient(found.covariance.diagonal().cwiseSqrt());
+}
+
 // A filter of motion and unknowns together is biased by the noise of its inputs (innovation_likelihood.hpp).
 void Passes::fit_inputs_noise() {
   if (!has_noise(run_.settings.input_noise)) return;
   const auto start = std::chrono::steady_clock::now();
-  const JointModel& model = *run_.model;
-  filters::Gaussian known = initial_estimate(model, with_guess(directions_, model, started_.guess));
-  known.mean(model.unknown_places) = started_.guess.mean(started_.model.unknown_places);
-  std::vector<bool> noise_is_known;
-  for (const double configured : known_.configured) noise_is_known.push_back(configured > 0.0);
-  const NoisyInputFit fit =
-      fit_noisy_inputs(model, run_.settings, known, run_.run.last.mean, record_, noise_is_known);
+  const NoisyInputFit fit = fit_with_input_noise(run_.settings);
   run_.seconds += seconds_since(start);
   if (!fit.failure.empty()) {
     run_.remarks.push_back(

@@ -7,6 +7,7 @@
 #include "experiments/identify/compare/against_description.hpp"
 #include "experiments/identify/compare/against_modal_analysis.hpp"
 #include "experiments/identify/compare/described_response.hpp"
+#include "experiments/identify/compare/input_doubts.hpp"
 #include "experiments/identify/compare/motion_left.hpp"
 #include "experiments/identify/compare/reduction_error.hpp"
 #include "experiments/identify/compare/step_error.hpp"
@@ -82,6 +83,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
     run.warnings.insert(run.warnings.begin(), text);
   judge_settling(run);
   judge_motion_left(context, run);
+  judge_inputs(context, run);
   judge_decay(context, run);
   judge_moved_mass(run);
   judge_what_is_said(run);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "experiments/identify/in_double.hpp"
+#include "experiments/signal/in_double.hpp"
 
 namespace beamid::experiments {
 

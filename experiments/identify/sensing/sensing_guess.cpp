@@ -19,7 +19,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using Kind = SensingConstant::Kind;
 
 // White noise shows in second differences, of variance 6 r^2; slow motion does not.
-double noise_floor(const VectorXd& samples) {
+double noise_of_bends(const VectorXd& samples) {
   const Index n = samples.size() - 2;
   const VectorXd bent = samples.head(n) - 2.0 * samples.segment(1, n) + samples.tail(n);
   double sum = 0.0, all = 0.0;
@@ -93,7 +93,7 @@ SensingModel::SensingModel(const Experiment& experiment, const SensingRecord& re
   for (Index i = 0; i < measured_; ++i) {
     const Channel& channel = record.record.channels[static_cast<std::size_t>(i)];
     const double stated = stated_noise(experiment, channel);
-    noise_[i] = stated > 0.0 ? stated : noise_floor(record.record.samples.row(i).transpose());
+    noise_[i] = stated > 0.0 ? stated : noise_of_bends(record.record.samples.row(i).transpose());
     if (stated > 0.0) {
       stated_.push_back(i);
       continue;

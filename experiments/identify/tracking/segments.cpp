@@ -1,7 +1,6 @@
 #include "experiments/identify/tracking/segments.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -9,6 +8,7 @@
 
 #include "experiments/identify/tracking/ringing_model.hpp"
 #include "experiments/modal/damped_sine_fit.hpp"
+#include "experiments/signal/chi_square_limit.hpp"
 #include "experiments/signal/median.hpp"
 #include "filters/filter.hpp"
 
@@ -105,12 +105,9 @@ double typical_force(const Ringing& ringing) {
 Segments find_segments(const Ringing& ringing, double walk, double false_alarms) {
   Segments found;
   found.test_samples = ringing.cycles(1);
-  const auto quantile = [](Index degrees, double excess) {
-    return boost::math::quantile(
-        boost::math::complement(boost::math::chi_squared(static_cast<double>(degrees)), excess));
-  };
-  found.threshold = quantile(found.test_samples, false_alarms / static_cast<double>(ringing.size()));
-  const double improbable = quantile(1, 1e-3);
+  found.threshold = chi_square_limit(static_cast<double>(found.test_samples),
+                                     1.0 - false_alarms / static_cast<double>(ringing.size()));
+  const double improbable = chi_square_limit(1, 1.0 - 1e-3);
   const auto filter =
       ringing_filter(ringing, ringing_noise(ringing, ringing.noise, typical_force(ringing), walk));
   const VectorXd none;

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "experiments/signal/chi_square_limit.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -30,8 +31,7 @@ double energy_over_noise(const JointDecayFit& fit, Index m, const RecordModes& f
 double energy_of_noise(const RecordModes& found) {
   constexpr double by_chance = 1e-3;
   const double resolutions = std::max(1.0, (found.band_hz.second - found.band_hz.first) * duration_of(found));
-  const boost::math::chi_squared energy(2.0 * static_cast<double>(found.target.rows()) + 2);
-  return quantile(complement(energy, by_chance / resolutions));
+  return chi_square_limit(2.0 * static_cast<double>(found.target.rows()) + 2, 1.0 - by_chance / resolutions);
 }
 
 /// Whether a mode is so large a part of some channel that no noise is like it: what a damped sine takes of

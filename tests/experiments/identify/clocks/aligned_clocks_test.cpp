@@ -120,6 +120,33 @@ TEST_F(Clocks, OfTheGroundAreFoundAndContradictTheRunThatDoesNotLook) {
   EXPECT_LT(clock.deviation, 1e-3);
 }
 
+// A lag of less than an interval leaves 1 to 5 % of the record, which no share of it calls wrong.
+TEST_F(Clocks, ThatNobodyNamedAreToldWhereTheyMoveAnAnswer) {
+  struct Case {
+    std::vector<Index> late_ms;
+    const char* who;
+    double lag;  // behind the input [s]
+    const char* key;
+  };
+  for (const Case& one :
+       {Case{{0, 0, 5}, "All motion is ", -0.005, "own_clock = [\"base_acceleration\"]"},
+        Case{{5, 5, 0}, "All motion is ", 0.005, "It is half an interval: look at input in"},
+        Case{{0, 4, 0}, "tip is ", 0.004, "own_clock = [\"tip\"]"},
+        Case{{3, 0, 0}, "x3m is ", 0.003, "own_clock = [\"x3m\"]"}}) {
+    const ComparedRun run = found(11, one.late_ms, {}).runs.at(0);
+    EXPECT_EQ(run.status, ComparedRun::Status::contradicted) << one.who;
+    EXPECT_THAT(run.warnings,
+                testing::Contains(testing::AllOf(testing::HasSubstr(one.who), testing::HasSubstr(one.key))));
+    EXPECT_NEAR(run.likeliest_lag->lag(), one.lag,
+                4.0 * run.interval_factor * run.likeliest_lag->deviation());
+  }
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const ComparedRun run = found(seed, {0, 0, 0}, {}).runs.at(0);
+    EXPECT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
+    EXPECT_THAT(run.warnings, testing::Each(testing::Not(testing::HasSubstr("own_clock")))) << seed;
+  }
+}
+
 TEST_F(Clocks, AreRefusedWhereNothingTellsThem) {
   const auto refusal = [&](std::vector<std::string> own) -> std::string {
     try {
