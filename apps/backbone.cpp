@@ -43,7 +43,7 @@ BackboneSettings backbone_settings_of(const Values& values) {
 int run_backbone(const Values& values) {
   const BackboneSettings settings = backbone_settings_of(values);
   const RecordRequest request = record_requests(values).front();
-  deliver(values, [&] {
+  return deliver(values, [&] {
     PreparedRecord prepared = read_and_prepare(request.file, request.format);
     prepared.record = made_analysable(prepared.record);
     try {
@@ -68,7 +68,6 @@ int run_backbone(const Values& values) {
       throw InputError({file}, error.what());
     }
   });
-  return 0;
 }
 
 }  // namespace

@@ -175,7 +175,7 @@ int run_check(const Values& values) {
   const ModalStudySettings modal = modal_settings(values);
   const ModelCheckSettings settings = check_settings(values);
   const std::vector<Request> requests = requests_of(values);
-  deliver(values, [&] {
+  return deliver(values, [&] {
     std::vector<CheckedStructure> structures;
     std::vector<UsedRecord> used;
     for (const Request& request : requests) structures.push_back(structure_of(request, modal, used));
@@ -188,7 +188,6 @@ int run_check(const Values& values) {
       throw InputError({requests[0].config.string()}, error.what());
     }
   });
-  return 0;
 }
 
 }  // namespace

@@ -67,8 +67,7 @@ int run_compare(const Values& values) {
   const fs::path folder = source.config.parent_path();
   std::vector<fs::path> file;
   if (!values.has("truth")) file = record_files(values, source.config, source.experiment.record_file);
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     return blame_config(source, [&] {
       const Progress progress = show_progress(values);
       ComparedRecord compared;
@@ -95,11 +94,9 @@ int run_compare(const Values& values) {
           report(source.experiment, compare(source.experiment, std::move(compared), folder, progress));
       for (const std::string& text : decisions) results.paragraph(text);
       if (!file.empty()) tell_preparation(results, prepared, source.experiment.format);
-      code = exit_code(results);
       return results;
     });
   });
-  return code;
 }
 
 }  // namespace

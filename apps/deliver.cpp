@@ -59,7 +59,7 @@ std::string experiment_text(const Values& values) {
 
 }  // namespace
 
-void deliver(const Values& values, const std::function<experiments::Results()>& find) {
+int deliver(const Values& values, const std::function<experiments::Results()>& find) {
   std::optional<experiments::ResultDirectory> directory;
   const bool writes = values.has("out"), quiet = values.has("quiet");
   if (writes) directory.emplace(values.text("out"), values.has("force"));
@@ -73,22 +73,23 @@ void deliver(const Values& values, const std::function<experiments::Results()>& 
     warn_of_undrawn(results, directory->path());
     directory->commit();
   }
-  if (values.receiver() != nullptr) return values.receiver()->take(std::move(results));
+  const int code = results.has_failed() ? 3 : 0;
+  if (values.receiver() != nullptr) {
+    values.receiver()->take(std::move(results));
+    return code;
+  }
   if (values.has("json")) {
     experiments::print_json(std::cout, results);
-    return;
+    return code;
   }
   if (quiet) shorten(results);
   experiments::print(std::cout, results, terminal_page());
-  if (quiet) return;
+  if (quiet) return code;
   const std::string last = writes ? "Written to " + experiments::clean_text(values.text("out"))
                                   : "A page with figures, CSV tables and results.json: add --out DIR";
   std::cout << "\n";
   for (const std::string& line : experiments::wrapped(last, terminal_page().width)) std::cout << line << "\n";
-}
-
-int exit_code(const experiments::Results& results) {
-  return results.values.value("status", "converged") == "converged" ? 0 : 3;
+  return code;
 }
 
 }  // namespace beamid::apps

@@ -133,13 +133,12 @@ int run_efficiency(const Values& values) {
   const std::string study = values.text("study");
   if (study == "coverage") {
     const CoverageSettings settings = coverage_settings(values);
-    deliver(values, [&] { return report(interval_coverage(settings, show_progress(values))); });
+    return deliver(values, [&] { return report(interval_coverage(settings, show_progress(values))); });
     return 0;
   }
   if (study == "decays") {
     const SeededDecays settings = decay_settings(values);
-    deliver(values, [&] { return report(seeded_decays(settings, show_progress(values))); });
-    return 0;
+    return deliver(values, [&] { return report(seeded_decays(settings, show_progress(values))); });
   }
   if (study == "records") {
     const LaboratorySettings settings = laboratory_settings(values);
@@ -148,16 +147,14 @@ int run_efficiency(const Values& values) {
     if (number >= settings.records)
       throw UsageError(
           fmt::format("--only is {}; expected a whole number from 0 to {}", number, settings.records - 1));
-    deliver(values, [&] {
+    return deliver(values, [&] {
       return one ? examine(settings, number) : report(laboratory_records(settings, show_progress(values)));
     });
-    return 0;
   }
   if (values.has("only")) throw UsageError("--only goes with --study records");
   if (values.has("model")) throw UsageError("--model goes with --study coverage");
   const EfficiencySettings settings = efficiency_settings_of(values);
-  deliver(values, [&] { return report(find_efficiency(settings, show_progress(values))); });
-  return 0;
+  return deliver(values, [&] { return report(find_efficiency(settings, show_progress(values))); });
 }
 
 }  // namespace

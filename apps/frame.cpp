@@ -26,7 +26,7 @@ int run_frame(const Values& values) {
       throw UsageError(fmt::format("--elements is {}; expected a whole number from 1 to {}",
                                    experiment.elements_per_member, most));
   }
-  deliver(values, [&] {
+  return deliver(values, [&] {
     return experiments::at_place({file.string()}, [&] {
       const auto found = experiments::frame_modes(experiment, values.whole("modes"), show_progress(values));
       experiments::Results results = experiments::report(experiment, found);
@@ -34,7 +34,6 @@ int run_frame(const Values& values) {
       return results;
     });
   });
-  return 0;
 }
 
 }  // namespace

@@ -19,13 +19,12 @@ const std::vector<KeyOption>& response_keys() {
 
 int run_frf(const Values& values) {
   const BeamSource source = read_beam(values, response_keys());
-  deliver(values, [&] {
+  return deliver(values, [&] {
     return blame_config(source, [&] {
       return experiments::report(
           source.experiment, experiments::respond_to_frequencies(source.experiment, show_progress(values)));
     });
   });
-  return 0;
 }
 
 }  // namespace

@@ -25,13 +25,12 @@ void complete_identifiability(const Values& values, Experiment& experiment) {
 int run_identifiability(const Values& values) {
   BeamSource source = read_beam(values, record_length_keys());
   complete_identifiability(values, source.experiment);
-  deliver(values, [&] {
+  return deliver(values, [&] {
     return blame_config(source, [&] {
       return report(source.experiment, find_identifiability(source.experiment, source.config.parent_path(),
                                                             show_progress(values)));
     });
   });
-  return 0;
 }
 
 }  // namespace

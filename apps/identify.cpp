@@ -144,33 +144,29 @@ Results identify_together(const std::vector<IdentifyRequest>& requests, const st
 int run_identify(const Values& values) {
   const Words configs = values.texts("config");
   if (configs.size() > 1) {
-    deliver(values, [&] {
+    return deliver(values, [&] {
       try {
         return identify_family(values, {configs.begin(), configs.end()});
       } catch (const std::invalid_argument& error) {
         throw InputError({configs[0]}, error.what());
       }
     });
-    return 0;
   }
   const fs::path config = configs[0];
   const std::string law = damping_law(values);
   const std::vector<IdentifyRequest> requests = identify_requests(values, config);
   if (requests.size() > 1) refuse_what_needs_one_record(requests);
   const Progress progress = show_progress(values);
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     try {
       Results results = requests.size() > 1 ? identify_together(requests, law, config.parent_path(), progress)
                                             : identify_one(requests[0], law, config, progress);
       warn(results, requests[0].experiment);
-      code = exit_code(results);
       return results;
     } catch (const std::invalid_argument& error) {
       throw InputError({config.string()}, error.what());
     }
   });
-  return code;
 }
 
 }  // namespace

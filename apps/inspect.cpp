@@ -10,8 +10,8 @@ namespace {
 
 int run_inspect(const Values& values) {
   const RecordRequest request = record_requests(values).front();
-  deliver(values, [&] { return experiments::report(experiments::inspect(request.file, request.format)); });
-  return 0;
+  return deliver(values,
+                 [&] { return experiments::report(experiments::inspect(request.file, request.format)); });
 }
 
 }  // namespace

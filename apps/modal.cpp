@@ -116,8 +116,7 @@ int run_modal(const Values& values) {
   if (values.has("events"))
     for (const char* const other : {"amplitude", "modes", "polish", "no-polish"})
       if (values.has(other)) throw UsageError(std::string("--events takes no --") + other);
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     std::vector<PreparedRecord> prepared;
     std::vector<Record> records;
     std::vector<std::string> names;
@@ -142,10 +141,8 @@ int run_modal(const Values& values) {
     }
     for (std::size_t r = 0; r < records.size(); ++r)
       tell_cost(results, names[r], prepared[r], requests[r].format);
-    code = exit_code(results);
     return results;
   });
-  return code;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 
 int run_modes(const Values& values) {
   const BeamSource source = read_beam(values);
-  deliver(values, [&] {
+  return deliver(values, [&] {
     if (const fem::Frame* const frame = source.experiment.structure.frame()) {
       const experiments::FrameExperiment described =
           experiments::as_frame_experiment(*frame, source.experiment.elements, source.experiment.title);
@@ -33,7 +33,6 @@ int run_modes(const Values& values) {
       return experiments::report(source.experiment, summary, values.has("surface"));
     });
   });
-  return 0;
 }
 
 }  // namespace

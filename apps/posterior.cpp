@@ -59,7 +59,7 @@ int run_posterior(const Values& values) {
   std::optional<ModalData> modes;
   if (holds_modes(file)) modes = read_modal_data(file, experiment);
   std::optional<PosteriorStudy> study;  // until its draws are written
-  deliver(values, [&] {
+  return deliver(values, [&] {
     PreparedRecord prepared;
     if (!modes) prepared = read_and_prepare(file, experiment.format);
     std::optional<UpdateStudy> update;
@@ -76,7 +76,6 @@ int run_posterior(const Values& values) {
     warn(results, experiment);
     return results;
   });
-  return study->posterior.disagrees() || study->contradicted() ? 3 : 0;
 }
 
 }  // namespace

@@ -15,11 +15,10 @@ int run_prepare(const Values& values) {
   const std::filesystem::path file = require_record_files(values, config, experiment.record_file)[0];
   if (experiment.format.preparation.empty())
     throw InputError({config.string()}, "no step; expected at least one table [[record.prepare]]");
-  deliver(values, [&] {
+  return deliver(values, [&] {
     return report(read_and_prepare(file, experiment.format), experiment.format, experiment.title,
                   file.filename().string());
   });
-  return 0;
 }
 
 }  // namespace

@@ -61,14 +61,13 @@ int run_reduce(const Values& values) {
   const BeamSource source = read_beam(values);
   require_linear_storeys(source.experiment, "reduce");
   const std::vector<Choice> choices = chosen(source, values);
-  deliver(values, [&] {
+  return deliver(values, [&] {
     return blame_config(source, [&] {
       return report(source.experiment, std::make_shared<const ReductionComparison>(compare_reductions(
                                            source.experiment, choices, settings, source.config.parent_path(),
                                            show_progress(values))));
     });
   });
-  return 0;
 }
 
 }  // namespace

@@ -60,8 +60,7 @@ int run_sense(const Values& values) {
   if (!values.text("filter").empty())
     filter = parse_choice(values.text("filter"), "--filter", filters::filter_registry());
   const std::vector<fs::path> file = record_files(values, config, experiment.record_file);
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     const Progress progress = show_progress(values);
     const Place place{config.string()};
     PreparedRecord prepared;
@@ -74,10 +73,8 @@ int run_sense(const Values& values) {
       return sensing_report(
           experiment, study_sensing(experiment, record, reduction, folder, progress, filter), "Simulated");
     });
-    code = exit_code(results);
     return results;
   });
-  return code;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ std::vector<KeyOption> simulation_keys() {
 int run_simulate(const Values& values) {
   const BeamSource source = read_beam(values, simulation_keys());
   const int frames = values.has("out") ? source.experiment.simulation.frames : 0;  // nobody would see them
-  deliver(values, [&] {
+  return deliver(values, [&] {
     return blame_config(source, [&] {
       const auto test = std::make_shared<const experiments::SimulatedTest>(
           experiments::simulate(source.experiment, source.config.parent_path(), frames, show_progress(values),
@@ -28,7 +28,6 @@ int run_simulate(const Values& values) {
       return experiments::report(source.experiment, test, values.has("surface"));
     });
   });
-  return 0;
 }
 
 }  // namespace

@@ -100,17 +100,14 @@ int run_record(const Values& values) {
     if (values.has(name)) throw UsageError(fmt::format("--{} goes with --published-xi", name));
   const IdentificationRequest one = steps_request(values, config);
   const StepsSettings settings = steps_settings(values, one.experiment);
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     const StepsStudy study = studied(settings, one, config, show_progress(values));
     Results results = report(one.experiment, study);
     for (const std::string& text : one.decisions()) results.paragraph(text);
     tell_preparation(results, one.prepared, one.experiment.format);
     warn(results, one.experiment);
-    code = study.has_reference() ? 0 : 3;
     return results;
   });
-  return code;
 }
 
 /// Step and frequency of the record, where they are not stated.
@@ -146,18 +143,15 @@ int run_published(const Values& values) {
     throw UsageError(
         "--published-xi needs the filter's steps and frequency: --interval and --frequency, or a record with "
         "--config");
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     if (values.has("config")) take_from_record(values, published);
     try {
       const BehindPublished found = behind_published(published);
-      code = found.is_possible() ? 0 : 3;
       return report(found);
     } catch (const std::invalid_argument& error) {
       throw UsageError(error.what());
     }
   });
-  return code;
 }
 
 int run_steps(const Values& values) {

@@ -37,8 +37,7 @@ int run_study(const Values& values) {
       chosen.set(spec.name, values.text(name));
   }
   const auto ready = study_registry().make(values.command().name, chosen);
-  deliver(values, [&] { return ready->run(show_progress(values)); });
-  return 0;
+  return deliver(values, [&] { return ready->run(show_progress(values)); });
 }
 
 }  // namespace

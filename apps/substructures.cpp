@@ -25,8 +25,7 @@ int run_substructures(const Values& values) {
   if (experiment.parameters.empty())
     throw InputError({config.string()}, "no [[parameters]]; expected what is asked of the parts");
   const std::vector<fs::path> file = record_files(values, config, experiment.record_file);
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     const Progress progress = show_progress(values);
     ComparedRecord record;
     PreparedRecord prepared;
@@ -40,7 +39,6 @@ int run_substructures(const Values& values) {
       try {
         const PartedIdentification found =
             identify_parts(experiment, record, config.parent_path(), !values.has("no-whole"), progress);
-        code = found.converged() ? 0 : 3;
         return substructures_report(experiment, found);
       } catch (const std::invalid_argument& error) {
         throw InputError({config.string()}, error.what());
@@ -49,7 +47,6 @@ int run_substructures(const Values& values) {
     if (!file.empty()) tell_preparation(results, prepared, experiment.format);
     return results;
   });
-  return code;
 }
 
 }  // namespace

@@ -102,8 +102,7 @@ int merge_folders(const Values& values) {
     if (values.has(other))
       throw UsageError(fmt::format("--merge takes the plan from the folders; expected no --{}", other));
   const Words words = values.texts("merge");
-  deliver(values, [&] { return merge({words.begin(), words.end()}); });
-  return 0;
+  return deliver(values, [&] { return merge({words.begin(), words.end()}); });
 }
 
 /// Results of the same sweep, already there: nothing is left to do but to say so again.
@@ -167,7 +166,7 @@ int run_sweep(const Values& given) {
                                              settings.journal->string())
                                : "were finished; with --out DIR they are kept, and --resume goes on";
   Interruption interruption("interrupted; no case was finished");
-  deliver(values, [&] {
+  const int code = deliver(values, [&] {
     const Progress progress = [&, shown = show_progress(values)](const std::string& what) {
       interruption.say(fmt::format("interrupted; {} cases {}", what.substr(0, what.find(" cases")), kept));
       shown(what);
@@ -177,7 +176,7 @@ int run_sweep(const Values& given) {
     return results;
   });
   if (settings.journal) discard_journal(*settings.journal);
-  return 0;
+  return code;
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TrackSettings track_settings_of(const Values& values) {
 int run_track(const Values& values) {
   const TrackSettings settings = track_settings_of(values);
   const RecordRequest request = record_requests(values).front();
-  deliver(values, [&] {
+  return deliver(values, [&] {
     PreparedRecord prepared = read_and_prepare(request.file, request.format);
     prepared.record = made_analysable(prepared.record);
     const Record& record = prepared.record;
@@ -59,7 +59,6 @@ int run_track(const Values& values) {
       throw InputError({file}, error.what());
     }
   });
-  return 0;
 }
 
 }  // namespace

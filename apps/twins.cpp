@@ -15,17 +15,14 @@ using namespace experiments;
 int run_twins(const Values& values) {
   const Experiment experiment = read_experiment(values.text("config"));
   require_linear_storeys(experiment, "twins");
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     const ModalData data =
         values.has("modes") ? read_modal_data(values.text("modes"), experiment) : described_modes(experiment);
     const UpdateStudy study = studied_update(values, experiment, data);
-    code = study.updating.refuted ? 3 : 0;
     Results results = twins_report(experiment, study);
     warn(results, experiment);
     return results;
   });
-  return code;
 }
 
 }  // namespace

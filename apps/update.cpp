@@ -16,15 +16,12 @@ int run_update(const Values& values) {
   const Experiment experiment = read_experiment(values.text("config"));
   require_linear_storeys(experiment, "update");
   const ModalData data = read_modal_data(values.text("modes"), experiment);
-  int code = 0;
-  deliver(values, [&] {
+  return deliver(values, [&] {
     const UpdateStudy study = studied_update(values, experiment, data);
-    code = study.updating.refuted ? 3 : 0;
     Results results = report(experiment, study);
     warn(results, experiment);
     return results;
   });
-  return code;
 }
 
 }  // namespace

@@ -143,9 +143,4 @@ Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-void add_notes(Results& results, const std::vector<std::string>& notes) {
-  results.values["notes"] = notes;
-  for (const std::string& note : notes) results.paragraph(note);
-}
-
 }  // namespace beamid::experiments

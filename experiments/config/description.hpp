@@ -27,9 +27,6 @@ nlohmann::ordered_json describe(const Experiment& experiment);
 /// A number, or null where there is none.
 nlohmann::ordered_json number_or_null(double value);
 
-/// Adds notes to the report, as paragraphs, and to the values, as "notes".
-void add_notes(Results& results, const std::vector<std::string>& notes);
-
 /// Above so many elements pictures show the same beam with as many.
 inline constexpr int most_drawn_elements = 2000;
 

@@ -65,11 +65,14 @@ Headings with_anchors(std::string_view html, const std::string& section) {
   return found;
 }
 
+// An anchor of this page's own holds no quote and no bracket.
 std::string without_anchors(std::string html) {
   for (std::size_t at = html.find(named_heading); at != std::string::npos;
-       at = html.find(named_heading, at + 1))
-    if (const std::size_t end = html.find("\">", at); end != std::string::npos)
+       at = html.find(named_heading, at + 1)) {
+    const std::size_t end = html.find_first_of("\"<>", at + named_heading.size());
+    if (end != std::string::npos && html.compare(end, 2, "\">") == 0)
       html.replace(at, end + 2 - at, plain_heading);
+  }
   return html;
 }
 

@@ -19,7 +19,7 @@ namespace beamid::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int schema_version = 2;
+constexpr int schema_version = 3;
 
 // Replaces what is not finite by null and says where.
 void make_finite(Json& json, const std::string& place, Json& warnings) {
@@ -38,10 +38,13 @@ void make_finite(Json& json, const std::string& place, Json& warnings) {
 // What a reader must heed, as the page and the terminal show it.
 Json messages_of(const Results& results) {
   Json messages = Json::array();
-  for (const auto& part : results.report)
+  std::string heading;
+  for (const auto& part : results.report) {
+    if (const auto* title = std::get_if<Heading>(&part)) heading = title->text;
     if (const auto* said = std::get_if<Paragraph>(&part); said && said->severity != Severity::none)
       messages.push_back(
-          {{"severity", said->severity == Severity::failure ? "failure" : "warning"}, {"text", said->text}});
+          {{"severity", to_string(said->severity)}, {"heading", heading}, {"text", said->text}});
+  }
   return messages;
 }
 
@@ -126,6 +129,27 @@ void tell_undrawn(Json& json, const std::vector<std::string>& failures, const st
 }
 
 }  // namespace
+
+bool Results::has_failed() const {
+  return std::any_of(report.begin(), report.end(), [](const auto& part) {
+    const auto* said = std::get_if<Paragraph>(&part);
+    return said && said->severity == Severity::failure;
+  });
+}
+
+const char* to_string(Severity severity) {
+  switch (severity) {
+    case Severity::failure:
+      return "failure";
+    case Severity::warning:
+      return "warning";
+    case Severity::note:
+      return "note";
+    case Severity::none:
+      break;
+  }
+  return "";
+}
 
 Json json_rows(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();

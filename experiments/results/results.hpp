@@ -24,7 +24,13 @@ struct Heading {
 };
 
 /// How much a reader must heed a paragraph; a page shows the last two in coloured boxes.
-enum class Severity { none, warning, failure };
+enum class Severity {
+  none,     ///< part of the report, no message
+  note,     ///< what was done, or found beside what was asked
+  warning,  ///< what may make the results wrong
+  failure   ///< there is no result, or it is not to be used
+};
+const char* to_string(Severity severity);
 
 /// Text for the terminal, wrapped when printed.
 struct Paragraph {
@@ -62,16 +68,23 @@ struct Results {
 
   void heading(std::string text) { report.emplace_back(Heading{std::move(text)}); }
   void paragraph(std::string text) { report.emplace_back(Paragraph{std::move(text)}); }
+  void note(std::string text) { report.emplace_back(Paragraph{std::move(text), Severity::note}); }
+  void notes(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) note(text);
+  }
   /// What may make the results wrong, or has. @param failed there is no result, or it is not to be used
   void warning(std::string text, bool failed = false) {
     report.emplace_back(Paragraph{std::move(text), failed ? Severity::failure : Severity::warning});
   }
+  /// Whether a message is a failure: exit code 3.
+  bool has_failed() const;
   void table(Table table) { report.emplace_back(std::move(table)); }
 };
 
 /// The contents of results.json: schema_version, program, version, command, seed, configuration, then the
-/// values' keys, then "messages", the warnings and failures of the report in its order, "tables", every table
-/// as rows with the keys of its CSV header, and "files", the names of all files that write() makes.
+/// values' keys, then "messages", the notes, warnings and failures of the report in its order, each with its
+/// severity and the heading it stands below, "tables", every table as rows with the keys of its CSV header,
+/// and "files", the names of all files that write() makes.
 ///
 /// JSON knows no number that is not finite: one becomes null, and "warnings" then names its place and what it
 /// was, "beams[0].frequency_hz is nan".

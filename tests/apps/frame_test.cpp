@@ -81,7 +81,7 @@ TEST(Frame, InFreeSpaceHasAllItsMassInItsRigidBodyModes) {
   }
   EXPECT_NEAR(x, 2500.0, 1e-6);
   EXPECT_NEAR(y, 2500.0, 1e-6);
-  EXPECT_THAT(found["notes"].dump(), HasSubstr("3 rigid-body modes"));
+  EXPECT_THAT(found["messages"].dump(), HasSubstr("3 rigid-body modes"));
 }
 
 TEST(Frame, WritesTablesPicturesAndMeshes) {
@@ -99,7 +99,7 @@ TEST(Frame, WritesTablesPicturesAndMeshes) {
 TEST(Frame, OfAFineMeshIsDrawnOnACoarserOne) {
   Workplace place;
   place.write("frame.toml", cross("pinned"));
-  EXPECT_THAT(found_in(place, "--modes 2 --elements 2000")["notes"].dump(), HasSubstr("2000 elements"));
+  EXPECT_THAT(found_in(place, "--modes 2 --elements 2000")["messages"].dump(), HasSubstr("2000 elements"));
 }
 
 TEST(Validate, TakesAFrameToo) {

@@ -64,7 +64,7 @@ TEST(Modal, FindsThemModeByModeAsWell) {
        {"logarithmic_decrement", "hilbert_envelope", "half_power", "damped_sine"}) {
     const Outcome outcome = place.run("modal decay.csv --window 0 3.99 --json --method " + method);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const json found = json::parse(outcome.out)["records"][0];
+    const json all = json::parse(outcome.out), found = all["records"][0];
     ASSERT_EQ(found["modes"].size(), 2u) << method;
     EXPECT_FALSE(found["polished"].get<bool>());
     for (int m = 0; m < 2; ++m) {
@@ -76,7 +76,7 @@ TEST(Modal, FindsThemModeByModeAsWell) {
                   4 * mode["damping_ratio_standard_deviation"].get<double>() + 1e-4)
           << method;
     }
-    EXPECT_EQ(found["remarks"].size(), method == "half_power" ? 2u : 0u);
+    EXPECT_EQ(all["messages"].size(), method == "half_power" ? 2u : 0u);
   }
 }
 
@@ -91,8 +91,7 @@ TEST(Modal, PreparesTheRecordAsTheExperimentFileSays) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const json found = json::parse(outcome.out);
   EXPECT_EQ(found["preparations"][0]["steps"][0]["step"], "high_pass");
-  EXPECT_THAT(found["records"][0]["remarks"][0].get<std::string>(),
-              HasSubstr("Butterworth high-pass of order 2 at 2 Hz"));
+  EXPECT_THAT(found["messages"].dump(), HasSubstr("Butterworth high-pass of order 2 at 2 Hz"));
   place.write("beam.toml",
               "[beam]\nlength_m = 1\nwidth_m = 0.02\nheight_m = 0.005\n"
               "youngs_modulus_pa = 210e9\nmass_kg = 0.785\n" +
@@ -243,7 +242,7 @@ TEST(Modal, ResolvesTwoNearModesOfAMeasuredHammerTest) {
       EXPECT_NEAR(modes[1]["frequency_hz"].get<double>(), 25.6, 0.03 * 25.6);
       EXPECT_LT(found["response_error_percent"].get<double>(), 15);
       EXPECT_FALSE(modes[0]["frequency_standard_deviation_hz"].is_null());
-      EXPECT_THAT(found["notes"].dump(), HasSubstr("no pole that is stable over the orders"));
+      EXPECT_THAT(found["messages"].dump(), HasSubstr("no pole that is stable over the orders"));
     }
 }
 

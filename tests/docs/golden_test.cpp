@@ -54,7 +54,8 @@ class Golden : public testing::TestWithParam<GoldenCase> {
 TEST_P(Golden, OutputIsTheSame) {
   const GoldenCase& tested = GetParam();
   if (!prepare()) GTEST_SKIP() << "the measured records are not here";
-  const std::string text = as_text(shell_.run(tested.command, tested.folder));
+  const Outcome outcome = shell_.run(tested.command, tested.folder);
+  const std::string text = as_text(outcome);
   if (updating())
     std::ofstream(tested.file(".txt")) << text;
   else {
@@ -65,6 +66,8 @@ TEST_P(Golden, OutputIsTheSame) {
   const std::string printed = shell_.run(tested.command + " --json", tested.folder).out;
   keep(tested.name, printed);
   const json results = comparable(printed);
+  const auto fails = [](const json& message) { return message["severity"] == "failure"; };
+  EXPECT_EQ(outcome.code == 3, std::any_of(results["messages"].begin(), results["messages"].end(), fails));
   if (updating())
     std::ofstream(tested.file(".json")) << results.dump(1) << "\n";
   else {

@@ -82,7 +82,7 @@ class Results:
     found.innovations           (N, p) of the filter's last pass, and found.reproduced (N, p), the motion that the estimates
                                 make, both at found.time (N); numpy arrays that share memory with the results
     found.figures["spectrum"]   captions and curves, numpy arrays (N) that share memory with the results
-    found.messages              warnings and failures, worst news first in the report
+    found.messages              notes, warnings and failures in the order of the report
     found.code                  the command's exit code: 3 where there is no estimate to rely on
     found.write("folder")       what the command's --out writes: report.html, tables, figures, results.json
     found.command               the shell command that finds the same, to the last bit

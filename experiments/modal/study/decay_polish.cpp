@@ -9,6 +9,7 @@
 #include "experiments/modal/study/channel_clocks.hpp"
 #include "experiments/modal/study/drifting_mode.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
+#include "experiments/modal/study/phase_wander.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -145,7 +146,10 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
         lost.push_back(mode);
     for (std::size_t m = 0; m < poles.size(); ++m) found.modes[m].pole = poles[m];
     try_again(lost, settings, found, *fit);
-    if (found.free_decay) compare_clocks(*fit, found);
+    if (found.free_decay) {
+      compare_clocks(*fit, found);
+      follow_phases(*fit, found);
+    }
     std::sort(found.modes.begin(), found.modes.end(),
               [](const auto& a, const auto& b) { return a.pole.frequency_hz() < b.pole.frequency_hz(); });
     found.polished = true;

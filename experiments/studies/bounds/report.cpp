@@ -117,7 +117,7 @@ Results report(const Experiment& experiment, const Identifiability& found) {
     results.attachments.push_back(place_file(found));
   }
   for (const std::string& paragraph : words(found)) results.paragraph(paragraph);
-  add_notes(results, found.notes);
+  results.notes(found.notes);
   results.figures = figures(found);
   return results;
 }

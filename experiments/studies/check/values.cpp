@@ -63,8 +63,6 @@ void fill_model_check_values(const ModelCheck& check, Results& results) {
   for (const Explanation& e : check.pairs) json["pairs"].push_back(model_check_values_of(check, e));
   json["contradictions"] = check.contradictions;
   json["conclusions"] = conclusions(check);
-  for (const CheckedStructure& structure : check.structures)
-    for (const std::string& warning : structure.warnings) json["record_warnings"].push_back(warning);
 }
 
 }  // namespace beamid::experiments

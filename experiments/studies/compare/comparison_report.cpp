@@ -177,7 +177,8 @@ Json comparison_values(const ComparedRun& run, const std::vector<std::string>& o
   json["noise"] = std::vector<double>(run.noise.begin(), run.noise.end());
   json["log_likelihood"] = run.run.log_likelihood;
   json["mean_normalised_square"] = run.run.normalised_squares.mean();
-  json["remarks"] = run.remarks;
+  for (const std::string& remark : run.remarks)
+    json["messages"].push_back({{"severity", to_string(Severity::note)}, {"text", remark}});
   return json;
 }
 
@@ -232,17 +233,11 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   results.configuration = describe(experiment);
   results.configuration.update(methods_of(experiment, comparison));
   if (comparison.compared.truth) results.configuration["truth"] = describe(*comparison.compared.truth);
-  results.values = {{"record", comparison.compared.name},
-                    {"samples", record.size()},
-                    {"sampling_rate_hz", 1.0 / record.interval()},
-                    {"channels", channel_values(record)},
-                    {"record_warnings", Json::array()},
-                    {"status", to_string(status_of(comparison))},
-                    {"runs", Json::array()}};
+  results.values = {{"record", comparison.compared.name},          {"samples", record.size()},
+                    {"sampling_rate_hz", 1.0 / record.interval()}, {"channels", channel_values(record)},
+                    {"status", to_string(status_of(comparison))},  {"runs", Json::array()}};
   const std::optional<RecordInputs> inputs = record_inputs(record);
   if (inputs) results.values["inputs_between_samples"] = to_string(inputs->path);
-  for (const auto* list : {&record.warnings, &comparison.warnings})
-    for (const std::string& warning : *list) results.values["record_warnings"].push_back(warning);
   std::vector<std::string> outputs;
   for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
   for (const ComparedRun& run : comparison.runs)
@@ -258,6 +253,11 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   std::size_t told = 0;
   for (const std::string& text : said_once(comparison, [](const ComparedRun& run) { return run.warnings; }))
     results.warning(text, told++ < failures);
+  if (!reference_run(comparison) && (!alone || told == 0))
+    results.warning(
+        alone ? fmt::format("{}: {}.", to_string(comparison.runs[0].status), comparison.runs[0].reason)
+              : "No run converged.",
+        true);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4g} to {:.4g} s at {:.5g} Hz; {}. Model {}, {} pass{}.{}",
                   comparison.compared.name, record.size(), record.time[0], record.time[record.size() - 1],
@@ -269,7 +269,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
     if (!alone) results.table(parameter_table(comparison, name));
   tell_clocks(results, comparison);
   for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
-  add_notes(results, comparison.compared.notes);
+  results.notes(comparison.compared.notes);
   results.figures = figures(comparison);
   add_arrays(comparison, results);
   for (const ComparedRun& run : comparison.runs) {

@@ -213,7 +213,6 @@ std::vector<std::string> words(const Comparison& comparison) {
   const bool alone = comparison.runs.size() == 1;
   std::vector<std::string> paragraphs;
   if (!alone && reference) paragraphs.push_back("The reference: " + name_of(comparison, *reference) + ".");
-  if (!alone && !reference) paragraphs.emplace_back("No run converged.");
   for (const ComparedRun& run : comparison.runs)
     if (!alone && run.status != ComparedRun::Status::converged && run.warnings.empty())  // which say why
       paragraphs.push_back(fmt::format("{}: {}{}{}.", name_of(comparison, run), to_string(run.status),

@@ -158,7 +158,7 @@ Results report_frame(const DescribedFrame& described, const fem::Structure& fram
   if (drawn->system.size() != found.system.size())
     notes.push_back(
         fmt::format("Pictures show the same frame with {} elements.", drawn->system.mesh.elements.size()));
-  add_notes(results, notes);
+  results.notes(notes);
   results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
   results.attachments.push_back(
       {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {

@@ -153,7 +153,7 @@ Results report(const Experiment& experiment, const FrequencyResponses& found) {
                                 damping_text(experiment.damping, found.system)));
   for (const std::string& warning : found.warnings) results.warning(warning);
   results.table(resonance_table(experiment, found));
-  add_notes(results, found.notes);
+  results.notes(found.notes);
   results.attachments.push_back(
       {{"frf.csv"}, [csv = to_csv(response_table(experiment, found))](const std::filesystem::path& folder) {
          write_file(folder / "frf.csv", csv);

@@ -167,7 +167,7 @@ Results report(const Experiment& experiment, const ModalSummary& summary, bool s
   std::vector<std::string> notes = summary.notes;
   if (experiment.elements > most_drawn_elements)
     notes.push_back(fmt::format("Pictures show the same beam with {} elements.", most_drawn_elements));
-  add_notes(results, notes);
+  results.notes(notes);
 
   if (const fem::MatrixSystem* const matrices = experiment.structure.matrices()) {
     results.attachments.push_back(shapes_file(matrices->labels, summary.modes.shape));

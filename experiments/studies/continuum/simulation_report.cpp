@@ -209,7 +209,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
                           ? "The record holds the force, too: " + channel_text(test->record.channels.back()) +
                                 "."
                           : "The record holds the acceleration of the base, too.");
-  add_notes(results, test->notes);
+  results.notes(test->notes);
 
   results.attachments.push_back({{"record.csv", "record.toml"}, [test](const std::filesystem::path& folder) {
                                    write_record(test->record, folder / "record.csv");

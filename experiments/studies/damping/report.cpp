@@ -190,7 +190,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
                   "decimated by {} to {} samples for the fits.",
                   record_name, record.size(), record.time[0], record.time[record.size() - 1],
                   1.0 / record.interval(), study.modal.frequency_hz, study.decimation, study.samples.cols()));
-  for (const std::string& remark : study.remarks) results.paragraph(remark);
+  results.notes(study.remarks);
   if (const auto inputs = record_inputs(record)) {
     results.values["inputs_between_samples"] = to_string(inputs->path);
     results.paragraph(words(*inputs));

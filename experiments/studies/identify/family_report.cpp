@@ -100,10 +100,11 @@ Results report(const BeamFamily& family) {
   }
   results.heading(fmt::format("{} beams that share parameters", family.members.size()));
   if (!family.settled)
-    results.paragraph(
+    results.warning(
         fmt::format("The parameters still moved in the last of {} rounds: these numbers are not to be used. "
                     "Nearer guesses help.",
-                    family.rounds));
+                    family.rounds),
+        true);
   results.paragraph(agreement(family));
   results.table(parameter_table(family));
   results.table(member_table(family));

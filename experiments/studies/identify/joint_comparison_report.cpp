@@ -94,7 +94,7 @@ Results report(const Experiment& experiment, const JointComparison& joint) {
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
   for (const Comparison& one : joint.records) {
-    for (const std::string& text : one.warnings) results.paragraph(one.compared.name + ": " + text);
+    for (const std::string& text : one.warnings) results.warning(one.compared.name + ": " + text);
     for (const std::string& text : one.compared.notes) notes.push_back(one.compared.name + ": " + text);
   }
   results.paragraph(fmt::format(
@@ -104,10 +104,10 @@ Results report(const Experiment& experiment, const JointComparison& joint) {
   const auto lost = [&] {
     for (const Comparison& one : joint.records)
       if (!converged(one))
-        results.paragraph(fmt::format("{} is left out: {}.", one.compared.name, one.runs[0].reason));
+        results.warning(fmt::format("{} is left out: {}.", one.compared.name, one.runs[0].reason));
   };
   if (joint.none_converged()) {
-    results.paragraph("DIVERGED. No joint estimate: no record was identified.");
+    results.warning("No joint estimate: no record was identified.", true);
     lost();
     return results;
   }

@@ -122,8 +122,7 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
   for (const IdentifiedRecord& one : joint.records) {
-    for (const std::string& text : one.found.judgement.messages)
-      results.warning(one.name + ": " + text, one.found.judgement.verdict == ComparedRun::Status::diverged);
+    for (const std::string& text : one.found.judgement.messages) results.warning(one.name + ": " + text);
   }
   results.paragraph(fmt::format(
       "{} records of one beam, each with its own start, noise and window; {} on {}, discretisation {}.",

@@ -204,7 +204,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
                     {"", "time_s", record.time.transpose()}};
   results.table(parameter_table(found));
   if (found.batch) results.paragraph(batch_text(found));
-  for (const std::string& text : found.remarks) results.paragraph(text);
+  results.notes(found.remarks);
   results.paragraph(consistency_text(found));
   const std::vector<std::string> names = record.channel_names();
   if (found.diagnostics) results.paragraph(words(*found.diagnostics, names));

@@ -170,8 +170,10 @@ Results event_report(const std::vector<std::string>& names, const std::vector<Re
   results.command = "modal";
   results.configuration["method"] = "base_response";
   bool contradicted = false;
+  const bool none =
+      std::none_of(events.begin(), events.end(), [](const Event& one) { return one.response.has_value(); });
   for (const Event& one : events) {
-    if (!one.response) results.warning(fmt::format("{}: {}.", one.name, one.reason), true);
+    if (!one.response) results.warning(fmt::format("{}: {}.", one.name, one.reason), none);
     if (const std::string text = fault_sentence(one); !text.empty())
       results.warning(fmt::format("{}: {}", one.name, text), one.fault.surely());
     contradicted = contradicted || one.fault.surely();

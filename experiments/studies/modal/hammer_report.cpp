@@ -95,11 +95,6 @@ Json hammer_values(const HammerStudy& study) {
     json["residual_terms"].push_back({{"channel", study.channels[o].name},
                                       {"upper_m_per_n", study.fit.upper[static_cast<Index>(o)]},
                                       {"lower_per_kg", study.fit.lower[static_cast<Index>(o)]}});
-  std::vector<std::string> warnings = study.record_warnings;
-  warnings.insert(warnings.end(), study.responses.warnings.begin(), study.responses.warnings.end());
-  if (!study.responses.coarse.empty()) warnings.push_back(study.responses.coarse);
-  json["record_warnings"] = warnings;
-  json["notes"] = study.warnings;
   return json;
 }
 
@@ -225,8 +220,8 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   if (!study.modes.empty())
     text += fmt::format(". The modes leave {:.2g} % of the responses", 100 * study.misfit);
   results.paragraph(text + ".");
-  for (const std::string& remark : study.remarks) results.paragraph(remark);
-  for (const std::string& remark : study.responses.remarks) results.paragraph(remark);
+  results.notes(study.remarks);
+  results.notes(study.responses.remarks);
   if (study.responses.averages == 1)
     results.paragraph("One hit: H1 and H2 are the same and the coherence is 1, whatever the noise.");
   if (study.modes.empty())

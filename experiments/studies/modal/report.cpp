@@ -176,7 +176,7 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
     results.heading(found.name);
     for (const std::string& warning : found.record.warnings) results.warning(warning);
     results.paragraph(introduction(settings, found));
-    for (const std::string& remark : found.remarks) results.paragraph(remark);
+    results.notes(found.remarks);
     if (found.modes.empty())
       results.paragraph(
           found.mode_by_mode

@@ -60,9 +60,6 @@ Json values(const std::vector<RecordModes>& records, const std::vector<MergedMod
                                  {"reason", cluster.objection}});
     if (found.reproduced.size() > 0)
       one["response_error_percent"] = 100 * (found.target - found.reproduced).norm() / found.target.norm();
-    one["record_warnings"] = found.record.warnings;
-    one["remarks"] = found.remarks;
-    one["notes"] = found.warnings;
     json["records"].push_back(std::move(one));
   }
   if (records.size() < 2) return json;

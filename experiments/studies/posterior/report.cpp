@@ -66,7 +66,7 @@ Results posterior_report(const Experiment& experiment, const PosteriorStudy& stu
   if (study.update) {
     results.heading("Modes");
     results.table(prediction_table(study));
-    for (const std::string& remark : study.update->data().remarks) results.paragraph(remark);
+    results.notes(study.update->data().remarks);
   }
   results.figures.push_back(corner_figure(study));
   results.attachments.push_back({{"draws.h5"}, [&study](const std::filesystem::path& folder) {

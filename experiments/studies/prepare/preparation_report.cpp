@@ -155,16 +155,21 @@ Json values(const RecordFormat& format, const DominantCost& found) {
 }
 
 void lead_with(Results& results, const std::string& record_name, const Record& record) {
-  if (record.warnings.empty()) return;
-  Json& told = results.values["record_warnings"];
-  const auto after = [](const auto& part) { return std::holds_alternative<Heading>(part); };
-  const bool titled = !results.report.empty() && after(results.report.front());
-  auto place = results.report.begin() + (titled ? 1 : 0) + static_cast<std::ptrdiff_t>(told.size());
+  auto& report = results.report;
+  const auto says = [](const auto& part, const std::string& text) {
+    const auto* said = std::get_if<Paragraph>(&part);
+    return said && said->severity != Severity::none && said->text == text;
+  };
+  const auto leads = [](const auto& part) {
+    const auto* said = std::get_if<Paragraph>(&part);
+    return std::holds_alternative<Heading>(part) || (said && said->severity > Severity::note);
+  };
   for (const std::string& warning : record.warnings) {
     const std::string text = record_name.empty() ? warning : record_name + ": " + warning;
-    if (std::find(told.begin(), told.end(), text) != told.end()) continue;
-    place = results.report.insert(place, Paragraph{"WARNING. " + text}) + 1;
-    told.push_back(text);
+    if (std::any_of(report.begin(), report.end(), [&](const auto& part) { return says(part, text); }))
+      continue;
+    const auto place = std::find_if_not(report.begin(), report.end(), leads);
+    report.insert(place, Paragraph{text, Severity::warning});
   }
 }
 

@@ -92,7 +92,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Reducti
   const bool drawn = has_mesh && experiment.elements <= most_drawn_elements;
   if (has_mesh && !drawn)
     notes.push_back(fmt::format("Meshes for ParaView are written up to {} elements.", most_drawn_elements));
-  add_notes(results, notes);
+  results.notes(notes);
   results.figures = figures(all);
   results.attachments.push_back({{"comac.csv"}, [csv = to_csv(comac_table(all))](const fs::path& folder) {
                                    write_file(folder / "comac.csv", csv);

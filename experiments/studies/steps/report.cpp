@@ -144,7 +144,7 @@ Json step_values(const RecordAtStep& step, std::size_t d) {
 }
 
 Json study_values(const StepsStudy& study) {
-  Json json{{"status", to_string(study.status)}, {"warnings_of_study", study.warnings}};
+  Json json{{"status", to_string(study.status)}};
   json["schemes"] = Json::array();
   for (std::size_t d = 0; d < study.discretisations.size(); ++d) {
     Json scheme{{"discretisation", study.discretisations[d]}};
@@ -184,11 +184,10 @@ Results report(const Experiment& experiment, const StepsStudy& study) {
     return results;
   }
   for (std::size_t d = 1; d < study.discretisations.size(); ++d) {
-    const auto verdict = study.steps[0].found[d].verdict;
-    if (verdict == SchemeAtStep::Verdict::harmless)
+    if (study.steps[0].found[d].verdict == SchemeAtStep::Verdict::harmless)
       results.paragraph(scheme_text(study, d));
     else
-      results.warning(scheme_text(study, d), verdict == SchemeAtStep::Verdict::invalid);
+      results.warning(scheme_text(study, d));
   }
   for (const std::string& text : study.warnings) results.warning(text);
   results.table(steps_table(study));

@@ -52,7 +52,7 @@ Results twins_report(const Experiment& experiment, const UpdateStudy& study) {
   results.table(set_table(study, most_twins_shown,
                           study.updating.explains() && study.twins.values.size() > study.updating.as_well()));
   for (const std::string& sentence : update_sentences(study)) results.paragraph(sentence);
-  for (const std::string& remark : study.data().remarks) results.paragraph(remark);
+  results.notes(study.data().remarks);
   if (study.updating.as_well() > 1 && !study.deciding.empty()) {
     results.paragraph("Best to tell them apart: " + deciding_text(study.deciding.front()) + ".");
     results.table(deciding_table(study.deciding));

@@ -40,7 +40,7 @@ Results report(const Experiment& experiment, const UpdateStudy& study) {
   results.paragraph(described_text());
   results.heading("Modes");
   results.table(measured_mode_table(study));
-  for (const std::string& remark : study.data().remarks) results.paragraph(remark);
+  results.notes(study.data().remarks);
   results.heading("Other sets that fit as well");
   results.paragraph(starts_text(study));
   if (!study.updating.continuum()) results.paragraph(completeness_text(study));

@@ -43,7 +43,7 @@ TEST(Results, JsonHasTheSchemasKeysInOrder) {
   EXPECT_EQ(keys,
             (std::vector<std::string>{"schema_version", "program", "version", "command", "seed",
                                       "configuration", "status", "beams", "messages", "tables", "files"}));
-  EXPECT_EQ(json["schema_version"], 2);
+  EXPECT_EQ(json["schema_version"], 3);
   EXPECT_EQ(json["program"], "beamid");
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["beams"][0]["frequency_hz"], 4.145510989755);
@@ -63,10 +63,15 @@ TEST(Results, JsonHasEveryTableUnderTheKeysOfItsCsv) {
 
 TEST(Results, JsonListsWhatMustBeHeeded) {
   Results results = results_test::results();
+  results.note("Cut.");
   results.warning("Clipped.");
+  EXPECT_FALSE(results.has_failed());
   results.warning("Diverged.", true);
+  EXPECT_TRUE(results.has_failed());
   EXPECT_EQ(to_json(results)["messages"].dump(),
-            R"([{"severity":"warning","text":"Clipped."},{"severity":"failure","text":"Diverged."}])");
+            R"([{"severity":"note","heading":"Identification","text":"Cut."},)"
+            R"({"severity":"warning","heading":"Identification","text":"Clipped."},)"
+            R"({"severity":"failure","heading":"Identification","text":"Diverged."}])");
 }
 
 TEST(Results, NumbersThatAreNotFiniteBecomeNullWithAWarning) {

@@ -1,0 +1,130 @@
+#include "experiments/modal/study/phase_wander.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "experiments/modal/shape_fit.hpp"
+#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/least_squares.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXd;
+
+/// Of one mode in the sections where it is seen: when, its phase ahead of the fit's, and how well known.
+struct Phases {
+  std::vector<double> time, phase, deviation;
+};
+
+/// Sections of at least so many periods of the slowest mode and beats of the closest two; 0: too short.
+Index sections_of(const JointDecayFit& fit, double duration) {
+  constexpr double periods = 6.0, beats = 1.5;
+  constexpr Index most = 12, fewest = 4;
+  std::vector<double> hz;
+  for (const Complex& rate : fit.rates) hz.push_back(rate.imag() / (2.0 * std::numbers::pi));
+  std::sort(hz.begin(), hz.end());
+  double shortest = periods / hz.front();
+  for (std::size_t m = 1; m < hz.size(); ++m) shortest = std::max(shortest, beats / (hz[m] - hz[m - 1]));
+  const Index count = std::min(most, static_cast<Index>(duration / shortest));
+  return count < fewest ? 0 : count;
+}
+
+// a^H b of the channels, each in units of its noise.
+Complex weighted(const MatrixXcd& a, const MatrixXcd& b, Index m, const VectorXd& variance) {
+  return (a.col(m).conjugate().array() * b.col(m).array() / variance.array().cast<Complex>()).sum();
+}
+
+std::vector<Phases> phases_of(const JointDecayFit& fit, const MatrixXd& record, double interval,
+                              Index sections) {
+  constexpr double surely_seen = 0.2;  // rad
+  const auto modes = static_cast<Index>(fit.rates.size()), size = record.cols() / sections;
+  const std::vector<bool> oscillating(fit.rates.size(), true);
+  const MatrixXd centred = record.colwise() - fit.offsets;
+  std::vector<Phases> found(fit.rates.size());
+  for (Index s = 0; s < sections; ++s) {
+    const double begin = interval * static_cast<double>(s * size);
+    const MatrixXcd own =
+        fit_shapes(centred.middleCols(s * size, size), interval, fit.rates, oscillating).shapes;
+    for (Index m = 0; m < modes; ++m) {
+      const Complex rate = fit.rates[static_cast<std::size_t>(m)];
+      MatrixXcd joint = fit.shapes;
+      joint.col(m) *= std::exp(rate * begin);
+      const VectorXd variance = fit.noise_variance.col(m);
+      const double strength = weighted(joint, joint, m, variance).real();
+      // sum over the section of e^(-2 sigma t) / 2, of a cosine's squares
+      const double decay = 2.0 * rate.real() * interval;
+      const double squares =
+          0.5 * (std::abs(decay) < 1e-12 ? static_cast<double>(size)
+                                         : std::expm1(decay * static_cast<double>(size)) / std::expm1(decay));
+      const double deviation = 1.0 / std::sqrt(strength * squares);
+      if (!(deviation < surely_seen)) continue;
+      Phases& one = found[static_cast<std::size_t>(m)];
+      one.time.push_back(begin + 0.5 * interval * static_cast<double>(size));
+      one.phase.push_back(std::arg(weighted(joint, own, m, variance)));
+      one.deviation.push_back(deviation);
+    }
+  }
+  return found;
+}
+
+/// chi^2 of the phases about a line, and what a walk of q = 1 adds to it in the mean.
+struct Walk {
+  double squares = 0.0, freedom = 0.0, by_walk = 0.0;
+};
+
+Walk walk_of(const Phases& one, double section) {
+  const auto count = static_cast<Index>(one.time.size());
+  if (count < 4) return {};
+  const auto values = [count](const std::vector<double>& of) { return VectorXd::Map(of.data(), count); };
+  const VectorXd time = values(one.time), weight = values(one.deviation).cwiseInverse();
+  MatrixXd line(count, 2), means(count, count);  // covariance of the means of a walk from 0 over each section
+  line << weight, time.cwiseProduct(weight);
+  for (Index i = 0; i < count; ++i)
+    for (Index j = 0; j < count; ++j) means(i, j) = i == j ? time[i] - section / 6.0 : time[std::min(i, j)];
+  MatrixXd whole(count, count + 1);
+  whole << MatrixXd(weight.asDiagonal()), values(one.phase).cwiseProduct(weight);
+  whole -= line * least_squares(line, whole);
+  const MatrixXd left = whole.leftCols(count);
+  return {whole.col(count).squaredNorm(), static_cast<double>(count - 2),
+          (left * means * left.transpose()).trace()};
+}
+
+}  // namespace
+
+void follow_phases(const JointDecayFit& fit, RecordModes& found) {
+  constexpr double worth_widening = 1e-2, worth_saying = 1e-4;  // by chance
+  const double duration = found.interval * static_cast<double>(found.target.cols());
+  const Index sections = sections_of(fit, duration);
+  if (sections == 0) return;
+  const std::vector<Phases> phases = phases_of(fit, found.target, found.interval, sections);
+  Walk all;
+  for (std::size_t m = 0; m < phases.size(); ++m) {
+    const Walk one = walk_of(phases[m], duration / static_cast<double>(sections));
+    all.squares += one.squares, all.freedom += one.freedom;
+    all.by_walk += std::pow(fit.rates[m].imag(), 2) * one.by_walk;
+  }
+  if (all.freedom < 1.0 || !(all.squares > chi_square_limit(all.freedom, 1.0 - worth_widening))) return;
+  const double walk = (all.squares - all.freedom) / all.by_walk;  // of the clock [s^2 / s]
+  for (std::size_t m = 0; m < fit.rates.size(); ++m) {
+    const double w = fit.rates[m].imag(), sigma = -fit.rates[m].real(), q = w * w * walk;
+    Pole& pole = found.modes[m].pole;
+    pole.frequency_deviation_hz =
+        std::hypot(pole.frequency_deviation_hz,
+                   std::sqrt(q * std::max(0.5 * sigma, 1.2 / duration)) / (2.0 * std::numbers::pi));
+    pole.damping_ratio_deviation = std::hypot(pole.damping_ratio_deviation, 0.25 * q / w);
+  }
+  if (!(all.squares > chi_square_limit(all.freedom, 1.0 - worth_saying))) return;
+  found.warnings.push_back(fmt::format(
+      "The modes do not keep their phases (chi^2 = {:.3g} of {:.0f} in {} sections of the record): they "
+      "wander as under a clock that is {:.2g} ms off after {:.3g} s of intervals that scatter, or under "
+      "frequencies that change. Deviations allow for such a walk.",
+      all.squares, all.freedom, sections, 1e3 * std::sqrt(walk * duration), duration));
+}
+
+}  // namespace beamid::experiments
