@@ -21,10 +21,10 @@ DominantCost dominant_cost(const PreparedRecord& prepared, const RecordFormat& f
 Table cost_table(const PreparationCost& cost);
 
 /// One key per step with its options, and the cost; null where there is none.
-nlohmann::ordered_json values(const RecordFormat& format, const DominantCost& cost);
+nlohmann::ordered_json values(const RecordFormat& format, const DominantCost& found);
 
-/// Puts the record's warnings before everything but the report's title, each a paragraph, and into
-/// `record_warnings`: every report that is made from a record begins with them.
+/// Puts the record's warnings, those that the report has not got yet, before everything but its title and its
+/// own warnings: every report that is made from a record begins with them.
 /// @param record_name before each, where there are several records; may be empty
 void lead_with(Results& results, const std::string& record_name, const Record& record);
 
