@@ -96,8 +96,13 @@ ModalData modes_in(const Json& json, const std::filesystem::path& file, const Ex
     throw InputError({file.string()}, fmt::format("results of the command '{}'; expected those of modal",
                                                   json.value("command", "")));
   for (const Json& message : json.value("messages", Json::array()))
-    data.warnings.push_back(message.value("text", ""));
-  if (json["records"].size() == 1) {
+    if (message.value("severity", "") != "note") data.warnings.push_back(message.value("text", ""));
+  if (json.contains("modes")) {  // of hits, by --method frf_lscf or frf_half_power
+    for (const Json& mode : json["modes"])
+      data.modes.push_back(
+          {json_number(mode, "frequency_hz"), json_number(mode, "frequency_standard_deviation_hz")});
+    data.remarks.push_back("Of frequency responses to hits the frequencies are used, and no shapes.");
+  } else if (json["records"].size() == 1) {
     for (const Json& mode : json["records"][0].value("modes", Json::array()))
       data.modes.push_back(measured_mode_of(mode, file, experiment, data));
   } else {

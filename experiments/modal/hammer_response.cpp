@@ -88,6 +88,33 @@ bool moves_before(const VectorXd& response, Index begin, Index part) {
   return common > std::max(least * least * after.squaredNorm(), deviations * noise / std::sqrt(part));
 }
 
+bool met_motion(const ForceBlock& block) {
+  const Index part = std::min(block.begin, block.length / 10);
+  for (Index row = 0; part >= 16 && row < block.record->samples.rows(); ++row)
+    if (row != force_row(*block.record) &&
+        moves_before(block.record->samples.row(row).transpose(), block.begin, part))
+      return true;
+  return false;
+}
+
+/// What a hit met goes on through its block, and no force of the block makes it. Where no hit met rest, all
+/// stay.
+void leave_out_moving(std::vector<ForceBlock>& blocks, HammerResponses& found) {
+  const auto all = static_cast<std::ptrdiff_t>(blocks.size()),
+             moving = std::count_if(blocks.begin(), blocks.end(), met_motion);
+  if (moving == 0) return;
+  const std::string met = fmt::format(
+      "{} of {} hits met a structure that still moved, by more than 5 % of what followed: ", moving, all);
+  if (moving == all) {
+    found.warnings.push_back(met +
+                             "the modal masses are off by as much, frequencies and damping ratios by more "
+                             "than their deviations. Expected hits from rest.");
+    return;
+  }
+  found.remarks.push_back(met + "left out.");
+  std::erase_if(blocks, met_motion);
+}
+
 VectorXcd spectrum(const VectorXd& windowed) {
   Eigen::FFT<double> transform;
   transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
@@ -167,21 +194,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
             "The hit of {:.3g} N rebounded, {} pulses within {:.3g} ms: all are in its force, but what the "
             "hammer touches in between is no free structure. No mass from this hit is to be trusted.",
             hit.largest, hit.pulses_s.size(), 1000 * (hit.pulses_s.back() - hit.pulses_s.front())));
-  int moving = 0;
-  for (const ForceBlock& block : blocks) {
-    const Index part = std::min(block.begin, block.length / 10);
-    for (Index row = 0; part >= 16 && row < block.record->samples.rows(); ++row)
-      if (row != force_row(*block.record) &&
-          moves_before(block.record->samples.row(row).transpose(), block.begin, part)) {
-        ++moving;
-        break;
-      }
-  }
-  if (moving > 0)
-    found.warnings.push_back(fmt::format(
-        "{} of {} hits met a structure that still moved, by more than 5 % of what followed: the modal masses "
-        "are off by as much.",
-        moving, blocks.size()));
+  leave_out_moving(blocks, found);
   const std::size_t all = blocks.size();
   std::erase_if(blocks, [&](const ForceBlock& block) { return 3 * block.length < longest; });
   if (blocks.size() < all)

@@ -78,9 +78,21 @@ TEST_F(Update, EndsWithThreeWhereNothingExplainsTheModes) {
 TEST_F(Update, RepeatsTheWarningsOfModal) {
   place_.write("results.json", R"({"command": "modal", "records": [{"modes": [
     {"frequency_hz": 0.8829, "shape": []}]}],
-    "messages": [{"severity": "warning", "text": "A hand held the frame."}]})");
-  EXPECT_THAT(json_of(place_.run("update results.json --config frame.toml --json"))["messages"].dump(),
-              HasSubstr("beamid modal warned of these modes: A hand held the frame."));
+    "messages": [{"severity": "note", "text": "Butterworth."},
+                 {"severity": "warning", "text": "A hand held the frame."}]})");
+  const std::string messages =
+      json_of(place_.run("update results.json --config frame.toml --json"))["messages"].dump();
+  EXPECT_THAT(messages, HasSubstr("beamid modal warned of these modes: A hand held the frame."));
+  EXPECT_THAT(messages, testing::Not(HasSubstr("Butterworth")));
+}
+
+TEST_F(Update, TakesTheFrequenciesOfHits) {
+  place_.write("one.toml", "[chain]\nmasses_kg = [1]\nstiffnesses_n_per_m = [90]\n");
+  place_.write("results.json", R"({"command": "modal", "records": ["hits.csv"], "modes": [
+    {"frequency_hz": 1.5915494309, "frequency_standard_deviation_hz": 0.001}]})");
+  const json found = json_of(place_.run("update results.json --config one.toml --json"));
+  EXPECT_NEAR(found["parameters"][0]["estimate"].get<double>(), 100.0, 1e-4);  // (2 pi f)^2
+  EXPECT_THAT(found["messages"].dump(), HasSubstr("the frequencies are used, and no shapes"));
 }
 
 TEST_F(Update, RefusesWhatMakesNoSense) {
