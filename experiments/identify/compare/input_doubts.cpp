@@ -18,7 +18,7 @@ const Channel& channel_of(const Record& record, Index place) {
   return record.channels[static_cast<std::size_t>(place)];
 }
 
-// "acceleration_x1m is 2.50 +- 0.04 ms late to the rest"
+// "acceleration_x1m is 2.50 +- 0.04 ms behind the rest"
 std::string lag_text(const Record& record, const LikeliestLag& found, double deviation) {
   const auto outputs = output_channels(record), inputs = input_channels(record);
   std::string who = "All motion", to = inputs.size() > 1 ? "the inputs" : channel_of(record, inputs[0]).name;
@@ -28,8 +28,8 @@ std::string lag_text(const Record& record, const LikeliestLag& found, double dev
   } else if (outputs.size() == 1) {
     who = channel_of(record, outputs[0]).name;
   }
-  return fmt::format("{} is {:.3g} +- {:.2g} ms {} to {}", who, 1e3 * std::abs(found.lag()),
-                     1e3 * quantile_95 * deviation, found.lag() > 0.0 ? "late" : "early", to);
+  return fmt::format("{} is {:.3g} +- {:.2g} ms {} {}", who, 1e3 * std::abs(found.lag()),
+                     1e3 * quantile_95 * deviation, found.lag() > 0.0 ? "behind" : "ahead of", to);
 }
 
 // What a user may do about it.
