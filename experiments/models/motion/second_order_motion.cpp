@@ -53,15 +53,16 @@ void SecondOrderMotion::motion_matrix_derivative(const VectorXd& state, Index j,
 }
 
 void SecondOrderMotion::input_matrix(const VectorXd& state, MatrixXd& matrix) const {
+  matrix.setZero(layout_.motion, input_size());
+  if (matrix.cols() == 0) return;
   SecondOrderForm form;
   evaluate(state, form, nullptr);
-  matrix.setZero(layout_.motion, input_size());
   matrix.middleRows(layout_.coordinates, layout_.coordinates) = form.inputs;
 }
 
 void SecondOrderMotion::input_matrix_derivative(const VectorXd& state, Index j, MatrixXd& matrix) const {
   matrix.setZero(layout_.motion, input_size());
-  if (j >= static_cast<Index>(description_.unknowns.size())) return;
+  if (matrix.cols() == 0 || j >= static_cast<Index>(description_.unknowns.size())) return;
   SecondOrderForm form;
   std::vector<SecondOrderForm> slopes;
   evaluate(state, form, &slopes);
