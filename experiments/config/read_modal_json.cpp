@@ -63,7 +63,7 @@ MeasuredMode measured_mode_of(const Json& json, const std::filesystem::path& fil
                                  "sensors of the channels' names, or as many in their order",
                                  shape.size(), experiment.sensors.size()));
   if (!by_name && data.remarks.empty())
-    data.remarks.push_back(
+    data.remarks.emplace_back(
         "No sensor has a channel's name: channels are taken for the sensors in their order.");
   Eigen::VectorXcd complex = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(experiment.sensors.size()));
   if (places.size() < experiment.sensors.size())
@@ -101,7 +101,7 @@ ModalData modes_in(const Json& json, const std::filesystem::path& file, const Ex
     for (const Json& mode : json["modes"])
       data.modes.push_back(
           {json_number(mode, "frequency_hz"), json_number(mode, "frequency_standard_deviation_hz")});
-    data.remarks.push_back("Of frequency responses to hits the frequencies are used, and no shapes.");
+    data.remarks.emplace_back("Of frequency responses to hits the frequencies are used, and no shapes.");
   } else if (json["records"].size() == 1) {
     for (const Json& mode : json["records"][0].value("modes", Json::array()))
       data.modes.push_back(measured_mode_of(mode, file, experiment, data));
@@ -112,7 +112,7 @@ ModalData modes_in(const Json& json, const std::filesystem::path& file, const Ex
           {json_number(value, "mean"), std::max(json_number(value, "standard_deviation"),
                                                 json_number(value, "standard_deviation_between_records"))});
     }
-    data.remarks.push_back("Of several records the merged frequencies are used, and no shapes.");
+    data.remarks.emplace_back("Of several records the merged frequencies are used, and no shapes.");
   }
   if (data.modes.empty())
     throw InputError({file.string()}, "beamid modal found no modes there; expected one at least");
