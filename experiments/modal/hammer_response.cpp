@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
@@ -100,19 +101,19 @@ bool met_motion(const ForceBlock& block) {
 /// What a hit met goes on through its block, and no force of the block makes it. Where no hit met rest, all
 /// stay.
 void leave_out_moving(std::vector<ForceBlock>& blocks, HammerResponses& found) {
-  const auto all = static_cast<std::ptrdiff_t>(blocks.size()),
-             moving = std::count_if(blocks.begin(), blocks.end(), met_motion);
-  if (moving == 0) return;
-  const std::string met = fmt::format(
-      "{} of {} hits met a structure that still moved, by more than 5 % of what followed: ", moving, all);
-  if (moving == all) {
+  const auto moving = std::stable_partition(blocks.begin(), blocks.end(), std::not_fn(met_motion));
+  if (moving == blocks.end()) return;
+  const std::string met =
+      fmt::format("{} of {} hits met a structure that still moved, by more than 5 % of what followed: ",
+                  blocks.end() - moving, blocks.size());
+  if (moving == blocks.begin()) {
     found.warnings.push_back(met +
                              "the modal masses are off by as much, frequencies and damping ratios by more "
                              "than their deviations. Expected hits from rest.");
     return;
   }
   found.remarks.push_back(met + "left out.");
-  std::erase_if(blocks, met_motion);
+  blocks.erase(moving, blocks.end());
 }
 
 VectorXcd spectrum(const VectorXd& windowed) {
@@ -194,7 +195,6 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
             "The hit of {:.3g} N rebounded, {} pulses within {:.3g} ms: all are in its force, but what the "
             "hammer touches in between is no free structure. No mass from this hit is to be trusted.",
             hit.largest, hit.pulses_s.size(), 1000 * (hit.pulses_s.back() - hit.pulses_s.front())));
-  leave_out_moving(blocks, found);
   const std::size_t all = blocks.size();
   std::erase_if(blocks, [&](const ForceBlock& block) { return 3 * block.length < longest; });
   if (blocks.size() < all)
@@ -202,6 +202,7 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
         fmt::format("{} hits with less than a third of the longest one's record were left "
                     "out.",
                     all - blocks.size()));
+  leave_out_moving(blocks, found);
   Index length = longest;
   for (const ForceBlock& block : blocks) length = std::min(length, block.length);
   if (length < 64)

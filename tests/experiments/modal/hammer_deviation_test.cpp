@@ -98,5 +98,16 @@ TEST(HammerDeviation, LeavesOutHitsThatMetMotionWhereOthersMetRest) {
   }
 }
 
+// The hit from rest is too short to stay, so that no other met rest.
+TEST(HammerDeviation, KeepsAHitThatMetMotionWhereTheOneFromRestIsShort) {
+  const Record clean =
+      test::struck_modes({{3.4555, 0.0045, 1.0806}}, {{1.0, 0.02, 50.0}, {3.0, 0.02, 50.0}}, 4e-3, 5000);
+  const HammerResponses found = hammer_responses({test::with_noise(clean, 1e-3, 0.02, 1)}, 0.001);
+  EXPECT_EQ(found.averages, 1);
+  ASSERT_FALSE(found.warnings.empty());
+  EXPECT_NE(found.warnings[0].find("1 of 1 hits met a structure that still moved"), std::string::npos);
+  EXPECT_TRUE(found.h1.allFinite());
+}
+
 }  // namespace
 }  // namespace beamid::experiments::hammer_deviation_test
