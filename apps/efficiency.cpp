@@ -134,7 +134,6 @@ int run_efficiency(const Values& values) {
   if (study == "coverage") {
     const CoverageSettings settings = coverage_settings(values);
     return deliver(values, [&] { return report(interval_coverage(settings, show_progress(values))); });
-    return 0;
   }
   if (study == "decays") {
     const SeededDecays settings = decay_settings(values);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "experiments/modal/nearest_real.hpp"
+#include "experiments/results/results.hpp"
 #include "experiments/text/json_file.hpp"
 
 namespace beamid::experiments {
@@ -96,7 +97,8 @@ ModalData modes_in(const Json& json, const std::filesystem::path& file, const Ex
     throw InputError({file.string()}, fmt::format("results of the command '{}'; expected those of modal",
                                                   json.value("command", "")));
   for (const Json& message : json.value("messages", Json::array()))
-    if (message.value("severity", "") != "note") data.warnings.push_back(message.value("text", ""));
+    if (message.value("severity", "") != to_string(Severity::note))
+      data.warnings.push_back(message.value("text", ""));
   if (json.contains("modes")) {  // of hits, by --method frf_lscf or frf_half_power
     for (const Json& mode : json["modes"])
       data.modes.push_back(

@@ -70,6 +70,10 @@ std::vector<std::string> column_names(const Record& record) {
   return names;
 }
 
+std::string quantity_key(Quantity quantity) {
+  return std::string(to_string(quantity)) + "_" + units(quantity).front().suffix;
+}
+
 std::string known_column_names() {
   std::vector<std::string> names;
   for (const Unit& unit : time_units()) names.push_back("time_" + unit.suffix);

@@ -26,6 +26,9 @@ std::optional<ColumnMeaning> parse_column_name(std::string_view name);
 /// the quantity.
 std::vector<std::string> column_names(const Record& record);
 
+/// "acceleration_m_per_s2": the quantity in SI units, as columns and keys have it.
+std::string quantity_key(Quantity quantity);
+
 /// "time_s, displacement_m, ..." for messages: the names without labels.
 std::string known_column_names();
 

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "experiments/signal/missing_samples.hpp"
@@ -33,6 +32,10 @@ VectorXd bounds_of_unknowns(const MatrixXd& information, const VectorXd& known, 
 
 namespace {
 
+double readings(const filters::Measurements& record) {
+  return static_cast<double>(record.outputs.array().isFinite().count());
+}
+
 // The record under noise of its inputs, and of its outputs times a root.
 class NoisyProblem {
  public:
@@ -57,13 +60,12 @@ class NoisyProblem {
   filters::InnovationFit fit(const VectorXd& begin) const {
     return filters::fit_innovations(problem_, begin);
   }
-  filters::InnovationPass pass(const VectorXd& theta) const {
-    return filters::innovation_passes({problem_.model(theta)}, problem_.record, problem_.interval, false)
-        .front();
-  }
-  double readings() const { return static_cast<double>(problem_.record.outputs.array().isFinite().count()); }
+  filters::LinearGaussian at(const VectorXd& theta) const { return problem_.model(theta); }
   /// Of the innovations, 1 where the noises are what they are said to be.
-  double mean_square(const VectorXd& theta) const { return pass(theta).squares / readings(); }
+  double mean_square(const VectorXd& theta) const {
+    const auto pass = filters::innovation_passes({at(theta)}, problem_.record, problem_.interval, false);
+    return pass.front().squares / readings(problem_.record);
+  }
 
  private:
   filters::NoisyInputs noisy_;
@@ -129,23 +131,27 @@ std::optional<LikeliestInputNoise> likeliest_input_noise(const JointModel& model
   constexpr double least_share = 1e-4, most_share = 1.0, finer = 2.0;
   if (!dynamic_cast<const filters::LinearMotion*>(model.motion.get())) return {};
   const VectorXd size = root_mean_squares(record.inputs), theta = found(model.unknown_places);
-  double scale = 1.0;  // of all noises, the likeliest at each share
-  const auto cost = [&](double share) {
-    IdentificationSettings noisy = settings;
-    noisy.input_noise = share * size;
-    const NoisyProblem problem(model, noisy, start, record);
-    const filters::InnovationPass pass = problem.pass(theta);
-    if (pass.failed) return std::numeric_limits<double>::infinity();
-    scale = pass.squares / problem.readings();
-    return 0.5 * (problem.readings() * std::log(scale) + pass.log_determinants);
-  };
+  std::vector<double> shares{0.0};
+  for (double share = least_share; share <= most_share; share *= finer) shares.push_back(share);
   try {
-    const double exact = cost(0.0);
-    LikeliestInputNoise best{VectorXd::Zero(size.size()), 0.0, {}};
-    for (double share = least_share; share <= most_share; share *= finer) {
-      const double gain = exact - cost(share);
-      if (gain > best.gain) best = {std::sqrt(scale) * share * size, gain, {}};
+    std::vector<filters::LinearGaussian> models;
+    for (const double share : shares) {
+      IdentificationSettings noisy = settings;
+      noisy.input_noise = share * size;
+      models.push_back(NoisyProblem(model, noisy, start, record).at(theta));
     }
+    const auto passes = filters::innovation_passes(models, record, record.interval(), false);
+    if (passes[0].failed) return {};
+    const double count = readings(record);
+    // The likeliest of all noises together.
+    const auto scale = [&](std::size_t i) { return passes[i].squares / count; };
+    const auto cost = [&](std::size_t i) {
+      return 0.5 * (count * std::log(scale(i)) + passes[i].log_determinants);
+    };
+    LikeliestInputNoise best{VectorXd::Zero(size.size()), 0.0, {}};
+    for (std::size_t i = 1; i < shares.size(); ++i)
+      if (const double gain = cost(0) - cost(i); !passes[i].failed && gain > best.gain)
+        best = {std::sqrt(scale(i)) * shares[i] * size, gain, {}};
     return best;
   } catch (const std::invalid_argument&) {  // uneven stamps
     return {};

@@ -33,7 +33,7 @@ NoisyInputFit Passes::fit_with_input_noise(const IdentificationSettings& setting
 // Of inputs that are said to be exact, beside innovations that exact ones do not leave.
 void Passes::look_for_input_noise() {
   constexpr double not_white = 1e-3, hardly = 3.0;
-  if (!context_.analysis.forced() || is_nonlinear(*run_.model) || is_whole_mesh(*run_.model)) return;
+  if (is_nonlinear(*run_.model) || is_whole_mesh(*run_.model)) return;
   if (run_.diagnostics && run_.diagnostics->consistency &&
       run_.diagnostics->consistency->whiteness_p_value > not_white)
     return;

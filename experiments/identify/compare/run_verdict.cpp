@@ -7,7 +7,7 @@
 #include "experiments/identify/compare/against_description.hpp"
 #include "experiments/identify/compare/against_modal_analysis.hpp"
 #include "experiments/identify/compare/described_response.hpp"
-#include "experiments/identify/compare/input_doubts.hpp"
+#include "experiments/identify/compare/input_faults.hpp"
 #include "experiments/identify/compare/motion_left.hpp"
 #include "experiments/identify/compare/reduction_error.hpp"
 #include "experiments/identify/compare/step_error.hpp"

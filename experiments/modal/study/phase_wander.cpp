@@ -15,7 +15,9 @@ namespace beamid::experiments {
 namespace {
 
 using Complex = std::complex<double>;
-using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXd;
+using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
+
+constexpr Index fewest_sections = 4;
 
 /// Of one mode in the sections where it is seen: when, its phase ahead of the fit's, and how well known.
 struct Phases {
@@ -25,19 +27,19 @@ struct Phases {
 /// Sections of at least so many periods of the slowest mode and beats of the closest two; 0: too short.
 Index sections_of(const JointDecayFit& fit, double duration) {
   constexpr double periods = 6.0, beats = 1.5;
-  constexpr Index most = 12, fewest = 4;
+  constexpr Index most = 12;
   std::vector<double> hz;
   for (const Complex& rate : fit.rates) hz.push_back(rate.imag() / (2.0 * std::numbers::pi));
   std::sort(hz.begin(), hz.end());
   double shortest = periods / hz.front();
   for (std::size_t m = 1; m < hz.size(); ++m) shortest = std::max(shortest, beats / (hz[m] - hz[m - 1]));
   const Index count = std::min(most, static_cast<Index>(duration / shortest));
-  return count < fewest ? 0 : count;
+  return count < fewest_sections ? 0 : count;
 }
 
 // a^H b of the channels, each in units of its noise.
-Complex weighted(const MatrixXcd& a, const MatrixXcd& b, Index m, const VectorXd& variance) {
-  return (a.col(m).conjugate().array() * b.col(m).array() / variance.array().cast<Complex>()).sum();
+Complex weighted(const VectorXcd& a, const VectorXcd& b, const VectorXd& variance) {
+  return (a.conjugate().array() * b.array() / variance.array().cast<Complex>()).sum();
 }
 
 std::vector<Phases> phases_of(const JointDecayFit& fit, const MatrixXd& record, double interval,
@@ -53,10 +55,9 @@ std::vector<Phases> phases_of(const JointDecayFit& fit, const MatrixXd& record, 
         fit_shapes(centred.middleCols(s * size, size), interval, fit.rates, oscillating).shapes;
     for (Index m = 0; m < modes; ++m) {
       const Complex rate = fit.rates[static_cast<std::size_t>(m)];
-      MatrixXcd joint = fit.shapes;
-      joint.col(m) *= std::exp(rate * begin);
+      const VectorXcd joint = fit.shapes.col(m) * std::exp(rate * begin);
       const VectorXd variance = fit.noise_variance.col(m);
-      const double strength = weighted(joint, joint, m, variance).real();
+      const double strength = weighted(joint, joint, variance).real();
       // sum over the section of e^(-2 sigma t) / 2, of a cosine's squares
       const double decay = 2.0 * rate.real() * interval;
       const double squares =
@@ -66,7 +67,7 @@ std::vector<Phases> phases_of(const JointDecayFit& fit, const MatrixXd& record, 
       if (!(deviation < surely_seen)) continue;
       Phases& one = found[static_cast<std::size_t>(m)];
       one.time.push_back(begin + 0.5 * interval * static_cast<double>(size));
-      one.phase.push_back(std::arg(weighted(joint, own, m, variance)));
+      one.phase.push_back(std::arg(weighted(joint, own.col(m), variance)));
       one.deviation.push_back(deviation);
     }
   }
@@ -80,7 +81,7 @@ struct Walk {
 
 Walk walk_of(const Phases& one, double section) {
   const auto count = static_cast<Index>(one.time.size());
-  if (count < 4) return {};
+  if (count < fewest_sections) return {};
   const auto values = [count](const std::vector<double>& of) { return VectorXd::Map(of.data(), count); };
   const VectorXd time = values(one.time), weight = values(one.deviation).cwiseInverse();
   MatrixXd line(count, 2), means(count, count);  // covariance of the means of a walk from 0 over each section

@@ -41,10 +41,10 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   const bool alone = comparison.runs.size() == 1;
   // Of a run without an estimate to rely on the first says why.
   const std::size_t failures = alone && comparison.runs[0].status != ComparedRun::Status::converged ? 1 : 0;
-  std::size_t told = 0;
+  std::size_t said = 0;
   for (const std::string& text : said_once(comparison, [](const ComparedRun& run) { return run.warnings; }))
-    results.warning(text, told++ < failures);
-  if (!reference_run(comparison) && (!alone || told == 0))
+    results.warning(text, said++ < failures);
+  if (!reference_run(comparison) && (!alone || said == 0))
     results.warning(
         alone ? fmt::format("{}: {}.", to_string(comparison.runs[0].status), comparison.runs[0].reason)
               : "No run converged.",

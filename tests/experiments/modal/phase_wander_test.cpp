@@ -38,8 +38,8 @@ Record scattered(double share, std::uint64_t seed) {
 
 // Without the walk's part 2 of 18 intervals held a frequency. Of 40 right ones 32 and fewer come by chance in
 // one of a thousand sets.
-TEST(PhaseWander, OfAClockIsToldAndCounted) {
-  int held = 0, told = 0;
+TEST(PhaseWander, OfAClockIsReportedAndCounted) {
+  int held = 0, reported = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const RecordModes found = find_modes("wandering", scattered(0.03, seed), false, {});
     for (const double truth : frequencies) {
@@ -50,12 +50,12 @@ TEST(PhaseWander, OfAClockIsToldAndCounted) {
       ASSERT_NE(nearest, found.modes.end()) << seed;
       held += std::abs(nearest->pole.frequency_hz() - truth) < 1.96 * nearest->pole.frequency_deviation_hz;
     }
-    told += std::any_of(found.warnings.begin(), found.warnings.end(), [](const std::string& one) {
+    reported += std::any_of(found.warnings.begin(), found.warnings.end(), [](const std::string& one) {
       return one.find("do not keep their phases") != std::string::npos;
     });
   }
   EXPECT_GT(held, 32);
-  EXPECT_GE(told, 18);
+  EXPECT_GE(reported, 18);
 }
 
 TEST(PhaseWander, OfNoiseAloneIsNotSpokenOf) {

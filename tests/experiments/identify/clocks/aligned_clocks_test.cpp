@@ -121,7 +121,7 @@ TEST_F(Clocks, OfTheGroundAreFoundAndContradictTheRunThatDoesNotLook) {
 }
 
 // A lag of less than an interval leaves 1 to 5 % of the record, which no share of it calls wrong.
-TEST_F(Clocks, ThatNobodyNamedAreToldWhereTheyMoveAnAnswer) {
+TEST_F(Clocks, ThatNobodyNamedAreReportedWhereTheyMoveAnAnswer) {
   struct Case {
     std::vector<Index> late_ms;
     const char* who;

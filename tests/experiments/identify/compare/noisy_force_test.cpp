@@ -43,7 +43,7 @@ TEST(NoisyForce, CountsOnceInTheMotionThatItLeaves) {
   }
 }
 
-TEST(NoisyForce, ThatNobodyStatedIsToldWhereItMovesAnAnswer) {
+TEST(NoisyForce, ThatNobodyStatedIsReportedWhereItMovesAnAnswer) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const ComparedRun run = identified(0.5, "", seed);
     EXPECT_EQ(run.status, ComparedRun::Status::contradicted) << seed;

@@ -1,4 +1,4 @@
-#include "experiments/identify/compare/input_doubts.hpp"
+#include "experiments/identify/compare/input_faults.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/record/units.hpp"
+#include "experiments/record/column_name.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -41,7 +41,7 @@ std::string advice(const Record& record, const LikeliestLag& found, double devia
     text = "It is half an interval: look at input in [record], how the input runs between its samples. ";
   const auto inputs = input_channels(record);
   if (!found.output && inputs.size() > 1)
-    return text + "Expected a step shift in [[preparation]] that takes it out.";
+    return text + "Expected [[record.prepare]] step = \"shift\" that takes it out.";
   const Index channel =
       found.output ? output_channels(record)[static_cast<std::size_t>(*found.output)] : inputs[0];
   return text + fmt::format("own_clock = [\"{}\"] in [record] finds the lag with the parameters.",
@@ -55,13 +55,8 @@ double phase_of(const ComparedRun& run, double lag, double interval) {
   return std::abs(lag) / interval * (y.rightCols(n) - y.leftCols(n)).norm() / y.norm();
 }
 
-// "force_n"
-std::string noise_key(Quantity quantity) {
-  return fmt::format("{}_{}", to_string(quantity), units(quantity).front().suffix);
-}
-
 // What speaks against the inputs, and how far it moves the unknown that it moves most.
-struct Doubt {
+struct InputFault {
   std::string text, advice;
   Index unknown = 0;
   double moved = 0.0;       ///< in deviations as they are reported
@@ -69,7 +64,7 @@ struct Doubt {
   bool is_material = true;  ///< and not of the size of what an interpolation does
 };
 
-std::optional<Doubt> of_clocks(const RunContext& context, const ComparedRun& run) {
+std::optional<InputFault> of_clocks(const RunContext& context, const ComparedRun& run) {
   constexpr double surely = 4.5, small = 0.5;  // deviations: by chance in one of 10^5 records; rad
   constexpr double material = 0.01;            // of an interval
   if (!run.likeliest_lag) return {};
@@ -79,58 +74,58 @@ std::optional<Doubt> of_clocks(const RunContext& context, const ComparedRun& run
   if (!(std::abs(found.lag()) > surely * deviation) ||
       !(phase_of(run, found.lag(), record.interval()) < small))
     return {};
-  Doubt doubt{lag_text(record, found, deviation), advice(record, found, deviation)};
-  doubt.moved = found.step.shift.cwiseAbs().maxCoeff(&doubt.unknown) / run.interval_factor;
-  doubt.explained = 1.0 - found.step.left_share;
-  doubt.is_material = std::abs(found.lag()) > material * record.interval();
-  return doubt;
+  InputFault fault{lag_text(record, found, deviation), advice(record, found, deviation)};
+  fault.moved = found.step.shift.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
+  fault.explained = 1.0 - found.step.left_share;
+  fault.is_material = std::abs(found.lag()) > material * record.interval();
+  return fault;
 }
 
-std::optional<Doubt> of_noise(const RunContext& context, const ComparedRun& run) {
+std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun& run) {
   constexpr double surely = 10.0;  // of a logarithm of likelihood: 4.5 deviations
   if (!run.likeliest_input_noise || !(run.likeliest_input_noise->gain > surely)) return {};
   const Record& record = context.analysis.record;
   const auto inputs = input_channels(record);
-  Doubt doubt;
+  InputFault fault;
   for (std::size_t j = 0; j < inputs.size(); ++j) {
     const Channel& channel = channel_of(record, inputs[j]);
     const double noise = run.likeliest_input_noise->deviation[static_cast<Index>(j)];
-    doubt.text += fmt::format("{}{:.2g} {} of noise in {}", j > 0 ? ", " : "", noise,
+    fault.text += fmt::format("{}{:.2g} {} of noise in {}", j > 0 ? ", " : "", noise,
                               si_unit(channel.quantity), channel.name);
-    doubt.advice += fmt::format("{}{} = {:.2g}", j > 0 ? ", " : "", noise_key(channel.quantity), noise);
+    fault.advice += fmt::format("{}{} = {:.2g}", j > 0 ? ", " : "", quantity_key(channel.quantity), noise);
   }
-  doubt.text += " would leave motion as it is left here";
-  doubt.advice = "State it: [noise] " + doubt.advice + ".";
+  fault.text += " would leave motion as it is left here";
+  fault.advice = "State it: [noise] " + fault.advice + ".";
   const VectorXd moved = run.likeliest_input_noise->moved;
-  if (moved.size() > 0) doubt.moved = moved.cwiseAbs().maxCoeff(&doubt.unknown) / run.interval_factor;
-  return doubt;
+  if (moved.size() > 0) fault.moved = moved.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
+  return fault;
 }
 
 }  // namespace
 
 void judge_inputs(const RunContext& context, ComparedRun& run) {
   if (run.parameters.empty()) return;
-  std::optional<Doubt> doubt = of_clocks(context, run);
-  if (!doubt) doubt = of_noise(context, run);
+  std::optional<InputFault> fault = of_clocks(context, run);
+  if (!fault) fault = of_noise(context, run);
   constexpr double mostly = 0.5;  // what is left is no noise then, and the deviations are none
-  if (!doubt) return;
-  const bool excluded = (doubt->moved > quantile_95 && doubt->is_material) || doubt->explained > mostly;
-  if (!excluded && !(doubt->moved > 1.0)) return;
+  if (!fault) return;
+  const bool excluded = (fault->moved > quantile_95 && fault->is_material) || fault->explained > mostly;
+  if (!excluded && !(fault->moved > 1.0)) return;
   const std::string explained =
-      doubt->explained > mostly
-          ? fmt::format(" and makes {:.0f} % of what is left, in squares", 100.0 * doubt->explained)
+      fault->explained > mostly
+          ? fmt::format(" and makes {:.0f} % of what is left, in squares", 100.0 * fault->explained)
           : "";
   const bool said = run.status == ComparedRun::Status::contradicted;  // by all that is left
   run.warnings.insert(
       run.warnings.begin() + (said ? 1 : 0),
       fmt::format("{}{}, or the model lacks what looks so: allowed for, it moves {} by {:.2g} of its "
                   "deviations{}. {}",
-                  excluded && !said ? "CONTRADICTED: " : "", doubt->text,
-                  run.parameters[static_cast<std::size_t>(doubt->unknown)].estimate.name, doubt->moved,
-                  explained, doubt->advice));
+                  excluded && !said ? "CONTRADICTED: " : "", fault->text,
+                  run.parameters[static_cast<std::size_t>(fault->unknown)].estimate.name, fault->moved,
+                  explained, fault->advice));
   if (!excluded || said) return;
   run.status = ComparedRun::Status::contradicted;
-  run.reason = doubt->text;
+  run.reason = fault->text;
 }
 
 }  // namespace beamid::experiments
