@@ -73,6 +73,18 @@ std::string changes(const Values& values) {
   return text;
 }
 
+/// The key that says it of the structure that the file describes; without a file of the study's beam.
+Override elements_of(const std::filesystem::path& config, int elements) {
+  const std::pair<const char*, const char*> meshed[] = {
+      {"frame", "elements_per_member"}, {"space_frame", "elements_per_member"}, {"beam", "elements"}};
+  std::optional<TomlTable> file;
+  if (!config.empty()) file = TomlTable::read(config);
+  for (const auto& [table, key] : meshed)
+    if (file ? file->contains(table) : std::string("beam") == table)
+      return {table, key, 1.0 * elements, "--elements"};
+  throw UsageError("--elements has no use here: the structure of " + config.string() + " is not meshed");
+}
+
 void refuse_both(const Values& values, const std::string& one, const std::string& other) {
   if (values.has(one) && values.has(other))
     throw UsageError("--" + one + " and --" + other + " exclude each other; expected one of them");
@@ -117,8 +129,9 @@ BeamSource read_beam(const Values& values, const std::vector<KeyOption>& more) {
   add_overrides(more, values, overrides);
 
   BeamSource source;
+  if (values.has("config")) source.config = values.text("config");
+  if (values.has("elements")) overrides.push_back(elements_of(source.config, values.whole("elements")));
   if (values.has("config")) {
-    source.config = values.text("config");
     source.experiment = read_experiment(source.config, overrides);
     if (std::string& title = source.experiment.title; changed && !title.empty())
       title += " (with " + changes(values) + ")";
@@ -127,10 +140,6 @@ BeamSource read_beam(const Values& values, const std::vector<KeyOption>& more) {
     source.experiment.title =
         changed ? "The study's steel beam, 2.12e11 Pa and 7715 kg/m3 (with " + changes(values) + ")"
                 : "The study's steel beam (no --config and no other beam given)";
-  }
-  if (values.has("elements")) {
-    source.experiment.elements = values.whole("elements");
-    require_mesh_memory(source.experiment.elements);
   }
   return source;
 }

@@ -9,6 +9,7 @@
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/channel_places.hpp"
+#include "experiments/config/description.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
 #include "experiments/config/storey_laws.hpp"
@@ -181,7 +182,11 @@ int run_check(const Values& values) {
     for (const Request& request : requests) structures.push_back(structure_of(request, modal, used));
     try {
       Results results = report(check_model(std::move(structures), settings));
-      for (const Request& request : requests) warn(results, request.experiment);
+      for (const Request& request : requests) {
+        results.configuration["structures"].push_back({{"name", request.config.stem().string()}});
+        results.configuration["structures"].back().update(describe(request.experiment));
+        warn(results, request.experiment);
+      }
       for (const UsedRecord& one : used) tell_cost(results, one.name, one.prepared, *one.format);
       return results;
     } catch (const std::invalid_argument& error) {

@@ -1,36 +1,29 @@
 // beamid frame: natural frequencies and mode shapes of a plane frame.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <filesystem>
 
+#include "apps/beam_options.hpp"
 #include "apps/command.hpp"
 #include "apps/deliver.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_frame.hpp"
-#include "experiments/identify/plausibility.hpp"
-#include "experiments/studies/continuum/frame_modes.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/studies/continuum/modes_study.hpp"
 
 namespace beamid::apps {
 namespace {
 
+using experiments::TomlTable;
+
 int run_frame(const Values& values) {
   const std::filesystem::path file = values.texts("file")[0];
-  experiments::FrameExperiment experiment = experiments::read_frame(file);
-  const auto members = static_cast<int>(experiment.frame.members.size());
-  if (values.has("elements")) {
-    const int most = std::max(1, experiments::most_elements / members);
-    experiment.elements_per_member = values.whole("elements");
-    if (experiment.elements_per_member > most)
-      throw UsageError(fmt::format("--elements is {}; expected a whole number from 1 to {}",
-                                   experiment.elements_per_member, most));
-  }
+  TomlTable::read(file).table("frame");  // or this file is no frame's
+  std::vector<experiments::Override> overrides;
+  if (values.has("elements"))
+    overrides.push_back({"frame", "elements_per_member", 1.0 * values.whole("elements"), "--elements"});
+  const BeamSource source{experiments::read_experiment(file, overrides), file};
   return deliver(values, [&] {
-    return experiments::at_place({file.string()}, [&] {
-      const auto found = experiments::frame_modes(experiment, values.whole("modes"), show_progress(values));
-      experiments::Results results = experiments::report(experiment, found);
-      experiments::warn(results, experiment);
+    return blame_config(source, [&] {
+      experiments::Results results =
+          experiments::modes_study(source.experiment, values.whole("modes"), false, show_progress(values));
+      results.command = "frame";
       return results;
     });
   });

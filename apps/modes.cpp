@@ -2,8 +2,7 @@
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
 #include "apps/deliver.hpp"
-#include "experiments/studies/continuum/frame_modes.hpp"
-#include "experiments/studies/continuum/modal_report.hpp"
+#include "experiments/studies/continuum/modes_study.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -11,26 +10,9 @@ namespace {
 int run_modes(const Values& values) {
   const BeamSource source = read_beam(values);
   return deliver(values, [&] {
-    if (const fem::Frame* const frame = source.experiment.structure.frame()) {
-      const experiments::FrameExperiment described =
-          experiments::as_frame_experiment(*frame, source.experiment.elements, source.experiment.title);
-      return blame_config(source, [&] {
-        return experiments::report(
-            described, experiments::frame_modes(described, values.whole("modes"), show_progress(values)));
-      });
-    }
-    if (source.experiment.structure.space_frame())
-      return blame_config(source, [&] {
-        const experiments::Experiment& experiment = source.experiment;
-        return experiments::report(experiment,
-                                   experiments::frame_modes(experiment.structure, experiment.elements,
-                                                            values.whole("modes"), show_progress(values)),
-                                   values.has("surface"));
-      });
     return blame_config(source, [&] {
-      const auto summary =
-          experiments::summarise_modes(source.experiment, values.whole("modes"), show_progress(values));
-      return experiments::report(source.experiment, summary, values.has("surface"));
+      return experiments::modes_study(source.experiment, values.whole("modes"), values.has("surface"),
+                                      show_progress(values));
     });
   });
 }

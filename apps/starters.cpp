@@ -1,8 +1,12 @@
 #include "apps/starters.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <sstream>
 
 #include "apps/structure_starters.hpp"
+#include "experiments/config/key_tables.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -17,19 +21,19 @@ title = "steel cantilever with a tip mass"
 
 [beam]                              # a uniform cantilever; segments, taper, springs, damage, ...: see every key
 length_m = 1.10
-width_m = 0.060                     # of the section, across the direction of bending
-height_m = 0.006                    # of the section, along the direction of bending
+width_m = 0.060
+height_m = 0.006
 youngs_modulus_pa = 2.12e11
-# bending_stiffness_n_m2 = 228.96   # EI, instead of youngs_modulus_pa, width_m and height_m
-mass_kg = 3.055                     # the beam alone
+# bending_stiffness_n_m2 = 228.96   # E I, instead of youngs_modulus_pa, width_m and height_m
+mass_kg = 3.055
 # mass_per_length_kg_per_m = 2.777  # instead of mass_kg
 # density_kg_per_m3 = 7850          # instead of mass_kg, with width_m and height_m
-tip_mass_kg = 0.360                 # 0 without one
-# tip_rotary_inertia_kg_m2 = 1e-4   # of the tip mass about its own centre
-# tip_eccentricity_m = 0.02         # of that centre beyond the tip
-sensor_mass_kg = 0.0                # accelerometer at the tip, beside the tip mass
-# support = "clamped-free"          # root-tip: every pair of clamped, pinned, guided, free
-# axial_load_n = 10.0               # positive in compression
+tip_mass_kg = 0.360
+# tip_rotary_inertia_kg_m2 = 1e-4
+# tip_eccentricity_m = 0.02
+sensor_mass_kg = 0.0
+# support = "clamped-free"
+# axial_load_n = 10.0
 # theory = "timoshenko"             # with poissons_ratio; else Euler-Bernoulli
 # poissons_ratio = 0.3
 # elements = 40
@@ -48,7 +52,7 @@ channels = [                        # what was measured at the tip, in which col
 # [damping]                         # for modes, simulate and frf
 # ratio = 0.002                     # of every mode; Rayleigh's law and others: see every key
 
-# [excitation]                      # for simulate: release, static, impulse, harmonic, base, table, none
+# [excitation]                      # for simulate
 # kind = "release"
 # deflection_m = 0.012
 
@@ -61,11 +65,11 @@ channels = [                        # what was measured at the tip, in which col
 # to_hz = 200.0
 
 [filter]
-method = "ekf"                      # beamid list filters
+method = "ekf"
 discretisation = "exponential"      # beamid list discretisations; forward_euler is the error of the 2009 paper
 
 # [reduction]
-# method = "rayleigh"               # beamid list reductions
+# method = "rayleigh"
 
 # [prior]                           # known beforehand; what is left out is worked out from beam and record
 # stiffness_n_per_m = 510.0
@@ -88,7 +92,7 @@ constexpr const char* tail = R"toml(
 [damping]
 ratio = 0.02
 
-[excitation]                        # for simulate: release, static, impulse, harmonic, base, table, none
+[excitation]                        # for simulate
 kind = "%s"
 %s
 [simulation]
@@ -104,6 +108,35 @@ sampling_rate_hz = 100
 name = "beam"                       # the structure itself, whichever it is
 )toml";
 
+/// "# across the direction of bending" behind "width_m = 0.060": what the key's row says of it, as far as a
+/// line holds it, where the starter says nothing itself.
+std::string annotated(const std::string& starter) {
+  constexpr std::size_t column = 36, width = 118;
+  const experiments::KeyTable* table = experiments::find_key_table("");
+  std::istringstream lines(starter);
+  std::string text;
+  for (std::string line; std::getline(lines, line); text += line + "\n") {
+    const std::size_t first = line.find_first_not_of("# "), equals = line.find(" = ");
+    if (first == std::string::npos) continue;
+    if (const std::size_t name = line.find_first_not_of("[", first); line[first] == '[')
+      table = experiments::find_key_table(line.substr(name, line.find(']') - name));
+    if (table == nullptr || equals == std::string::npos || line.find(" #", first) != std::string::npos ||
+        line.find('{') != std::string::npos)
+      continue;
+    const experiments::Key* const key = table->find(line.substr(first, equals - first));
+    if (key == nullptr) continue;
+    std::string meaning = key->allowed.empty() || key->allowed.size() > 9
+                              ? key->meaning
+                              : fmt::format("{}", fmt::join(key->allowed, ", "));
+    std::erase(meaning, '`');
+    if (column + meaning.size() > width) meaning = meaning.substr(0, meaning.find_first_of(";:"));
+    if (column + meaning.size() > width) continue;
+    line.resize(std::max(column, line.size() + 2), ' ');
+    line += "# " + meaning;
+  }
+  return text;
+}
+
 std::string with(std::string text, const std::string& value) {
   return text.replace(text.find("%s"), 2, value);
 }
@@ -116,12 +149,13 @@ const std::vector<std::string>& starter_structures() {
 }
 
 std::string starter_file(const std::string& structure) {
-  if (structure == "beam") return beam_starter;
+  if (structure == "beam") return annotated(beam_starter);
   const std::vector<StructureStarter>& kinds = structure_starters();
   const StructureStarter& kind =
       *std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return structure == one.name; });
   const std::string place = kind.place, described = kind.text;
-  return head + described + with(with(with(tail, "release"), place + "\ndeflection_m = 0.01\n"), place);
+  return annotated(head + described +
+                   with(with(with(tail, "release"), place + "\ndeflection_m = 0.01\n"), place));
 }
 
 }  // namespace beamid::apps

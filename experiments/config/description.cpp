@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "experiments/config/effective_keys.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "fem/shear_building.hpp"
 
@@ -38,13 +39,6 @@ std::string held(const fem::Beam& beam) {
 
 std::string count(std::size_t number, const char* one, const char* many) {
   return number == 0 ? "" : fmt::format("; {} {}", number, number == 1 ? one : many);
-}
-
-Json anchors_json(const std::vector<fem::DampingAnchor>& anchors) {
-  Json json = Json::array();
-  for (const fem::DampingAnchor& anchor : anchors)
-    json.push_back({{"frequency_hz", anchor.frequency_hz}, {"ratio", anchor.ratio}});
-  return json;
 }
 
 std::string storeys_text(const fem::Beam& beam) {
@@ -114,28 +108,18 @@ std::string beam_text(const fem::Beam& beam, int elements, Eigen::Index coordina
                             coordinates);
 }
 
-Json describe(const fem::DampingLaw& law) {
-  Json json{{"law", fem::name(law)}};
-  if (const auto* modal = std::get_if<fem::ModalDamping>(&law)) json["ratios"] = modal->ratios;
-  if (const auto* rayleigh = std::get_if<fem::RayleighDamping>(&law))
-    json["anchors"] = anchors_json(std::vector{rayleigh->first, rayleigh->second});
-  if (const auto* caughey = std::get_if<fem::CaugheyDamping>(&law))
-    json["anchors"] = anchors_json(caughey->anchors);
-  if (const auto* structural = std::get_if<fem::StructuralDamping>(&law))
-    json["loss_factor"] = structural->loss_factor;
+Json describe(const Experiment& experiment, const std::vector<std::string>& also) {
+  Json json{{"title", experiment.title}};
+  if (experiment.file) json.update(effective_keys(*experiment.file, also));
+  json["title"] = experiment.title;  // with the options that changed it
+  json["structure"] = describe(experiment.structure, experiment.elements);
   return json;
 }
 
-Json describe(const Experiment& experiment) {
-  Json json{{"title", experiment.title}};
-  json.update(describe(experiment.structure, experiment.elements));
-  for (const StoreySpring& spring : experiment.storey_springs) {
-    Json law{{"storey", spring.storey}, {"law", spring.law.name}};
-    for (const auto& [option, value] : spring.law.options.values())
-      std::visit([&, &option = option](const auto& held) { law[option] = held; }, value);
-    json["storeys"].push_back(std::move(law));
-  }
-  json["damping"] = describe(experiment.damping);
+Json describe(const Choice& choice, const char* key) {
+  Json json{{key, choice.name}};
+  for (const auto& [option, value] : choice.options.values())
+    std::visit([&, name = option](const auto& held) { json[name] = held; }, value);
   return json;
 }
 

@@ -16,6 +16,7 @@
 #include "experiments/models/springs/storey_spring.hpp"
 #include "experiments/record/record_format.hpp"
 #include "experiments/text/choice.hpp"
+#include "experiments/text/toml_table.hpp"
 #include "fem/damping.hpp"
 #include "fem/structure.hpp"
 #include "filters/running_filter.hpp"
@@ -25,6 +26,7 @@ namespace beamid::experiments {
 /// A structure, a test of it and what is done with the record: all that an experiment file may say, in SI
 /// units.
 struct Experiment {
+  std::optional<TomlTable> file;  ///< what it was read from, with what was set from outside
   std::string title;
   fem::Structure structure;
   std::vector<StoreySpring> storey_springs;  ///< of a chain, those that follow laws; the others are linear

@@ -1,6 +1,5 @@
 #include "experiments/config/read_attachments.hpp"
 
-#include "experiments/config/key_json.hpp"
 #include "experiments/config/key_tables.hpp"
 
 namespace beamid::experiments {
@@ -122,12 +121,6 @@ void read_all(const TomlTable& beam, const char* name, const Schema<Item>& keys,
   for (const TomlTable& table : beam.find_tables(name)) items.push_back(keys.read(table, length));
 }
 
-template <class Item>
-void write_all(const char* name, const Schema<Item>& keys, const std::vector<Item>& items,
-               nlohmann::ordered_json& json) {
-  for (const Item& item : items) json[name].push_back(to_json(keys.values_of(item)));
-}
-
 }  // namespace
 
 void read_attachments(const TomlTable& table, fem::Beam& beam) {
@@ -142,19 +135,6 @@ void read_attachments(const TomlTable& table, fem::Beam& beam) {
   read_all(table, "absorbers", absorber_keys(), length, beam.absorbers);
   read_all(table, "damages", damage_keys(), length, beam.damages);
   read_all(table, "added_masses", added_mass_keys(), length, beam.added_masses);
-}
-
-void describe_attachments(const fem::Beam& beam, nlohmann::ordered_json& json) {
-  std::vector<NamedSupport> supports;
-  for (const fem::Support& one : beam.supports)
-    supports.push_back({one.position, !one.rotation ? "pinned" : one.deflection ? "clamped" : "guided"});
-  write_all("supports", support_keys(), supports, json);
-  write_all("bodies", body_keys(), beam.bodies, json);
-  write_all("springs", spring_keys(), beam.springs, json);
-  write_all("dashpots", dashpot_keys(), beam.dashpots, json);
-  write_all("absorbers", absorber_keys(), beam.absorbers, json);
-  write_all("damages", damage_keys(), beam.damages, json);
-  write_all("added_masses", added_mass_keys(), beam.added_masses, json);
 }
 
 }  // namespace beamid::experiments

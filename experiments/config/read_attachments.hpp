@@ -2,8 +2,6 @@
 // [[beam.absorbers]], [[beam.damages]] and [[beam.added_masses]].
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "experiments/text/toml_table.hpp"
 #include "fem/beam.hpp"
 
@@ -12,8 +10,5 @@ namespace beamid::experiments {
 /// Adds them to a beam whose segments are known.
 /// @throws InputError for a place off the beam, a missing or a bad value, and one that has no effect.
 void read_attachments(const TomlTable& table, fem::Beam& beam);
-
-/// The same back, in the keys of a file; what the beam does not have is left out.
-void describe_attachments(const fem::Beam& beam, nlohmann::ordered_json& json);
 
 }  // namespace beamid::experiments

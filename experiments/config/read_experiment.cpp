@@ -55,7 +55,7 @@ void read_structure(const TomlTable& root, Experiment& experiment) {
       found = kind;
     }
   if (const auto frame = root.find_table("frame")) {
-    const FrameExperiment described = read_frame_table(*frame);
+    const FrameExperiment described = read_frame(*frame);
     experiment.structure = described.frame;
     experiment.elements = described.elements_per_member;
   } else if (const auto space = root.find_table("space_frame")) {
@@ -110,6 +110,7 @@ Experiment read_experiment(const TomlTable& root) {
   refuse_unknown_keys(root);
   check_values(root);
   Experiment experiment = root_keys().read(root);
+  experiment.file = root;
   read_structure(root, experiment);
   experiment.format.irregular = true;  // as [record] has it unless it says otherwise
   if (const auto record = root.find_table("record")) {

@@ -102,19 +102,7 @@ void read_members(const TomlTable& table, Frame& frame) {
 
 }  // namespace
 
-FrameExperiment read_frame(const std::filesystem::path& file) {
-  return read_frame(TomlTable::read(file));
-}
-
-FrameExperiment read_frame(const TomlTable& root) {
-  refuse_unknown_keys(root);
-  check_values(root);
-  FrameExperiment experiment = read_frame_table(root.table("frame"));
-  experiment.title = root.find_text("title").value_or("");
-  return experiment;
-}
-
-FrameExperiment read_frame_table(const TomlTable& table) {
+FrameExperiment read_frame(const TomlTable& table) {
   FrameExperiment experiment = frame_keys().read(table);
   Frame& frame = experiment.frame;
   for (const TomlTable& one : some_tables(table, "joints"))
@@ -122,7 +110,6 @@ FrameExperiment read_frame_table(const TomlTable& table) {
   read_members(table, frame);
   check_elements_per_member(table, frame.members.size());
   read_frame_attachments(table, frame);
-  experiment.joint_names = as_frame_experiment(frame, 1, "").joint_names;
   check_frame(table, frame);
   return experiment;
 }

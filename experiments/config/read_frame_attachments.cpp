@@ -1,7 +1,6 @@
 #include "experiments/config/read_frame_attachments.hpp"
 
 #include "experiments/config/frame_description.hpp"
-#include "experiments/config/key_json.hpp"
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/member_keys.hpp"
 
@@ -86,22 +85,6 @@ void read_frame_attachments(const TomlTable& table, Frame& frame) {
   read("bodies", frame_body_keys(), frame.bodies);
   read("springs", frame_spring_keys(), frame.springs);
   read("dashpots", frame_dashpot_keys(), frame.dashpots);
-}
-
-void describe_frame_attachments(const Frame& frame, nlohmann::ordered_json& json) {
-  const auto add = [&](const char* name, int joint,
-                       const std::vector<std::pair<std::string, KeyValue>>& values) {
-    nlohmann::ordered_json one{{"joint", joint + 1}};
-    one.update(to_json(values));
-    json[name].push_back(std::move(one));
-  };
-  for (const auto& support : frame.supports)
-    add("supports", support.joint, frame_support_keys().values_of({frame_support_kind(support)}));
-  for (const auto& body : frame.bodies) add("bodies", body.joint, frame_body_keys().values_of(body));
-  for (const auto& spring : frame.springs)
-    add("springs", spring.joint, frame_spring_keys().values_of(spring));
-  for (const auto& dashpot : frame.dashpots)
-    add("dashpots", dashpot.joint, frame_dashpot_keys().values_of(dashpot));
 }
 
 }  // namespace beamid::experiments

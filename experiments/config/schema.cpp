@@ -110,7 +110,7 @@ void KeyTable::add(const char* name, const Range& range, const char* meaning, co
                    const void* object, const void* member, const Codec& codec) {
   add(name, codec.type, meaning, example, range);
   bindings_.back() = {static_cast<const char*>(member) - static_cast<const char*>(object), &codec, {}};
-  last().fallback = default_text(bindings_.back().get(object));
+  take_preset(object);
 }
 
 void KeyTable::add(const char* name, const char* meaning, const char* example, const void* object,
@@ -119,7 +119,12 @@ void KeyTable::add(const char* name, const char* meaning, const char* example, c
   for (const auto& choice : choices.names) last().allowed.emplace_back(choice.first);
   bindings_.back() = {static_cast<const char*>(member) - static_cast<const char*>(object), nullptr,
                       std::move(choices)};
-  last().fallback = default_text(bindings_.back().get(object));
+  take_preset(object);
+}
+
+void KeyTable::take_preset(const void* object) {
+  last().preset = bindings_.back().get(object);
+  last().fallback = default_text(last().preset);
 }
 
 void KeyTable::add_exactly_one(const char* what, Names keys) {
@@ -131,7 +136,10 @@ void KeyTable::assign(std::vector<std::string>& texts, Names names) {
 }
 
 void KeyTable::add_rows(const KeyTable& section) {
-  keys_.insert(keys_.end(), section.keys_.begin(), section.keys_.end());
+  for (Key key : section.keys_) {
+    key.preset = {};  // another table may hold the key
+    keys_.push_back(std::move(key));
+  }
   bindings_.resize(keys_.size());
   exactly_one_.insert(exactly_one_.end(), section.exactly_one_.begin(), section.exactly_one_.end());
 }
@@ -175,8 +183,10 @@ void KeyTable::read_into(const TomlTable& table, void* object, double length) co
     const KeyValue value = read_value(table, keys_[i], length);
     if (!std::holds_alternative<std::monostate>(value)) bindings_[i].set(object, value);
   }
-  for (const auto& [name, value] : values_in(object))
-    if (name == selector_) check_use(table, std::get<std::string>(value));
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    if (keys_[i].name == selector_ && bindings_[i].bound())
+      if (const KeyValue value = bindings_[i].get(object); !std::holds_alternative<std::monostate>(value))
+        check_use(table, std::get<std::string>(value));
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     const Key& key = keys_[i];
     if (!bindings_[i].bound()) continue;
@@ -198,16 +208,6 @@ void KeyTable::read_into(const TomlTable& table, void* object, double length) co
   for (std::size_t i = 0; i < keys_.size(); ++i)
     if (bindings_[i].bound() && table.contains(keys_[i].name))
       refuse_useless(table, keys_[i].excludes, "beside " + keys_[i].name, keys_[i].instead);
-}
-
-std::vector<std::pair<std::string, KeyValue>> KeyTable::values_in(const void* object) const {
-  std::vector<std::pair<std::string, KeyValue>> values;
-  for (std::size_t i = 0; i < keys_.size(); ++i) {
-    if (!bindings_[i].bound()) continue;
-    KeyValue value = bindings_[i].get(object);
-    if (!std::holds_alternative<std::monostate>(value)) values.emplace_back(keys_[i].name, std::move(value));
-  }
-  return values;
 }
 
 }  // namespace beamid::experiments

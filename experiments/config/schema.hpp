@@ -47,6 +47,7 @@ struct Key {
   std::vector<std::string> allowed = {};   ///< texts, of which it is one; empty: any
   std::string meaning = {}, example = {};  ///< in Markdown; the example as a file has it
   std::string fallback = {};               ///< what holds without it, in Markdown
+  KeyValue preset = {};                    ///< the same as a value, where it is one whatever else is given
   bool required = false;
   std::string values = {};   ///< in Markdown: what it may be, where type and range do not say all
   std::string missing = {};  ///< what is expected of a file without it, where that says more
@@ -73,6 +74,7 @@ class KeyTable {
 
   const std::string& name() const { return name_; }  ///< empty: the file itself
   const std::vector<Key>& keys() const { return keys_; }
+  const std::string& selector() const { return selector_; }  ///< key whose value others depend on, or empty
   std::vector<std::string> names() const;
   const Key* find(const std::string& key) const;  ///< null where there is none
   /// Any other key is an option of the method chosen, which checks it.
@@ -135,13 +137,13 @@ class KeyTable {
   void add(const char* name, const char* meaning, const char* example, const void* object, const void* member,
            Choices choices);
   void add(const char* name, Key::Type type, const char* meaning, const char* example, const Range& range);
+  void take_preset(const void* object);
   void add_rows(const KeyTable& table);
   void add_exactly_one(const char* what, Names keys);
   static void assign(std::vector<std::string>& texts, Names names);
   Key& last() { return keys_.back(); }
 
   void read_into(const TomlTable& table, void* object, double length) const;
-  std::vector<std::pair<std::string, KeyValue>> values_in(const void* object) const;
 };
 
 template <class Member>
@@ -223,7 +225,10 @@ class Schema : public KeyTable {
     last().missing = missing;
     return fallback("-");
   }
-  Schema& fallback(const char* markdown) { return last().fallback = markdown, *this; }
+  Schema& fallback(const char* markdown) {
+    last().preset = {};
+    return last().fallback = markdown, *this;
+  }
   Schema& values(const char* markdown) { return last().values = markdown, *this; }
   Schema& one_of(Names texts) { return assign(last().allowed, texts), *this; }
   Schema& one_of(const std::vector<std::string>& texts) { return last().allowed = texts, *this; }
@@ -254,12 +259,6 @@ class Schema : public KeyTable {
   /// The same into an object whose other members stay, and those whose keys are absent.
   void read_onto(const TomlTable& table, T& object) const {
     read_into(table, &object, std::numeric_limits<double>::infinity());
-  }
-
-  /// The keys of an object and their values: what a file would say. Keys that a reader of its own takes, and
-  /// members without a value, are left out.
-  std::vector<std::pair<std::string, KeyValue>> values_of(const T& object) const {
-    return values_in(&object);
   }
 
  private:

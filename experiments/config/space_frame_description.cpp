@@ -16,13 +16,6 @@ std::vector<double> numbers_of(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
-std::vector<std::string> released_of(const SpaceFrame::End& end) {
-  std::vector<std::string> released;
-  for (const auto& [free, axis] : {std::pair{end.x, "x"}, {end.y, "y"}, {end.z, "z"}})
-    if (free) released.emplace_back(axis);
-  return released;
-}
-
 std::vector<std::string> held_by(const SpaceFrame::Support& s) {
   std::vector<std::string> held;
   for (const auto& [holds, motion] :
@@ -47,19 +40,8 @@ Json describe_space_section(const fem::SpaceSection& s) {
 
 Json describe_space_member(const SpaceFrame& frame, std::size_t i) {
   const SpaceFrame::Member& member = frame.members[i];
-  Json json{{"first", member.first + 1},
-            {"second", member.second + 1},
-            {"length_m", frame.length(i)},
-            {"section_z", numbers_of(frame.axes(i).col(2))}};
+  Json json{{"length_m", frame.length(i)}, {"section_z", numbers_of(frame.axes(i).col(2))}};
   json.update(describe_space_section(member.section));
-  for (const auto& [end, name] : {std::pair{&member.at_first, "first"}, {&member.at_second, "second"}}) {
-    if (const auto released = released_of(*end); !released.empty())
-      json[std::string("released_at_") + name] = released;
-    if (!end->offset.isZero(0.0)) json[std::string("offset_at_") + name + "_m"] = numbers_of(end->offset);
-  }
-  if (member.stiffness_factor != 1.0) json["stiffness_factor"] = member.stiffness_factor;
-  if (!member.group.empty()) json["group"] = member.group;
-  if (member.axial_load != 0.0) json["axial_load_n"] = member.axial_load;
   return json;
 }
 
@@ -95,35 +77,10 @@ std::string supports_text(const SpaceFrame& frame) {
 
 }  // namespace
 
-Json describe(const SpaceFrame& frame, int elements_per_member) {
-  Json json{{"elements_per_member", elements_per_member},
-            {"mass_model", frame.mass_model == fem::MassModel::lumped ? "lumped" : "consistent"},
-            {"base_direction", numbers_of(frame.base_direction)}};
-  for (std::size_t i = 0; i < frame.joints.size(); ++i) {
-    const Eigen::Vector3d& place = frame.joints[i].place;
-    json["joints"].push_back({{"name", space_joint_name(frame, static_cast<int>(i))},
-                              {"x_m", place.x()},
-                              {"y_m", place.y()},
-                              {"z_m", place.z()}});
-  }
-  for (std::size_t i = 0; i < frame.members.size(); ++i)
-    json["members"].push_back(describe_space_member(frame, i));
-  for (const SpaceFrame::Support& support : frame.supports)
-    json["supports"].push_back({{"joint", support.joint + 1}, {"holds", held_by(support)}});
-  for (const SpaceFrame::Body& body : frame.bodies)
-    json["bodies"].push_back({{"joint", body.joint + 1},
-                              {"mass_kg", body.mass},
-                              {"inertia_kg_m2", numbers_of(body.inertia)},
-                              {"offset_m", numbers_of(body.offset)}});
-  for (const SpaceFrame::Spring& spring : frame.springs)
-    json["springs"].push_back({{"joint", spring.joint + 1},
-                               {"translational_n_per_m", numbers_of(spring.translational)},
-                               {"rotational_n_m_per_rad", numbers_of(spring.rotational)}});
-  for (const SpaceFrame::Dashpot& dashpot : frame.dashpots)
-    json["dashpots"].push_back({{"joint", dashpot.joint + 1},
-                                {"translational_n_s_per_m", numbers_of(dashpot.translational)},
-                                {"rotational_n_m_s_per_rad", numbers_of(dashpot.rotational)}});
-  return json;
+Json describe_members(const SpaceFrame& frame) {
+  Json members = Json::array();
+  for (std::size_t i = 0; i < frame.members.size(); ++i) members.push_back(describe_space_member(frame, i));
+  return members;
 }
 
 std::string space_frame_text(const SpaceFrame& frame, int elements_per_member, Eigen::Index coordinates) {

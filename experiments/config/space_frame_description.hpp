@@ -1,4 +1,4 @@
-// A space frame in a sentence, and in full, as results.json holds it.
+// A space frame in a sentence, and its members, worked out.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,9 +8,8 @@
 
 namespace beamid::experiments {
 
-/// Every quantity of the frame, worked out; joints by their number, from 1. What it does not have is left
-/// out.
-nlohmann::ordered_json describe(const fem::SpaceFrame& frame, int elements_per_member);
+/// Its members, worked out: lengths, stiffnesses, masses, and where z of their sections points.
+nlohmann::ordered_json describe_members(const fem::SpaceFrame& frame);
 
 /// How much of it there is, its mass, what holds it, mesh.
 std::string space_frame_text(const fem::SpaceFrame& frame, int elements_per_member, Eigen::Index coordinates);

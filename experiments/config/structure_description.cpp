@@ -19,16 +19,24 @@ std::string factors_text(const fem::Structure& structure) {
   return names.empty() ? "" : fmt::format(" Factors: {}.", joined(names));
 }
 
-Json describe(const fem::MatrixSystem& system) {
-  Json json{{"unknowns", system.labels},
-            {"mass_entries", system.mass.nonZeros()},
-            {"stiffness_entries", system.stiffness.nonZeros()},
-            {"damping_entries", system.damping.nonZeros()}};
-  for (const auto& parameter : system.parameters)
-    json["parameters"].push_back({{"name", parameter.name}, {"value", parameter.value}});
-  if (system.base_motion.size() > 0)
-    json["base_motion"] = std::vector<double>(system.base_motion.begin(), system.base_motion.end());
-  return json;
+Json describe_matrices(const fem::MatrixSystem& system) {
+  return {{"unknowns", system.labels},
+          {"mass_entries", system.mass.nonZeros()},
+          {"stiffness_entries", system.stiffness.nonZeros()},
+          {"damping_entries", system.damping.nonZeros()}};
+}
+
+Json describe_members(const fem::Frame& frame) {
+  Json members = Json::array();
+  for (std::size_t i = 0; i < frame.members.size(); ++i)
+    members.push_back(describe(fem::Segment{frame.length(i), frame.members[i].section}));
+  return members;
+}
+
+Json describe_segments(const fem::Beam& beam) {
+  Json segments = Json::array();
+  for (const fem::Segment& segment : beam.segments) segments.push_back(describe(segment));
+  return segments;
 }
 
 }  // namespace
@@ -36,8 +44,7 @@ Json describe(const fem::MatrixSystem& system) {
 std::string structure_text(const Experiment& experiment, Eigen::Index elements, Eigen::Index coordinates) {
   const fem::Structure& structure = experiment.structure;
   if (const fem::Frame* const frame = structure.frame())
-    return frame_text(as_frame_experiment(*frame, experiment.elements, ""), coordinates) +
-           factors_text(structure);
+    return frame_text(*frame, experiment.elements, coordinates) + factors_text(structure);
   if (const fem::SpaceFrame* const frame = structure.space_frame())
     return space_frame_text(*frame, experiment.elements, coordinates) + factors_text(structure);
   if (const fem::MatrixSystem* const matrices = structure.matrices())
@@ -51,13 +58,21 @@ std::string structure_text(const Experiment& experiment, Eigen::Index elements, 
 }
 
 Json describe(const fem::Structure& structure, int elements) {
-  if (const fem::Frame* const frame = structure.frame())
-    return {{"frame", describe(as_frame_experiment(*frame, elements, ""))["frame"]}};
-  if (const fem::SpaceFrame* const frame = structure.space_frame())
-    return {{"space_frame", describe(*frame, elements)}};
-  if (const fem::MatrixSystem* const matrices = structure.matrices())
-    return {{"system", describe(*matrices)}};
-  return {{"beam", describe(structure.beam(), elements)}};
+  if (const fem::MatrixSystem* const matrices = structure.matrices()) return describe_matrices(*matrices);
+  Json json{{"total_mass_kg", total_mass(structure)}};
+  if (structure.is_chain()) return json;
+  if (structure.is_beam()) {
+    const fem::Beam& beam = structure.beam();
+    json.update({{"elements", elements},
+                 {"length_m", beam.length()},
+                 {"mass_kg", beam.mass()},
+                 {"segments", describe_segments(beam)}});
+  } else {
+    json["elements_per_member"] = elements;
+    json["members"] =
+        structure.frame() ? describe_members(*structure.frame()) : describe_members(*structure.space_frame());
+  }
+  return json;
 }
 
 double total_mass(const fem::Structure& structure) {

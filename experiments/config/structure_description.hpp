@@ -1,4 +1,4 @@
-// A structure in a sentence, and in full, as results.json holds it.
+// A structure in a sentence, and worked out, as results.json holds it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,8 @@ namespace beamid::experiments {
 /// What it is, its masses, what holds it, mesh. @param elements of a beam's mesh
 std::string structure_text(const Experiment& experiment, Eigen::Index elements, Eigen::Index coordinates);
 
-/// Under "beam", "frame", "space_frame" or "system" all that describes it.
+/// What the keys of the file come to: masses, mesh, and the stiffness and mass of segments or members; of
+/// matrices their unknowns.
 nlohmann::ordered_json describe(const fem::Structure& structure, int elements);
 
 /// All of the mass that moves [kg]; of matrices r^T M r under a motion of the base, 0 where that is not

@@ -49,7 +49,8 @@ void check_frequency(double first, Sentences& found) {
 }
 
 void check_modes(const Experiment& experiment, Sentences& found) {
-  constexpr int enough_elements = 20, rigid_motions = 2;
+  constexpr int rigid_motions = 3;
+  const int enough_elements = experiment.structure.is_beam() ? 20 : 4;  // of each member
   try {
     const fem::StructuralSystem system =
         fem::assemble(experiment.structure, std::min(experiment.elements, enough_elements));
@@ -88,17 +89,6 @@ void check_damages(const fem::Beam& beam, Sentences& found) {
     }
 }
 
-void check_modes(const FrameExperiment& experiment, Sentences& found) {
-  constexpr int enough_elements = 4, rigid_motions = 3;
-  try {
-    const fem::StructuralSystem system =
-        fem::assemble(experiment.frame, std::min(experiment.elements_per_member, enough_elements));
-    const fem::Modes modes = fem::modes(system, std::min<Eigen::Index>(rigid_motions + 1, system.size()));
-    if (modes.rigid < modes.size()) check_frequency(modes.frequency_hz()[modes.rigid], found);
-  } catch (const std::exception&) {  // the command itself says so
-  }
-}
-
 /// Diagonal of the rectangle around all joints [m].
 double extent(const fem::Frame& frame) {
   const auto [left, right] = std::minmax_element(frame.joints.begin(), frame.joints.end(),
@@ -106,6 +96,19 @@ double extent(const fem::Frame& frame) {
   const auto [low, high] = std::minmax_element(frame.joints.begin(), frame.joints.end(),
                                                [](const auto& a, const auto& b) { return a.y < b.y; });
   return std::hypot(right->x - left->x, high->y - low->y);
+}
+
+void check_members(const fem::Frame& frame, Sentences& found) {
+  for (std::size_t i = 0; i < frame.members.size(); ++i)
+    check_segment(frame.members[i].section, extent(frame), fmt::format("member {}: the ", i + 1), "frame",
+                  found);
+}
+
+void check_segments(const fem::Beam& beam, Sentences& found) {
+  for (std::size_t i = 0; i < beam.segments.size(); ++i)
+    check_segment(beam.segments[i].section, beam.length(),
+                  beam.segments.size() == 1 ? "the beam's " : fmt::format("segment {}: the ", i + 1), "beam",
+                  found);
 }
 
 Sentences as_wrong_units(const Sentences& units) {
@@ -126,35 +129,22 @@ void put_first(Results& results, const Sentences& found) {
 
 Sentences implausible(const Experiment& experiment) {
   Sentences units;
-  if (!experiment.structure.is_beam() || experiment.structure.is_chain()) return units;  // without sections
-  const fem::Beam& beam = experiment.structure.beam();
-  for (std::size_t i = 0; i < beam.segments.size(); ++i)
-    check_segment(beam.segments[i].section, beam.length(),
-                  beam.segments.size() == 1 ? "the beam's " : fmt::format("segment {}: the ", i + 1), "beam",
-                  units);
+  if (experiment.structure.is_chain()) return units;  // without sections
+  if (const fem::Frame* const frame = experiment.structure.frame())
+    check_members(*frame, units);
+  else if (experiment.structure.is_beam())
+    check_segments(experiment.structure.beam(), units);
+  else
+    return units;
   check_modes(experiment, units);
   Sentences found = as_wrong_units(units);
-  check_supports(beam, found);
-  check_damages(beam, found);
+  if (!experiment.structure.is_beam()) return found;
+  check_supports(experiment.structure.beam(), found);
+  check_damages(experiment.structure.beam(), found);
   return found;
 }
 
-Sentences implausible(const FrameExperiment& experiment) {
-  const fem::Frame& frame = experiment.frame;
-  Sentences units;
-  if (frame.joints.empty()) return units;
-  for (std::size_t i = 0; i < frame.members.size(); ++i)
-    check_segment(frame.members[i].section, extent(frame), fmt::format("member {}: the ", i + 1), "frame",
-                  units);
-  check_modes(experiment, units);
-  return as_wrong_units(units);
-}
-
 void warn(Results& results, const Experiment& experiment) {
-  put_first(results, implausible(experiment));
-}
-
-void warn(Results& results, const FrameExperiment& experiment) {
   put_first(results, implausible(experiment));
 }
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "experiments/config/experiment.hpp"
-#include "experiments/config/frame_description.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
@@ -16,12 +15,8 @@ namespace beamid::experiments {
 /// are joined, damages that overlap. Modulus and density are those of segments whose outline is known.
 std::vector<std::string> implausible(const Experiment& experiment);
 
-/// The same of a frame's members, heights against the frame's extent, and of its first frequency.
-std::vector<std::string> implausible(const FrameExperiment& experiment);
-
 /// Puts them first, behind the heading, and into results.json as "beam_warnings".
 void warn(Results& results, const Experiment& experiment);
-void warn(Results& results, const FrameExperiment& experiment);
 
 /// Those of an experiment file, where one is named.
 void warn_of_file(Results& results, const std::string& file);

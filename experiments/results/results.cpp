@@ -19,7 +19,7 @@ namespace beamid::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int schema_version = 3;
+constexpr int schema_version = 4;
 
 // Replaces what is not finite by null and says where.
 void make_finite(Json& json, const std::string& place, Json& warnings) {

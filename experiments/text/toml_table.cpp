@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
 
 #include "experiments/text/text_file.hpp"
 #include "experiments/text/toml_node.hpp"
@@ -127,6 +128,12 @@ TomlTable TomlTable::parse(const std::string& text, const std::string& name,
     throw InputError({name, error.source().begin.line, error.source().begin.column},
                      fmt::format("no valid TOML: {}", error.description()));
   }
+}
+
+std::string TomlTable::json() const {
+  std::ostringstream text;
+  text << toml::json_formatter(*node_->table);
+  return text.str();
 }
 
 const std::string& TomlTable::name() const {

@@ -60,6 +60,9 @@ class TomlTable {
   std::vector<TomlTable> tables_below(
       const std::string& key) const;  ///< the same, or one table; never throws
 
+  /// All of it as JSON, what was set from outside included; keys in no order.
+  std::string json() const;
+
   double number(const std::string& key, Sign sign = Sign::any) const;
   std::string text(const std::string& key) const;
   TomlTable table(const std::string& key) const;

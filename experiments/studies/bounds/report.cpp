@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
-#include "experiments/config/key_json.hpp"
 #include "experiments/config/read_identifiability.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/results/file.hpp"
@@ -86,12 +85,7 @@ Attachment place_file(const Identifiability& found) {
 Results report(const Experiment& experiment, const Identifiability& found) {
   Results results;
   results.command = "identifiability";
-  results.configuration = describe(experiment);
-  results.configuration["excitation"] = to_string(experiment.excitation.kind);
-  for (const Excitation& further : experiment.further_excitations)
-    results.configuration["further_excitations"].push_back(to_string(further.kind));
-  results.configuration["identifiability"] =
-      to_json(identifiability_keys().values_of(experiment.identifiability));
+  results.configuration = describe(experiment, {"excitation", "identifiability"});
   results.values = values(found);
 
   results.heading(experiment.title.empty() ? "What can be known" : experiment.title);

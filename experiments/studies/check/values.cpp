@@ -33,11 +33,6 @@ Json model_check_values_of(const ModelCheck& check, const Explanation& e) {
 void fill_model_check_values(const ModelCheck& check, Results& results) {
   results.configuration["model_error"] = check.settings.model_error;
   results.configuration["shape_error"] = check.settings.shape_error;
-  for (const CheckedStructure& structure : check.structures) {
-    Json json{{"name", structure.name}};
-    json.update(describe(structure.structure, structure.elements));
-    results.configuration["structures"].push_back(std::move(json));
-  }
   Json& json = results.values;
   json["status"] = check.right ? "agrees" : "differs";
   json["chi_square"] = check.chi_square;

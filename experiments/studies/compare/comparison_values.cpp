@@ -8,6 +8,7 @@
 #include "experiments/config/description.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/record_inputs.hpp"
+#include "experiments/record/column_name.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/studies/compare/comparison_words.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
@@ -71,13 +72,14 @@ Json methods_of(const Experiment& experiment, const Comparison& comparison) {
     return all.size() == 1 ? Json(all[0]) : Json(all);
   };
   Json json{
-      {"reduction", {{"name", names(&ComparedRun::reduction)}}},
+      {"reduction", {{"method", names(&ComparedRun::reduction)}}},
       {"model", {{"name", experiment.model.name}}},
       {"filter",
-       {{"name", names(&ComparedRun::filter)}, {"discretisation", names(&ComparedRun::discretisation)}}},
+       {{"method", names(&ComparedRun::filter)}, {"discretisation", names(&ComparedRun::discretisation)}}},
       {"passes", experiment.passes},
       {"noise", {{"method", experiment.noise_method.name}}}};
-  for (const auto& [quantity, deviation] : experiment.noise) json["noise"][to_string(quantity)] = deviation;
+  for (const auto& [quantity, deviation] : experiment.noise)
+    json["noise"][quantity_key(quantity)] = deviation;
   for (const Unknown& unknown : comparison.runs[0].unknowns) {
     Json& asked = json["initial"][unknown.name] = {{"unit", unknown.unit}};
     asked["mean"] = optional_number(unknown.guess);
@@ -90,7 +92,8 @@ Json methods_of(const Experiment& experiment, const Comparison& comparison) {
 
 Json comparison_configuration(const Experiment& experiment, const Comparison& comparison) {
   Json json = describe(experiment);
-  json.update(methods_of(experiment, comparison));
+  constexpr bool into_tables = true;
+  json.update(methods_of(experiment, comparison), into_tables);
   if (comparison.compared.truth) json["truth"] = describe(*comparison.compared.truth);
   return json;
 }

@@ -7,8 +7,6 @@
 namespace beamid::experiments {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string sentence(const std::string& subject, const std::vector<std::string>& parts) {
   if (parts.empty()) return "";
   std::string text = subject + ": ";
@@ -43,18 +41,6 @@ std::vector<std::string> parts_of(const SensorDefects& s) {
   return parts;
 }
 
-Json acquisition_values_of(const SensorDefects& s) {
-  Json json;
-  if (s.dead) json["dead"] = true;
-  if (s.clipping > 0) json["clipping"] = s.clipping;
-  if (s.resolution > 0) json["resolution"] = s.resolution;
-  if (s.offset != 0) json["offset"] = s.offset;
-  if (s.drift != 0) json["drift"] = s.drift;
-  if (s.startup != 0) json.update({{"startup", s.startup}, {"startup_s", s.startup_time}});
-  if (s.rattle > 0) json.update({{"rattle", s.rattle}, {"rattle_above", s.rattle_above}});
-  return json;
-}
-
 }  // namespace
 
 std::string acquisition_text(const SimulatedTest& test) {
@@ -64,19 +50,6 @@ std::string acquisition_text(const SimulatedTest& test) {
                      parts_of(test.acquisition.of(i)));
   if (!text.empty()) text.pop_back();
   return text;
-}
-
-void describe(const Acquisition& a, Json& configuration) {
-  Json json;
-  if (a.pretrigger > 0) json["pretrigger_s"] = a.pretrigger;
-  if (a.jitter > 0) json.update({{"jitter", a.jitter}, {"median_shortfall", a.median_shortfall}});
-  if (a.gaps > 0) json.update({{"gaps", a.gaps}, {"gap_s", {a.gap.first, a.gap.second}}});
-  if (a.repeated > 0) json["repeated"] = a.repeated;
-  if (!a.force) json["force"] = false;
-  for (std::size_t i = 0; i < a.sensors.size(); ++i)
-    if (const Json sensor = acquisition_values_of(a.sensors[i]); !sensor.is_null())
-      json["sensors"][std::to_string(i + 1)] = sensor;
-  if (!json.is_null()) configuration["acquisition"] = json;
 }
 
 }  // namespace beamid::experiments

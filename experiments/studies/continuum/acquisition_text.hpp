@@ -1,7 +1,6 @@
 // How `beamid simulate` says what sensors and logger did to the readings.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "experiments/rig/simulated_test.hpp"
@@ -10,8 +9,5 @@ namespace beamid::experiments {
 
 /// A sentence for the logger and one for every sensor with a defect; empty where all is as it should be.
 std::string acquisition_text(const SimulatedTest& test);
-
-/// Adds "acquisition" to a configuration where there is anything to say, in the words of the experiment file.
-void describe(const Acquisition& acquisition, nlohmann::ordered_json& configuration);
 
 }  // namespace beamid::experiments

@@ -137,37 +137,6 @@ std::shared_ptr<const FrameDrawing> drawing(const fem::Structure& frame, int ele
   return std::make_shared<FrameDrawing>(FrameDrawing{frame, std::move(system), shapes, frequencies});
 }
 
-struct DescribedFrame {
-  const char* command;
-  std::string title, text;
-  Json configuration;
-};
-
-Results report_frame(const DescribedFrame& described, const fem::Structure& frame, int elements_per_member,
-                     const FrameModes& found, bool surface) {
-  Results results;
-  results.command = described.command;
-  results.configuration = described.configuration;
-  results.configuration["modes"] = found.modes.size();
-  results.values = frame_modes_values(found);
-  results.heading(described.title.empty() ? "Natural frequencies" : described.title);
-  results.paragraph(described.text);
-  results.table(mode_table(found));
-  std::vector<std::string> notes = found.notes;
-  const std::shared_ptr<const FrameDrawing> drawn = drawing(frame, elements_per_member, found);
-  if (drawn->system.size() != found.system.size())
-    notes.push_back(
-        fmt::format("Pictures show the same frame with {} elements.", drawn->system.mesh.elements.size()));
-  results.notes(notes);
-  results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
-  results.attachments.push_back(
-      {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {
-         write_mode_shapes(folder, Picture(drawn->structure, drawn->system, surface), drawn->shapes,
-                           drawn->frequencies_hz);
-       }});
-  return results;
-}
-
 }  // namespace
 
 FrameModes frame_modes(const fem::Structure& frame, int elements_per_member, Index count,
@@ -195,22 +164,29 @@ FrameModes frame_modes(const fem::Structure& frame, int elements_per_member, Ind
   return found;
 }
 
-FrameModes frame_modes(const FrameExperiment& experiment, Index count, const Progress& progress) {
-  return frame_modes(experiment.frame, experiment.elements_per_member, count, progress);
-}
-
-Results report(const FrameExperiment& experiment, const FrameModes& found) {
-  return report_frame(
-      {"frame", experiment.title, frame_text(experiment, found.system.size()), describe(experiment)},
-      experiment.frame, experiment.elements_per_member, found, false);
-}
-
 Results report(const Experiment& experiment, const FrameModes& found, bool surface) {
-  return report_frame(
-      {"modes", experiment.title,
-       structure_text(experiment, static_cast<Index>(found.system.mesh.elements.size()), found.system.size()),
-       describe(experiment)},
-      experiment.structure, experiment.elements, found, surface);
+  Results results;
+  results.command = "modes";
+  results.configuration = describe(experiment);
+  results.configuration["modes"] = found.modes.size();
+  results.values = frame_modes_values(found);
+  results.heading(experiment.title.empty() ? "Natural frequencies" : experiment.title);
+  results.paragraph(
+      structure_text(experiment, static_cast<Index>(found.system.mesh.elements.size()), found.system.size()));
+  results.table(mode_table(found));
+  std::vector<std::string> notes = found.notes;
+  const std::shared_ptr<const FrameDrawing> drawn = drawing(experiment.structure, experiment.elements, found);
+  if (drawn->system.size() != found.system.size())
+    notes.push_back(
+        fmt::format("Pictures show the same frame with {} elements.", drawn->system.mesh.elements.size()));
+  results.notes(notes);
+  results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
+  results.attachments.push_back(
+      {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {
+         write_mode_shapes(folder, Picture(drawn->structure, drawn->system, surface), drawn->shapes,
+                           drawn->frequencies_hz);
+       }});
+  return results;
 }
 
 }  // namespace beamid::experiments

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "experiments/config/experiment.hpp"
-#include "experiments/config/frame_description.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/progress.hpp"
 #include "fem/modes.hpp"
@@ -33,12 +32,9 @@ struct FrameModes {
 /// found.
 FrameModes frame_modes(const fem::Structure& frame, int elements_per_member, Eigen::Index count,
                        const Progress& progress);
-FrameModes frame_modes(const FrameExperiment& experiment, Eigen::Index count, const Progress& progress);
 
 /// Table modes, results.json with modes[], the figure mode_shapes, and meshes for ParaView.
-Results report(const FrameExperiment& experiment, const FrameModes& found);
-
-/// The same of a space frame. @param surface draw the real sections instead of lines
+/// @param surface draw the real sections of a space frame instead of lines
 Results report(const Experiment& experiment, const FrameModes& found, bool surface);
 
 }  // namespace beamid::experiments

@@ -134,15 +134,12 @@ Results report(const Experiment& experiment, const FrequencyResponses& found) {
   const auto& settings = experiment.frequency_response;
   Results results;
   results.command = "frf";
-  results.configuration = describe(experiment);
-  results.configuration["frequency_response"] = {{"kind", to_string(settings.kind)},
-                                                 {"from_hz", found.frequency_hz[0]},
-                                                 {"to_hz", found.frequency_hz[found.frequency_hz.size() - 1]},
-                                                 {"points", settings.points},
-                                                 {"spacing", settings.logarithmic ? "logarithmic" : "linear"},
-                                                 {"method", found.method.name},
-                                                 {"modes", found.method.modes},
-                                                 {"residual_modes", found.method.residual_modes}};
+  results.configuration = describe(experiment, {"frequency_response"});
+  results.configuration["frequency_response"].update(
+      {{"from_hz", found.frequency_hz[0]},
+       {"to_hz", found.frequency_hz[found.frequency_hz.size() - 1]},
+       {"method", found.method.name},
+       {"modes", found.method.modes}});
   results.values = frequency_response_values(experiment, found);
   results.heading(experiment.title.empty() ? "Frequency response" : experiment.title);
   results.paragraph(structure_text(experiment, static_cast<Eigen::Index>(found.system.mesh.elements.size()),

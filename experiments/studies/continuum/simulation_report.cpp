@@ -103,28 +103,6 @@ std::string excitations_text(const std::vector<Excitation>& all) {
   return text;
 }
 
-Json describe_excitation(const Excitation& e) {
-  using Kind = Excitation::Kind;
-  Json json{{"kind", to_string(e.kind)}};
-  if (e.kind != Kind::base && e.position) json["position_m"] = *e.position;
-  if (!e.at.empty()) json["at"] = e.at;
-  if (e.kind == Kind::release) json["deflection_m"] = e.deflection.value_or(0.012);
-  if (e.kind == Kind::release && e.duration > 0.0) json["duration_s"] = e.duration;
-  if (e.kind == Kind::free) {
-    json["deflection_m"] = e.deflection.value_or(0.0);
-    json["velocity_m_per_s"] = e.velocity;
-    if (e.mode) json["mode"] = *e.mode;
-  }
-  if (e.kind == Kind::step) json["force_n"] = e.force;
-  if (e.kind == Kind::impulse) json.update({{"momentum_n_s", e.momentum}, {"duration_s", e.duration}});
-  if (e.file) json["file"] = *e.file;
-  if (!e.file && (e.kind == Kind::harmonic || e.kind == Kind::random || e.kind == Kind::base)) {
-    json[e.kind == Kind::base ? "amplitude_m_per_s2" : "amplitude_n"] = e.amplitude;
-    json["frequency_hz"] = e.frequency_hz;
-  }
-  return json;
-}
-
 Json simulation_values(const Experiment& experiment, const SimulatedTest& test) {
   const Simulation& settings = experiment.simulation;
   Json json{{"samples", test.record.size()},
@@ -183,17 +161,10 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   Results results;
   results.command = "simulate";
   results.seed = settings.seed;
-  results.configuration = describe(experiment);
-  results.configuration["excitation"] = describe_excitation(test->excitations.front());
-  for (std::size_t i = 1; i < test->excitations.size(); ++i)
-    results.configuration["further_excitations"].push_back(describe_excitation(test->excitations[i]));
-  results.configuration["simulation"] = {{"method", test->method.name},
-                                         {"duration_s", settings.duration},
-                                         {"sampling_rate_hz", settings.sampling_rate},
-                                         {"steps_per_sample", settings.steps_per_sample}};
+  results.configuration =
+      describe(experiment, {test->excitations.size() > 1 ? "excitations" : "excitation", "simulation"});
   for (const auto& [option, value] : test->method.options)
     results.configuration["simulation"][option] = value;
-  describe(test->acquisition, results.configuration);
   results.values = simulation_values(experiment, *test);
   results.heading(experiment.title.empty() ? "Simulated response" : experiment.title);
   results.paragraph(structure_text(experiment, static_cast<Eigen::Index>(test->system.mesh.elements.size()),

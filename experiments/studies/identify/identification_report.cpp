@@ -35,7 +35,6 @@ Results identification_report(const Experiment& experiment, const Comparison& fo
   const Record& record = found.analysis.record;
   Results results = report(experiment, found);
   results.command = "identify";
-  results.configuration["filter"]["on_failure"] = to_string(experiment.on_failure);
   std::vector<std::string> outputs;
   for (const Eigen::Index i : output_channels(record))
     outputs.push_back(record.channels[static_cast<std::size_t>(i)].name);

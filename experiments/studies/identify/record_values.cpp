@@ -4,8 +4,7 @@
 #include <numbers>
 
 #include "experiments/config/description.hpp"
-#include "experiments/config/failure_response.hpp"
-#include "experiments/config/structure_description.hpp"
+#include "experiments/record/column_name.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/studies/identify/diagnostics_report.hpp"
 
@@ -124,21 +123,12 @@ Json values(const RecordIdentification& found, const Record& record) {
 
 Json configuration(const Experiment& experiment, const Record& record, const RecordIdentification& found,
                    const std::string& record_name) {
-  const auto choice = [](const Choice& chosen) {
-    Json json{{"name", chosen.name}};
-    for (const auto& [name, value] : chosen.options.values())
-      std::visit([&, key = name](const auto& v) { json[key] = v; }, value);
-    return json;
-  };
-  Json json{
-      {"title", experiment.title}, {"record", record_name}, {"sampling_rate_hz", 1.0 / record.interval()}};
-  json.update(describe(experiment.structure, experiment.elements));
-  json["reduction"] = choice(experiment.reduction);
-  json["model"] = choice(experiment.model);
-  json["filter"] = choice(experiment.filter);
-  json["filter"]["discretisation"] = experiment.discretisation;
-  json["filter"]["on_failure"] = to_string(experiment.on_failure);
-  if (!experiment.smoother.empty()) json["filter"]["smoother"] = experiment.smoother;
+  Json json = describe(experiment, {"filter"});
+  json.update({{"record", record_name},
+               {"sampling_rate_hz", 1.0 / record.interval()},
+               {"reduction", describe(experiment.reduction, "method")},
+               {"model", describe(experiment.model, "name")}});
+  json["filter"].update(describe(experiment.filter, "method"));
   json["passes"] = found.passes;
   const auto labels = found.model.motion->state_labels();
   for (std::size_t i = 0; i < labels.size(); ++i)
@@ -147,9 +137,8 @@ Json configuration(const Experiment& experiment, const Record& record, const Rec
         {"standard_deviation", std::sqrt(found.settings.initial.covariance(i, i))},
         {"unit", labels[i].unit}};
   for (Eigen::Index i = 0; i < found.noise_deviation.size(); ++i)
-    json["noise"][to_string(record.channels[i].quantity)] = found.noise_deviation[i];
+    json["noise"][quantity_key(record.channels[i].quantity)] = found.noise_deviation[i];
   json["noise"]["method"] = found.noise_method;
-  json["filter"]["estimator"] = experiment.estimator;
   return json;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/config/description.hpp"
 #include "experiments/identify/measured_force.hpp"
 #include "experiments/studies/sensing/report.hpp"
 #include "experiments/studies/update/report.hpp"
@@ -17,7 +18,9 @@ void add_doubts_of_modes(const PosteriorStudy& study, Results& results) {
 }
 
 nlohmann::ordered_json record_configuration(const Experiment& experiment, const PosteriorStudy& study) {
-  return {{"title", experiment.title}, {"reduction", study.source->sensing.reduction}};
+  nlohmann::ordered_json json = describe(experiment);
+  json["reduction"] = study.source->sensing.reduction;
+  return json;
 }
 
 // Frequencies, and motion that no measured force drives, show stiffness over mass alone.

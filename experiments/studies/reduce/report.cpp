@@ -62,7 +62,6 @@ std::string text_of(const ReductionComparison& all) {
 
 nlohmann::ordered_json reduction_configuration(const Experiment& experiment, const ReductionComparison& all) {
   nlohmann::ordered_json json = describe(experiment);
-  json["damping"] = describe(all.damping);
   json["modes"] = all.settings.modes;
   json["band"] = all.settings.band;
   json["reductions"] = nlohmann::ordered_json::array();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/config/description.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/file.hpp"
 
@@ -169,7 +170,7 @@ std::string sensing_sentence(const SensingStudy& study, const std::string& recor
 Results sensing_report(const Experiment& experiment, const SensingStudy& study, const std::string& record) {
   Results results;
   results.command = "sense";
-  results.configuration["title"] = experiment.title;
+  results.configuration = describe(experiment);
   results.configuration["reduction"] = study.reduction;
   results.paragraph(sensing_sentence(study, record));
   add_sensing_verdict(study, results);

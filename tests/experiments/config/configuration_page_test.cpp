@@ -9,7 +9,6 @@
 
 #include "experiments/config/key_page.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_frame.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::configuration_page_test {

@@ -8,7 +8,6 @@
 
 #include "experiments/config/key_page.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_frame.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::key_tables_test {
@@ -22,16 +21,9 @@ std::string file_with(const KeyTable& table, const std::string& line) {
   return table.name().empty() ? line : heading_of(table) + "\n" + line;
 }
 
-void read_either(const TomlTable& root) {
-  if (root.contains("frame"))
-    read_frame(root);
-  else
-    read_experiment(root);
-}
-
 std::string refusal(const std::string& text) {
   try {
-    read_either(TomlTable::parse(text, "a.toml"));
+    read_experiment(TomlTable::parse(text, "a.toml"));
   } catch (const InputError& error) {
     return error.what();
   }

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include "experiments/config/key_json.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::schema_test {
@@ -81,15 +80,6 @@ TEST(Schema, LeavesWhatAFileDoesNotSayAtTheMembersOwnDefault) {
   EXPECT_EQ(thing_keys().find("width_m")->fallback, "none");
   EXPECT_EQ(thing_keys().find("name")->fallback, "`\"thing\"`");
   EXPECT_EQ(thing_keys().find("span_s")->fallback, "`[0, 1]`");
-}
-
-TEST(Schema, WritesWhatItWouldReadAgain) {
-  const Thing thing = read("length_m = 1.5\ncolour = \"red\"\nfriends = [\"a\"]\nweights = [1]\n");
-  EXPECT_EQ(
-      to_json(thing_keys().values_of(thing)),
-      nlohmann::ordered_json::parse(
-          R"({"length_m": 1.5, "count": 3, "seed": 1, "loud": false, "name": "thing", "friends": ["a"],)"
-          R"( "weights": [1.0], "span_s": [0.0, 1.0], "colour": "red"})"));
 }
 
 TEST(Schema, RefusesAWrongTypeAtTheValuesPlace) {

@@ -43,7 +43,7 @@ TEST(Results, JsonHasTheSchemasKeysInOrder) {
   EXPECT_EQ(keys,
             (std::vector<std::string>{"schema_version", "program", "version", "command", "seed",
                                       "configuration", "status", "beams", "messages", "tables", "files"}));
-  EXPECT_EQ(json["schema_version"], 3);
+  EXPECT_EQ(json["schema_version"], 4);
   EXPECT_EQ(json["program"], "beamid");
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["beams"][0]["frequency_hz"], 4.145510989755);

@@ -1,0 +1,18 @@
+// What an experiment file comes to, as results.json keeps it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/text/toml_table.hpp"
+
+namespace beamid::experiments {
+
+/// The keys of the file, of what the command line set, and the defaults of every table that stands once, by
+/// the names and in the order of docs/configuration.md: written as TOML they are the same experiment. A
+/// default that is worked out from other values is left out, and so are those of tables in arrays.
+/// @param also tables whose defaults hold though the file does not have them
+nlohmann::ordered_json effective_keys(const TomlTable& root, const std::vector<std::string>& also = {});
+
+}  // namespace beamid::experiments
