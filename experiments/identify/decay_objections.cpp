@@ -11,8 +11,9 @@ namespace {
 
 DecayObjection jump_objection(const DecayJump& jump, double from) {
   constexpr double much = 0.05;
+  const MotionJump* const motion = jump.motion();
   const bool contradicts =
-      jump.frequency || std::abs(jump.amplitude_ratio - 1) > much || std::abs(jump.phase) > much;
+      !motion || std::abs(motion->amplitude_ratio - 1) > much || std::abs(motion->phase) > much;
   return {fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
                       "intervals. Expected a --window on one side of it.",
                       contradicts ? "CONTRADICTED: " : "", jump.sentence(from)),

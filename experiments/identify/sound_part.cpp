@@ -69,9 +69,9 @@ std::optional<Break> jump_in(const Record& record, const Part& part, double peri
   try {
     const auto jump = decay_jump(signal, decay.interval(), dominant_mode(signal, decay.interval(), expected));
     if (!jump) return {};
-    const double at = decay.time[0] + jump->time;
+    const double at = decay.time[0] + jump->time();
     Break found{at - period, at + period, fmt::format(" {:.4g} s {}", at, jump->words())};
-    if (const auto& frequency = jump->frequency) {  // on one side time runs at another rate
+    if (const FrequencyJump* const frequency = jump->frequency()) {  // on one side time runs at another rate
       const auto off = [&](double hz) { return std::abs(std::log(hz * period)); };
       if (off(frequency->behind_hz) > off(frequency->before_hz))
         found.to = part.to;

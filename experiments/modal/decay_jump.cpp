@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "experiments/modal/frequency_step.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/median.hpp"
 #include "experiments/signal/sway.hpp"
@@ -136,26 +137,41 @@ const Instant* clearest_of(const std::vector<Instant>& instants, double amplitud
 
 DecayJump jump_at(const Instant& instant) {
   const Complex ratio = 1.0 + instant.jump / instant.before;
-  return {instant.time, std::abs(ratio), std::arg(ratio)};
+  return {MotionJump{instant.time, std::abs(ratio), std::arg(ratio)}};
 }
 
 }  // namespace
 
-std::string DecayJump::words() const {
-  if (frequency) return frequency->words();
+std::string MotionJump::words() const {
   return fmt::format("the motion jumps, by {:+.2g} % in amplitude and {:+.2g} degrees in phase",
                      100 * (amplitude_ratio - 1), phase * 180 / std::numbers::pi);
 }
 
+double DecayJump::time() const {
+  return std::visit([](const auto& jump) { return jump.time; }, kind);
+}
+
+const FrequencyJump* DecayJump::frequency() const {
+  return std::get_if<FrequencyJump>(&kind);
+}
+
+const MotionJump* DecayJump::motion() const {
+  return std::get_if<MotionJump>(&kind);
+}
+
+std::string DecayJump::words() const {
+  return std::visit([](const auto& jump) { return jump.words(); }, kind);
+}
+
 std::string DecayJump::sentence(double begin) const {
-  return fmt::format("At {:.4g} s {}: {}.", begin + time, words(),
-                     frequency ? "the sampling rate changed there, or the structure did"
-                               : "something touched the structure, or samples were lost");
+  return fmt::format("At {:.4g} s {}: {}.", begin + time(), words(),
+                     frequency() ? "the sampling rate changed there, or the structure did"
+                                 : "something touched the structure, or samples were lost");
 }
 
 std::optional<DecayJump> decay_jump(const VectorXd& signal, double interval, const ModalEstimate& mode) {
-  if (const auto frequency = frequency_jump(signal, interval, mode))
-    return DecayJump{frequency->time, 1, 0, frequency};
+  if (const auto jump = frequency_jump(signal, interval, mode)) return DecayJump{*jump};
+  if (const auto step = frequency_step(signal, interval, mode)) return DecayJump{*step};
   const int factor = decimation_factor(1 / (mode.frequency_hz * interval * jump_samples_per_cycle),
                                        signal.size() / kernel_and_more);
   const DecimatedSignal coarse = without_sway(decimate(signal, interval, factor), 1 / mode.frequency_hz);

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/modal/frequency_jump.hpp"
@@ -11,21 +12,31 @@
 namespace beamid::experiments {
 
 /// The motion behind an instant is not the continuation of the motion before it.
-struct DecayJump {
-  double time = 0;                              ///< [s], from the first sample
-  double amplitude_ratio = 1;                   ///< behind it over before
-  double phase = 0;                             ///< by which it is ahead behind it [rad]
-  std::optional<FrequencyJump> frequency = {};  ///< where it is this that jumps
+struct MotionJump {
+  double time = 0;             ///< [s], from the first sample
+  double amplitude_ratio = 1;  ///< behind it over before
+  double phase = 0;            ///< by which it is ahead behind it [rad]
 
   std::string words() const;  ///< "the motion jumps, by +10 % in amplitude and 2.1 degrees in phase"
+};
+
+/// What happened to a decay at one instant.
+struct DecayJump {
+  std::variant<MotionJump, FrequencyJump> kind;
+
+  double time() const;                     ///< [s], from the first sample
+  const FrequencyJump* frequency() const;  ///< null where it is the motion that jumps
+  const MotionJump* motion() const;        ///< null where it is the frequency
+  std::string words() const;
   /// "At 8 s the motion jumps, ...: something touched the structure, or samples were lost."
   /// @param begin time of the first sample [s]
   std::string sentence(double begin) const;
 };
 
-/// The clearest jump of a decay (N, finite), where there is one: of its frequency (frequency_jump.hpp), or
-/// else of its amplitude and phase. Over twelve periods before and behind an instant, but for one period to
-/// either side, the signal, decimated to eight samples per cycle and freed of what sways below the mode, is
+/// The clearest jump of a decay (N, finite), where there is one: of its frequency (frequency_jump.hpp,
+/// frequency_step.hpp), or else of its amplitude and phase. Over twelve periods before and behind an instant,
+/// but for one period to either side, the signal, decimated to eight samples per cycle and freed of what
+/// sways below the mode, is
 ///
 ///     e^(s t) (a_0 + a_1 t + a_2 t^2 + a_3 t^3 + j H(t)) + an offset + companions e^(s_i t),
 ///

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "experiments/modal/damped_sine_fit.hpp"
-#include "experiments/modal/frequency_step.hpp"
 #include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {
@@ -200,7 +199,7 @@ std::optional<FrequencyJump> frequency_jump(const VectorXd& signal, double inter
     const auto left = left_by_jump(windows, i, i + windows.apart(), mode.damping_ratio);
     if (left && (!least || *left < *least)) least = left, clearest = i;
   }
-  if (!least) return frequency_step(signal, interval, mode);
+  if (!least) return {};
   const Index behind = clearest + windows.apart();
   const auto fit = [&](Index i) {
     return refined(windows.samples(i), windows.signal.interval, windows.peaks[i], mode.damping_ratio);

@@ -23,6 +23,22 @@ Json optional_number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
+// What would leave less of a driven record, whether or not it is said; empty where nothing was tried.
+Json input_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
+  Json json = Json::object();
+  if (const auto& late = run.likeliest_lag)
+    json["likeliest_lag"] = {
+        {"output", late->output ? Json(outputs[static_cast<std::size_t>(*late->output)]) : Json("all")},
+        {"lag_s", late->lag()},
+        {"standard_deviation_s", run.interval_factor * late->deviation()},
+        {"residual_share", late->step.left_share}};
+  if (const auto& noise = run.likeliest_input_noise)
+    json["likeliest_input_noise"] = {
+        {"standard_deviation_si", std::vector<double>(noise->deviation.begin(), noise->deviation.end())},
+        {"log_likelihood_gain", noise->gain}};
+  return json;
+}
+
 Json run_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
   Json json{{"reduction", run.reduction},
             {"filter", run.filter},
@@ -52,6 +68,7 @@ Json run_values(const ComparedRun& run, const std::vector<std::string>& outputs)
   json["noise"] = std::vector<double>(run.noise.begin(), run.noise.end());
   json["log_likelihood"] = run.run.log_likelihood;
   json["mean_normalised_square"] = run.run.normalised_squares.mean();
+  json.update(input_values(run, outputs));
   for (const std::string& remark : run.remarks)
     json["messages"].push_back({{"severity", to_string(Severity::note)}, {"text", remark}});
   return json;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/config/description.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/estimates.hpp"
 
@@ -167,11 +168,10 @@ Json study_values(const StepsStudy& study) {
 Results report(const Experiment& experiment, const StepsStudy& study) {
   Results results;
   results.command = "steps";
-  results.configuration = {{"title", experiment.title},
-                           {"record", study.record},
-                           {"filter", experiment.filter.name},
-                           {"discretisations", study.discretisations},
-                           {"passes", experiment.passes}};
+  results.configuration = describe(experiment, {"filter"});
+  results.configuration["filter"].update(describe(experiment.filter, "method"));
+  results.configuration.update(
+      {{"record", study.record}, {"discretisations", study.discretisations}, {"passes", experiment.passes}});
   results.values = study_values(study);
   results.heading(experiment.title.empty() ? study.record : experiment.title);
   if (!study.has_reference()) {

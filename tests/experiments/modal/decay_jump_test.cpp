@@ -47,10 +47,10 @@ TEST(DecayJump, IsFoundWhereAndAsLargeAsItWas) {
   std::uint64_t seed = 1;
   for (const Complex j : jumps) {
     const auto found = jump_of(knocked_decay(j) + noise_of(seed++));
-    ASSERT_TRUE(found) << j;
-    EXPECT_NEAR(found->time, knocked, 1 / frequency_hz) << j;
-    EXPECT_NEAR(found->amplitude_ratio, std::abs(1.0 + j), 0.03) << j;
-    EXPECT_NEAR(found->phase, std::arg(1.0 + j), 0.03) << j;
+    ASSERT_TRUE(found && found->motion()) << j;
+    EXPECT_NEAR(found->time(), knocked, 1 / frequency_hz) << j;
+    EXPECT_NEAR(found->motion()->amplitude_ratio, std::abs(1.0 + j), 0.03) << j;
+    EXPECT_NEAR(found->motion()->phase, std::arg(1.0 + j), 0.03) << j;
   }
 }
 
