@@ -62,7 +62,7 @@ int run_backbone(const Values& values) {
     try {
       Results results =
           report(settings, record, request.file.filename().string(), study_backbone(record, settings));
-      tell_preparation(results, prepared, request.format);
+      add_preparation(results, prepared, request.format);
       return results;
     } catch (const std::invalid_argument& error) {
       throw InputError({file}, error.what());

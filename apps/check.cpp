@@ -187,7 +187,7 @@ int run_check(const Values& values) {
         results.configuration["structures"].back().update(describe(request.experiment));
         warn(results, request.experiment);
       }
-      for (const UsedRecord& one : used) tell_cost(results, one.name, one.prepared, *one.format);
+      for (const UsedRecord& one : used) add_cost(results, one.name, one.prepared, *one.format);
       return results;
     } catch (const std::invalid_argument& error) {
       throw InputError({requests[0].config.string()}, error.what());

@@ -93,7 +93,7 @@ int run_compare(const Values& values) {
       Results results =
           report(source.experiment, compare(source.experiment, std::move(compared), folder, progress));
       for (const std::string& text : decisions) results.paragraph(text);
-      if (!file.empty()) tell_preparation(results, prepared, source.experiment.format);
+      if (!file.empty()) add_preparation(results, prepared, source.experiment.format);
       return results;
     });
   });

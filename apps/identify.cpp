@@ -62,16 +62,16 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
     Comparison found = identified(one, folder, progress);
     if (one.is_free_oscillator()) {
       results = report(experiment, found.compared.record, name, oscillator_in(found));
-      tell_clocks(results, found);
+      add_clocks(results, found);
     } else {
       const RecordTwins twins = record_twins(experiment, found, folder);
       warn_of_twins(found, twins);
       results = identification_report(experiment, found);
-      tell_twins(results, found.runs.at(0), twins);
+      add_twins(results, found.runs.at(0), twins);
     }
   }
   for (const std::string& text : one.decisions()) results.paragraph(text);
-  tell_preparation(results, one.as_analysed(), experiment.format);
+  add_preparation(results, one.as_analysed(), experiment.format);
   return results;
 }
 
@@ -137,7 +137,7 @@ Results identify_together(const std::vector<IdentifyRequest>& requests, const st
     for (const std::string& text : one.decisions())
       results.paragraph(one.file.filename().string() + ": " + text);
   for (const IdentifyRequest& one : requests)
-    tell_cost(results, one.file.filename().string(), one.as_analysed(), one.experiment.format);
+    add_cost(results, one.file.filename().string(), one.as_analysed(), one.experiment.format);
   return results;
 }
 

@@ -75,7 +75,7 @@ Results hammer_results(const std::vector<std::string>& names, const std::vector<
   Results results = report(settings, study);
   std::vector<std::complex<double>> rates;
   for (const HammerMode& mode : study.modes) rates.push_back(mode.pole.rate);
-  tell_masses(names, records, std::vector(records.size(), rates), results, true);
+  add_masses(names, records, std::vector(records.size(), rates), results, true);
   return results;
 }
 
@@ -97,9 +97,9 @@ Results decay_results(const std::vector<RecordRequest>& requests, const std::vec
     rates.emplace_back();
     for (const ModeEstimate& mode : one.modes) rates.back().push_back(mode.pole.rate);
   }
-  if (found[0].free_decay) tell_masses(names, records, rates, results);
+  if (found[0].free_decay) add_masses(names, records, rates, results);
   try {
-    if (amplitude) tell_amplitude(found, merge_modes(found), results);
+    if (amplitude) add_amplitude(found, merge_modes(found), results);
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
@@ -140,7 +140,7 @@ int run_modal(const Values& values) {
       throw InputError({requests[0].file.string()}, error.what());
     }
     for (std::size_t r = 0; r < records.size(); ++r)
-      tell_cost(results, names[r], prepared[r], requests[r].format);
+      add_cost(results, names[r], prepared[r], requests[r].format);
     return results;
   });
 }

@@ -72,7 +72,7 @@ int run_posterior(const Values& values) {
       throw InputError({values.text("config")}, error.what());
     }
     Results results = posterior_report(experiment, *study);
-    if (!modes) tell_preparation(results, prepared, experiment.format);
+    if (!modes) add_preparation(results, prepared, experiment.format);
     warn(results, experiment);
     return results;
   });

@@ -19,7 +19,7 @@ Results sensed_record(const Experiment& experiment, const PreparedRecord& prepar
   Results results = sensing_report(
       experiment, study_sensing(experiment, record, reduction, config.parent_path(), progress, filter),
       file.filename().string());
-  tell_preparation(results, prepared, experiment.format);
+  add_preparation(results, prepared, experiment.format);
   return results;
 }
 

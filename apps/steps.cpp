@@ -104,7 +104,7 @@ int run_record(const Values& values) {
     const StepsStudy study = studied(settings, one, config, show_progress(values));
     Results results = report(one.experiment, study);
     for (const std::string& text : one.decisions()) results.paragraph(text);
-    tell_preparation(results, one.prepared, one.experiment.format);
+    add_preparation(results, one.prepared, one.experiment.format);
     warn(results, one.experiment);
     return results;
   });

@@ -42,7 +42,7 @@ Record earlier_record(const Values& values, const Experiment& experiment, const 
 }
 
 /// Steps look ahead or wait for the record's end: no sample can be taken through them as it arrives.
-void tell_preparation(const Experiment& experiment, const Record& earlier) {
+void add_preparation(const Experiment& experiment, const Record& earlier) {
   const auto& steps = experiment.format.preparation;
   if (steps.empty()) return;
   std::cerr << fmt::format(
@@ -71,7 +71,7 @@ void require_replaceable(const fs::path& file) {
   throw UsageError(file.string() + " exists and is no state that --save-state wrote; expected another name");
 }
 
-void tell(const std::vector<std::string>& news) {
+void print(const std::vector<std::string>& news) {
   for (const std::string& sentence : news) std::cerr << sentence << "\n";
 }
 
@@ -85,7 +85,7 @@ bool follow(StreamedIdentification& stream, SampleSource& source) {
     const Place place{"standard input", source.number(), 1};
     const filters::Sample sample = read_sample(line, stream.outputs(), place);
     const bool goes_on = at_place(place, [&] { return stream.take_in(sample); });
-    tell(stream.news());
+    print(stream.news());
     if (!goes_on) return true;
     std::cout << stream_row(sample.time, stream) << std::flush;
   }
@@ -93,7 +93,7 @@ bool follow(StreamedIdentification& stream, SampleSource& source) {
 }
 
 /// What a reader of the last line has to know.
-void tell_end(const StreamedIdentification& stream, bool failed) {
+void print_end(const StreamedIdentification& stream, bool failed) {
   const Eigen::Index left_out = stream.watch().left_out();
   if (left_out > 0) std::cerr << fmt::format("Outliers left out: {}.\n", left_out);
   if (failed)
@@ -131,9 +131,9 @@ int run_stream(const Values& values) {
   const Record earlier = earlier_record(values, experiment, config);
   StreamedIdentification stream =
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
-  tell(implausible(experiment));
-  tell_preparation(experiment, earlier);
-  tell(stream.news());
+  print(implausible(experiment));
+  add_preparation(experiment, earlier);
+  print(stream.news());
   if (values.has("save-state")) {
     at_place(experiment.filter.place, [&] { stream.check_can_be_saved(); });
     require_replaceable(values.text("save-state"));
@@ -156,7 +156,7 @@ int run_stream(const Values& values) {
     signal = source.signal();
     if (!(failed || signal != 0) || stream.running().step() > 0) keep();
   }
-  tell_end(stream, failed);
+  print_end(stream, failed);
   if (signal != 0) {
     std::cout << std::flush;
     std::raise(signal);

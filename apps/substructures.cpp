@@ -44,7 +44,7 @@ int run_substructures(const Values& values) {
         throw InputError({config.string()}, error.what());
       }
     }();
-    if (!file.empty()) tell_preparation(results, prepared, experiment.format);
+    if (!file.empty()) add_preparation(results, prepared, experiment.format);
     return results;
   });
 }

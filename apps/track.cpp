@@ -53,7 +53,7 @@ int run_track(const Values& values) {
       const Tracking found = track(record.samples.row(row).transpose(), record.time[0], record.interval(),
                                    settings, show_progress(values));
       Results results = report(settings, record, channel, request.file.filename().string(), found);
-      tell_preparation(results, prepared, request.format);
+      add_preparation(results, prepared, request.format);
       return results;
     } catch (const std::invalid_argument& error) {
       throw InputError({file}, error.what());

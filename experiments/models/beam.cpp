@@ -69,7 +69,7 @@ bool moves_in_modes(const fem::ParametricSystem& equations, const fem::Modes& mo
 
 // Whether the lowest modes of the mesh tell its motion. A force moves those above, too: the mesh's own
 // coordinates know them, but not what happens to the start when shapes change.
-bool lowest_tell_the_motion(const fem::ParametricSystem& equations, const MotionDescription& description) {
+bool lowest_show_the_motion(const fem::ParametricSystem& equations, const MotionDescription& description) {
   return description.forces.empty() || !keeps_mode_shapes(equations);
 }
 
@@ -209,7 +209,7 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
   const MatrixXd shapes = on_mesh.shape * scale.asDiagonal();
   const bool follows = moves_in_modes(equations, modes, description) &&
                        (dense ? leaves_its_modes(setting.reduction.get(), equations, modes)
-                              : in_modes && lowest_tell_the_motion(equations, description));
+                              : in_modes && lowest_show_the_motion(equations, description));
   StateLayout places;
   if (follows) {
     describe_damping(setting.damping, elastic(modes), damped_modes(equations, on_mesh), description);

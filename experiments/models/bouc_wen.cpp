@@ -10,7 +10,7 @@ namespace beamid::experiments {
 namespace {
 
 std::unique_ptr<JointModel> make_bouc_wen(const ModelSetting& setting, const filters::Options& options) {
-  constexpr double stiffness_doubt = 0.3, half = 0.5;
+  constexpr double stiffness_uncertainty = 0.3, half = 0.5;
   auto spring =
       spring_law_registry().make("bouc_wen", {{"exponent", options.number("exponent")},
                                               {"reference_length_m", options.number("reference_length_m")}});
@@ -18,7 +18,7 @@ std::unique_ptr<JointModel> make_bouc_wen(const ModelSetting& setting, const fil
   const double rate = half / beam.amplitude;  // yields at the usual amplitude
   return make_oscillator(
       "bouc_wen", setting, spring_and_dashpot(std::move(spring)),
-      {{"stiffness", beam.stiffness, stiffness_doubt * beam.stiffness, true},
+      {{"stiffness", beam.stiffness, stiffness_uncertainty * beam.stiffness, true},
        {"damping", beam.damping, beam.damping, true},
        {"post_yield_ratio", half, 0.3, false, true, options.number("post_yield_ratio")},
        {"hysteresis_beta", rate, rate, false, true, options.number("hysteresis_beta_per_m")},

@@ -34,13 +34,13 @@ class Damped final : public OscillatorLaw {
 };
 
 std::unique_ptr<JointModel> make_damped(const ModelSetting& setting, const filters::Options& options) {
-  constexpr double stiffness_doubt = 0.3, small_ratio = 0.001, doubt = 10.0;
+  constexpr double stiffness_uncertainty = 0.3, small_ratio = 0.001, uncertainty = 10.0;
   const double v0 = options.number("friction_velocity_m_per_s");
   if (!(v0 > 0.0))
     throw std::invalid_argument("friction_velocity_m_per_s is " + std::to_string(v0) +
                                 "; expected more than 0");
   const ExpectedOscillator beam = expected_oscillator("damped", setting);
-  // Each law as much as a damping ratio of 0.1 % at the usual amplitude, and ten times as much in doubt.
+  // Each law as much as a damping ratio of 0.1 % at the usual amplitude, and ten times as uncertain.
   const double a = beam.amplitude, omega = std::sqrt(beam.stiffness / beam.mass);
   const double viscous = 2.0 * small_ratio * omega * beam.mass;
   const double friction = viscous * std::numbers::pi * a * omega / 4.0;
@@ -48,11 +48,12 @@ std::unique_ptr<JointModel> make_damped(const ModelSetting& setting, const filte
   const double cubic = 0.01 * beam.stiffness / (a * a);
   return make_oscillator(
       "damped", setting, std::make_shared<Damped>(v0),
-      {{"stiffness", beam.stiffness, stiffness_doubt * beam.stiffness, true},
+      {{"stiffness", beam.stiffness, stiffness_uncertainty * beam.stiffness, true},
        {"damping", beam.damping, beam.damping, true},
        {"cubic_stiffness", cubic, 100.0 * cubic, false, false, options.number("cubic_stiffness_n_per_m3")},
-       {"coulomb_friction", friction, doubt * friction, false, true, options.number("coulomb_friction_n")},
-       {"quadratic_damping", quadratic, doubt * quadratic, false, true,
+       {"coulomb_friction", friction, uncertainty * friction, false, true,
+        options.number("coulomb_friction_n")},
+       {"quadratic_damping", quadratic, uncertainty * quadratic, false, true,
         options.number("quadratic_damping_n_s2_per_m2")}},
       options.flag("sensor_bias"));
 }

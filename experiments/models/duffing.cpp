@@ -10,13 +10,13 @@ namespace beamid::experiments {
 namespace {
 
 std::unique_ptr<JointModel> make_duffing(const ModelSetting& setting, const filters::Options& options) {
-  constexpr double stiffness_doubt = 0.3;
+  constexpr double stiffness_uncertainty = 0.3;
   const ExpectedOscillator beam = expected_oscillator("duffing", setting);
-  // One per cent of K at the usual amplitude, and a hundred times as much in doubt: of either sign.
+  // One per cent of K at the usual amplitude, and a hundred times as uncertain: of either sign.
   const double cubic = 0.01 * beam.stiffness / (beam.amplitude * beam.amplitude);
   return make_oscillator(
       "duffing", setting, spring_and_dashpot(spring_law_registry().make("duffing", {})),
-      {{"stiffness", beam.stiffness, stiffness_doubt * beam.stiffness, true},
+      {{"stiffness", beam.stiffness, stiffness_uncertainty * beam.stiffness, true},
        {"damping", beam.damping, beam.damping, true},
        {"cubic_stiffness", cubic, 100.0 * cubic, false, true, options.number("cubic_stiffness_n_per_m3")}},
       options.flag("sensor_bias"));

@@ -19,8 +19,8 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using std::numbers::pi;
 
-constexpr double frequency_doubt = 0.15;  // as much as 30 % of the stiffness
-constexpr double modal_damping_doubt = 1.0, usual_modal_ratio = 0.01;
+constexpr double frequency_uncertainty = 0.15;  // as much as 30 % of the stiffness
+constexpr double modal_damping_uncertainty = 1.0, usual_modal_ratio = 0.01;
 constexpr Index most_modal_modes = 100;
 
 // What drives omega and xi of every mode: an unknown, or -1 and a value.
@@ -143,8 +143,8 @@ std::unique_ptr<JointModel> make_modal(const ModelSetting& setting, const filter
   for (const ParameterChoice& choice : choices) {
     const Index mode = choice.mode.value_or(1) - 1;
     defaults.push_back(choice.quantity == "frequency"
-                           ? ParameterDefault{0.5 * estimate.frequencies[mode] / pi, frequency_doubt}
-                           : ParameterDefault{estimate.ratios[mode], modal_damping_doubt});
+                           ? ParameterDefault{0.5 * estimate.frequencies[mode] / pi, frequency_uncertainty}
+                           : ParameterDefault{estimate.ratios[mode], modal_damping_uncertainty});
   }
   description.unknowns = unknowns_of(choices, defaults);
   for (std::size_t j = 0; j < choices.size(); ++j)

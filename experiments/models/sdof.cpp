@@ -135,7 +135,7 @@ class SingleDegreeOfFreedom final : public filters::LinearMotion {
 // The beam's own stiffness and damping, to 30 % and to as much again, and its mass to 10 %, unless the prior
 // or a parameter says otherwise.
 std::vector<Unknown> unknowns(const Known& known, double stiffness, const ModelSetting& setting) {
-  constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1, usual_damping_ratio = 0.01;
+  constexpr double stiffness_uncertainty = 0.3, mass_uncertainty = 0.1, usual_damping_ratio = 0.01;
   const Prior& prior = setting.prior;
   stiffness = prior.stiffness.value_or(stiffness);
   const double omega = std::sqrt(stiffness / known.mass);
@@ -145,9 +145,9 @@ std::vector<Unknown> unknowns(const Known& known, double stiffness, const ModelS
                 : usual_damping_ratio);
   const double to_damping = 2.0 * omega * known.mass;
   std::vector<Unknown> unknowns{
-      {"stiffness", "N/m", stiffness, prior.stiffness_deviation.value_or(stiffness_doubt * stiffness)},
+      {"stiffness", "N/m", stiffness, prior.stiffness_deviation.value_or(stiffness_uncertainty * stiffness)},
       {"damping", "N s/m", ratio * to_damping, prior.damping_ratio_deviation.value_or(ratio) * to_damping}};
-  if (known.mass_unknown) unknowns.push_back({"mass", "kg", known.mass, mass_doubt * known.mass});
+  if (known.mass_unknown) unknowns.push_back({"mass", "kg", known.mass, mass_uncertainty * known.mass});
   for (Unknown& unknown : unknowns) unknown.quantity = unknown.name;
   for (const ParameterChoice& choice : setting.parameters) {
     require_quantity(choice, {"stiffness", "damping", "mass"}, "sdof");

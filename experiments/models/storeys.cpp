@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double law_doubt = 1.0;  // of the value described
+constexpr double law_uncertainty = 1.0;  // of the value described
 
 std::unique_ptr<SpringLaw> spring_law_of(const StoreySpring& spring) {
   return spring_law_registry().make(spring.law.name, spring.law.options);
@@ -142,7 +142,7 @@ ParameterDefault law_default(const ParameterChoice& choice, const fem::Beam& cha
   if (!value && !choice.guess)
     refuse(choice, "the storeys that share " + choice.quantity +
                        " have several values of it; expected from_m and to_m around one, or a guess");
-  return {value.value_or(0.0), law_doubt};
+  return {value.value_or(0.0), law_uncertainty};
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ void write_attachments(const Results& results, const std::filesystem::path& fold
 }
 
 // "files" names what is there, "warnings" why a picture is not.
-void tell_undrawn(Json& json, const std::vector<std::string>& failures, const std::filesystem::path& folder) {
+void add_undrawn(Json& json, const std::vector<std::string>& failures, const std::filesystem::path& folder) {
   Json files = Json::array();
   for (const auto& file : json["files"]) {
     const std::filesystem::path path = file.get<std::string>();
@@ -188,7 +188,7 @@ void write(const Results& results, ResultDirectory& directory) {
   for (const Figure& figure : results.figures) write_data(figure, directory.path());
   std::vector<std::string> failures = draw_all(results.figures, directory.path());
   write_attachments(results, directory.path(), failures);
-  if (!failures.empty()) tell_undrawn(json, failures, directory.path());
+  if (!failures.empty()) add_undrawn(json, failures, directory.path());
   directory.write("results.json", text_of(json));
   directory.write("report.html", report_page({report_section(results, directory.path())}));
   Json timing;

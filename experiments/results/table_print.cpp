@@ -98,7 +98,7 @@ void break_texts(std::vector<Strip>& strips, std::size_t page) {
 }
 
 // Whether the first columns alone tell every two rows apart.
-bool tell_rows_apart(const std::vector<Strip>& strips, std::size_t columns) {
+bool rows_differ(const std::vector<Strip>& strips, std::size_t columns) {
   std::set<std::vector<Lines>> seen;
   for (std::size_t row = 0; row < strips[0].cells.size(); ++row) {
     std::vector<Lines> key;
@@ -115,7 +115,7 @@ std::size_t key_columns(const std::vector<Strip>& strips, std::size_t page) {
   for (std::size_t i = 0; i < strips.size(); ++i) {
     width += strips[i].width + column_gap;
     if (width > page * 2 / 3) break;
-    if (strips[i].cells.size() > 1 && tell_rows_apart(strips, i + 1)) return i + 1;
+    if (strips[i].cells.size() > 1 && rows_differ(strips, i + 1)) return i + 1;
     if (texts == i && !strips[i].right && width <= page / 2) texts = i + 1;
   }
   return texts;

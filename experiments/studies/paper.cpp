@@ -28,7 +28,7 @@ class PaperStudy final : public Study {
     results.seed = seed_;
     results.configuration = paper::configuration(outcome);
     results.values = paper::values(outcome);
-    paper::tell(outcome, results);
+    paper::add_finding(outcome, results);
     results.figures = paper::figures(outcome);
     results.attachments = {paper::mode_shapes(outcome)};
     results.timing = {{"identification", taken.count()}};

@@ -18,12 +18,12 @@ std::string job_text(const SweepSource& source, const Json& manifest) {
 }
 
 SweepJob read_job(const std::string& text) {
-  const Json told = Json::parse(text), &manifest = told.at("manifest");
+  const Json given = Json::parse(text), &manifest = given.at("manifest");
   SweepJob job;
-  job.source.config = {told.at("config").get<std::string>(), manifest.at("experiment").get<std::string>()};
-  if (told.contains("truth"))
-    job.source.truth = {told.at("truth").get<std::string>(), manifest.at("truth").get<std::string>()};
-  if (told.contains("record")) job.source.record = told.at("record").get<std::string>();
+  job.source.config = {given.at("config").get<std::string>(), manifest.at("experiment").get<std::string>()};
+  if (given.contains("truth"))
+    job.source.truth = {given.at("truth").get<std::string>(), manifest.at("truth").get<std::string>()};
+  if (given.contains("record")) job.source.record = given.at("record").get<std::string>();
   job.plan = plan_of(manifest, "manifest.json");
   const std::string here = manifest_of(job.source, job.plan, {})["hash"], there = manifest.at("hash");
   if (here != there)

@@ -56,14 +56,14 @@ std::string hash_of(const std::string& text) {
 
 Json manifest_of(const SweepSource& source, const SweepPlan& plan, const Shard& shard) {
   Json json{{"program", "beamid sweep"}, {"version", BEAMID_VERSION}};
-  Json& told = json["plan"];
-  told["vary"] = Json::array();
-  for (const VariedKey& one : plan.varied) told["vary"].push_back(one.text);
-  told["random"] = plan.samples;
-  told["seeds"] = plan.seeds;
-  told["seed"] = plan.seed;
-  if (plan.once) told["identify"] = "once";
-  told["cases"] = plan.cases();
+  Json& described = json["plan"];
+  described["vary"] = Json::array();
+  for (const VariedKey& one : plan.varied) described["vary"].push_back(one.text);
+  described["random"] = plan.samples;
+  described["seeds"] = plan.seeds;
+  described["seed"] = plan.seed;
+  if (plan.once) described["identify"] = "once";
+  described["cases"] = plan.cases();
   json["experiment"] = source.config.text;
   if (source.truth) json["truth"] = source.truth->text;
   if (source.record) json["record"] = source.record->filename().string();
@@ -89,16 +89,17 @@ Json read_manifest(const std::filesystem::path& file) {
 SweepPlan plan_of(const Json& manifest, const std::filesystem::path& file) {
   SweepPlan plan;
   try {
-    const Json& told = manifest.at("plan");
-    for (const Json& text : told.at("vary")) plan.varied.push_back(parse_varied(text.get<std::string>()));
+    const Json& described = manifest.at("plan");
+    for (const Json& text : described.at("vary"))
+      plan.varied.push_back(parse_varied(text.get<std::string>()));
     const auto count = [&](const char* key) {
-      return static_cast<int>(whole_number(told.at(key), key, 0, std::numeric_limits<int>::max()));
+      return static_cast<int>(whole_number(described.at(key), key, 0, std::numeric_limits<int>::max()));
     };
     plan.samples = count("random");
     plan.seeds = count("seeds");
-    if (!told.at("seed").is_number_unsigned()) throw std::invalid_argument("seed is no whole number");
-    plan.seed = told.at("seed").get<std::uint64_t>();
-    plan.once = told.value("identify", "") == "once";
+    if (!described.at("seed").is_number_unsigned()) throw std::invalid_argument("seed is no whole number");
+    plan.seed = described.at("seed").get<std::uint64_t>();
+    plan.once = described.value("identify", "") == "once";
     check(plan);
   } catch (const Json::exception&) {
     throw InputError({file.string()}, "no plan of a sweep; expected what beamid sweep wrote");

@@ -27,7 +27,7 @@ namespace beamid::experiments {
 namespace {
 
 /// What mpirun tells a process that it starts: Open MPI, and those that follow PMI (MPICH, Slurm).
-int told_by_mpirun() {
+int set_by_mpirun() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
     if (const char* const value = std::getenv(name)) return std::atoi(value);
   return 1;
@@ -84,7 +84,7 @@ CaseBlock numbers_in(const std::string& text) {
 }  // namespace
 
 Processes::Processes() {
-  if (told_by_mpirun() < 2) return;
+  if (set_by_mpirun() < 2) return;
   MPI_Init(nullptr, nullptr);
   started_ = true;
   MPI_Comm_size(MPI_COMM_WORLD, &count_);
@@ -149,7 +149,7 @@ void Processes::work(const std::function<CaseRunner(const std::string& job)>& pr
 #else
 
 Processes::Processes() {
-  if (const int several = told_by_mpirun(); several > 1)
+  if (const int several = set_by_mpirun(); several > 1)
     throw std::runtime_error(
         fmt::format("mpirun has started {} processes, and this beamid was built without MPI (libopenmpi-dev, "
                     "BEAMID_MPI=ON); expected one with it, or --shard I/N",

@@ -34,7 +34,7 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
   void reset(const Gaussian& estimate) override {
     estimate_ = as_matrix(estimate, model_);
     model_.observe_all();
-    told_ = noise_ = model_.output_noise();
+    reported_ = noise_ = model_.output_noise();
     take_process_noise();
     readings_ = 0.0;
   }
@@ -48,9 +48,9 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
 
   void take_in(const VectorXd& output, const VectorXd& input) override {
     const std::vector<Index>& seen = model_.observed();
-    if (!same(model_.output_noise(), told_(seen, seen))) {  // told anew from outside: the new first guess
+    if (!same(model_.output_noise(), reported_(seen, seen))) {  // told anew from outside: the new first guess
       replace_block(noise_, seen, model_.output_noise());
-      told_(seen, seen) = model_.output_noise();
+      reported_(seen, seen) = model_.output_noise();
     }
     model_.output(estimate_.mean, input, expected_);
     model_.output_jacobian(estimate_.mean, input, sensor_);
@@ -67,7 +67,7 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
           residual * residual.transpose() + sensor_ * estimate_.covariance * sensor_.transpose();
       MatrixXd block = (1.0 - share) * noise + share * said;
       // Readings without noise: R must not vanish, lest S become singular.
-      block.diagonal() = block.diagonal().cwiseMax(smallest_share_ * told_.diagonal()(seen));
+      block.diagonal() = block.diagonal().cwiseMax(smallest_share_ * reported_.diagonal()(seen));
       symmetrise(block);
       replace_block(noise_, seen, block);
     }
@@ -133,7 +133,8 @@ class AdaptiveExtendedKalmanFilter final : public Filter {
   Gaussian estimate_;
   LinearisedStep step_;
   VectorXd next_, expected_;
-  MatrixXd told_, noise_, process_, tangent_, sensor_;  // noise_: R (p x p) as estimated, told_: as given
+  MatrixXd reported_, noise_, process_, tangent_,
+      sensor_;  // noise_: R (p x p) as estimated, reported_: as given
 };
 
 const bool adaptive_ekf_registered = filter_registry().add(

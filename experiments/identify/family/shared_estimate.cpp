@@ -41,13 +41,13 @@ SharedEstimate shared_estimate(const std::vector<NamedEstimate>& records) {
   SharedEstimate result;
   std::vector<EstimatePart> parts;
   std::vector<double> prior_mean, prior_information;
-  Index told_in_all = 0;
+  Index rank_in_all = 0;
   for (const NamedEstimate& record : records) {
     EstimatePart part;
     Index rank = 0;
     part.information =
         information_of(record.estimate, rank) / (record.estimate.noise_ratio * record.estimate.noise_ratio);
-    told_in_all += rank;
+    rank_in_all += rank;
     for (std::size_t i = 0; i < record.names.size(); ++i) {
       const auto found = std::find(result.names.begin(), result.names.end(), record.names[i]);
       part.places.push_back(found - result.names.begin());
@@ -84,7 +84,7 @@ SharedEstimate shared_estimate(const std::vector<NamedEstimate>& records) {
     const VectorXd off = records[r].estimate.unknowns.mean - result.unknowns.mean(parts[r].places);
     result.chi_squared += off.dot(parts[r].information * off);
   }
-  result.freedom = std::max(0.0, static_cast<double>(told_in_all - all));
+  result.freedom = std::max(0.0, static_cast<double>(rank_in_all - all));
   if (result.freedom > 0.0) {
     const boost::math::chi_squared law(result.freedom);
     result.probability = cdf(complement(law, result.chi_squared));

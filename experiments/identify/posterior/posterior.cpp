@@ -136,7 +136,7 @@ VectorXd Posterior::best_draw() const {
   return best;
 }
 
-bool Posterior::humps_in_doubt() const {
+bool Posterior::humps_are_uncertain() const {
   return importance.poor() ? tempered_apart > most_apart
                            : tempered.log_evidence - importance.log_evidence > most_above;
 }
@@ -154,7 +154,7 @@ std::vector<std::string> Posterior::complaints() const {
   if (importance.poor())
     list.emplace_back(
         "the humps are no humps a mixture would resemble: evidence and weights are those of the samplers");
-  else if (humps_in_doubt())
+  else if (humps_are_uncertain())
     list.push_back(
         fmt::format("tempering finds {:.1f} nat more evidence than the humps hold, expected at most {}",
                     tempered.log_evidence - importance.log_evidence, most_above));

@@ -41,9 +41,9 @@ struct Posterior {
   std::size_t draws() const;
   /// The temperings hold more evidence than the humps that were found, or, where importance sampling cannot
   /// weigh those, disagree: humps may be missing.
-  bool humps_in_doubt() const;
+  bool humps_are_uncertain() const;
   /// That, or chains that have not met: no number to rely on.
-  bool disagrees() const { return humps_in_doubt() || worst_r_hat() > 1.05; }
+  bool disagrees() const { return humps_are_uncertain() || worst_r_hat() > 1.05; }
   Eigen::VectorXd best_draw() const;  ///< u of the largest posterior density that a chain or a climb met
   /// Why not to rely on it, a clause each; none: it has converged.
   std::vector<std::string> complaints() const;

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr Index outliers_told = 5;  // one by one
+constexpr Index outliers_reported = 5;  // one by one
 
 }  // namespace
 
@@ -50,7 +50,7 @@ bool StreamedIdentification::take_in(const filters::Sample& sample) {
     again.estimate = first_estimate(at_first());
     again.alarm = {};
     running_->resume(again);
-    told_ = 0;
+    reported_ = 0;
     begin_anew(InnovationWatch::Verdict::gave_up);
     good_ = running_->save();
     return true;
@@ -63,9 +63,9 @@ bool StreamedIdentification::take_in(const filters::Sample& sample) {
 // The divergence alarm of a run is left to InnovationWatch, which acts on it.
 void StreamedIdentification::list_failures() {
   const auto& events = running_->events();
-  for (; told_ < events.size(); ++told_)
-    if (!events[told_].reason.starts_with("the innovations diverge"))
-      news_.push_back(failure_sentences({events[told_]}));
+  for (; reported_ < events.size(); ++reported_)
+    if (!events[reported_].reason.starts_with("the innovations diverge"))
+      news_.push_back(failure_sentences({events[reported_]}));
 }
 
 void StreamedIdentification::heed(const filters::Sample& sample, const filters::Gaussian& predicted) {
@@ -83,12 +83,12 @@ void StreamedIdentification::heed(const filters::Sample& sample, const filters::
   if (verdict == Watched::leave_out) {
     filter_->reset(predicted);
     status_ = Status::left_out;
-    if (watch_.left_out() <= outliers_told)
+    if (watch_.left_out() <= outliers_reported)
       news_.push_back(
           fmt::format("Sample {} at {:.6g} s is left out: its normalised innovation square is {:.3g}"
                       "; expected {}.{}",
                       running_->step(), running_->time(), correction.normalised_square, outputs,
-                      watch_.left_out() < outliers_told ? "" : " Others are counted only."));
+                      watch_.left_out() < outliers_reported ? "" : " Others are counted only."));
   } else if (verdict != Watched::keep) {
     begin_anew(verdict);
   } else if (status_ == Status::settled && outputs > 0) {

@@ -107,7 +107,7 @@ class StreamedIdentification {
   std::optional<Known> older_, newer_;  // at least one window old, and at most
   Eigen::Index remembered_ = 0;         // outputs since newer_
   filters::SavedRun good_;              // after the last sample that did not end the stream
-  std::size_t told_ = 0;                // events of running_
+  std::size_t reported_ = 0;            // events of running_
   std::vector<std::string> news_;
 };
 

@@ -124,7 +124,7 @@ void StreamedIdentification::resume(const nlohmann::json& saved) {
     status_ = !watch_.settled() ? Status::settling : motion_.seen() ? Status::settled : Status::undetermined;
     newer_ = known.empty() ? std::nullopt : std::optional(known.back());
     older_ = known.size() < 2 ? std::nullopt : std::optional(known.front());
-    told_ = 0;
+    reported_ = 0;
     good_ = running_->save();
   } catch (const nlohmann::json::exception&) {
     throw std::invalid_argument("a key is missing or of another type; expected what --save-state wrote");

@@ -19,9 +19,9 @@ using Eigen::Index, Eigen::VectorXd;
 using namespace ringing;
 
 constexpr double tau = 2.0 * std::numbers::pi;
-constexpr double look_ahead = 6;                  // cycles
-constexpr double tracked_stiffness_doubt = 0.14;  // of ln K: 7 % of the frequency
-constexpr double damping_guess = 0.005, tracked_damping_doubt = 0.02;
+constexpr double look_ahead = 6;                        // cycles
+constexpr double tracked_stiffness_uncertainty = 0.14;  // of ln K: 7 % of the frequency
+constexpr double damping_guess = 0.005, tracked_damping_uncertainty = 0.02;
 
 // Frequency of the largest Fourier amplitude within the band, under a Hann window.
 double peak(const VectorXd& samples, double interval, std::pair<double, double> band) {
@@ -74,8 +74,8 @@ filters::Gaussian fresh_estimate(const Ringing& ringing, Index first) {
   estimate.mean[damping] = damping_guess;
   estimate.mean[offset] = ahead.mean();
   VectorXd deviation(size);
-  deviation << amplitude, tau * f * amplitude, 0.0, 0.0, tracked_stiffness_doubt, tracked_damping_doubt,
-      amplitude;
+  deviation << amplitude, tau * f * amplitude, 0.0, 0.0, tracked_stiffness_uncertainty,
+      tracked_damping_uncertainty, amplitude;
   estimate.covariance = deviation.cwiseAbs2().asDiagonal();
   return estimate;
 }

@@ -21,8 +21,8 @@ double no_worse(double chi_square) {
 }
 
 // Fits that ended at the same place, by rising chi^2.
-std::vector<ParameterSet> told_apart(std::vector<std::optional<Fit>> fits, std::size_t starts,
-                                     const SearchSpace& space, Updating& result) {
+std::vector<ParameterSet> distinct_sets(std::vector<std::optional<Fit>> fits, std::size_t starts,
+                                        const SearchSpace& space, Updating& result) {
   std::vector<ParameterSet> sets;
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < fits.size(); ++i)
@@ -91,7 +91,7 @@ Updating update(const FitResidual& residual, const UpdateSettings& settings,
         least_squares(residual, i < result.starts ? space.start(i) : space.place(known[i - result.starts]));
     countdown.count();
   });
-  result.sets = told_apart(std::move(fits), result.starts, space, result);
+  result.sets = distinct_sets(std::move(fits), result.starts, space, result);
   if (result.sets.empty())
     throw std::invalid_argument(
         "the structure has no modes at any of the parameters tried: its stiffness is not positive; expected "

@@ -26,7 +26,7 @@ bool reject_twin(const std::vector<Pole>& poles, RecordModes& found) {
   const double duration = found.interval * static_cast<double>(found.target.cols());
   for (std::size_t a = 0; a < poles.size(); ++a)
     for (std::size_t b = a + 1; b < poles.size(); ++b) {
-      if (!cannot_be_told_apart(poles[a], poles[b], duration)) continue;
+      if (!indistinguishable(poles[a], poles[b], duration)) continue;
       const auto weight = [&](std::size_t m) {
         return std::pair(found.modes[m].orders.size(), found.modes[m].strength);
       };
@@ -84,9 +84,9 @@ bool reject_least_certain(const JointDecayFit& fit, const StabilisationSettings&
   for (std::size_t m = 0; m < found.modes.size(); ++m) {
     const Pole pole = fitted_pole(fit, m);
     std::string objection = objection_to(found.modes[m].pole, fit, m, found, settings);
-    const double doubt = pole.frequency_deviation_hz / pole.frequency_hz();
-    if (objection.empty() || doubt <= largest) continue;
-    worst = m, largest = doubt, why = std::move(objection);
+    const double uncertainty = pole.frequency_deviation_hz / pole.frequency_hz();
+    if (objection.empty() || uncertainty <= largest) continue;
+    worst = m, largest = uncertainty, why = std::move(objection);
   }
   if (worst) reject(*worst, why, found);
   return worst.has_value();

@@ -90,7 +90,7 @@ Pole fitted_pole(const JointDecayFit& fit, std::size_t m) {
   return pole;
 }
 
-bool cannot_be_told_apart(const Pole& a, const Pole& b, double duration) {
+bool indistinguishable(const Pole& a, const Pole& b, double duration) {
   constexpr double cycles = 1, time_constants = 3;
   const double slower = std::min(std::abs(a.rate.real()), std::abs(b.rate.real()));
   const double length = std::min(duration, time_constants / std::max(slower, 1e-300));

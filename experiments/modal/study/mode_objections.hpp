@@ -13,7 +13,7 @@ Pole fitted_pole(const JointDecayFit& fit, std::size_t m);
 
 /// Two poles less than a cycle apart over the record, or over three time constants of the slower decay where
 /// that is less, are one mode: a frequency or a damping that follows the amplitude is realised as several.
-bool cannot_be_told_apart(const Pole& a, const Pole& b, double duration);
+bool indistinguishable(const Pole& a, const Pole& b, double duration);
 
 /// Why mode m is none; empty: it is one. It is none where least squares carried it away from `from`, where
 /// frequency or damping ratio are too uncertain, and where it is no more than noise: its energy over the

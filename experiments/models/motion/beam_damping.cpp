@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-constexpr double usual_ratio = 0.01, damping_doubt = 1.0;
+constexpr double usual_ratio = 0.01, damping_uncertainty = 1.0;
 
 // Whether the law is C = alpha M + beta K.
 bool is_proportional(const fem::DampingLaw& law) {
@@ -27,15 +27,16 @@ void add_damping_defaults(const fem::DampingLaw& law, const VectorXd& frequencie
       is_proportional(law) ? fem::proportional_coefficients(law) : fem::ProportionalDamping{};
   for (std::size_t j = 0; j < choices.size(); ++j) {
     const ParameterChoice& choice = choices[j];
-    if (choice.quantity == "mass_damping") defaults[j] = {proportional.mass, damping_doubt};
-    if (choice.quantity == "stiffness_damping") defaults[j] = {proportional.stiffness, damping_doubt};
+    if (choice.quantity == "mass_damping") defaults[j] = {proportional.mass, damping_uncertainty};
+    if (choice.quantity == "stiffness_damping") defaults[j] = {proportional.stiffness, damping_uncertainty};
     if (choice.quantity != "damping_ratio") continue;
     const int mode = choice.mode.value_or(1);
     if (mode < 1 || mode > frequencies.size())
       refuse(choice,
              fmt::format("damping_ratio of mode {}; expected one of the {} modes that the model damps", mode,
                          frequencies.size()));
-    defaults[j] = {described ? fem::damping_ratios(law, frequencies)[mode - 1] : usual_ratio, damping_doubt};
+    defaults[j] = {described ? fem::damping_ratios(law, frequencies)[mode - 1] : usual_ratio,
+                   damping_uncertainty};
   }
 }
 

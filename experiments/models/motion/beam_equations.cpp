@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using Property = fem::BeamParameter::Quantity;
 
-constexpr double stiffness_doubt = 0.3, mass_doubt = 0.1, dashpot_doubt = 1.0;
+constexpr double stiffness_uncertainty = 0.3, mass_uncertainty = 0.1, dashpot_uncertainty = 1.0;
 
 /// @param asked a ParameterChoice or an Unknown
 fem::BeamParameter parameter_of(const auto& asked) {
@@ -92,10 +92,10 @@ std::vector<ParameterDefault> beam_defaults(const fem::Structure& structure,
     const bool mass = *quantity == Property::tip_mass || *quantity == Property::body_mass ||
                       *quantity == Property::tip_rotary_inertia;
     try {
-      defaults[j] = {fem::value_of(structure, parameter_of(choice)), mass ? mass_doubt
+      defaults[j] = {fem::value_of(structure, parameter_of(choice)), mass ? mass_uncertainty
                                                                      : *quantity == Property::storey_damping
-                                                                         ? dashpot_doubt
-                                                                         : stiffness_doubt};
+                                                                         ? dashpot_uncertainty
+                                                                         : stiffness_uncertainty};
     } catch (const std::invalid_argument& error) {
       refuse(choice, choice.quantity + ": " + error.what());
     }

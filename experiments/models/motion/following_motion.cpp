@@ -12,7 +12,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr double guess_spacing =
     0.01;  // of the guesses: half of it, to the third power, is what the maps err by
 
-// A guess of zero (an inertia, a load) is stepped by its doubt.
+// A guess of zero (an inertia, a load) is stepped by its uncertainty.
 VectorXd spacing_of(const MotionDescription& description) {
   VectorXd spacing(description.properties());
   for (std::size_t j = 0; j < description.unknowns.size(); ++j)

@@ -205,7 +205,7 @@ ExpectedOscillator expected_oscillator(const std::string& model, const ModelSett
 std::unique_ptr<JointModel> make_oscillator(const std::string& name, const ModelSetting& setting,
                                             std::shared_ptr<const OscillatorLaw> law,
                                             const std::vector<OscillatorTerm>& law_terms, bool sensor_bias) {
-  constexpr double mass_doubt = 0.1;
+  constexpr double mass_uncertainty = 0.1;
   require_no_supports(name, setting);
   const MotionDescription sensors =
       describe_sensors(name, setting, {{"sensor_bias", sensor_bias}, {"sensor_drift", false}});
@@ -224,7 +224,7 @@ std::unique_ptr<JointModel> make_oscillator(const std::string& name, const Model
     pushed |= i != parts.base;
   }
   std::vector<OscillatorTerm> terms = law_terms;
-  terms.push_back({"mass", expected.mass, mass_doubt * expected.mass, pushed, pushed, expected.mass});
+  terms.push_back({"mass", expected.mass, mass_uncertainty * expected.mass, pushed, pushed, expected.mass});
   for (const ParameterChoice& choice : setting.parameters)
     if (choice.quantity == "mass" && !pushed)
       refuse(choice,

@@ -53,13 +53,15 @@ std::optional<Bias> measured_bias(const std::string& scheme, const Oscillator& t
   settings.duration = std::floor(samples) * dt;
   settings.passes = 3;
   // As uncertain as K is, and C by as much as a first-order scheme may change it, K dt; then less and less,
-  // so that the products of these doubts with those of the start, which a linearisation drops, vanish too.
+  // so that the products of these uncertainties with those of the start, which a linearisation drops, vanish
+  // too.
   const double c = std::max(truth.damping, truth.stiffness * dt);
   Oscillator found = truth;
-  for (const double doubt : {1.0, 1e-2, 1e-4}) {
+  for (const double uncertainty : {1.0, 1e-2, 1e-4}) {
     settings.first_stiffness = found.stiffness;
     settings.first_damping = found.damping;
-    settings.initial_variance = {1.0, w * w, std::pow(doubt * truth.stiffness, 2), std::pow(doubt * c, 2)};
+    settings.initial_variance = {1.0, w * w, std::pow(uncertainty * truth.stiffness, 2),
+                                 std::pow(uncertainty * c, 2)};
     const Identification identified = paper::validate("ekf", scheme, settings);
     if (identified.run.failure) return {};
     found = identified.found;

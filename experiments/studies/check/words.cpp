@@ -108,8 +108,8 @@ bool add_conclusions(const ModelCheck& check, const std::vector<Explanation>& al
 
 /// How near the best come where none explains: of all, and of those that are plausible. `all` begins with the
 /// best.
-void tell_best(const ModelCheck& check, const std::vector<Explanation>& all, const char* kind,
-               std::vector<std::string>& sentences) {
+void add_best(const ModelCheck& check, const std::vector<Explanation>& all, const char* kind,
+              std::vector<std::string>& sentences) {
   const Explanation *best = nullptr, *plausible = nullptr;
   for (const Explanation& one : all) {
     if (one.verdict != ExplanationVerdict::leaves_much) continue;
@@ -127,7 +127,7 @@ void tell_best(const ModelCheck& check, const std::vector<Explanation>& all, con
 
 /// What may be another one altogether and would then explain, "tip mass 0.27 instead of 0.71 kg"; whether
 /// there is such a thing. A weight is exchanged more easily than a length.
-bool tell_exchanged(const ModelCheck& check, std::vector<std::string>& sentences) {
+bool add_exchanged(const ModelCheck& check, std::vector<std::string>& sentences) {
   if (!with(check.single, ExplanationVerdict::explains).empty()) return false;
   auto some = with(check.single, ExplanationVerdict::implausible);
   std::erase_if(some, [&](const Explanation* e) { return !candidate_in(check, *e).exchangeable; });
@@ -151,7 +151,7 @@ bool tell_exchanged(const ModelCheck& check, std::vector<std::string>& sentences
 }
 
 /// The structure that stands against all others.
-void tell_outlier(const ModelCheck& check, std::vector<std::string>& sentences) {
+void add_outlier(const ModelCheck& check, std::vector<std::string>& sentences) {
   if (!check.outlier) return;
   sentences.push_back(fmt::format(
       "{} contradicts the others: without it {}.", check.structures[check.outlier->structure].name,
@@ -179,7 +179,7 @@ std::vector<std::vector<std::size_t>> indistinguishable(const ModelCheck& check)
   return groups;
 }
 
-void tell_twins(const ModelCheck& check, std::vector<std::string>& sentences) {
+void add_twins(const ModelCheck& check, std::vector<std::string>& sentences) {
   if (check.numbers < 2) {
     sentences.emplace_back(
         "One frequency cannot tell candidates apart: any of them can be chosen to reproduce it.");
@@ -218,16 +218,16 @@ std::vector<std::string> conclusions(const ModelCheck& check) {
   } else {
     sentences.push_back(fmt::format("The {} as described do{} not agree with what was identified: {}.", what,
                                     several ? "" : "es", size));
-    tell_outlier(check, sentences);
-    const bool exchanged = tell_exchanged(check, sentences);
+    add_outlier(check, sentences);
+    const bool exchanged = add_exchanged(check, sentences);
     if (!add_conclusions(check, check.single, "single change", "single changes", sentences)) {
-      if (!exchanged) tell_best(check, check.single, "single change", sentences);
+      if (!exchanged) add_best(check, check.single, "single change", sentences);
       if (!check.pairs.empty() &&
           !add_conclusions(check, check.pairs, "pair of changes", "pairs of changes", sentences))
-        tell_best(check, check.pairs, "pair", sentences);
+        add_best(check, check.pairs, "pair", sentences);
     }
   }
-  tell_twins(check, sentences);
+  add_twins(check, sentences);
   return sentences;
 }
 

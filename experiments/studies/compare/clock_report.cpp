@@ -2,7 +2,7 @@
 
 namespace beamid::experiments {
 
-void tell_clocks(Results& results, const Comparison& comparison) {
+void add_clocks(Results& results, const Comparison& comparison) {
   const std::vector<OwnClock>& clocks = comparison.compared.clocks;
   if (clocks.empty()) return;
   Table table{"clocks", "Channels with a clock of their own"};

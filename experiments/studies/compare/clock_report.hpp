@@ -7,6 +7,6 @@
 namespace beamid::experiments {
 
 /// The lags as a table and as "clocks" in the values; nothing where all channels keep one clock.
-void tell_clocks(Results& results, const Comparison& comparison);
+void add_clocks(Results& results, const Comparison& comparison);
 
 }  // namespace beamid::experiments

@@ -58,7 +58,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   results.table(run_table(comparison));
   for (const std::string& name : parameter_names(comparison))
     if (!alone) results.table(parameter_table(comparison, name));
-  tell_clocks(results, comparison);
+  add_clocks(results, comparison);
   for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
   results.notes(comparison.compared.notes);
   results.figures = figures(comparison);

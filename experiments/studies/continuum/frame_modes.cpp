@@ -157,7 +157,7 @@ FrameModes frame_modes(const fem::Structure& frame, int elements_per_member, Ind
           .cwiseAbs2();
   progress("modes of half the elements");
   found.discretisation_error = coarser_mesh_error(frame, elements_per_member, found.modes);
-  found.notes = doubts(found.modes);
+  found.notes = accuracy_notes(found.modes);
   if (found.modes.rigid > 0)
     found.notes.push_back(fmt::format("{} rigid-body mode{}: the frame can move without strain.",
                                       found.modes.rigid, found.modes.rigid == 1 ? "" : "s"));

@@ -24,7 +24,7 @@ struct FrameModes {
   Eigen::MatrixXd
       effective_mass;       ///< (k x axes) (phi^T M r)^2 under a motion of the base, phi^T M phi = 1 [kg]
   double total_mass = 0.0;  ///< [kg]
-  std::vector<std::string> notes;  ///< what a reader should doubt, a sentence each
+  std::vector<std::string> notes;  ///< what speaks against them, a sentence each
 };
 
 /// @param count of modes, cut to what the mesh has.

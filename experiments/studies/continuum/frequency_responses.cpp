@@ -101,8 +101,8 @@ class Solver {
 
 // Which minima are anti-resonances: those where the response has turned its sign by the next resonance. Below
 // a resonance of residue r the receptance has the sign of r, at it -i r, above it -r.
-void tell_anti_resonances(const VectorXd& f, const VectorXcd& h, const Solver& solver,
-                          std::vector<Extremum>& extrema) {
+void add_anti_resonances(const VectorXd& f, const VectorXcd& h, const Solver& solver,
+                         std::vector<Extremum>& extrema) {
   const Index last = f.size() - 1;
   const auto residue = [&](const Extremum& e) {
     return -solver.receptance(e.frequency_hz, e.response).imag();
@@ -155,7 +155,7 @@ std::vector<Extremum> extrema(const VectorXd& f, const VectorXcd& h, const Vecto
       if (f[i - 1] <= one && one <= f[i + 1])
         found.push_back({Extremum::Kind::resonance, one, std::numeric_limits<double>::infinity()});
   }
-  if (damped) tell_anti_resonances(f, h, solver, found);
+  if (damped) add_anti_resonances(f, h, solver, found);
   return found;
 }
 

@@ -71,8 +71,8 @@ void release_shape(ModalSummary& summary) {
   summary.release_amplitude = fem::modal_amplitudes(summary.system, summary.modes, deflected / there);
 }
 
-void doubt(ModalSummary& summary) {
-  for (std::string& sentence : doubts(summary.modes)) summary.notes.push_back(std::move(sentence));
+void add_accuracy_notes(ModalSummary& summary) {
+  for (std::string& sentence : accuracy_notes(summary.modes)) summary.notes.push_back(std::move(sentence));
   if (summary.modes.rigid > 0)
     summary.notes.push_back(fmt::format(
         "{} rigid-body mode{}: the beam can move without strain, and has no static shape to be released "
@@ -132,7 +132,7 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
   }
   progress("modes of finer meshes");
   summary.discretisation_error = mesh_error(experiment, summary);
-  doubt(summary);
+  add_accuracy_notes(summary);
   return summary;
 }
 

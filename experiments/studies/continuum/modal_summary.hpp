@@ -30,7 +30,7 @@ struct ModalSummary {
   std::optional<fem::ComplexModes> complex;                            ///< where dashpots act
   double total_mass = 0.0;                                             ///< all that moves [kg]
   double static_stiffness = std::numeric_limits<double>::quiet_NaN();  ///< at the observed point [N/m]
-  std::vector<std::string> notes;  ///< what a reader should doubt, a sentence each
+  std::vector<std::string> notes;  ///< what speaks against them, a sentence each
 
   Eigen::VectorXd frequency_hz() const { return modes.frequency_hz(); }
   Eigen::VectorXd exact_error() const;  ///< relative, of the frequency

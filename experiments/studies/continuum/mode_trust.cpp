@@ -33,7 +33,7 @@ VectorXd discretisation_error(const fem::Modes& fine, const fem::Modes& coarse, 
   return error;
 }
 
-std::vector<std::string> doubts(const fem::Modes& modes) {
+std::vector<std::string> accuracy_notes(const fem::Modes& modes) {
   constexpr double enough_digits = 8.0, enough_agreement = 1e-6;
   std::vector<std::string> notes;
   for (Index i = modes.rigid; i < modes.size(); ++i) {

@@ -23,7 +23,7 @@ Eigen::VectorXd discretisation_error(const fem::Modes& fine, const fem::Modes& c
 
 /// A sentence for each mode whose numbers disagree: fewer than 8 digits common to the solver's frequency and
 /// to the Rayleigh quotient of its shape, or a residual above 1e-6.
-std::vector<std::string> doubts(const fem::Modes& modes);
+std::vector<std::string> accuracy_notes(const fem::Modes& modes);
 
 /// The value, or 0 where it is below 1e-12 of `scale`: rounding's share of what symmetry makes zero would
 /// read like a result.

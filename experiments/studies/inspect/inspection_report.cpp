@@ -76,8 +76,8 @@ Results report(const Inspection& found) {
   results.values["channels"] = Json::array();
   for (const InspectedChannel& channel : found.channels)
     results.values["channels"].push_back(inspection_to_json(found, channel));
-  const std::vector<std::string> doubts = doubts_of(found);
-  results.values["doubts"] = doubts;
+  const std::vector<std::string> warnings = inspection_warnings(found);
+  results.values["warnings"] = warnings;
 
   results.heading(found.file);
   std::string text = fmt::format("Read as {}. {}", found.reader, sampling_text(found));
@@ -87,7 +87,7 @@ Results report(const Inspection& found) {
   Table events = event_table(found);
   if (events.rows() > 0) results.table(std::move(events));
   std::string list;
-  for (const std::string& doubt : doubts) list += (list.empty() ? "- " : "\n- ") + doubt;
+  for (const std::string& warning : warnings) list += (list.empty() ? "- " : "\n- ") + warning;
   results.paragraph(list.empty() ? "No problems found." : list);
   const std::string lines = record_table_text(found);
   results.values["record_table"] = lines;

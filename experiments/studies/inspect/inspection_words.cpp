@@ -28,7 +28,7 @@ std::string located(const Inspection& found, const std::vector<std::size_t>& sam
 }
 
 /// Adds what is wrong with one channel.
-void doubt(const Inspection& found, const InspectedChannel& c, std::vector<std::string>& all) {
+void add_channel_warnings(const Inspection& found, const InspectedChannel& c, std::vector<std::string>& all) {
   const Defects& d = c.defects;
   const std::string name = title(c);
   const auto at = [&](std::size_t sample) {
@@ -146,7 +146,7 @@ std::string sampling_text(const Inspection& found) {
   return text;
 }
 
-std::vector<std::string> doubts_of(const Inspection& found) {
+std::vector<std::string> inspection_warnings(const Inspection& found) {
   std::vector<std::string> all;
   const SamplingCheck& s = found.sampling;
   if (!found.skipped_lines.empty())
@@ -163,7 +163,7 @@ std::vector<std::string> doubts_of(const Inspection& found) {
     all.emplace_back(
         "The sampling interval is not constant: filters take the stamps as they are, what needs even samples "
         "resamples the record.");
-  for (const InspectedChannel& channel : found.channels) doubt(found, channel, all);
+  for (const InspectedChannel& channel : found.channels) add_channel_warnings(found, channel, all);
   if (std::none_of(found.channels.begin(), found.channels.end(),
                    [](const auto& c) { return c.quantity.has_value(); }))
     all.emplace_back(

@@ -22,7 +22,7 @@ bool spiky(const InspectedChannel& channel);
 std::string sampling_text(const Inspection& found);
 
 /// What is wrong with the record, a sentence each.
-std::vector<std::string> doubts_of(const Inspection& found);
+std::vector<std::string> inspection_warnings(const Inspection& found);
 
 /// What to write into an experiment file so that every command reads the record like this.
 std::string record_table_text(const Inspection& found);

@@ -178,8 +178,8 @@ nlohmann::ordered_json amplitude_values_of(const std::vector<Dependence>& all,
 
 }  // namespace
 
-void tell_amplitude(const std::vector<RecordModes>& records, const std::vector<MergedMode>& merged,
-                    Results& results) {
+void add_amplitude(const std::vector<RecordModes>& records, const std::vector<MergedMode>& merged,
+                   Results& results) {
   std::vector<Dependence> all;
   for (std::size_t m = 0; m < merged.size(); ++m)
     for (std::size_t r = 0; r < records.size(); ++r) {

@@ -11,7 +11,7 @@ namespace beamid::experiments {
 ///
 /// Amplitudes are those of the channel in which the mode is largest beside the channel's own size.
 /// @throws std::invalid_argument when a record was not taken for a free decay.
-void tell_amplitude(const std::vector<RecordModes>& records, const std::vector<MergedMode>& merged,
-                    Results& results);
+void add_amplitude(const std::vector<RecordModes>& records, const std::vector<MergedMode>& merged,
+                   Results& results);
 
 }  // namespace beamid::experiments

@@ -26,7 +26,7 @@ struct Event {
 
 constexpr double much_left = 30.0, much_damped = 0.3;  // [%], [-]
 
-// What is wrong with the two channels, or what makes the fit doubtful.
+// What is wrong with the two channels, or what makes the fit uncertain.
 std::string fault_sentence(const Event& event) {
   const ChannelFault& fault = event.fault;
   const std::string then = fmt::format(
@@ -199,7 +199,7 @@ Results event_report(const std::vector<std::string>& names, const std::vector<Re
     } else {
       entry["reason"] = one.reason;
     }
-    if (const std::string text = fault_sentence(one); !text.empty()) entry["doubt"] = text;
+    if (const std::string text = fault_sentence(one); !text.empty()) entry["fault"] = text;
     if (one.fault.kind == ChannelFault::Kind::late) entry["late_s"] = one.fault.samples * one.interval;
     results.values["events"].push_back(std::move(entry));
   }

@@ -8,9 +8,9 @@
 
 namespace beamid::experiments {
 
-void tell_masses(const std::vector<std::string>& names, const std::vector<Record>& records,
-                 const std::vector<std::vector<std::complex<double>>>& rates, Results& results,
-                 bool coarse_told) {
+void add_masses(const std::vector<std::string>& names, const std::vector<Record>& records,
+                const std::vector<std::vector<std::complex<double>>>& rates, Results& results,
+                bool coarse_reported) {
   Table table{"hammer_mass", "Mass from the hammer's impulse and the velocity step of the mode"};
   table.column({"record", "record"})
       .column({"mode", "mode", "{:.0f}"})
@@ -45,7 +45,8 @@ void tell_masses(const std::vector<std::string>& names, const std::vector<Record
                       {"mass_kg", found->mass},
                       {"mass_standard_deviation_kg", found->deviation},
                       {"pulses_s", found->pulses_s}});
-      if (coarse.empty() && !coarse_told && !found->coarse.empty()) coarse = names[r] + ": " + found->coarse;
+      if (coarse.empty() && !coarse_reported && !found->coarse.empty())
+        coarse = names[r] + ": " + found->coarse;
       if (rebounded && std::exchange(told, r + 1) != r + 1)
         rebounds += fmt::format(
             "{}: the hammer rebounded, {} pulses within {:.3g} ms. All of them are in the impulse, but what "

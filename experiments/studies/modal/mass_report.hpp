@@ -13,9 +13,9 @@ namespace beamid::experiments {
 /// A table `hammer_mass` and `hammer_mass` of results.json, one row for each mode and record:
 /// hammer_mass.hpp. Nothing where no record has a force with a hit.
 /// @param rates of the modes of each record [rad/s]
-/// @param coarse_told whether hits of few samples have their warning already
-void tell_masses(const std::vector<std::string>& names, const std::vector<Record>& records,
-                 const std::vector<std::vector<std::complex<double>>>& rates, Results& results,
-                 bool coarse_told = false);
+/// @param coarse_reported whether hits of few samples have their warning already
+void add_masses(const std::vector<std::string>& names, const std::vector<Record>& records,
+                const std::vector<std::vector<std::complex<double>>>& rates, Results& results,
+                bool coarse_reported = false);
 
 }  // namespace beamid::experiments

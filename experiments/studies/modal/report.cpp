@@ -141,8 +141,8 @@ Table merged_table(const std::vector<MergedMode>& merged, std::size_t records) {
   return table;
 }
 
-void tell_merged(const std::vector<RecordModes>& records, const std::vector<MergedMode>& merged,
-                 Results& results) {
+void add_merged(const std::vector<RecordModes>& records, const std::vector<MergedMode>& merged,
+                Results& results) {
   results.heading(fmt::format("All {} records", records.size()));
   results.table(merged_table(merged, records.size()));
   std::string differing;
@@ -190,7 +190,7 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
       results.table(std::move(rejected));
     for (Figure& figure : figures(found, suffix)) results.figures.push_back(std::move(figure));
   }
-  if (records.size() > 1) tell_merged(records, merged, results);
+  if (records.size() > 1) add_merged(records, merged, results);
   return results;
 }
 

@@ -135,7 +135,7 @@ std::string settings(const Outcome& outcome) {
 
 }  // namespace
 
-void tell(const Outcome& outcome, Results& results) {
+void add_finding(const Outcome& outcome, Results& results) {
   results.heading("The finding");
   results.paragraph(cause(outcome));
   results.paragraph(law(outcome));

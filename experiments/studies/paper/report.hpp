@@ -36,7 +36,7 @@ std::vector<Figure> figures(const Outcome& outcome);
 Attachment mode_shapes(const Outcome& outcome);
 
 /// Headings, paragraphs and tables in the order in which they are read.
-void tell(const Outcome& outcome, Results& results);
+void add_finding(const Outcome& outcome, Results& results);
 
 /// The keys of results.json.
 nlohmann::ordered_json values(const Outcome& outcome);

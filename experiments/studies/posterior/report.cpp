@@ -10,7 +10,7 @@
 namespace beamid::experiments {
 namespace {
 
-void add_doubts_of_modes(const PosteriorStudy& study, Results& results) {
+void add_mode_warnings(const PosteriorStudy& study, Results& results) {
   if (!study.explains())
     results.warning(update_verdict(*study.update).first +
                     " The posterior takes their standard deviations as they are: it is too narrow.");
@@ -52,7 +52,7 @@ Results posterior_report(const Experiment& experiment, const PosteriorStudy& stu
   else
     results.warning(posterior_verdict(study), study.posterior.disagrees() || study.contradicted());
   if (study.update)
-    add_doubts_of_modes(study, results);
+    add_mode_warnings(study, results);
   else
     add_sensing_verdict(study.source->sensing, results);
   for (const std::string& warning : prior_warnings(study)) results.warning(warning);

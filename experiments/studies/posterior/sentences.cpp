@@ -35,7 +35,8 @@ std::string posterior_verdict(const PosteriorStudy& study) {
                        posterior.draws(), posterior.fewest_effective(), posterior.worst_r_hat());
   const std::size_t humps = posterior.humps.size(), notable = posterior.notable_humps();
   if (humps == 1)
-    text += posterior.humps_in_doubt() ? " One hump was found; others may have been missed." : " One hump.";
+    text +=
+        posterior.humps_are_uncertain() ? " One hump was found; others may have been missed." : " One hump.";
   else if (notable < 2)
     text +=
         fmt::format(" One hump holds {:.4g} % of the probability; {} more, of next to none, in the table.",

@@ -173,7 +173,7 @@ void lead_with(Results& results, const std::string& record_name, const Record& r
   }
 }
 
-void tell_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format) {
+void add_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format) {
   lead_with(results, "", prepared.record);
   std::string text;
   for (const std::string& remark : prepared.record.remarks) text += (text.empty() ? "" : " ") + remark;
@@ -185,8 +185,8 @@ void tell_preparation(Results& results, const PreparedRecord& prepared, const Re
   if (!text.empty()) results.paragraph("Record: " + text);
 }
 
-void tell_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
-               const RecordFormat& format) {
+void add_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
+              const RecordFormat& format) {
   lead_with(results, record_name, prepared.record);
   std::string text;
   for (const std::string& remark : prepared.record.remarks) text += (text.empty() ? "" : " ") + remark;

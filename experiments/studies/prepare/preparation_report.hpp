@@ -30,12 +30,12 @@ void lead_with(Results& results, const std::string& record_name, const Record& r
 
 /// Leads with the record's warnings, and adds the remarks on it as a paragraph; with steps, what they change
 /// together, and the values under `preparation`.
-void tell_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format);
+void add_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format);
 
 /// The same of one of several records, by its name: the sentence on the cost alone, and, with steps, one more
 /// entry of the array `preparations`.
-void tell_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
-               const RecordFormat& format);
+void add_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
+              const RecordFormat& format);
 
 /// What `beamid prepare` finds: table, figure of before and after, and prepared.csv.
 Results report(const PreparedRecord& prepared, const RecordFormat& format, const std::string& title,

@@ -58,7 +58,7 @@ void warn_of_twins(Comparison& found, const RecordTwins& twins) {
   warnings.insert(warnings.begin(), std::move(text));
 }
 
-void tell_twins(Results& results, const ComparedRun& run, const RecordTwins& twins) {
+void add_twins(Results& results, const ComparedRun& run, const RecordTwins& twins) {
   if (twins.tried == 0) return;
   auto sets = nlohmann::ordered_json::array();
   for (const RecordTwin& twin : twins.sets) {

@@ -10,6 +10,6 @@ namespace beamid::experiments {
 void warn_of_twins(Comparison& found, const RecordTwins& twins);
 
 /// Their table, what would decide, and "twins" of results.json; nothing where none was tried.
-void tell_twins(Results& results, const ComparedRun& run, const RecordTwins& twins);
+void add_twins(Results& results, const ComparedRun& run, const RecordTwins& twins);
 
 }  // namespace beamid::experiments

@@ -50,7 +50,7 @@ Pair event(const std::vector<std::array<double, 3>>& modes, unsigned seed, Index
   return pair;
 }
 
-ChannelFault doubt_of(const VectorXd& base, const VectorXd& response) {
+ChannelFault fault_of(const VectorXd& base, const VectorXd& response) {
   return channel_fault(base, response, interval);
 }
 
@@ -69,14 +69,14 @@ TEST(ChannelFault, HasNoneOfHealthyEvents) {
     for (unsigned seed = 0; seed < 4; ++seed)
       for (const Index samples : {Index{800}, Index{4000}}) {
         const Pair pair = event(modes, seed, samples);
-        EXPECT_FALSE(doubt_of(pair.base, pair.response).surely()) << modes.size() << " modes, seed " << seed;
+        EXPECT_FALSE(fault_of(pair.base, pair.response).surely()) << modes.size() << " modes, seed " << seed;
       }
 }
 
 TEST(ChannelFault, HasNoneOfAnIsolatedStructure) {
   for (unsigned seed = 0; seed < 3; ++seed) {
     const Pair isolated = event({{0.5, 0.1, 1.0}}, seed, 8000);
-    EXPECT_FALSE(doubt_of(isolated.base, isolated.response).surely()) << seed;
+    EXPECT_FALSE(fault_of(isolated.base, isolated.response).surely()) << seed;
   }
 }
 
@@ -84,9 +84,9 @@ TEST(ChannelFault, TellsASignThatIsTurned) {
   for (const auto& modes : {one_mode, column, four_floors})
     for (unsigned seed = 0; seed < 2; ++seed) {
       const Pair pair = event(modes, seed);
-      const ChannelFault doubt = doubt_of(pair.base, -pair.response);
-      EXPECT_EQ(doubt.kind, ChannelFault::Kind::reversed) << modes.size() << " modes, seed " << seed;
-      EXPECT_NEAR(doubt.instead.damping_ratio, 0.05, 0.006);
+      const ChannelFault fault = fault_of(pair.base, -pair.response);
+      EXPECT_EQ(fault.kind, ChannelFault::Kind::reversed) << modes.size() << " modes, seed " << seed;
+      EXPECT_NEAR(fault.instead.damping_ratio, 0.05, 0.006);
     }
 }
 
@@ -94,8 +94,8 @@ TEST(ChannelFault, TellsHowLateTheResponseIs) {
   for (const auto& modes : {one_mode, column, four_floors})
     for (unsigned seed = 0; seed < 2; ++seed) {
       const Pair pair = event(modes, seed);
-      const ChannelFault late = doubt_of(pair.base, later(pair.response, 5)),
-                         early = doubt_of(later(pair.base, 5), pair.response);
+      const ChannelFault late = fault_of(pair.base, later(pair.response, 5)),
+                         early = fault_of(later(pair.base, 5), pair.response);
       EXPECT_EQ(late.kind, ChannelFault::Kind::late);
       EXPECT_NEAR(late.samples, 5, 1) << modes.size() << " modes, seed " << seed;
       EXPECT_EQ(early.kind, ChannelFault::Kind::late);
@@ -107,7 +107,7 @@ TEST(ChannelFault, TellsBaseAndResponseExchanged) {
   for (const auto& modes : {one_mode, column, four_floors})
     for (unsigned seed = 0; seed < 2; ++seed) {
       const Pair pair = event(modes, seed);
-      EXPECT_EQ(doubt_of(pair.response, pair.base).kind, ChannelFault::Kind::exchanged)
+      EXPECT_EQ(fault_of(pair.response, pair.base).kind, ChannelFault::Kind::exchanged)
           << modes.size() << " modes, seed " << seed;
     }
 }

@@ -203,13 +203,13 @@ TEST(Posterior, DoubtsItsHumpsWhereTheTemperingsHoldMoreThanThem) {
   found.importance.effective_share = 0.5;
   found.tempered_apart = 5.0;
   found.tempered.log_evidence = 626.0;
-  EXPECT_FALSE(found.humps_in_doubt());
+  EXPECT_FALSE(found.humps_are_uncertain());
   found.tempered.log_evidence = 635.0;
-  EXPECT_TRUE(found.humps_in_doubt());
+  EXPECT_TRUE(found.humps_are_uncertain());
   found.importance.effective_share = 0.01;  // the humps are not weighed: temperings that disagree are all
-  EXPECT_TRUE(found.humps_in_doubt());
+  EXPECT_TRUE(found.humps_are_uncertain());
   found.tempered_apart = 1.0;
-  EXPECT_FALSE(found.humps_in_doubt());
+  EXPECT_FALSE(found.humps_are_uncertain());
 }
 
 TEST(Posterior, IsRefusedWhereThePriorCannotHaveProducedTheModes) {

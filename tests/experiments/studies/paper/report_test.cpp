@@ -15,9 +15,9 @@
 namespace beamid::experiments::paper::report_test {
 namespace {
 
-Results told() {
+Results finding() {
   Results results;
-  tell(test::outcome(), results);
+  add_finding(test::outcome(), results);
   return results;
 }
 
@@ -34,7 +34,7 @@ int fields_of(const std::string& line) {
 
 TEST(PaperReport, FitsThePage) {
   std::ostringstream stream;
-  print(stream, told());
+  print(stream, finding());
   std::istringstream lines(stream.str());
   int count = 0;
   for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(width_of(line), page_width) << line;
@@ -43,7 +43,7 @@ TEST(PaperReport, FitsThePage) {
 
 TEST(PaperReport, HasItsTablesAsFilesWithUnitsInTheirHeaders) {
   std::set<std::string> names;
-  for (const auto& part : told().report) {
+  for (const auto& part : finding().report) {
     const auto* table = std::get_if<Table>(&part);
     if (!table) continue;
     EXPECT_TRUE(names.insert(table->name).second) << table->name << " is there twice";
@@ -66,7 +66,7 @@ TEST(PaperReport, HasItsTablesAsFilesWithUnitsInTheirHeaders) {
 TEST(PaperReport, SaysWhatIsAssumedAndHowItWasSet) {
   // Oracle: what a reader must be told beside the numbers.
   std::ostringstream stream;
-  print(stream, told());
+  print(stream, finding());
   std::string text = std::regex_replace(stream.str(), std::regex("\\s+"), " ");
   for (const char* said : {"assumed", "0.13 %", "6.41 %", "K0 = 0.8 K", "P0 = diag(", "R = diag(",
                            "seed 2009", "10^-5", "10^+5", "second cause", "xi sqrt(Meq)"})
@@ -82,7 +82,7 @@ TEST(PaperReport, DrawsTheFiguresOfTheStudy) {
        {"figure_2", "figure_3", "figure_5", "figure_6", "damping_law", "step_experiment", "generator_matrix",
         "predicted_differences", "bias_by_process_noise", "error_by_start"})
     EXPECT_TRUE(names.contains(name)) << name;
-  for (const auto& part : told().report)
+  for (const auto& part : finding().report)
     if (const auto* table = std::get_if<Table>(&part)) {
       EXPECT_FALSE(names.contains(table->name)) << table->name;
     }

@@ -7,7 +7,7 @@
 
 #include "tests/apps/run_command.hpp"
 
-namespace beamid::apps::told_warnings_test {
+namespace beamid::apps::reported_warnings_test {
 namespace {
 
 using nlohmann::json, testing::HasSubstr, testing::Not;
@@ -78,4 +78,4 @@ INSTANTIATE_TEST_SUITE_P(Commands, UnevenRecords,
                                          "check a.csv --config cantilever.toml"));
 
 }  // namespace
-}  // namespace beamid::apps::told_warnings_test
+}  // namespace beamid::apps::reported_warnings_test
