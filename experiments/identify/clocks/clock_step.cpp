@@ -31,10 +31,11 @@ MatrixXd slopes(const VectorXd& time, const MatrixXd& outputs) {
 
 MatrixXd clock_information(filters::DiscreteModel& discrete, const VectorXd& initial_state,
                            const StartDirections& directions, const filters::Measurements& record,
-                           const MatrixXd& outputs, const std::vector<OwnClock>& clocks) {
+                           const MatrixXd& outputs, const std::vector<OwnClock>& clocks, bool grow) {
   const MatrixXd all = directions.all(), moving = slopes(record.time, outputs);
   const auto g = static_cast<Index>(clocks.size());
-  const Index starts = directions.motion.cols(), q = directions.unknowns.cols(), columns = starts + q + g + 1;
+  const Index starts = directions.motion.cols(), q = directions.unknowns.cols(),
+              columns = starts + q + (grow ? 2 : 1) * g + 1;
   const Eigen::LLT<MatrixXd> noise(discrete.output_noise());
   filters::InformationFactor factor(columns);
   MatrixXd moved = all, sensor, rows(outputs.rows(), columns);
@@ -48,6 +49,8 @@ MatrixXd clock_information(filters::DiscreteModel& discrete, const VectorXd& ini
       const OwnClock& clock = clocks[static_cast<std::size_t>(j)];
       for (const Index i : clock.outputs) rows(i, starts + q + j) = (clock.input ? 1.0 : -1.0) * moving(i, k);
     }
+    if (grow)
+      rows.middleCols(starts + q + g, g) = (record.time[k] - record.time[0]) * rows.middleCols(starts + q, g);
     rows.rightCols<1>() = record.outputs.col(k) - outputs.col(k);
     for (Index i = 0; i < rows.rows(); ++i)
       if (!std::isfinite(record.outputs(i, k))) rows.row(i).setZero();

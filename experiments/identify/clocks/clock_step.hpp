@@ -32,10 +32,12 @@ struct ClockStep {
 ///     -1
 ///
 /// What is known of the unknowns counts as much as the directions are long.
-/// @param outputs (p x N) of that motion; missing readings (NaN) tell nothing
+/// @param outputs (p x N) of that motion; missing readings (NaN) count for nothing
+/// @param grow behind the lags (g) also their growth (g), of a clock at another rate: -(t - t_0) y'(t)
 Eigen::MatrixXd clock_information(filters::DiscreteModel& discrete, const Eigen::VectorXd& initial_state,
                                   const StartDirections& directions, const filters::Measurements& record,
-                                  const Eigen::MatrixXd& outputs, const std::vector<OwnClock>& clocks);
+                                  const Eigen::MatrixXd& outputs, const std::vector<OwnClock>& clocks,
+                                  bool grow = false);
 
 /// @param clocks g, whose lags stand behind the unknowns
 /// @throws std::runtime_error when a channel with a clock of its own does not move.

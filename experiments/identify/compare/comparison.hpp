@@ -10,7 +10,7 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/analysis.hpp"
 #include "experiments/identify/batch.hpp"
-#include "experiments/identify/clocks/likeliest_lag.hpp"
+#include "experiments/identify/clocks/likeliest_clock.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/noise_in_estimates.hpp"
 #include "experiments/models/divergence.hpp"
@@ -101,7 +101,7 @@ struct ComparedRun {
   filters::Gaussian unknown_state, unknown_start;  ///< of what the filter's state carries for them: at the
                                                    ///< end, and at the start of the last pass (q)
   std::optional<ClockStep> clocks;  ///< of channels with clocks of their own; absent: there are none
-  std::optional<LikeliestLag> likeliest_lag;                 ///< of a driven record without such channels
+  LikeliestClocks likeliest_clocks;  ///< of a record without such channels, driven or of several
   std::optional<LikeliestInputNoise> likeliest_input_noise;  ///< likewise, of exact inputs; by `identify`
   std::optional<filters::Diagnostics> diagnostics;           ///< of the last pass; absent below 100 samples
   std::vector<filters::Gaussian> smoothed;   ///< of every sample, where a smoother was asked for

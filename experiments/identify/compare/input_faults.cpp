@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/record/column_name.hpp"
@@ -18,22 +20,32 @@ const Channel& channel_of(const Record& record, Index place) {
   return record.channels[static_cast<std::size_t>(place)];
 }
 
-// "acceleration_x1m is 2.50 +- 0.04 ms behind the rest"
-std::string lag_text(const Record& record, const LikeliestLag& found, double deviation) {
+// Whose clock it is, and beside which: "acceleration_x1m" and "the rest".
+std::pair<std::string, std::string> clocks_of(const Record& record, const LikeliestClock& found) {
   const auto outputs = output_channels(record), inputs = input_channels(record);
-  std::string who = "All motion", to = inputs.size() > 1 ? "the inputs" : channel_of(record, inputs[0]).name;
-  if (found.output) {
-    who = channel_of(record, outputs[static_cast<std::size_t>(*found.output)]).name;
-    to = "the rest";
-  } else if (outputs.size() == 1) {
-    who = channel_of(record, outputs[0]).name;
-  }
+  if (found.output)
+    return {channel_of(record, outputs[static_cast<std::size_t>(*found.output)]).name, "the rest"};
+  return {outputs.size() == 1 ? channel_of(record, outputs[0]).name : "All motion",
+          inputs.size() > 1 ? "the inputs" : channel_of(record, inputs[0]).name};
+}
+
+// "acceleration_x1m is 2.50 +- 0.04 ms behind the rest"
+std::string lag_text(const Record& record, const LikeliestClock& found, double deviation) {
+  const auto [who, to] = clocks_of(record, found);
   return fmt::format("{} is {:.3g} +- {:.2g} ms {} {}", who, 1e3 * std::abs(found.lag()),
                      1e3 * quantile_95 * deviation, found.lag() > 0.0 ? "behind" : "ahead of", to);
 }
 
+// "acceleration_x1m falls behind the rest by 98 +- 5 ppm"
+std::string growth_text(const Record& record, const LikeliestClock& found, double deviation) {
+  const auto [who, to] = clocks_of(record, found);
+  return fmt::format("{} {} {} by {:.3g} +- {:.2g} ppm of the time", who,
+                     found.growth() > 0.0 ? "falls behind" : "runs ahead of", to,
+                     1e6 * std::abs(found.growth()), 1e6 * quantile_95 * deviation);
+}
+
 // What a user may do about it.
-std::string advice(const Record& record, const LikeliestLag& found, double deviation) {
+std::string advice(const Record& record, const LikeliestClock& found, double deviation) {
   constexpr double far = 4.0;
   const double half = 0.5 * record.interval();
   std::string text;
@@ -64,26 +76,53 @@ struct InputFault {
   bool is_material = true;  ///< and not of the size of what an interpolation does
 };
 
-std::optional<InputFault> of_clocks(const RunContext& context, const ComparedRun& run) {
-  constexpr double surely = 4.5, small = 0.5;  // deviations: by chance in one of 10^5 records; rad
-  constexpr double material = 0.01;            // of an interval
-  if (!run.likeliest_lag) return {};
+constexpr double surely = 4.5;     // deviations: by chance in one of 10^5 records
+constexpr double small = 0.5;      // phase [rad]
+constexpr double material = 0.01;  // of an interval
+
+// What a clock would do. @param lag the largest within the record [s]
+InputFault clock_fault(const RunContext& context, const ComparedRun& run, const LikeliestClock& found,
+                       double lag) {
+  InputFault fault;
+  fault.moved = found.step.shift.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
+  fault.explained = 1.0 - found.step.left_share;
+  fault.is_material = std::abs(lag) > material * context.analysis.record.interval();
+  return fault;
+}
+
+std::optional<InputFault> of_rates(const RunContext& context, const ComparedRun& run) {
   const Record& record = context.analysis.record;
-  const LikeliestLag& found = *run.likeliest_lag;
-  const double deviation = run.interval_factor * found.deviation();
+  if (!run.likeliest_clocks.drifting) return {};
+  const LikeliestClock& found = *run.likeliest_clocks.drifting;
+  const double deviation = run.interval_factor * found.growth_deviation(),
+               most = std::max(std::abs(found.lag()),
+                               std::abs(found.lag() + found.growth() * record.interval() *
+                                                          static_cast<double>(record.size() - 1)));
+  if (!(std::abs(found.growth()) > surely * deviation) || !(phase_of(run, most, record.interval()) < small))
+    return {};
+  InputFault fault = clock_fault(context, run, found, most);
+  fault.text = growth_text(record, found, deviation);
+  fault.advice = "Expected channels that one clock stamps, or one of them alone (channels in [record]).";
+  return fault;
+}
+
+std::optional<InputFault> of_lags(const RunContext& context, const ComparedRun& run) {
+  if (!run.likeliest_clocks.late || !context.analysis.forced()) return {};
+  const Record& record = context.analysis.record;
+  const LikeliestClock& found = *run.likeliest_clocks.late;
+  const double deviation = run.interval_factor * found.lag_deviation();
   if (!(std::abs(found.lag()) > surely * deviation) ||
       !(phase_of(run, found.lag(), record.interval()) < small))
     return {};
-  InputFault fault{lag_text(record, found, deviation), advice(record, found, deviation)};
-  fault.moved = found.step.shift.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
-  fault.explained = 1.0 - found.step.left_share;
-  fault.is_material = std::abs(found.lag()) > material * record.interval();
+  InputFault fault = clock_fault(context, run, found, found.lag());
+  fault.text = lag_text(record, found, deviation);
+  fault.advice = advice(record, found, deviation);
   return fault;
 }
 
 std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun& run) {
-  constexpr double surely = 10.0;  // of a logarithm of likelihood: 4.5 deviations
-  if (!run.likeliest_input_noise || !(run.likeliest_input_noise->gain > surely)) return {};
+  constexpr double clearly = 0.5 * surely * surely;  // of a logarithm of likelihood
+  if (!run.likeliest_input_noise || !(run.likeliest_input_noise->gain > clearly)) return {};
   const Record& record = context.analysis.record;
   const auto inputs = input_channels(record);
   InputFault fault;
@@ -105,7 +144,8 @@ std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun&
 
 void judge_inputs(const RunContext& context, ComparedRun& run) {
   if (run.parameters.empty()) return;
-  std::optional<InputFault> fault = of_clocks(context, run);
+  std::optional<InputFault> fault = of_rates(context, run);
+  if (!fault) fault = of_lags(context, run);
   if (!fault) fault = of_noise(context, run);
   constexpr double mostly = 0.5;  // what is left is no noise then, and the deviations are none
   if (!fault) return;

@@ -43,12 +43,14 @@ void Passes::finish() {
             ? input_bounds_
             : run_bounds(*discrete, *run_.model, motion_.initial_state, directions_, record_));
   const bool drifts = has_noise(run_.settings.input_noise);  // what one motion leaves is not the noise then
-  const bool inputs_are_asked = !drifts && context_.analysis.forced() && context_.compared.clocks.empty();
-  if (inputs_are_asked && is_weighed_at_once())
-    run_.likeliest_lag =
-        likeliest_lag(*discrete, motion_.initial_state, directions_, record_, motion_.outputs);
+  const bool is_kept = settings_.keep == filters::Keep::all_estimates, driven = context_.analysis.forced(),
+             clocks_are_asked = !drifts && context_.compared.clocks.empty() &&
+                                (driven || (is_kept && record_.outputs.rows() > 1));
+  if (clocks_are_asked && is_weighed_at_once())
+    run_.likeliest_clocks =
+        likeliest_clocks(*discrete, motion_.initial_state, directions_, record_, motion_.outputs);
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
-  if (inputs_are_asked && settings_.keep == filters::Keep::all_estimates) look_for_input_noise();
+  if (clocks_are_asked && driven && is_kept) look_for_input_noise();
   run_.response_seconds += seconds_since(start);
   if (settings_.keep == filters::Keep::last_estimate) return;
   if (first_start_.size() > 0)

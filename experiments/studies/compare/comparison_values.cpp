@@ -26,12 +26,19 @@ Json optional_number(const std::optional<double>& value) {
 // What would leave less of a driven record, whether or not it is said; empty where nothing was tried.
 Json input_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
   Json json = Json::object();
-  if (const auto& late = run.likeliest_lag)
-    json["likeliest_lag"] = {
-        {"output", late->output ? Json(outputs[static_cast<std::size_t>(*late->output)]) : Json("all")},
-        {"lag_s", late->lag()},
-        {"standard_deviation_s", run.interval_factor * late->deviation()},
-        {"residual_share", late->step.left_share}};
+  const auto clock = [&](const LikeliestClock& found) -> Json {
+    return {{"output", found.output ? Json(outputs[static_cast<std::size_t>(*found.output)]) : Json("all")},
+            {"lag_s", found.lag()},
+            {"lag_standard_deviation_s", run.interval_factor * found.lag_deviation()},
+            {"residual_share", found.step.left_share}};
+  };
+  if (const auto& late = run.likeliest_clocks.late) json["likeliest_late_clock"] = clock(*late);
+  if (const auto& drifting = run.likeliest_clocks.drifting) {
+    json["likeliest_drifting_clock"] = clock(*drifting);
+    json["likeliest_drifting_clock"].update(
+        {{"growth", drifting->growth()},
+         {"growth_standard_deviation", run.interval_factor * drifting->growth_deviation()}});
+  }
   if (const auto& noise = run.likeliest_input_noise)
     json["likeliest_input_noise"] = {
         {"standard_deviation_si", std::vector<double>(noise->deviation.begin(), noise->deviation.end())},
