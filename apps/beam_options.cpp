@@ -1,5 +1,7 @@
 #include "apps/beam_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -73,16 +75,30 @@ std::string changes(const Values& values) {
   return text;
 }
 
-/// The key that says it of the structure that the file describes; without a file of the study's beam.
-Override elements_of(const std::filesystem::path& config, int elements) {
-  const std::pair<const char*, const char*> meshed[] = {
-      {"frame", "elements_per_member"}, {"space_frame", "elements_per_member"}, {"beam", "elements"}};
-  std::optional<TomlTable> file;
-  if (!config.empty()) file = TomlTable::read(config);
-  for (const auto& [table, key] : meshed)
-    if (file ? file->contains(table) : std::string("beam") == table)
-      return {table, key, 1.0 * elements, "--elements"};
-  throw UsageError("--elements has no use here: the structure of " + config.string() + " is not meshed");
+/// The table of the structure that the file describes, "beam" without one and where there is none: the reader
+/// says it.
+std::string structure_in(const std::filesystem::path& config) {
+  if (config.empty()) return "beam";
+  const TomlTable file = TomlTable::read(config);
+  for (const char* const table : {"frame", "space_frame", "chain", "system"})
+    if (file.contains(table) && !file.contains("beam")) return table;
+  return "beam";
+}
+
+void refuse_beams_options(const Values& values, const std::string& structure,
+                          const std::filesystem::path& config) {
+  for (const KeyOption& key : beam_keys())
+    if (values.has(key.option.name) && std::string("beam") == key.table && structure != "beam")
+      throw UsageError(
+          fmt::format("--{} is of a beam; {} describes a {}", key.option.name, config.string(), structure));
+}
+
+/// The key that says it of this structure.
+Override elements_of(const std::string& structure, int elements) {
+  if (structure == "beam") return {structure, "elements", 1.0 * elements, "--elements"};
+  if (structure == "frame" || structure == "space_frame")
+    return {structure, "elements_per_member", 1.0 * elements, "--elements"};
+  throw UsageError("--elements has no use here: a " + structure + " is not meshed");
 }
 
 void refuse_both(const Values& values, const std::string& one, const std::string& other) {
@@ -130,7 +146,9 @@ BeamSource read_beam(const Values& values, const std::vector<KeyOption>& more) {
 
   BeamSource source;
   if (values.has("config")) source.config = values.text("config");
-  if (values.has("elements")) overrides.push_back(elements_of(source.config, values.whole("elements")));
+  const std::string structure = structure_in(source.config);
+  refuse_beams_options(values, structure, source.config);
+  if (values.has("elements")) overrides.push_back(elements_of(structure, values.whole("elements")));
   if (values.has("config")) {
     source.experiment = read_experiment(source.config, overrides);
     if (std::string& title = source.experiment.title; changed && !title.empty())

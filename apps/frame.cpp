@@ -14,7 +14,9 @@ using experiments::TomlTable;
 
 int run_frame(const Values& values) {
   const std::filesystem::path file = values.texts("file")[0];
-  TomlTable::read(file).table("frame");  // or this file is no frame's
+  if (const TomlTable described = TomlTable::read(file); !described.contains("frame"))
+    throw experiments::InputError(
+        described.place(), "no [frame]; expected a plane frame (modes --config FILE takes any structure)");
   std::vector<experiments::Override> overrides;
   if (values.has("elements"))
     overrides.push_back({"frame", "elements_per_member", 1.0 * values.whole("elements"), "--elements"});

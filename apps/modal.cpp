@@ -25,7 +25,8 @@ OptionGroup modal_options() {
   return {
       "Options",
       {modal_method_option(
-           "era for free decays, ssi_cov for random vibration, frf_lscf for hammer hits with a measured "
+           "era for free decays, ssi_cov for random vibration, bayoma for one mode of it, frf_lscf for "
+           "hammer hits with a measured "
            "force; at the peaks of the spectrum: damped_sine, hilbert_envelope, logarithmic_decrement, "
            "half_power, frf_half_power (beamid list modal_methods)")
            .by_default("era"),

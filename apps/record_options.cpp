@@ -166,6 +166,11 @@ std::vector<fs::path> require_record_files(const Values& values, const fs::path&
   if (files.empty() && config.empty()) throw UsageError("which RECORD?");
   if (files.empty())
     throw UsageError("no RECORD on the command line, and no 'file' under [record] in " + config.string());
+  if (values.texts("record").empty() && !fs::exists(files[0])) {
+    const auto record = TomlTable::read(config).find_table("record");
+    throw InputError(record ? record->value_place("file") : Place{config.string()},
+                     "record.file: no such file '" + files[0].string() + "'; expected a record");
+  }
   return files;
 }
 

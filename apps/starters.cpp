@@ -66,7 +66,7 @@ channels = [                        # what was measured at the tip, in which col
 
 [filter]
 method = "ekf"
-discretisation = "exponential"      # beamid list discretisations; forward_euler is the error of the 2009 paper
+discretisation = "exponential"      # beamid list discretisations; this one is exact at any step
 
 # [reduction]
 # method = "rayleigh"
@@ -108,6 +108,21 @@ sampling_rate_hz = 100
 name = "beam"                       # the structure itself, whichever it is
 )toml";
 
+/// What a key is, in a line: its values where they are few, else the first clause of what its row says,
+/// behind the values of another key with which it has a use. Empty where that takes more words.
+std::string short_meaning(const experiments::Key& key) {
+  constexpr std::size_t few = 9;
+  if (!key.allowed.empty() && key.allowed.size() <= few)
+    return fmt::format("{}", fmt::join(key.allowed, ", "));
+  std::string meaning = key.meaning;
+  std::erase(meaning, '`');
+  if (const std::size_t colon = meaning.find(": "); !key.with.empty() && colon != std::string::npos)
+    meaning.erase(0, colon + 2);
+  meaning = meaning.substr(0, meaning.find(';'));
+  const bool asks_for_more = meaning.find(": ") != std::string::npos && key.allowed.empty();
+  return asks_for_more || meaning.starts_with("in place of") ? "" : meaning;
+}
+
 /// "# across the direction of bending" behind "width_m = 0.060": what the key's row says of it, as far as a
 /// line holds it, where the starter says nothing itself.
 std::string annotated(const std::string& starter) {
@@ -125,12 +140,8 @@ std::string annotated(const std::string& starter) {
       continue;
     const experiments::Key* const key = table->find(line.substr(first, equals - first));
     if (key == nullptr) continue;
-    std::string meaning = key->allowed.empty() || key->allowed.size() > 9
-                              ? key->meaning
-                              : fmt::format("{}", fmt::join(key->allowed, ", "));
-    std::erase(meaning, '`');
-    if (column + meaning.size() > width) meaning = meaning.substr(0, meaning.find_first_of(";:"));
-    if (column + meaning.size() > width) continue;
+    const std::string meaning = short_meaning(*key);
+    if (meaning.empty() || column + meaning.size() > width) continue;
     line.resize(std::max(column, line.size() + 2), ' ');
     line += "# " + meaning;
   }

@@ -110,16 +110,8 @@ std::string beam_text(const fem::Beam& beam, int elements, Eigen::Index coordina
 
 Json describe(const Experiment& experiment, const std::vector<std::string>& also) {
   Json json{{"title", experiment.title}};
-  if (experiment.file) json.update(effective_keys(*experiment.file, also));
-  json["title"] = experiment.title;  // with the options that changed it
+  if (experiment.file) json["experiment"] = effective_keys(experiment, also);
   json["structure"] = describe(experiment.structure, experiment.elements);
-  return json;
-}
-
-Json describe(const Choice& choice, const char* key) {
-  Json json{{key, choice.name}};
-  for (const auto& [option, value] : choice.options.values())
-    std::visit([&, name = option](const auto& held) { json[name] = held; }, value);
   return json;
 }
 

@@ -18,12 +18,10 @@ std::string bending_stiffness_text(const fem::Beam& beam);
 /// "rayleigh", "modal and dashpots", "dashpots".
 std::string damping_text(const fem::DampingLaw& law, const fem::StructuralSystem& system);
 
-/// The keys of its file as they hold, its title, and under "structure" what they come to, with which
-/// "configuration" begins. @param also tables whose defaults hold though the file does not have them
+/// With which "configuration" begins: a title, under "experiment" the keys of its file as they hold
+///, under "structure" what they come to.
+/// @param also tables whose defaults hold though the file does not have them
 nlohmann::ordered_json describe(const Experiment& experiment, const std::vector<std::string>& also = {});
-
-/// The name of a method under a key of its table, and its options.
-nlohmann::ordered_json describe(const Choice& choice, const char* key);
 
 /// A number, or null where there is none.
 nlohmann::ordered_json number_or_null(double value);

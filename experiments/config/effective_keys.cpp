@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
+#include "experiments/config/failure_response.hpp"
 #include "experiments/config/key_tables.hpp"
 
 namespace beamid::experiments {
@@ -61,6 +64,21 @@ Json completed(const Json& given, const KeyTable& section, bool stands_once) {
   return json;
 }
 
+// A whole number as one, whatever type the option has.
+Json option_value(const filters::OptionValue& value) {
+  const double* const number = std::get_if<double>(&value);
+  constexpr double largest = 0x1p53;
+  if (number && std::abs(*number) <= largest && *number == std::floor(*number))
+    return static_cast<std::int64_t>(*number);
+  return std::visit([](const auto& held) { return Json(held); }, value);
+}
+
+Json list_of(const std::vector<Choice>& choices) {
+  Json list = Json::array();
+  for (const Choice& choice : choices) list.push_back(keys_of(choice, "method"));
+  return list;
+}
+
 }  // namespace
 
 Json effective_keys(const TomlTable& root, const std::vector<std::string>& also) {
@@ -68,6 +86,38 @@ Json effective_keys(const TomlTable& root, const std::vector<std::string>& also)
   for (const std::string& table : also)
     if (!given.contains(table)) given[table] = Json::object();
   return completed(given, *find_key_table(""), true);
+}
+
+Json effective_keys(const Experiment& experiment, const std::vector<std::string>& also) {
+  if (!experiment.file) return Json::object();
+  Json keys = effective_keys(*experiment.file, also);
+  const auto choose = [&](const char* table, Json chosen) {
+    if (!keys.contains(table)) return;
+    for (const auto& [key, value] : keys[table].items())
+      if (!chosen.contains(key)) chosen[key] = value;
+    keys[table] = std::move(chosen);
+  };
+  Json filter = keys_of(experiment.filter, "method");
+  filter.update({{"discretisation", experiment.discretisation},
+                 {"on_failure", to_string(experiment.on_failure)},
+                 {"estimator", experiment.estimator}});
+  if (!experiment.smoother.empty()) filter["smoother"] = experiment.smoother;
+  choose("filter", std::move(filter));
+  choose("model", keys_of(experiment.model, "name"));
+  choose("reduction", keys_of(experiment.reduction, "method"));
+  if (!experiment.reductions.empty()) keys["reductions"] = list_of(experiment.reductions);
+  if (!experiment.filters.empty()) keys["filters"] = list_of(experiment.filters);
+  if (!experiment.discretisations.empty()) keys["compare"]["discretisations"] = experiment.discretisations;
+  if (const auto& window = experiment.format.window)
+    keys["record"]["window_s"] = {window->first, window->second};
+  return keys;
+}
+
+Json keys_of(const Choice& choice, const char* key) {
+  Json json{{key, choice.name}};
+  if (!choice.shape_file.empty()) json["shape_file"] = choice.shape_file;
+  for (const auto& [option, value] : choice.options.values()) json[option] = option_value(value);
+  return json;
 }
 
 }  // namespace beamid::experiments

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/text/toml_table.hpp"
+#include "experiments/config/experiment.hpp"
 
 namespace beamid::experiments {
 
@@ -14,5 +14,12 @@ namespace beamid::experiments {
 /// default that is worked out from other values is left out, and so are those of tables in arrays.
 /// @param also tables whose defaults hold though the file does not have them
 nlohmann::ordered_json effective_keys(const TomlTable& root, const std::vector<std::string>& also = {});
+
+/// Those of an experiment's file, with the methods, their options' defaults and the window that were chosen
+/// since; nothing where it was read from none.
+nlohmann::ordered_json effective_keys(const Experiment& experiment, const std::vector<std::string>& also = {});
+
+/// The name of a method under a key of its table, and its options.
+nlohmann::ordered_json keys_of(const Choice& choice, const char* key);
 
 }  // namespace beamid::experiments

@@ -129,13 +129,12 @@ void put_first(Results& results, const Sentences& found) {
 
 Sentences implausible(const Experiment& experiment) {
   Sentences units;
-  if (experiment.structure.is_chain()) return units;  // without sections
   if (const fem::Frame* const frame = experiment.structure.frame())
     check_members(*frame, units);
-  else if (experiment.structure.is_beam())
-    check_segments(experiment.structure.beam(), units);
-  else
+  else if (!experiment.structure.is_beam())
     return units;
+  else if (!experiment.structure.is_chain())  // which has no sections
+    check_segments(experiment.structure.beam(), units);
   check_modes(experiment, units);
   Sentences found = as_wrong_units(units);
   if (!experiment.structure.is_beam()) return found;

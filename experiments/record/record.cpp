@@ -59,7 +59,11 @@ Eigen::VectorXd Record::channel(Quantity quantity) const {
 
 std::vector<std::string> Record::channel_names() const {
   std::vector<std::string> names;
-  for (const Channel& channel : channels) names.push_back(channel.name);
+  for (const Channel& channel : channels) {
+    const bool alone = std::count_if(channels.begin(), channels.end(),
+                                     [&](const Channel& other) { return other.name == channel.name; }) == 1;
+    names.push_back(alone ? channel.name : channel.name + " " + to_string(channel.quantity));
+  }
   return names;
 }
 

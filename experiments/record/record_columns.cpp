@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/record/units.hpp"
 #include "experiments/text/spelling.hpp"
@@ -16,7 +17,22 @@ std::string column_name_of(const RecordTable& table, std::size_t index) {
   return index < table.names.size() ? table.names[index] : "";
 }
 
-RecordColumn find_column(const RecordTable& table, const ColumnDescription& wanted) {
+// What is stated of a column holds, also where its header is wrong; but a column taken for its neighbour, or
+// for another unit, makes every result wrong without a sign.
+void compare_with_header(const ColumnDescription& wanted, std::size_t index, RecordTable& table) {
+  const std::string header = column_name_of(table, index);
+  const auto meaning = parse_column_name(header);
+  if (!meaning || !meaning->quantity) return;
+  const std::string stated =
+      fmt::format("Column {} is named '{}' and stated as {}", index + 1, header, to_string(wanted.quantity));
+  if (si_unit(*meaning->quantity) != std::string(si_unit(wanted.quantity)))
+    table.warnings.push_back(stated + ", which is another quantity: is it the column that was meant?");
+  else if (std::abs(meaning->factor - wanted.factor) > 1e-9 * std::abs(wanted.factor))
+    table.warnings.push_back(fmt::format("{} in another unit, {:.6g} times that of its name.", stated,
+                                         wanted.factor / meaning->factor));
+}
+
+RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
   RecordColumn column{find_index(table, wanted),
                       wanted.factor,
                       {wanted.quantity, wanted.name, wanted.position, wanted.distance, wanted.place,
@@ -31,6 +47,7 @@ RecordColumn find_column(const RecordTable& table, const ColumnDescription& want
                       wanted.name.empty() ? std::to_string(wanted.number) : "'" + wanted.name + "'"));
     column.channel.quantity = *meaning->quantity, column.factor = meaning->factor;
   }
+  if (wanted.stated) compare_with_header(wanted, column.index, table);
   if (column.channel.name.empty()) column.channel.name = column_name_of(table, column.index);
   if (column.channel.name.empty()) column.channel.name = to_string(column.channel.quantity);
   return column;

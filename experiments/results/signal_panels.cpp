@@ -37,8 +37,11 @@ Panel reproduction_panel(const std::string& title, const Eigen::VectorXd& time,
 namespace {
 
 /// The next of ..., 1, 2, 5, 10, ... that is not below the size of any value; 1 of values that are all zero.
-double round_size(const Eigen::VectorXd& values) {
-  const double most = values.array().isFinite().select(values.array().abs(), 0.0).maxCoeff();
+double size_of(const Eigen::VectorXd& values) {
+  return values.size() > 0 ? values.array().isFinite().select(values.array().abs(), 0.0).maxCoeff() : 0.0;
+}
+
+double round_size(double most) {
   if (!(most > 0)) return 1;
   const double decade = std::pow(10.0, std::floor(std::log10(most)));
   for (const double step : {1.0, 2.0, 5.0})
@@ -49,8 +52,8 @@ double round_size(const Eigen::VectorXd& values) {
 }  // namespace
 
 Panel residual_panel(const std::string& title, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
-                     const std::string& label) {
-  const double most = residual.size() > 0 ? round_size(residual) : 1;
+                     const std::string& label, double largest) {
+  const double most = round_size(largest > 0.0 ? largest : size_of(residual));
   Panel panel = Panel{title, {"time [s]"}, {"residual, " + label}}
                     .thin("", time, residual, Colour::black)
                     .across(time[0], time[time.size() - 1])

@@ -29,8 +29,10 @@ Panel reproduction_panel(const std::string& title, const Eigen::VectorXd& time,
                          const Eigen::VectorXd& measured, const std::vector<DrawnSignal>& reproduced,
                          const std::string& label);
 
-/// Measured minus reproduced. @param label of the record's axis; "residual, " comes before it
+/// Measured minus reproduced, up to the round number above it.
+/// @param label of the record's axis; "residual, " comes before it
+/// @param largest of panels on one scale, in place of the residual's own; 0: its own
 Panel residual_panel(const std::string& title, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
-                     const std::string& label);
+                     const std::string& label, double largest = 0.0);
 
 }  // namespace beamid::experiments

@@ -48,7 +48,7 @@ TEST(Frame, FindsThePublishedFrequenciesOfThePinEndedCross) {
   }
   EXPECT_EQ(found["command"], "frame");
   EXPECT_NEAR(found["total_mass_kg"].get<double>(), 2500.0, 1e-9);
-  EXPECT_EQ(found["configuration"]["frame"]["supports"][0]["kind"], "pinned");
+  EXPECT_EQ(found["configuration"]["experiment"]["frame"]["supports"][0]["kind"], "pinned");
 }
 
 // Against four times the elements. An order of 3.5 is taken for granted where it is 4: 15 / 10.3 of the
@@ -123,7 +123,8 @@ TEST(Frame, RefusesWhatMakesNoSense) {
       {"frame frame.toml --modes 0", "beamid: frame: --modes is 0; expected a whole number from 1 to 1000"},
       {"frame frame.toml",
        "frame.toml:14:8: frame.supports[1].kind is the text \"pined\"; did you mean 'pinned'?"},
-      {"frame beam.toml", "beam.toml: frame is missing; expected a table"}};
+      {"frame beam.toml",
+       "beam.toml: no [frame]; expected a plane frame (modes --config FILE takes any structure)"}};
   for (const auto& [words, message] : cases) {
     const Outcome outcome = place.run(words);
     EXPECT_EQ(outcome.code, 2) << words;

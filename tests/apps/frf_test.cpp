@@ -127,5 +127,17 @@ TEST(Frf, RefusesAPointThatCannotMove) {
             "bad.toml: point 'root' is held by a support; expected one that can move");
 }
 
+// Nothing holds it there: any force moves it without end.
+TEST(Frf, RefusesNoFrequencyOfAFreeBody) {
+  Workplace place;
+  place.write("free.toml",
+              "[beam]\nlength_m = 1\nbending_stiffness_n_m2 = 10\nmass_kg = 1\nsupport = \"free-free\"\n"
+              "[frequency_response]\nfrom_hz = 0\nto_hz = 50\nspacing = \"linear\"\n");
+  const Outcome outcome = place.run("frf --config free.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.first_error_line(),
+              HasSubstr("frequency_response.from_hz is 0, where a structure that"));
+}
+
 }  // namespace
 }  // namespace beamid::apps::frf_test

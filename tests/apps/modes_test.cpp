@@ -130,8 +130,8 @@ TEST(Modes, TakeOptionsBeforeTheFile) {
   const json changed =
       json_of(place.run("modes --json --config beam.toml --length 1 --beam-mass 4 --elements 20"));
   EXPECT_EQ(changed["configuration"]["title"], "a beam (with --length 1 --beam-mass 4)");
-  EXPECT_EQ(changed["configuration"]["beam"]["length_m"], 1.0);
-  EXPECT_EQ(changed["configuration"]["beam"]["mass_kg"], 4.0);
+  EXPECT_EQ(changed["configuration"]["experiment"]["beam"]["length_m"], 1.0);
+  EXPECT_EQ(changed["configuration"]["experiment"]["beam"]["mass_kg"], 4.0);
   EXPECT_EQ(changed["elements"], 20);
   EXPECT_EQ(changed["degrees_of_freedom"], 40);
 }

@@ -76,7 +76,7 @@ TEST_F(Report, ComparesAParameterOfTwoReductions) {
   ASSERT_EQ(place_.run("report rayleigh modal_truncation --out both.html").code, 0);
   const std::string page = contents(place_.folder() / "both.html");
   const std::size_t parameters = page.find("Parameters, with 95 % intervals");
-  EXPECT_LT(page.find("<td>reduction.name</td>"), parameters);  // what differs comes first
+  EXPECT_LT(page.find("<td>reduction.method</td>"), parameters);  // what differs comes first
   EXPECT_NE(page.find("<td>bending stiffness [N m²]</td>", parameters), std::string::npos);
 }
 
@@ -91,7 +91,7 @@ TEST_F(Report, SaysHowTheRunsWereMadeAndWhatDiffers) {
   const std::string page = contents(place_.folder() / "both.html");
   // What differs comes first.
   const std::size_t side = page.find("<h1>Side by side</h1>"),
-                    differs = page.find("<td>filter.name</td>", side);
+                    differs = page.find("<td>experiment.filter.method</td>", side);
   EXPECT_LT(differs, page.find("Parameters, with 95 % intervals"));
   const std::size_t begin = page.find("<h1>Methods and versions</h1>"), end = page.find("</section>", begin);
   ASSERT_NE(begin, std::string::npos);

@@ -150,8 +150,8 @@ TEST(Simulate, WritesWhatCheapSensorsShow) {
   EXPECT_THAT(outcome.out, HasSubstr("Logger: 0.5 s before the excitation, intervals with a jitter of 30 %"));
   EXPECT_THAT(outcome.out, HasSubstr("Sensor cable"));
   const json found = json::parse(contents(place.folder() / "results" / "results.json"));
-  EXPECT_EQ(found["configuration"]["acquisition"]["sensors"]["1"]["clipping"], 0.5);
-  EXPECT_EQ(found["configuration"]["acquisition"]["sensors"]["2"]["dead"], true);
+  EXPECT_EQ(found["configuration"]["experiment"]["sensors"][0]["clipping"], 0.5);
+  EXPECT_EQ(found["configuration"]["experiment"]["sensors"][1]["dead"], true);
   const auto record = rows(place.folder() / "results" / "record.csv");
   ASSERT_EQ(record.size(), 1251u);
   double largest = 0;

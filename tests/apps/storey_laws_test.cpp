@@ -57,7 +57,7 @@ TEST_F(StoreyLaws, ModesAndResponsesAreThoseOfSmallMotionAndSayIt) {
   const json with = json_of(place_.run("modes --config yielding.toml --json")),
              without = json_of(place_.run("modes --config linear.toml --json"));
   EXPECT_EQ(with["modes"], without["modes"]);
-  EXPECT_EQ(with["configuration"]["storeys"][0]["law"], "bouc_wen");
+  EXPECT_EQ(with["configuration"]["experiment"]["chain"]["storeys"][0]["law"], "bouc_wen");
 }
 
 TEST_F(StoreyLaws, SimulateSaysWhoMovedThem) {

@@ -73,7 +73,7 @@ class Records(unittest.TestCase):
             found = beamid.identify(config=TUTORIAL / "cantilever.toml", filter="ukf")
         expected = command("identify", "--config", TUTORIAL / "cantilever.toml", "--json").stdout.decode()
         self.assertNotEqual(found.json, expected)  # another filter
-        self.assertEqual(found.values["configuration"]["filter"]["method"], "ukf")
+        self.assertEqual(found.values["configuration"]["experiment"]["filter"]["method"], "ukf")
 
 
 if __name__ == "__main__":

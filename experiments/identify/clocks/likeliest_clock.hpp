@@ -22,6 +22,7 @@ struct LikeliestClock {
   double deviation(Eigen::Index i) const;
 };
 
+/// The clock that leaves least, of either kind.
 struct LikeliestClocks {
   std::optional<LikeliestClock> late;      ///< by a constant lag
   std::optional<LikeliestClock> drifting;  ///< by a lag that grows

@@ -13,6 +13,7 @@
 #include "experiments/identify/clocks/likeliest_clock.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/noise_in_estimates.hpp"
+#include "experiments/modal/clock_scatter.hpp"
 #include "experiments/models/divergence.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/text/progress.hpp"
@@ -100,8 +101,9 @@ struct ComparedRun {
   std::vector<Unknown> unknowns;                   ///< of the model, in the order of the parameters (q)
   filters::Gaussian unknown_state, unknown_start;  ///< of what the filter's state carries for them: at the
                                                    ///< end, and at the start of the last pass (q)
-  std::optional<ClockStep> clocks;  ///< of channels with clocks of their own; absent: there are none
-  LikeliestClocks likeliest_clocks;  ///< of a record without such channels, driven or of several
+  std::optional<ClockStep> clocks;   ///< of channels with clocks of their own; absent: there are none
+  LikeliestClocks likeliest_clocks;  ///< of a driven record without such channels
+  std::optional<ClockScatter> clock_scatter;  ///< of a free decay's channels that do not agree; by `identify`
   std::optional<LikeliestInputNoise> likeliest_input_noise;  ///< likewise, of exact inputs; by `identify`
   std::optional<filters::Diagnostics> diagnostics;           ///< of the last pass; absent below 100 samples
   std::vector<filters::Gaussian> smoothed;   ///< of every sample, where a smoother was asked for

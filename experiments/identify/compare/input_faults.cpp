@@ -39,7 +39,7 @@ std::string lag_text(const Record& record, const LikeliestClock& found, double d
 // "acceleration_x1m falls behind the rest by 98 +- 5 ppm"
 std::string growth_text(const Record& record, const LikeliestClock& found, double deviation) {
   const auto [who, to] = clocks_of(record, found);
-  return fmt::format("{} {} {} by {:.3g} +- {:.2g} ppm of the time", who,
+  return fmt::format("{} {} {} by {:.0f} +- {:.0f} ppm of the time", who,
                      found.growth() > 0.0 ? "falls behind" : "runs ahead of", to,
                      1e6 * std::abs(found.growth()), 1e6 * quantile_95 * deviation);
 }
@@ -71,14 +71,14 @@ double phase_of(const ComparedRun& run, double lag, double interval) {
 struct InputFault {
   std::string text, advice;
   Index unknown = 0;
-  double moved = 0.0;       ///< in deviations as they are reported
-  double explained = 0.0;   ///< of the squares that are left
-  bool is_material = true;  ///< and not of the size of what an interpolation does
+  double moved = 0.0;      ///< in deviations as they are reported
+  double explained = 0.0;  ///< of the squares that are left
+  bool is_sure = true;     ///< neither chance nor of the size of what an interpolation does
 };
 
-constexpr double surely = 4.5;     // deviations: by chance in one of 10^5 records
-constexpr double small = 0.5;      // phase [rad]
-constexpr double material = 0.01;  // of an interval
+constexpr double surely = 4.5, likely = 3.3;  // deviations: by chance in one of 10^5 records, of 1000
+constexpr double small = 0.5;                 // phase [rad]
+constexpr double material = 0.01;             // of an interval
 
 // What a clock would do. @param lag the largest within the record [s]
 InputFault clock_fault(const RunContext& context, const ComparedRun& run, const LikeliestClock& found,
@@ -86,7 +86,7 @@ InputFault clock_fault(const RunContext& context, const ComparedRun& run, const 
   InputFault fault;
   fault.moved = found.step.shift.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
   fault.explained = 1.0 - found.step.left_share;
-  fault.is_material = std::abs(lag) > material * context.analysis.record.interval();
+  fault.is_sure = std::abs(lag) > material * context.analysis.record.interval();
   return fault;
 }
 
@@ -98,9 +98,10 @@ std::optional<InputFault> of_rates(const RunContext& context, const ComparedRun&
                most = std::max(std::abs(found.lag()),
                                std::abs(found.lag() + found.growth() * record.interval() *
                                                           static_cast<double>(record.size() - 1)));
-  if (!(std::abs(found.growth()) > surely * deviation) || !(phase_of(run, most, record.interval()) < small))
+  if (!(std::abs(found.growth()) > likely * deviation) || !(phase_of(run, most, record.interval()) < small))
     return {};
   InputFault fault = clock_fault(context, run, found, most);
+  fault.is_sure = fault.is_sure && std::abs(found.growth()) > surely * deviation;
   fault.text = growth_text(record, found, deviation);
   fault.advice = "Expected channels that one clock stamps, or one of them alone (channels in [record]).";
   return fault;
@@ -149,7 +150,7 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   if (!fault) fault = of_noise(context, run);
   constexpr double mostly = 0.5;  // what is left is no noise then, and the deviations are none
   if (!fault) return;
-  const bool excluded = (fault->moved > quantile_95 && fault->is_material) || fault->explained > mostly;
+  const bool excluded = (fault->moved > quantile_95 && fault->is_sure) || fault->explained > mostly;
   if (!excluded && !(fault->moved > 1.0)) return;
   const std::string explained =
       fault->explained > mostly
@@ -166,6 +167,20 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   if (!excluded || said) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fault->text;
+}
+
+void judge_clock_scatter(const RunContext& context, ComparedRun& run) {
+  if (!run.clock_scatter) return;
+  std::vector<std::string> names;
+  for (const Index i : output_channels(context.analysis.record))
+    names.push_back(channel_of(context.analysis.record, i).name);
+  run.warnings.insert(run.warnings.begin(),
+                      "CONTRADICTED: " + run.clock_scatter->sentence(names) +
+                          " No estimate holds for all of them: expected channels that one clock stamps, or "
+                          "one of them alone (channels in [record]).");
+  if (run.status != ComparedRun::Status::converged) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = "the channels do not ring at one frequency";
 }
 
 }  // namespace beamid::experiments

@@ -5,11 +5,13 @@
 
 namespace beamid::experiments {
 
-/// Where the record is surely likelier with a clock at another rate or, of a driven record, with one late
-/// (likeliest_clock.hpp) or with noise in its inputs (noisy_input_fit.hpp): contradicted where that moves an
-/// unknown out of its 95 % interval, or where a lag makes most of what is left; a warning where it moves one
-/// by more than a deviation. A constant lag within a free decay is left alone: modes that are not in step,
-/// as those of dashpots, look so.
+/// Where a driven record is surely likelier with a clock late or at another rate (likeliest_clock.hpp), or
+/// else with noise in its inputs (noisy_input_fit.hpp): contradicted where that moves an unknown out of its
+/// 95 % interval, or where it makes most of what is left; a warning where it moves one by more than a
+/// deviation.
 void judge_inputs(const RunContext& context, ComparedRun& run);
+
+/// Contradicted where the channels of a free decay do not ring at one frequency (clock_scatter.hpp).
+void judge_clock_scatter(const RunContext& context, ComparedRun& run);
 
 }  // namespace beamid::experiments

@@ -8,6 +8,7 @@
 #include "experiments/identify/compare/run_mode.hpp"
 #include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/compare/true_value.hpp"
+#include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/nonlinear_reproduction.hpp"
 #include "experiments/identify/recorded_frequency.hpp"
 #include "experiments/identify/reproduction.hpp"
@@ -27,6 +28,20 @@ std::string unsettled_text(double moved) {
       moved);
 }
 
+// Of a free decay by several channels, whose own frequencies lie about those of the model.
+std::optional<ClockScatter> scatter_of_clocks(const RecordAnalysis& analysis, const JointModel& model,
+                                              const VectorXd& state) {
+  const Record& even = analysis.even.record;
+  const std::vector<Index> outputs = output_channels(even);
+  const auto rates = seen_rates(model, state);
+  if (analysis.forced() || outputs.size() < 2 || rates.empty()) return {};
+  try {
+    return clock_scatter(fit_decays_jointly(even.samples(outputs, Eigen::all), even.interval(), rates));
+  } catch (const std::exception&) {  // decays too short or too few samples for so many modes
+    return {};
+  }
+}
+
 }  // namespace
 
 void Passes::finish() {
@@ -43,14 +58,15 @@ void Passes::finish() {
             ? input_bounds_
             : run_bounds(*discrete, *run_.model, motion_.initial_state, directions_, record_));
   const bool drifts = has_noise(run_.settings.input_noise);  // what one motion leaves is not the noise then
-  const bool is_kept = settings_.keep == filters::Keep::all_estimates, driven = context_.analysis.forced(),
-             clocks_are_asked = !drifts && context_.compared.clocks.empty() &&
-                                (driven || (is_kept && record_.outputs.rows() > 1));
-  if (clocks_are_asked && is_weighed_at_once())
+  const bool is_kept = settings_.keep == filters::Keep::all_estimates;
+  const bool inputs_are_asked = !drifts && context_.analysis.forced() && context_.compared.clocks.empty();
+  if (inputs_are_asked && is_weighed_at_once())
     run_.likeliest_clocks =
         likeliest_clocks(*discrete, motion_.initial_state, directions_, record_, motion_.outputs);
+  if (is_kept && context_.analysis.modal && context_.compared.clocks.empty())
+    run_.clock_scatter = scatter_of_clocks(context_.analysis, *run_.model, run_.run.last.mean);
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
-  if (clocks_are_asked && driven && is_kept) look_for_input_noise();
+  if (inputs_are_asked && is_kept) look_for_input_noise();
   run_.response_seconds += seconds_since(start);
   if (settings_.keep == filters::Keep::last_estimate) return;
   if (first_start_.size() > 0)

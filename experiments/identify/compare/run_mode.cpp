@@ -115,4 +115,18 @@ std::optional<RecordedModes> recorded_modes(const JointModel& model, const Vecto
   return modes;
 }
 
+std::vector<std::complex<double>> seen_rates(const JointModel& model, const VectorXd& state) {
+  constexpr double least = 0.02;
+  std::vector<std::complex<double>> rates;
+  const auto* motion = dynamic_cast<const filters::LinearMotion*>(model.motion.get());
+  if (!motion) return rates;
+  for (const auto& [mode, share] : oscillations(*motion, state))
+    if (share > least)
+      rates.push_back(
+          2.0 * std::numbers::pi * mode.frequency_hz *
+          std::complex<double>(-mode.damping_ratio,
+                               std::sqrt(std::max(0.0, 1.0 - mode.damping_ratio * mode.damping_ratio))));
+  return rates;
+}
+
 }  // namespace beamid::experiments

@@ -1,7 +1,9 @@
 // The modes of a record in a model at its estimate.
 #pragma once
 
+#include <complex>
 #include <optional>
+#include <vector>
 
 #include "experiments/models/divergence.hpp"
 #include "experiments/models/joint_model.hpp"
@@ -24,5 +26,9 @@ struct RecordedModes {
 std::optional<RecordedModes> recorded_modes(const JointModel& model, const Eigen::VectorXd& state,
                                             const filters::Gaussian& unknowns,
                                             std::optional<double> record_hz);
+
+/// Rates of all oscillations that the sensors see by a fiftieth of what they see of the strongest [rad/s];
+/// none where the motion is not linear.
+std::vector<std::complex<double>> seen_rates(const JointModel& model, const Eigen::VectorXd& state);
 
 }  // namespace beamid::experiments

@@ -155,6 +155,7 @@ void judge_run(const RunContext& context, ComparedRun& run) {
     judge_size(context, run);
   }
   if (!run.oscillator) judge_channels(context, run);
+  judge_clock_scatter(context, run);
 }
 
 }  // namespace beamid::experiments

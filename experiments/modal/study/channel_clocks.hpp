@@ -6,11 +6,9 @@
 
 namespace beamid::experiments {
 
-/// A structure has one frequency for each mode, wherever it is measured: channels whose own frequencies, one
-/// Gauss-Newton step from the joint ones, scatter by more than their deviations (chi^2 over channels and
-/// modes below its 0.01 % point) have clocks of their own. Then the deviations of the joint frequencies are
-/// widened by how far the farthest of the mode's channels is, for any of them may be right, and a warning
-/// says by how much the clocks differ.
+/// Where they do not (clock_scatter.hpp), the deviations of the joint frequencies are widened by how far the
+/// farthest of the mode's channels is, for any of them may be right, and a warning says by how much the
+/// clocks differ.
 /// @param fit of found's modes, in their order
 void compare_clocks(const JointDecayFit& fit, RecordModes& found);
 

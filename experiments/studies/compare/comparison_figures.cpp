@@ -83,23 +83,24 @@ Figure motion_figure(const Comparison& comparison, const Runs& runs, Index chann
       reproduction_panel(channel_title(shown) + ", the first ten periods: nearest and farthest run",
                          record.time, measured, drawn, label)
           .across(begin, last));
-  double largest = 0;
   const Index inside = (record.time.array() <= last).count();
+  std::vector<VectorXd> residuals;
+  double largest = 0;
   for (std::size_t i = 0; i < std::min(runs.size(), most_residuals); ++i) {
-    const VectorXd residual = measured - runs[i]->reproduced.row(channel).transpose();
-    for (const double value : residual.head(inside))
+    residuals.emplace_back(measured - runs[i]->reproduced.row(channel).transpose());
+    for (const double value : residuals.back().head(inside))
       if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  }
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
     figure.panels.push_back(
         residual_panel(fmt::format("{} leaves {:.3g} {} (rms)", name_of(comparison, *runs[i]),
-                                   root_mean_squares(residual.transpose())[0], si_unit(shown.quantity)),
-                       record.time, residual, label)
+                                   root_mean_squares(residuals[i].transpose())[0], si_unit(shown.quantity)),
+                       record.time, residuals[i], label, largest)
             .across(begin, last));
     figure.panels.back().y_axis.label = std::string("[") + si_unit(shown.quantity) + "]";
     figure.panels.back().x_axis.label = "";
   }
   figure.panels.back().x_axis.label = "time [s]";
-  for (std::size_t i = 1; i < figure.panels.size() && largest > 0; ++i)
-    figure.panels[i].up(-largest, largest);
   figure.rows = static_cast<int>(figure.panels.size());
   figure.height = 340 + 120 * (figure.rows - 1);
   figure.caption =

@@ -115,9 +115,8 @@ Json methods_of(const Experiment& experiment, const Comparison& comparison) {
 }  // namespace
 
 Json comparison_configuration(const Experiment& experiment, const Comparison& comparison) {
-  Json json = describe(experiment);
-  constexpr bool into_tables = true;
-  json.update(methods_of(experiment, comparison), into_tables);
+  Json json = describe(experiment, {"filter", "model", "reduction"});
+  json.update(methods_of(experiment, comparison));
   if (comparison.compared.truth) json["truth"] = describe(*comparison.compared.truth);
   return json;
 }

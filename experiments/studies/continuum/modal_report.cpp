@@ -53,13 +53,16 @@ Table mode_table(const ModalSummary& s) {
                100.0 * rounded_among(s.release_amplitude[i], s.release_amplitude),
                1e-3 * rounded_among(acceleration[i], acceleration), s.mac[i], 100.0 * s.damping_ratio[i]});
   }
-  table.note = fmt::format(
+  table.note =
       "mesh error: relative, estimated from finer meshes; exact: against the continuum, where its "
-      "solution is known. digits: significant digits on which solver and Rayleigh quotient agree. "
-      "eff. mass: participating when the base moves, {:.1f} % of {:.6g} kg in these modes. release: share of "
-      "each mode in displacement and "
-      "acceleration of the {} after a static deflection there.",
-      100.0 * s.effective_mass.sum() / s.total_mass, s.total_mass, s.observed.name);
+      "solution is known. digits: significant digits on which solver and Rayleigh quotient agree. ";
+  if (s.total_mass > 0.0)
+    table.note +=
+        fmt::format("effect. mass: participating when the base moves, {:.1f} % of {:.6g} kg in these modes. ",
+                    100.0 * s.effective_mass.sum() / s.total_mass, s.total_mass);
+  table.note += fmt::format(
+      "release: share of each mode in displacement and acceleration of '{}' after a static deflection there.",
+      s.observed.name);
   return table;
 }
 

@@ -196,7 +196,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
       found.passes == 1 ? "" : "es"));
   if (record.channels.size() > 1 || !experiment.structure.has_positions() ||
       *placed.channels[0].position != fem::natural_point(experiment.structure).position)
-    results.paragraph("Stiffness, damping and mass are those of the motion at the first channel of " +
+    results.paragraph("Stiffness, damping and mass are those of the motion at the first channel. Channels: " +
                       channels_text(placed) + ".");
   if (found.identification.run.failure) return results;
   results.arrays = {{"", "innovations", found.identification.run.innovations},

@@ -123,12 +123,8 @@ Json values(const RecordIdentification& found, const Record& record) {
 
 Json configuration(const Experiment& experiment, const Record& record, const RecordIdentification& found,
                    const std::string& record_name) {
-  Json json = describe(experiment, {"filter"});
-  json.update({{"record", record_name},
-               {"sampling_rate_hz", 1.0 / record.interval()},
-               {"reduction", describe(experiment.reduction, "method")},
-               {"model", describe(experiment.model, "name")}});
-  json["filter"].update(describe(experiment.filter, "method"));
+  Json json = describe(experiment, {"filter", "model", "reduction"});
+  json.update({{"record", record_name}, {"sampling_rate_hz", 1.0 / record.interval()}});
   json["passes"] = found.passes;
   const auto labels = found.model.motion->state_labels();
   for (std::size_t i = 0; i < labels.size(); ++i)

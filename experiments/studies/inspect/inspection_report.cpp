@@ -77,7 +77,7 @@ Results report(const Inspection& found) {
   for (const InspectedChannel& channel : found.channels)
     results.values["channels"].push_back(inspection_to_json(found, channel));
   const std::vector<std::string> warnings = inspection_warnings(found);
-  results.values["warnings"] = warnings;
+  results.values["findings"] = warnings;
 
   results.heading(found.file);
   std::string text = fmt::format("Read as {}. {}", found.reader, sampling_text(found));

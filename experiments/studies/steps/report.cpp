@@ -169,7 +169,6 @@ Results report(const Experiment& experiment, const StepsStudy& study) {
   Results results;
   results.command = "steps";
   results.configuration = describe(experiment, {"filter"});
-  results.configuration["filter"].update(describe(experiment.filter, "method"));
   results.configuration.update(
       {{"record", study.record}, {"discretisations", study.discretisations}, {"passes", experiment.passes}});
   results.values = study_values(study);

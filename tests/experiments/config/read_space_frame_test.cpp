@@ -214,7 +214,7 @@ TEST(ReadExperiment, TakesASpaceFrame) {
             "degrees of "
             "freedom.");
   EXPECT_EQ(describe(experiment.structure, 8)["members"][0]["section_z"],
-            (nlohmann::json::array({1.0, 0.0, 0.0})));
+            (nlohmann::ordered_json::array({1.0, 0.0, 0.0})));
 }
 
 }  // namespace

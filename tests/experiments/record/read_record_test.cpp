@@ -1,7 +1,7 @@
 // Oracles: the numbers written in the files; the published facts of the measured records.
 #include "experiments/record/read_record.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "tests/experiments/config/temporary_file.hpp"
 
@@ -68,6 +68,24 @@ TEST(ReadRecord, FindsColumnsByTheHeadersNames) {
       read_text_record("analyser 7\n1;2;3\nacc tip;t;x\n\n1;0;9\n-2e-3;500;9\n3;1000;9\n", format);
   expect_three_samples(record);
   EXPECT_EQ(record.channels[0].name, "acc tip");
+}
+
+// A record of `beamid simulate` has the displacement first; a file made for another says acceleration there.
+TEST(ReadRecord, WarnsWhereAColumnIsStatedOtherwiseThanItIsNamed) {
+  RecordFormat format = two_columns();
+  format.time = ColumnDescription{Quantity::acceleration, "time_s", 0, 1.0};
+  const auto warnings = [&](const ColumnDescription& stated) {
+    format.channels = {stated};
+    return read_text_record("time_s,displacement_tip_m,acceleration_g\n0,1,2\n1,1,2\n2,1,2\n", format)
+        .warnings;
+  };
+  EXPECT_THAT(
+      warnings({Quantity::acceleration, "", 2, 1.0}),
+      testing::Contains(testing::HasSubstr("named 'displacement_tip_m' and stated as acceleration, which "
+                                           "is another quantity")));
+  EXPECT_THAT(warnings({Quantity::acceleration, "", 3, 1.0}),
+              testing::Contains(testing::HasSubstr("in another unit, 0.101972 times that of its name")));
+  EXPECT_THAT(warnings({Quantity::base_acceleration, "", 3, 9.80665}), testing::IsEmpty());
 }
 
 TEST(ReadRecord, NeedsNoConfigurationWhenTheHeaderCarriesUnits) {
