@@ -156,7 +156,13 @@ std::vector<fs::path> record_files(const Values& values, const fs::path& config,
                                    const std::optional<std::string>& named) {
   std::vector<fs::path> files;
   for (const std::string& word : values.texts("record")) files.push_back(record_file(word));
-  if (files.empty() && named) files.push_back(config.parent_path() / *named);
+  if (!files.empty() || !named) return files;
+  files.push_back(config.parent_path() / *named);
+  if (!fs::exists(files[0])) {
+    const auto record = TomlTable::read(config).find_table("record");
+    throw InputError(record ? record->value_place("file") : Place{config.string()},
+                     "record.file: no such file '" + files[0].string() + "'; expected a record");
+  }
   return files;
 }
 
@@ -166,11 +172,6 @@ std::vector<fs::path> require_record_files(const Values& values, const fs::path&
   if (files.empty() && config.empty()) throw UsageError("which RECORD?");
   if (files.empty())
     throw UsageError("no RECORD on the command line, and no 'file' under [record] in " + config.string());
-  if (values.texts("record").empty() && !fs::exists(files[0])) {
-    const auto record = TomlTable::read(config).find_table("record");
-    throw InputError(record ? record->value_place("file") : Place{config.string()},
-                     "record.file: no such file '" + files[0].string() + "'; expected a record");
-  }
   return files;
 }
 

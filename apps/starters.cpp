@@ -21,8 +21,8 @@ title = "steel cantilever with a tip mass"
 
 [beam]                              # a uniform cantilever; segments, taper, springs, damage, ...: see every key
 length_m = 1.10
-width_m = 0.060
-height_m = 0.006
+width_m = 0.060                     # of the section, across the direction of bending
+height_m = 0.006                    # of the section, along the direction of bending
 youngs_modulus_pa = 2.12e11
 # bending_stiffness_n_m2 = 228.96   # E I, instead of youngs_modulus_pa, width_m and height_m
 mass_kg = 3.055
@@ -123,7 +123,7 @@ std::string short_meaning(const experiments::Key& key) {
   return asks_for_more || meaning.starts_with("in place of") ? "" : meaning;
 }
 
-/// "# across the direction of bending" behind "width_m = 0.060": what the key's row says of it, as far as a
+/// "# rigid mass at the tip" behind "tip_mass_kg = 0.360": what the key's row says of it, as far as a
 /// line holds it, where the starter says nothing itself.
 std::string annotated(const std::string& starter) {
   constexpr std::size_t column = 36, width = 118;

@@ -18,8 +18,8 @@ std::string bending_stiffness_text(const fem::Beam& beam);
 /// "rayleigh", "modal and dashpots", "dashpots".
 std::string damping_text(const fem::DampingLaw& law, const fem::StructuralSystem& system);
 
-/// With which "configuration" begins: a title, under "experiment" the keys of its file as they hold
-///, under "structure" what they come to.
+/// With which "configuration" begins: a title, under "experiment" the keys of the file as they hold, under
+/// "structure" what they come to.
 /// @param also tables whose defaults hold though the file does not have them
 nlohmann::ordered_json describe(const Experiment& experiment, const std::vector<std::string>& also = {});
 

@@ -83,8 +83,13 @@ Json list_of(const std::vector<Choice>& choices) {
 
 Json effective_keys(const TomlTable& root, const std::vector<std::string>& also) {
   Json given = Json::parse(root.json());
+  // A release has a place of its own on beams alone.
+  const auto rules_out = [&](const std::string& table) {
+    return table == "excitation" && (given.contains("excitations") || given.contains("frame") ||
+                                     given.contains("space_frame") || given.contains("system"));
+  };
   for (const std::string& table : also)
-    if (!given.contains(table)) given[table] = Json::object();
+    if (!given.contains(table) && !rules_out(table)) given[table] = Json::object();
   return completed(given, *find_key_table(""), true);
 }
 
@@ -94,7 +99,7 @@ Json effective_keys(const Experiment& experiment, const std::vector<std::string>
   const auto choose = [&](const char* table, Json chosen) {
     if (!keys.contains(table)) return;
     for (const auto& [key, value] : keys[table].items())
-      if (!chosen.contains(key)) chosen[key] = value;
+      if (!chosen.contains(key) && find_key_table(table)->find(key) != nullptr) chosen[key] = value;
     keys[table] = std::move(chosen);
   };
   Json filter = keys_of(experiment.filter, "method");
@@ -107,7 +112,10 @@ Json effective_keys(const Experiment& experiment, const std::vector<std::string>
   choose("reduction", keys_of(experiment.reduction, "method"));
   if (!experiment.reductions.empty()) keys["reductions"] = list_of(experiment.reductions);
   if (!experiment.filters.empty()) keys["filters"] = list_of(experiment.filters);
-  if (!experiment.discretisations.empty()) keys["compare"]["discretisations"] = experiment.discretisations;
+  if (!experiment.discretisations.empty()) {
+    keys["compare"]["discretisations"] = experiment.discretisations;
+    keys["compare"]["passes"] = experiment.passes;
+  }
   if (const auto& window = experiment.format.window)
     keys["record"]["window_s"] = {window->first, window->second};
   return keys;

@@ -39,6 +39,7 @@ const Schema<FrequencyResponseSettings>& frequency_response_keys() {
           .key(
               "residual_modes", [](F& f) -> bool& { return f.method.residual_modes; },
               "modal: the static deflection of the modes left out is added", "false")
+          .fallback("`true`")
           .tables({"pairs"});
   return keys;
 }

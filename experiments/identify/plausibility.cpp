@@ -99,9 +99,9 @@ double extent(const fem::Frame& frame) {
 }
 
 void check_members(const fem::Frame& frame, Sentences& found) {
+  const double size = extent(frame);
   for (std::size_t i = 0; i < frame.members.size(); ++i)
-    check_segment(frame.members[i].section, extent(frame), fmt::format("member {}: the ", i + 1), "frame",
-                  found);
+    check_segment(frame.members[i].section, size, fmt::format("member {}: the ", i + 1), "frame", found);
 }
 
 void check_segments(const fem::Beam& beam, Sentences& found) {

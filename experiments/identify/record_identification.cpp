@@ -1,4 +1,5 @@
 #include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/compare/input_faults.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,6 +57,12 @@ void take_channels(const ChannelAmplitudes& channels, Judgement& judgement) {
     judgement.verdict = ComparedRun::Status::contradicted;
 }
 
+void take_clocks(const Record& record, const std::optional<ClockScatter>& scatter, Judgement& judgement) {
+  if (!scatter || judgement.verdict == ComparedRun::Status::diverged) return;
+  judgement.messages.insert(judgement.messages.begin(), clock_scatter_text(record, *scatter));
+  judgement.verdict = ComparedRun::Status::contradicted;
+}
+
 }  // namespace
 
 RecordIdentification oscillator_of(const Experiment& experiment, const RecordAnalysis& analysis,
@@ -94,6 +101,7 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
   result.judgement = judge(experiment, analysis.record, result);
   if (result.judgement.verdict != ComparedRun::Status::diverged) take_objections(analysis, result);
   take_channels(analysis.channels, result.judgement);
+  take_clocks(analysis.record, run.clock_scatter, result.judgement);
   return result;
 }
 

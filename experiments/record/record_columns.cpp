@@ -22,10 +22,10 @@ std::string column_name_of(const RecordTable& table, std::size_t index) {
 void compare_with_header(const ColumnDescription& wanted, std::size_t index, RecordTable& table) {
   const std::string header = column_name_of(table, index);
   const auto meaning = parse_column_name(header);
-  if (!meaning || !meaning->quantity) return;
+  if (!meaning) return;
   const std::string stated =
       fmt::format("Column {} is named '{}' and stated as {}", index + 1, header, to_string(wanted.quantity));
-  if (si_unit(*meaning->quantity) != std::string(si_unit(wanted.quantity)))
+  if (!meaning->quantity || si_unit(*meaning->quantity) != std::string(si_unit(wanted.quantity)))
     table.warnings.push_back(stated + ", which is another quantity: is it the column that was meant?");
   else if (std::abs(meaning->factor - wanted.factor) > 1e-9 * std::abs(wanted.factor))
     table.warnings.push_back(fmt::format("{} in another unit, {:.6g} times that of its name.", stated,
@@ -148,7 +148,14 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   if (format.channels.empty()) columns = columns_of_header(table);
   for (const ColumnDescription& wanted : format.channels)
     columns.channels.push_back(find_column(table, wanted));
-  if (format.time) columns.time = {find_index(table, *format.time), format.time->factor, {}};
+  if (format.time) {
+    columns.time = {find_index(table, *format.time), format.time->factor, {}};
+    const std::string header = column_name_of(table, columns.time->index);
+    if (const auto meaning = parse_column_name(header);
+        meaning && (meaning->quantity || meaning->factor != format.time->factor))
+      table.warnings.push_back(fmt::format("Column {} is named '{}' and stated as time in units of {:g} s.",
+                                           columns.time->index + 1, header, format.time->factor));
+  }
   if (!columns.time && table.time) columns.time = RecordColumn{*table.time, 1, {}};
   for (std::size_t index = 0; !columns.time && index < std::min(table.names.size(), table.width()); ++index)
     if (const auto meaning = stated_meaning(table, index); meaning && !meaning->quantity)

@@ -36,11 +36,11 @@ Panel reproduction_panel(const std::string& title, const Eigen::VectorXd& time,
 
 namespace {
 
-/// The next of ..., 1, 2, 5, 10, ... that is not below the size of any value; 1 of values that are all zero.
 double size_of(const Eigen::VectorXd& values) {
   return values.size() > 0 ? values.array().isFinite().select(values.array().abs(), 0.0).maxCoeff() : 0.0;
 }
 
+/// The next of ..., 1, 2, 5, 10, ... that is not below a size; 1 of zero.
 double round_size(double most) {
   if (!(most > 0)) return 1;
   const double decade = std::pow(10.0, std::floor(std::log10(most)));

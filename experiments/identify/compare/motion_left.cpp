@@ -23,10 +23,13 @@ std::string innovations_text(const filters::InnovationConsistency& c, double mis
                                     : "neither white nor of steady size";
   const std::string motion = misfit_percent > 0.0 ? fmt::format("{:.2g} % of the record is", misfit_percent)
                                                   : std::string("the record holds");
+  const std::string size = steady ? fmt::format("mean normalised square {:.3g}", c.mean_normalised_square)
+                                  : fmt::format("normalised squares of {:.3g} to {:.3g} along the record",
+                                                c.windows.minCoeff(), c.windows.maxCoeff());
   return fmt::format(
-      "The innovations are {} (Ljung-Box p = {:.2g}, mean normalised square {:.3g}): {} motion that the "
-      "model does not{}, and the intervals are a lower limit of the uncertainty{}.",
-      what, c.whiteness_p_value, c.mean_normalised_square, motion, misfit_percent > 0.0 ? " make" : "",
+      "The innovations are {} (Ljung-Box p = {:.2g}, {}): {} motion that the model does not{}, and the "
+      "intervals are a lower limit of the uncertainty{}.",
+      what, c.whiteness_p_value, size, motion, misfit_percent > 0.0 ? " make" : "",
       misfit_percent > 0.0 ? ": a wrong mass, place or gain moves estimates by more" : "");
 }
 

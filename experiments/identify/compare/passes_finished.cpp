@@ -6,10 +6,8 @@
 #include "experiments/identify/compare/passes.hpp"
 #include "experiments/identify/compare/run_bound.hpp"
 #include "experiments/identify/compare/run_mode.hpp"
-#include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/compare/true_value.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/nonlinear_reproduction.hpp"
 #include "experiments/identify/recorded_frequency.hpp"
 #include "experiments/identify/reproduction.hpp"
 #include "experiments/models/finest_discretisation.hpp"
@@ -28,15 +26,23 @@ std::string unsettled_text(double moved) {
       moved);
 }
 
-// Of a free decay by several channels, whose own frequencies lie about those of the model.
+// Of a free decay by several channels, whose own frequencies lie about those of the model. Nothing where the
+// decay is not that of the model's modes.
+// @param start of the motion that is nearest to the record
 std::optional<ClockScatter> scatter_of_clocks(const RecordAnalysis& analysis, const JointModel& model,
-                                              const VectorXd& state) {
+                                              const VectorXd& start) {
+  constexpr Index most_numbers = 20'000'000;
+  constexpr double same = 0.02;  // of a frequency
   const Record& even = analysis.even.record;
   const std::vector<Index> outputs = output_channels(even);
-  const auto rates = seen_rates(model, state);
-  if (analysis.forced() || outputs.size() < 2 || rates.empty()) return {};
+  const auto rates = seen_rates(model, start);
+  const auto numbers = static_cast<Index>(outputs.size() * rates.size()) * 2 * even.size();
+  if (analysis.forced() || outputs.size() < 2 || rates.empty() || numbers > most_numbers) return {};
   try {
-    return clock_scatter(fit_decays_jointly(even.samples(outputs, Eigen::all), even.interval(), rates));
+    const JointDecayFit fit = fit_decays_jointly(even.samples(outputs, Eigen::all), even.interval(), rates);
+    for (std::size_t m = 0; m < rates.size(); ++m)
+      if (std::abs(fit.rates[m].imag() - rates[m].imag()) > same * rates[m].imag()) return {};
+    return clock_scatter(fit);
   } catch (const std::exception&) {  // decays too short or too few samples for so many modes
     return {};
   }
@@ -64,7 +70,7 @@ void Passes::finish() {
     run_.likeliest_clocks =
         likeliest_clocks(*discrete, motion_.initial_state, directions_, record_, motion_.outputs);
   if (is_kept && context_.analysis.modal && context_.compared.clocks.empty())
-    run_.clock_scatter = scatter_of_clocks(context_.analysis, *run_.model, run_.run.last.mean);
+    run_.clock_scatter = scatter_of_clocks(context_.analysis, *run_.model, motion_.initial_state);
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
   if (inputs_are_asked && is_kept) look_for_input_noise();
   run_.response_seconds += seconds_since(start);

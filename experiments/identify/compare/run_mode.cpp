@@ -1,6 +1,7 @@
 #include "experiments/identify/compare/run_mode.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -117,16 +118,26 @@ std::optional<RecordedModes> recorded_modes(const JointModel& model, const Vecto
 
 std::vector<std::complex<double>> seen_rates(const JointModel& model, const VectorXd& state) {
   constexpr double least = 0.02;
-  std::vector<std::complex<double>> rates;
   const auto* motion = dynamic_cast<const filters::LinearMotion*>(model.motion.get());
-  if (!motion) return rates;
-  for (const auto& [mode, share] : oscillations(*motion, state))
-    if (share > least)
-      rates.push_back(
-          2.0 * std::numbers::pi * mode.frequency_hz *
-          std::complex<double>(-mode.damping_ratio,
-                               std::sqrt(std::max(0.0, 1.0 - mode.damping_ratio * mode.damping_ratio))));
-  return rates;
+  if (!motion) return {};
+  MatrixXd rates, sensors;
+  motion->motion_matrix(state, rates);
+  motion->output_jacobian(state, VectorXd::Zero(motion->input_size()), sensors);
+  const Index n = rates.rows();
+  const Eigen::EigenSolver<MatrixXd> solver(rates);
+  // How much of each the motion has, times what the sensors see of it.
+  const Eigen::VectorXcd part =
+      solver.eigenvectors().fullPivLu().solve(state.head(n).cast<std::complex<double>>());
+  const VectorXd seen = (sensors.leftCols(n) * solver.eigenvectors())
+                            .colwise()
+                            .norm()
+                            .transpose()
+                            .cwiseProduct(part.cwiseAbs());
+  std::vector<std::complex<double>> found;
+  for (Index i = 0; i < n; ++i)
+    if (solver.eigenvalues()[i].imag() > 0.0 && seen[i] > least * seen.maxCoeff())
+      found.push_back(solver.eigenvalues()[i]);
+  return found;
 }
 
 }  // namespace beamid::experiments

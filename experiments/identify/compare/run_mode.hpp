@@ -27,8 +27,8 @@ std::optional<RecordedModes> recorded_modes(const JointModel& model, const Eigen
                                             const filters::Gaussian& unknowns,
                                             std::optional<double> record_hz);
 
-/// Rates of all oscillations that the sensors see by a fiftieth of what they see of the strongest [rad/s];
-/// none where the motion is not linear.
+/// Rates of the oscillations of a free motion from this state of which the sensors see a fiftieth of what
+/// they see of the strongest, at least [rad/s]; none where the motion is not linear.
 std::vector<std::complex<double>> seen_rates(const JointModel& model, const Eigen::VectorXd& state);
 
 }  // namespace beamid::experiments

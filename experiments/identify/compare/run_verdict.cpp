@@ -154,7 +154,8 @@ void judge_run(const RunContext& context, ComparedRun& run) {
                         "DIVERGED: " + run.reason + ". There is no estimate to rely on.");
     judge_size(context, run);
   }
-  if (!run.oscillator) judge_channels(context, run);
+  if (run.oscillator) return;  // whose own verdict holds them
+  judge_channels(context, run);
   judge_clock_scatter(context, run);
 }
 

@@ -85,7 +85,7 @@ Attachment place_file(const Identifiability& found) {
 Results report(const Experiment& experiment, const Identifiability& found) {
   Results results;
   results.command = "identifiability";
-  results.configuration = describe(experiment, {"excitation", "identifiability"});
+  results.configuration = describe(experiment, {"excitation", "identifiability", "model", "reduction"});
   results.values = values(found);
 
   results.heading(experiment.title.empty() ? "What can be known" : experiment.title);

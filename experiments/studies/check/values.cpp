@@ -1,4 +1,3 @@
-#include "experiments/config/structure_description.hpp"
 #include "experiments/studies/check/report.hpp"
 
 namespace beamid::experiments {

@@ -97,7 +97,6 @@ Json methods_of(const Experiment& experiment, const Comparison& comparison) {
   };
   Json json{
       {"reduction", {{"method", names(&ComparedRun::reduction)}}},
-      {"model", {{"name", experiment.model.name}}},
       {"filter",
        {{"method", names(&ComparedRun::filter)}, {"discretisation", names(&ComparedRun::discretisation)}}},
       {"passes", experiment.passes},

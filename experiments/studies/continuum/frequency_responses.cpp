@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <set>
-#include <stdexcept>
 
 #include "experiments/config/storey_laws.hpp"
 #include "fem/modes.hpp"
@@ -196,11 +195,10 @@ FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Pr
   progress("modes");
   fem::Modes modes = fem::modes(all.system, std::min<Index>(20, all.system.size()));
   const Index rigid = modes.rigid;
-  if (rigid > 0 && settings.from_hz == 0.0)
-    throw std::invalid_argument(
-        "frequency_response.from_hz is 0, where a structure that nothing holds follows a force without "
-        "bound; "
-        "expected a frequency above 0");
+  if (rigid > 0 && settings.from_hz == 0.0 && experiment.file)
+    throw InputError(experiment.file->table("frequency_response").value_place("from_hz"),
+                     "frequency_response.from_hz is 0, where a structure that nothing holds follows a force "
+                     "without bound; expected a frequency above 0");
   all.frequency_hz = grid(settings, modes.frequency_hz(), rigid);
   const double end = all.frequency_hz[all.frequency_hz.size() - 1];
   if (modes.frequency_hz().maxCoeff() < end && modes.size() < std::min(most_natural, all.system.size()))

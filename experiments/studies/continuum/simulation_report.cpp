@@ -161,8 +161,7 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   Results results;
   results.command = "simulate";
   results.seed = settings.seed;
-  results.configuration =
-      describe(experiment, {test->excitations.size() > 1 ? "excitations" : "excitation", "simulation"});
+  results.configuration = describe(experiment, {"excitation", "simulation"});
   results.configuration["simulation"] = {{"method", test->method.name}};
   for (const auto& [option, value] : test->method.options)
     results.configuration["simulation"][option] = value;

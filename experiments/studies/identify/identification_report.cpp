@@ -1,6 +1,5 @@
 #include "experiments/studies/identify/identification_report.hpp"
 
-#include "experiments/config/failure_response.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/studies/compare/comparison_report.hpp"

@@ -116,8 +116,11 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
   Results results;
   results.command = "identify";
   results.configuration["records"] = Json::array();
-  for (const IdentifiedRecord& one : joint.records)
-    results.configuration["records"].push_back(configuration(experiment, one.record, one.found, one.name));
+  for (const IdentifiedRecord& one : joint.records) {
+    Experiment own = experiment;
+    own.format.window = {one.record.time[0], one.record.time[one.record.size() - 1]};
+    results.configuration["records"].push_back(configuration(own, one.record, one.found, one.name));
+  }
   results.values = joint_values_of(joint);
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);

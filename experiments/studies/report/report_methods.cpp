@@ -44,7 +44,7 @@ void collect(const Json& json, const std::string& place, Settings& settings) {
   }
 }
 
-/// "filter.name", "discretisation"; no entry of an array, as a sensor.
+/// "filter.method", "discretisation"; no entry of an array, as a sensor.
 bool names_a_method(const std::string& key) {
   const std::string last = key.substr(key.rfind('.') + 1);
   return key.find('[') == std::string::npos &&
