@@ -17,21 +17,6 @@ std::string column_name_of(const RecordTable& table, std::size_t index) {
   return index < table.names.size() ? table.names[index] : "";
 }
 
-// What is stated of a column holds, also where its header is wrong; but a column taken for its neighbour, or
-// for another unit, makes every result wrong without a sign.
-void compare_with_header(const ColumnDescription& wanted, std::size_t index, RecordTable& table) {
-  const std::string header = column_name_of(table, index);
-  const auto meaning = parse_column_name(header);
-  if (!meaning) return;
-  const std::string stated =
-      fmt::format("Column {} is named '{}' and stated as {}", index + 1, header, to_string(wanted.quantity));
-  if (!meaning->quantity || si_unit(*meaning->quantity) != std::string(si_unit(wanted.quantity)))
-    table.warnings.push_back(stated + ", which is another quantity: is it the column that was meant?");
-  else if (std::abs(meaning->factor - wanted.factor) > 1e-9 * std::abs(wanted.factor))
-    table.warnings.push_back(fmt::format("{} in another unit, {:.6g} times that of its name.", stated,
-                                         wanted.factor / meaning->factor));
-}
-
 RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
   RecordColumn column{find_index(table, wanted),
                       wanted.factor,
@@ -111,6 +96,19 @@ std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_
                      fmt::format("'{}' has the unit '{}'; expected the one of its name", table.names[index],
                                  table.units[index]));
   return meaning;
+}
+
+void compare_with_header(const ColumnDescription& wanted, std::size_t index, RecordTable& table) {
+  const std::string header = column_name_of(table, index);
+  const auto meaning = parse_column_name(header);
+  if (!meaning) return;
+  const std::string stated =
+      fmt::format("Column {} is named '{}' and stated as {}", index + 1, header, to_string(wanted.quantity));
+  if (!meaning->quantity || si_unit(*meaning->quantity) != std::string(si_unit(wanted.quantity)))
+    table.warnings.push_back(stated + ", which is another quantity: is it the column that was meant?");
+  else if (std::abs(meaning->factor - wanted.factor) > 1e-9 * std::abs(wanted.factor))
+    table.warnings.push_back(fmt::format("{} in another unit, {:.6g} times that of its name.", stated,
+                                         wanted.factor / meaning->factor));
 }
 
 std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted) {

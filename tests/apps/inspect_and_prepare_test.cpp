@@ -43,6 +43,25 @@ TEST(Inspect, TellsWhatIsWrongWithARecordAndDrawsIt) {
   EXPECT_GT(found["channels"][0]["clipped"].size(), 1u);
 }
 
+// Read as a displacement, it would give numbers like any other.
+TEST(Inspect, AndEveryCommandWarnsWhereAColumnIsStatedOtherwiseThanItIsNamed) {
+  Workplace place;
+  fs::copy(source("docs/tutorials/02_identify_a_record/tip_acceleration.csv"), place.folder());
+  for (const char* const command : {"inspect", "modal", "track", "prepare --config steps.toml"}) {
+    place.write("steps.toml",
+                "[record]\nwindow_s = [2, 10]\ntime = { column = 1, unit = \"s\" }\n"
+                "channels = [{ quantity = \"displacement\", column = 2, unit = \"m\" }]\n"
+                "[[record.prepare]]\nstep = \"detrend\"\n[beam]\nlength_m = 1\n"
+                "bending_stiffness_n_m2 = 1\nmass_kg = 1\n");
+    const std::string words = std::string(command).starts_with("prepare")
+                                  ? ""
+                                  : " --time 1 --column 2 --quantity displacement --unit m --window 2 10";
+    EXPECT_THAT(place.run(command + std::string(" tip_acceleration.csv") + words).out,
+                testing::HasSubstr("named 'acceleration_tip_m_per_s2' and stated as"))
+        << command;
+  }
+}
+
 TEST(Inspect, CountsDamagedLinesWhichOtherCommandsRefuse) {
   Workplace place;
   place.write("decay.csv", clipped_decay("damaged"));

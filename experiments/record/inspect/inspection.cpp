@@ -58,8 +58,11 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
     for (std::size_t index = 0; index < table.width(); ++index)
       if (!time || index != time->index) found.channels.push_back(make_channel(table, index, nullptr));
   } else {
-    for (const ColumnDescription& wanted : format.channels)
-      found.channels.push_back(make_channel(table, find_index(table, wanted), &wanted));
+    for (const ColumnDescription& wanted : format.channels) {
+      const std::size_t index = find_index(table, wanted);
+      if (wanted.stated) compare_with_header(wanted, index, table);
+      found.channels.push_back(make_channel(table, index, &wanted));
+    }
   }
   if (found.channels.empty())
     throw InputError({table.file}, "no column but time; expected a measured quantity");
@@ -67,7 +70,7 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
   found.sampling = check_sampling(found.time, found.resolution);
   for (InspectedChannel& channel : found.channels) inspect_channel(found, channel);
   found.remarks = table.remarks;
-  found.remarks.insert(found.remarks.end(), table.warnings.begin(), table.warnings.end());
+  found.warnings = table.warnings;
   return found;
 }
 

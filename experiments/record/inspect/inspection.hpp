@@ -42,6 +42,7 @@ struct Inspection {
   std::vector<InspectedChannel> channels;
   std::vector<std::size_t> skipped_lines;
   std::vector<std::string> remarks;
+  std::vector<std::string> warnings;  ///< what the file itself makes wrong, from its reader
 };
 
 /// Reads a file, malformed lines counted, and looks at every column of numbers but time, or at those that the

@@ -29,7 +29,8 @@ void PreparedRecord::take(Record prepared, const RecordFormat& format, const std
                       [&] { return record.window(format.window->first, format.window->second); });
   std::string stretch =
       at_place(Place{file.string()}, [&] { return take_known_inputs(record, format.missing_input); });
-  record.warnings = warnings_of(defects, record);
+  record.warnings = raw.warnings;
+  for (std::string& warning : warnings_of(defects, record)) record.warnings.push_back(std::move(warning));
   if (!stretch.empty()) record.warnings.push_back(std::move(stretch));
   refuse_mostly_missing(record, defects, file);
 }

@@ -147,7 +147,7 @@ std::string sampling_text(const Inspection& found) {
 }
 
 std::vector<std::string> inspection_warnings(const Inspection& found) {
-  std::vector<std::string> all;
+  std::vector<std::string> all = found.warnings;
   const SamplingCheck& s = found.sampling;
   if (!found.skipped_lines.empty())
     all.push_back(skipped_text(found.skipped_lines, "is not a row of numbers like the others") +
