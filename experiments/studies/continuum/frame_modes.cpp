@@ -10,8 +10,7 @@
 #include "experiments/config/description.hpp"
 #include "experiments/config/read_beam.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/results/mode_figure.hpp"
-#include "experiments/results/vtk/mode_shapes.hpp"
+#include "experiments/studies/continuum/mode_drawing.hpp"
 #include "experiments/studies/continuum/mode_trust.hpp"
 
 namespace beamid::experiments {
@@ -117,24 +116,17 @@ Json frame_modes_values(const FrameModes& found) {
 }
 
 /// What the pictures show; it outlives the report.
-struct FrameDrawing {
-  fem::Structure structure;
-  fem::StructuralSystem system;
-  Eigen::MatrixXd shapes;
-  VectorXd frequencies_hz;
-};
-
 // A picture of a million elements shows no more than one of two thousand, and takes a minute.
-std::shared_ptr<const FrameDrawing> drawing(const fem::Structure& frame, int elements_per_member,
-                                            const FrameModes& found) {
+std::shared_ptr<const ModeDrawing> drawing(const fem::Structure& frame, int elements_per_member,
+                                           const FrameModes& found) {
   const int drawn = std::max(1, most_drawn_elements / static_cast<int>(members_of(frame)));
   if (elements_per_member <= drawn)
-    return std::make_shared<FrameDrawing>(
-        FrameDrawing{frame, found.system, found.modes.shape, found.modes.frequency_hz()});
+    return std::make_shared<ModeDrawing>(
+        ModeDrawing{frame, found.system, found.modes.shape, found.modes.frequency_hz()});
   fem::StructuralSystem system = assemble_frame(frame, drawn);
   const Eigen::MatrixXd shapes = fem::modes(system, std::min(found.modes.size(), system.size())).shape;
   const VectorXd frequencies = found.modes.frequency_hz().head(shapes.cols());
-  return std::make_shared<FrameDrawing>(FrameDrawing{frame, std::move(system), shapes, frequencies});
+  return std::make_shared<ModeDrawing>(ModeDrawing{frame, std::move(system), shapes, frequencies});
 }
 
 }  // namespace
@@ -165,27 +157,18 @@ FrameModes frame_modes(const fem::Structure& frame, int elements_per_member, Ind
 }
 
 Results report(const Experiment& experiment, const FrameModes& found, bool surface) {
-  Results results;
-  results.command = "modes";
-  results.configuration = describe(experiment);
-  results.configuration["modes"] = found.modes.size();
+  Results results =
+      begin_modes_report(experiment, found.modes.size(),
+                         static_cast<Index>(found.system.mesh.elements.size()), found.system.size());
   results.values = frame_modes_values(found);
-  results.heading(experiment.title.empty() ? "Natural frequencies" : experiment.title);
-  results.paragraph(
-      structure_text(experiment, static_cast<Index>(found.system.mesh.elements.size()), found.system.size()));
   results.table(mode_table(found));
   std::vector<std::string> notes = found.notes;
-  const std::shared_ptr<const FrameDrawing> drawn = drawing(experiment.structure, experiment.elements, found);
+  const std::shared_ptr<const ModeDrawing> drawn = drawing(experiment.structure, experiment.elements, found);
   if (drawn->system.size() != found.system.size())
     notes.push_back(
         fmt::format("Pictures show the same frame with {} elements.", drawn->system.mesh.elements.size()));
   results.notes(notes);
-  results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
-  results.attachments.push_back(
-      {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {
-         write_mode_shapes(folder, Picture(drawn->structure, drawn->system, surface), drawn->shapes,
-                           drawn->frequencies_hz);
-       }});
+  draw_modes(drawn, surface, results);
   return results;
 }
 

@@ -7,10 +7,8 @@
 #include <numbers>
 
 #include "experiments/config/description.hpp"
-#include "experiments/config/structure_description.hpp"
 #include "experiments/results/file.hpp"
-#include "experiments/results/mode_figure.hpp"
-#include "experiments/results/vtk/mode_shapes.hpp"
+#include "experiments/studies/continuum/mode_drawing.hpp"
 #include "experiments/studies/continuum/mode_trust.hpp"
 
 namespace beamid::experiments {
@@ -134,14 +132,6 @@ Attachment shapes_file(const std::vector<std::string>& labels, const Eigen::Matr
           }};
 }
 
-/// What the pictures show; it outlives the summary.
-struct ModeDrawing {
-  fem::Structure structure;
-  fem::StructuralSystem system;
-  Eigen::MatrixXd shapes;
-  VectorXd frequencies_hz;
-};
-
 // A picture of a million elements shows no more than one of two thousand, and takes a minute.
 std::shared_ptr<const ModeDrawing> drawing(const Experiment& experiment, const ModalSummary& s) {
   if (experiment.elements <= most_drawn_elements)
@@ -157,14 +147,9 @@ std::shared_ptr<const ModeDrawing> drawing(const Experiment& experiment, const M
 }  // namespace
 
 Results report(const Experiment& experiment, const ModalSummary& summary, bool surface) {
-  Results results;
-  results.command = "modes";
-  results.configuration = describe(experiment);
-  results.configuration["modes"] = summary.modes.size();
+  Results results = begin_modes_report(experiment, summary.modes.size(), static_cast<Index>(summary.elements),
+                                       summary.degrees_of_freedom);
   results.values = modal_values(summary);
-  results.heading(experiment.title.empty() ? "Natural frequencies" : experiment.title);
-  results.paragraph(
-      structure_text(experiment, static_cast<Eigen::Index>(summary.elements), summary.degrees_of_freedom));
   results.table(mode_table(summary));
   if (summary.complex) results.table(complex_table(*summary.complex));
   std::vector<std::string> notes = summary.notes;
@@ -176,13 +161,7 @@ Results report(const Experiment& experiment, const ModalSummary& summary, bool s
     results.attachments.push_back(shapes_file(matrices->labels, summary.modes.shape));
     return results;
   }
-  const std::shared_ptr<const ModeDrawing> drawn = drawing(experiment, summary);
-  results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
-  results.attachments.push_back(
-      {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {
-         write_mode_shapes(folder, Picture(drawn->structure, drawn->system, surface), drawn->shapes,
-                           drawn->frequencies_hz);
-       }});
+  draw_modes(drawing(experiment, summary), surface, results);
   return results;
 }
 
