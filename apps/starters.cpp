@@ -133,7 +133,7 @@ std::string annotated(const std::string& starter) {
   for (std::string line; std::getline(lines, line); text += line + "\n") {
     const std::size_t first = line.find_first_not_of("# "), equals = line.find(" = ");
     if (first == std::string::npos) continue;
-    if (const std::size_t name = line.find_first_not_of("[", first); line[first] == '[')
+    if (const std::size_t name = line.find_first_not_of('[', first); line[first] == '[')
       table = experiments::find_key_table(line.substr(name, line.find(']') - name));
     if (table == nullptr || equals == std::string::npos || line.find(" #", first) != std::string::npos ||
         line.find('{') != std::string::npos)
