@@ -39,7 +39,8 @@ LikeliestClocks likeliest_clocks(filters::DiscreteModel& discrete, const VectorX
                              std::optional<LikeliestClock>& likeliest) {
     try {
       LikeliestClock found{output, clock_step(with_one_clock(information, members, terms), terms)};
-      if (found.step.lag.allFinite() && (!likeliest || found.step.left_share < likeliest->step.left_share))
+      const bool is_determined = found.step.lag.allFinite() && (found.step.deviation.array() > 0.0).all();
+      if (is_determined && (!likeliest || found.step.left_share < likeliest->step.left_share))
         likeliest = found;
     } catch (const std::runtime_error&) {  // outputs that do not move
     }

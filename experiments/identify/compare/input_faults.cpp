@@ -116,7 +116,7 @@ std::optional<InputFault> of_lags(const RunContext& context, const ComparedRun& 
   const Record& record = context.analysis.record;
   const LikeliestClock& found = *run.likeliest_clocks.late;
   const double deviation = run.interval_factor * found.lag_deviation();
-  if (!(deviation > 0.0) || !(std::abs(found.lag()) > surely * deviation) ||
+  if (!(std::abs(found.lag()) > surely * deviation) ||
       !(phase_of(run, found.lag(), record.interval()) < small))
     return {};
   InputFault fault = clock_fault(context, run, found, found.lag());
