@@ -146,9 +146,11 @@ BeamSource read_beam(const Values& values, const std::vector<KeyOption>& more) {
 
   BeamSource source;
   if (values.has("config")) source.config = values.text("config");
-  const std::string structure = structure_in(source.config);
-  refuse_beams_options(values, structure, source.config);
-  if (values.has("elements")) overrides.push_back(elements_of(structure, values.whole("elements")));
+  if (changed || values.has("elements")) {
+    const std::string structure = structure_in(source.config);
+    refuse_beams_options(values, structure, source.config);
+    if (values.has("elements")) overrides.push_back(elements_of(structure, values.whole("elements")));
+  }
   if (values.has("config")) {
     source.experiment = read_experiment(source.config, overrides);
     if (std::string& title = source.experiment.title; changed && !title.empty())

@@ -42,7 +42,7 @@ Record earlier_record(const Values& values, const Experiment& experiment, const 
 }
 
 /// Steps look ahead or wait for the record's end: no sample can be taken through them as it arrives.
-void add_preparation(const Experiment& experiment, const Record& earlier) {
+void print_preparation(const Experiment& experiment, const Record& earlier) {
   const auto& steps = experiment.format.preparation;
   if (steps.empty()) return;
   std::cerr << fmt::format(
@@ -132,7 +132,7 @@ int run_stream(const Values& values) {
   StreamedIdentification stream =
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
   print(implausible(experiment));
-  add_preparation(experiment, earlier);
+  print_preparation(experiment, earlier);
   print(stream.news());
   if (values.has("save-state")) {
     at_place(experiment.filter.place, [&] { stream.check_can_be_saved(); });

@@ -1,10 +1,10 @@
 #include "experiments/identify/record_identification.hpp"
-#include "experiments/identify/compare/input_faults.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/identify/compare/input_faults.hpp"
 #include "experiments/identify/decay_objections.hpp"
 
 namespace beamid::experiments {

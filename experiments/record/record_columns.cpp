@@ -17,6 +17,24 @@ std::string column_name_of(const RecordTable& table, std::size_t index) {
   return index < table.names.size() ? table.names[index] : "";
 }
 
+// @param quantity that is stated; absent: time
+void compare_statement(const std::optional<Quantity>& quantity, double factor, std::size_t index,
+                       RecordTable& table) {
+  const std::string header = column_name_of(table, index);
+  const auto meaning = parse_column_name(header);
+  if (!meaning) return;
+  const auto unit_of = [](const std::optional<Quantity>& one) {
+    return std::string(one ? si_unit(*one) : "s");
+  };
+  const std::string stated = fmt::format("Column {} is named '{}' and stated as {}", index + 1, header,
+                                         quantity ? to_string(*quantity) : "time");
+  if (unit_of(meaning->quantity) != unit_of(quantity))
+    table.warnings.push_back(stated + ", which is another quantity: is it the column that was meant?");
+  else if (std::abs(meaning->factor - factor) > 1e-9 * std::abs(factor))
+    table.warnings.push_back(
+        fmt::format("{} in another unit, {:.6g} times that of its name.", stated, factor / meaning->factor));
+}
+
 RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
   RecordColumn column{find_index(table, wanted),
                       wanted.factor,
@@ -99,16 +117,7 @@ std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_
 }
 
 void compare_with_header(const ColumnDescription& wanted, std::size_t index, RecordTable& table) {
-  const std::string header = column_name_of(table, index);
-  const auto meaning = parse_column_name(header);
-  if (!meaning) return;
-  const std::string stated =
-      fmt::format("Column {} is named '{}' and stated as {}", index + 1, header, to_string(wanted.quantity));
-  if (!meaning->quantity || si_unit(*meaning->quantity) != std::string(si_unit(wanted.quantity)))
-    table.warnings.push_back(stated + ", which is another quantity: is it the column that was meant?");
-  else if (std::abs(meaning->factor - wanted.factor) > 1e-9 * std::abs(wanted.factor))
-    table.warnings.push_back(fmt::format("{} in another unit, {:.6g} times that of its name.", stated,
-                                         wanted.factor / meaning->factor));
+  compare_statement(wanted.quantity, wanted.factor, index, table);
 }
 
 std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted) {
@@ -148,11 +157,7 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
     columns.channels.push_back(find_column(table, wanted));
   if (format.time) {
     columns.time = {find_index(table, *format.time), format.time->factor, {}};
-    const std::string header = column_name_of(table, columns.time->index);
-    if (const auto meaning = parse_column_name(header);
-        meaning && (meaning->quantity || meaning->factor != format.time->factor))
-      table.warnings.push_back(fmt::format("Column {} is named '{}' and stated as time in units of {:g} s.",
-                                           columns.time->index + 1, header, format.time->factor));
+    compare_statement({}, format.time->factor, columns.time->index, table);
   }
   if (!columns.time && table.time) columns.time = RecordColumn{*table.time, 1, {}};
   for (std::size_t index = 0; !columns.time && index < std::min(table.names.size(), table.width()); ++index)

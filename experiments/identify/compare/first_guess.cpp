@@ -43,8 +43,8 @@ filters::Measurements decimated(const filters::Measurements& record, Index input
 }
 
 // The guess after a record that holds the low modes only.
-LowModeGuess fit_low_modes(const JointModel& model, const std::vector<Observation>& observations,
-                           const LowRecord& low, const FirstGuess& guess) {
+LowModeGuess guess_after(const JointModel& model, const std::vector<Observation>& observations,
+                         const LowRecord& low, const FirstGuess& guess) {
   LowModeGuess found = fit_low_modes(model, observations, low, guess, guess_noise);
   found.guess.unknowns = guess_covariance(guess.unknowns, found.guess.unknowns);
   return found;
@@ -84,7 +84,7 @@ FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& 
   LowModeGuess found{own, 0.0};
   int levels = 0;
   const auto take = [&](const LowRecord& level) {
-    found = fit_low_modes(model, observations, level, found.guess);
+    found = guess_after(model, observations, level, found.guess);
     ++levels;
   };
   for (double factor = 1.0 / (guess_samples_per_period * frequency_hz * dt); factor >= 2.0;
@@ -97,7 +97,7 @@ FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& 
   const LowRecord last{beginning(record, std::min(longest_guess, record.size())), 0.5 / dt};
   take(last);
   if (levels == 1 || model.motion->input_size() == 0 || found.square < well_left) return found.guess;
-  const LowModeGuess alone = fit_low_modes(model, observations, last, own);
+  const LowModeGuess alone = guess_after(model, observations, last, own);
   return alone.square < found.square ? alone.guess : found.guess;
 }
 

@@ -19,6 +19,8 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using SteadyClock = std::chrono::steady_clock;
 
+constexpr Index most_numbers = 20'000'000;  // of sensitivities at all samples, that are held together
+
 std::string unsettled_text(double moved) {
   return fmt::format(
       "Not settled: its last pass moved an unknown by {:.2g} standard deviations. More passes ([compare] "
@@ -31,13 +33,13 @@ std::string unsettled_text(double moved) {
 // @param start of the motion that is nearest to the record
 std::optional<ClockScatter> scatter_of_clocks(const RecordAnalysis& analysis, const JointModel& model,
                                               const VectorXd& start) {
-  constexpr Index most_numbers = 20'000'000;
   constexpr double same = 0.02;  // of a frequency
   const Record& even = analysis.even.record;
   const std::vector<Index> outputs = output_channels(even);
+  if (analysis.forced() || outputs.size() < 2) return {};
   const auto rates = seen_rates(model, start);
   const auto numbers = static_cast<Index>(outputs.size() * rates.size()) * 2 * even.size();
-  if (analysis.forced() || outputs.size() < 2 || rates.empty() || numbers > most_numbers) return {};
+  if (rates.empty() || numbers > most_numbers) return {};
   try {
     const JointDecayFit fit = fit_decays_jointly(even.samples(outputs, Eigen::all), even.interval(), rates);
     for (std::size_t m = 0; m < rates.size(); ++m)
@@ -109,7 +111,6 @@ void Passes::judge_motion() {
 
 // Whether the sensitivities of all samples are no more than can be held together.
 bool Passes::is_weighed_at_once() const {
-  constexpr Index most_numbers = 20'000'000;
   const Index columns = directions_.motion.cols() + directions_.unknowns.cols();
   return record_.outputs.size() * columns <= most_numbers;
 }

@@ -15,6 +15,14 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
+// |C v| of every eigenvector of the motion: what the sensors see of it.
+VectorXd sight_of(const filters::LinearMotion& motion, const VectorXd& state,
+                  const Eigen::EigenSolver<MatrixXd>& solver) {
+  MatrixXd sensors;
+  motion.output_jacobian(state, VectorXd::Zero(motion.input_size()), sensors);
+  return (sensors.leftCols(solver.eigenvalues().size()) * solver.eigenvectors()).colwise().norm();
+}
+
 // How far the measured inputs reach every eigenvalue of the motion, and the sensors see it, as a share of the
 // largest: |C v| |w^T B| of its right and left eigenvectors v, w; of a free motion |C v|. Eigenvalues that
 // are the same share theirs.
@@ -22,11 +30,10 @@ VectorXd shares_of_record(const filters::LinearMotion& motion, const VectorXd& s
                           const Eigen::EigenSolver<MatrixXd>& solver) {
   constexpr double same = 1e-6;
   const Index n = rates.rows();
-  MatrixXd seen, through;
-  motion.output_jacobian(state, VectorXd::Zero(motion.input_size()), seen);
+  MatrixXd through;
   motion.input_matrix(state, through);
   const Eigen::VectorXcd& lambda = solver.eigenvalues();
-  const VectorXd sight = (seen.leftCols(n) * solver.eigenvectors()).colwise().norm();
+  const VectorXd sight = sight_of(motion, state, solver);
   VectorXd reach = VectorXd::Ones(n);
   if (through.size() > 0 && !through.isZero(0.0)) {
     const Eigen::EigenSolver<MatrixXd> left(rates.transpose());
@@ -120,19 +127,13 @@ std::vector<std::complex<double>> seen_rates(const JointModel& model, const Vect
   constexpr double least = 0.02;
   const auto* motion = dynamic_cast<const filters::LinearMotion*>(model.motion.get());
   if (!motion) return {};
-  MatrixXd rates, sensors;
+  MatrixXd rates;
   motion->motion_matrix(state, rates);
-  motion->output_jacobian(state, VectorXd::Zero(motion->input_size()), sensors);
   const Index n = rates.rows();
   const Eigen::EigenSolver<MatrixXd> solver(rates);
-  // How much of each the motion has, times what the sensors see of it.
-  const Eigen::VectorXcd part =
+  const Eigen::VectorXcd part =  // of the motion
       solver.eigenvectors().fullPivLu().solve(state.head(n).cast<std::complex<double>>());
-  const VectorXd seen = (sensors.leftCols(n) * solver.eigenvectors())
-                            .colwise()
-                            .norm()
-                            .transpose()
-                            .cwiseProduct(part.cwiseAbs());
+  const VectorXd seen = sight_of(*motion, state, solver).cwiseProduct(part.cwiseAbs());
   std::vector<std::complex<double>> found;
   for (Index i = 0; i < n; ++i)
     if (solver.eigenvalues()[i].imag() > 0.0 && seen[i] > least * seen.maxCoeff())

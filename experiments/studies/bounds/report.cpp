@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
-#include "experiments/config/read_identifiability.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/studies/update/report.hpp"
