@@ -33,21 +33,32 @@ constexpr Index most_dense = 30;
 
 // What is asked where the file asks nothing: the stiffness of all, or each factor, and the damping.
 std::vector<ParameterChoice> own_choices(const ModelSetting& setting) {
-  if (!setting.continuum) return {{"bending_stiffness"}, {"damping_ratio"}};
-  const fem::Structure& structure = setting.continuum->structure;
-  if (structure.is_beam())
-    return {{structure.is_chain() ? "storey_stiffness" : "bending_stiffness"}, {"damping_ratio"}};
+  constexpr Index most_ratios = 6;
   std::vector<ParameterChoice> choices;
-  for (const std::string& name : fem::factor_names(structure)) choices.push_back({"factor", name});
-  choices.push_back({"damping_ratio"});
+  if (!setting.continuum || setting.continuum->structure.is_beam())
+    choices.push_back({setting.continuum && setting.continuum->structure.is_chain() ? "storey_stiffness"
+                                                                                    : "bending_stiffness"});
+  else
+    for (const std::string& name : fem::factor_names(setting.continuum->structure))
+      choices.push_back({"factor", name});
+  // Joints damp each mode of a real structure by a ratio of its own, and a measured input shows all of them.
+  const Index modes = setting.forces.empty() || !setting.supports.empty() ? 0 : setting.system.size();
+  if (modes > 0 && modes <= most_ratios)
+    for (int i = 1; i <= modes; ++i) choices.push_back({"damping_ratio", "", {}, i});
+  else
+    choices.push_back({"damping_ratio"});
   return choices;
 }
 
+// A measured input lets a search go far from the guess: what is positive by its nature stays so, by its
+// logarithm, unless a form or bounds are stated.
 std::vector<ParameterChoice> choices_of(const ModelSetting& setting) {
-  if (setting.parameters.empty()) return own_choices(setting);
-  for (const ParameterChoice& choice : setting.parameters)
+  std::vector<ParameterChoice> choices = setting.parameters.empty() ? own_choices(setting) : setting.parameters;
+  for (ParameterChoice& choice : choices) {
     require_quantity(choice, structure_quantities(), "beam");
-  return setting.parameters;
+    choice.keep_positive = !setting.forces.empty();
+  }
+  return choices;
 }
 
 bool asks_about_dashpots(const fem::ParametricSystem& equations) {

@@ -34,23 +34,23 @@ bool meet(const ParameterChoice& a, const ParameterChoice& b) {
 
 const std::vector<ParameterQuantity>& parameter_quantities() {
   static const std::vector<ParameterQuantity> quantities = [] {
-    std::vector<ParameterQuantity> all{{"bending_stiffness", "N m2", "n_m2"},
-                                       {"tip_mass", "kg", "kg"},
-                                       {"body_mass", "kg", "kg"},
-                                       {"tip_rotary_inertia", "kg m2", "kg_m2"},
-                                       {"root_rotational_stiffness", "N m/rad", "n_m_per_rad"},
-                                       {"root_translational_stiffness", "N/m", "n_per_m"},
+    std::vector<ParameterQuantity> all{{"bending_stiffness", "N m2", "n_m2", true},
+                                       {"tip_mass", "kg", "kg", true},
+                                       {"body_mass", "kg", "kg", true},
+                                       {"tip_rotary_inertia", "kg m2", "kg_m2", true},
+                                       {"root_rotational_stiffness", "N m/rad", "n_m_per_rad", true},
+                                       {"root_translational_stiffness", "N/m", "n_per_m", true},
                                        {"axial_load", "N", "n"},
-                                       {"storey_stiffness", "N/m", "n_per_m"},
-                                       {"storey_damping", "N s/m", "n_s_per_m"},
-                                       {"factor", "", ""},
-                                       {"damping_ratio", "", ""},
-                                       {"mass_damping", "1/s", "per_s"},
-                                       {"stiffness_damping", "s", "s"},
-                                       {"frequency", "Hz", "hz"},
-                                       {"stiffness", "N/m", "n_per_m"},
-                                       {"damping", "N s/m", "n_s_per_m"},
-                                       {"mass", "kg", "kg"},
+                                       {"storey_stiffness", "N/m", "n_per_m", true},
+                                       {"storey_damping", "N s/m", "n_s_per_m", true},
+                                       {"factor", "", "", true},
+                                       {"damping_ratio", "", "", true},
+                                       {"mass_damping", "1/s", "per_s", true},
+                                       {"stiffness_damping", "s", "s", true},
+                                       {"frequency", "Hz", "hz", true},
+                                       {"stiffness", "N/m", "n_per_m", true},
+                                       {"damping", "N s/m", "n_s_per_m", true},
+                                       {"mass", "kg", "kg", true},
                                        {"coulomb_friction", "N", "n"},
                                        {"quadratic_damping", "N s2/m2", "n_s2_per_m2"}};
     add_quantities_of_springs(all);
@@ -111,7 +111,11 @@ Unknown unknown_of(const ParameterChoice& choice, const ParameterDefault& by_mod
   if (choice.lower.has_value() != choice.upper.has_value())
     refuse(choice, fmt::format("{} has one bound; expected both lower{} and upper{}, or none", unknown.name,
                                end, end));
-  unknown.form = choice.form.value_or(choice.lower ? Form::bounded : Form::linear);
+  const bool logarithmic =
+      choice.keep_positive && quantity.positive && !choice.known && unknown.guess > 0.0;
+  unknown.form = choice.form.value_or(choice.lower  ? Form::bounded
+                                      : logarithmic ? Form::logarithmic
+                                                    : Form::linear);
   if ((unknown.form == Form::bounded) != choice.lower.has_value())
     refuse(choice, fmt::format("{} is of form {} {} bounds; expected bounds with the form bounded, and with "
                                "no other",

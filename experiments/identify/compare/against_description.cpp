@@ -154,7 +154,7 @@ void judge_description(const RunContext& context, ComparedRun& run) {
     return;
   }
   run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + found.scale + ".");
-  if (run.status != ComparedRun::Status::converged) return;
+  if (!run.answers()) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = found.scale;
 }

@@ -60,6 +60,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
     if (!whole && answers)
       if (const auto nearer = passes.start_by_output_error())
         return run_once(context, setting, *nearer, settings);
+    if (!whole && answers) whole = passes.take_all_lines();
     if (whole && context.experiment.noise_method.name == "likelihood")
       whole = passes.filter_with_likeliest_noise();
     if (whole) passes.fit_inputs_noise();

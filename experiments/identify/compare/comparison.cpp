@@ -149,6 +149,8 @@ const char* to_string(ComparedRun::Status status) {
   switch (status) {
     case ComparedRun::Status::converged:
       return "converged";
+    case ComparedRun::Status::approximate:
+      return "approximate";
     case ComparedRun::Status::contradicted:
       return "contradicted";
     case ComparedRun::Status::diverged:

@@ -12,6 +12,7 @@
 #include "experiments/identify/batch.hpp"
 #include "experiments/identify/clocks/likeliest_clock.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
+#include "experiments/identify/driven/section_scatter.hpp"
 #include "experiments/identify/noise_in_estimates.hpp"
 #include "experiments/modal/clock_scatter.hpp"
 #include "experiments/models/divergence.hpp"
@@ -63,6 +64,8 @@ struct ComparedParameter {
 struct ComparedRun {
   enum class Status {
     converged,
+    approximate,   ///< the model explains most of a driven record's motion, the rest is not noise; intervals
+                   ///< hold the scatter over its sections
     contradicted,  ///< the modal analysis of the same record has less than half or more than twice the
                    ///< damping; or the motion that the measured input makes of the model is not the record's;
                    ///< or the last pass still moved an unknown by many of its deviations; or the filter
@@ -101,6 +104,7 @@ struct ComparedRun {
   std::vector<Unknown> unknowns;                   ///< of the model, in the order of the parameters (q)
   filters::Gaussian unknown_state, unknown_start;  ///< of what the filter's state carries for them: at the
                                                    ///< end, and at the start of the last pass (q)
+  std::optional<SectionScatter> sections;  ///< of a driven record that is long enough
   std::optional<ClockStep> clocks;   ///< of channels with clocks of their own; absent: there are none
   LikeliestClocks likeliest_clocks;  ///< of a driven record without such channels
   std::optional<ClockScatter> clock_scatter;  ///< of a free decay's channels that do not agree; by `identify`
@@ -112,7 +116,9 @@ struct ComparedRun {
   std::vector<std::string> warnings;  ///< for the first lines of a report, the worst first
   std::shared_ptr<const RecordIdentification> oscillator;  ///< K and C of a free decay, judged; else absent
 
-  bool has_estimate() const { return status == Status::converged || status == Status::contradicted; }
+  /// Whether the estimates and their intervals may be relied on.
+  bool answers() const { return status == Status::converged || status == Status::approximate; }
+  bool has_estimate() const { return answers() || status == Status::contradicted; }
 };
 
 /// One record in every way it was identified.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/identify/driven/driven_fit.hpp"
 #include "experiments/identify/record_inputs.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "experiments/models/identification.hpp"
@@ -77,10 +78,30 @@ FirstGuess own_guess(const JointModel& model, const std::vector<Observation>& ob
   return {known.mean, covariance_of_unknowns(model, known)};
 }
 
+namespace {
+
+// Of a driven record, by all of its lines; absent where they leave more than a model that fits would.
+std::optional<FirstGuess> guess_by_lines(const JointModel& model, const filters::Measurements& record,
+                                         const FirstGuess& own) {
+  constexpr double lost = 0.6;  // of the lines
+  auto problem = driven_problem(model, record, {own.mean(model.unknown_places), own.unknowns, {}});
+  if (!problem) return {};
+  const auto fit = fit_driven(*problem);
+  if (!fit || fit->left_share > lost) return {};
+  FirstGuess found = own;
+  found.mean(model.unknown_places) = fit->theta;
+  found.unknowns = guess_covariance(own.unknowns, fit->covariance(problem->prior));
+  found.by_lines = true;
+  return found;
+}
+
+}  // namespace
+
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
                        const filters::Measurements& record, double frequency_hz) {
   const double dt = record.interval();
   const FirstGuess own = own_guess(model, observations, record.outputs);
+  if (const auto driven = guess_by_lines(model, record, own)) return *driven;
   LowModeGuess found{own, 0.0};
   int levels = 0;
   const auto take = [&](const LowRecord& level) {

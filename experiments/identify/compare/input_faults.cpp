@@ -185,7 +185,7 @@ std::string clock_scatter_text(const Record& record, const ClockScatter& scatter
 void judge_clock_scatter(const RunContext& context, ComparedRun& run) {
   if (!run.clock_scatter || !run.has_estimate()) return;
   run.warnings.insert(run.warnings.begin(), clock_scatter_text(context.analysis.record, *run.clock_scatter));
-  if (run.status != ComparedRun::Status::converged) return;
+  if (!run.answers()) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = "the channels do not ring at one frequency";
 }

@@ -11,6 +11,7 @@ namespace beamid::experiments {
 struct FirstGuess {
   Eigen::VectorXd mean;      ///< of the state (n), the motion at zero
   Eigen::MatrixXd unknowns;  ///< covariance of the unknowns in the state (q x q)
+  bool by_lines = false;     ///< by all lines of a driven record, from several starts (driven_fit.hpp)
 };
 
 /// L with P = L L^T (q x q), whatever the rank of P.

@@ -43,6 +43,17 @@ bool is_noise_of_inputs(const RunContext& context, const ComparedRun& run) {
          run.diagnostics->consistency && run.diagnostics->consistency->mean_normalised_square < much;
 }
 
+namespace {
+
+// What a model without joints, rocking and a yielding base explains of a real structure; its sections show how
+// far that moves the estimates.
+bool is_mostly_explained(const ComparedRun& run) {
+  constexpr double most_left = 0.3;
+  return run.sections && run.sections->left_share < most_left;
+}
+
+}  // namespace
+
 // A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
 // that started otherwise. Nor is it where storeys follow laws, which no mode beside them can stand in for. A
 // free decay may hold modes that the model lacks, but not for the greater part.
@@ -52,6 +63,16 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
   const bool forced = context.analysis.forced();
   const double too_much = forced || has_storey_laws(*run.model) ? too_much_driven : too_much_free;
   if (!(run.misfit_percent > too_much) || is_noise_of_inputs(context, run)) return;
+  if (is_mostly_explained(run)) {
+    run.status = ComparedRun::Status::approximate;
+    run.reason = fmt::format("the model explains {:.0f} % of the motion; the rest is not noise",
+                             100.0 * (1.0 - run.sections->left_share));
+    run.warnings.insert(run.warnings.begin(),
+                        fmt::format("The model explains {:.0f} % of the motion; the rest is not noise. Intervals "
+                                    "hold the scatter over the record.",
+                                    100.0 * (1.0 - run.sections->left_share)));
+    return;
+  }
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format(
       "{}: {:.3g} % of it is left, and is no noise. {}",

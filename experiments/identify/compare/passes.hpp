@@ -43,6 +43,9 @@ class Passes {
   /// Of a driven record that the filter has lost, a start from all samples at once; absent: none makes the
   /// record.
   std::optional<StartedModel> start_by_output_error();
+  /// Of a driven record that the filter has lost for good, the estimates of all lines of its spectrum.
+  /// @returns whether there are any
+  bool take_all_lines();
   /// Estimates, the motion that they make of the record, their bounds; what else was asked for.
   void finish();
   /// The motion at the first guess that is nearest to the channels of the common clock.
@@ -66,6 +69,7 @@ class Passes {
   NoisyInputFit fit_with_input_noise(const IdentificationSettings& settings) const;
   bool is_weighed_at_once() const;
   void weigh_noise();
+  void look_at_sections();
   void take_clocks(filters::DiscreteModel& discrete);
   std::optional<filters::Gaussian> output_error(Eigen::VectorXd state, Eigen::Index first_samples = 0);
   std::vector<Eigen::VectorXd> further_starts() const;

@@ -75,6 +75,7 @@ void Passes::finish() {
     run_.clock_scatter = scatter_of_clocks(context_.analysis, *run_.model, motion_.initial_state);
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
   if (inputs_are_asked && is_kept) look_for_input_noise();
+  if (!drifts && context_.analysis.forced()) look_at_sections();
   run_.response_seconds += seconds_since(start);
   if (settings_.keep == filters::Keep::last_estimate) return;
   if (first_start_.size() > 0)
@@ -121,6 +122,15 @@ void Passes::weigh_noise() {
   const auto discrete = finest(*run_.model, dt_, run_.settings.output_noise);
   run_.noise_in = noise_in_estimates(*discrete, motion_.initial_state, directions_, record_,
                                      record_.outputs - motion_.outputs);
+}
+
+void Passes::look_at_sections() {
+  const auto modes = recorded_modes(*run_.model, run_.run.last.mean, run_.unknown_state, {});
+  if (!modes) return;
+  const filters::Gaussian known{started_.guess.mean(started_.model.unknown_places),
+                                own_guess(started_.model, setting_.observations, record_.outputs).unknowns,
+                                {}};
+  run_.sections = section_scatter(*run_.model, record_, known, run_.unknown_state.mean, modes->lowest.frequency_hz);
 }
 
 // Lags that are unknown too leave less of the record to the unknowns.

@@ -150,8 +150,9 @@ void Passes::mend_by_output_error() {
     }
   };
   start_at(filtered, 0);
-  if (!best || misfit > not_the_record) start_at(started_.guess.mean, longest_guess);
-  if (driven || laws)
+  const bool searched = started_.guess.by_lines;  // from several starts
+  if (!best || (misfit > not_the_record && !searched)) start_at(started_.guess.mean, longest_guess);
+  if ((driven && !searched) || laws)
     for (const VectorXd& from : further_starts())
       if (misfit > not_the_record) start_at(from, 0);
   run_.noise = noise;

@@ -8,6 +8,8 @@
 #include "experiments/identify/compare/known_prior.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/compare/passes.hpp"
+#include "experiments/identify/driven/driven_fit.hpp"
+#include "experiments/models/divergence.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "filters/batch_estimator.hpp"
 
@@ -83,6 +85,39 @@ void Passes::take_unknowns(const filters::Gaussian& unknowns) {
   run_.unknown_state = of_unknowns(*run_.model, last);
   last_move_ = 0.0;
   begin_at(next_start(*run_.model, run_.settings.initial, last).mean);
+}
+
+bool Passes::take_all_lines() {
+  constexpr double lost = 0.6;  // of the lines
+  if (!started_.guess.by_lines) return false;
+  const filters::Gaussian prior{started_.guess.mean(started_.model.unknown_places), started_.guess.unknowns, {}};
+  try {
+    begin_at(started_.guess.mean);
+    auto problem = driven_problem(*run_.model, record_, prior);
+    if (!problem) return false;
+    problem->weights = run_.noise_left.cwiseMax(1e-150).cwiseInverse();
+    const DrivenFit fit = fit_driven_from(*problem, prior.mean);
+    if (fit.left_share > lost) return false;
+    problem->weights = fit.left.cwiseMax(1e-150).cwiseInverse();
+    const MatrixXd covariance = evaluate_driven(*problem, fit.theta).covariance(prior);
+    const std::string why = run_.run.failure ? failure_text(*run_.run.failure) : run_.reason;
+    run_.run.failure.reset();
+    run_.status = ComparedRun::Status::converged;
+    run_.reason.clear();
+    run_.diagnostics.reset();
+    const Index n = motion_.initial_state.size();
+    run_.run.last = {motion_.initial_state, MatrixXd::Zero(n, n), {}};
+    run_.settings.initial = next_;
+    run_.noise = assumed_noise(known_, noise_shown());
+    run_.settings.output_noise = run_.noise.cwiseAbs2().asDiagonal();
+    run_.unknown_start = prior;
+    take_unknowns({fit.theta, covariance, {}});
+    run_.remarks.push_back(fmt::format(
+        "The filter lost its way ({}); the estimates are those of all lines of the spectrum (output error).", why));
+    return true;
+  } catch (const std::runtime_error&) {  // no motion there
+    return false;
+  }
 }
 
 // Output error from a state on, on the basis of each estimate in turn; with what is known beforehand. Absent:

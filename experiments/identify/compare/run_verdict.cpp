@@ -87,7 +87,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
   judge_decay(context, run);
   judge_moved_mass(run);
   judge_what_is_said(run);
-  if (run.status == ComparedRun::Status::converged)
+  if (run.answers())
     judge_description(context, run);
   else
     judge_size(context, run);
@@ -147,7 +147,7 @@ void judge_run(const RunContext& context, ComparedRun& run) {
   if (run.noise.size() == 0) return;  // no pass has begun: there was no motion to filter about
   if (asks_free_oscillator(context.experiment, context.analysis.record))
     judge_oscillator(context, run);
-  else if (run.status == ComparedRun::Status::converged)
+  else if (run.answers())
     judge_model(context, run);
   else {
     run.warnings.insert(run.warnings.begin(),

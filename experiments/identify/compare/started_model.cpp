@@ -77,7 +77,7 @@ StartedModel started_model(JointModel first, const Choice& model, const ModelSet
     first = made(nearer);
   }
   const Eigen::VectorXd mean = carried_over(small, found.mean, first);
-  return {std::move(first), {mean, found.unknowns}};
+  return {std::move(first), {mean, found.unknowns, found.by_lines}};
 }
 
 JointModel on_basis_at(const Choice& model, const ModelSetting& setting, const JointModel& from,

@@ -53,6 +53,29 @@ std::vector<double> by_influence(ComparedRun& run) {
   return factors;
 }
 
+// The scatter of a driven record's sections, where it is larger: what the model lacks, counted.
+void by_sections(ComparedRun& run, std::vector<double>& factors) {
+  constexpr double worth_saying = 1.5;
+  std::string widened;
+  for (std::size_t j = 0; j < factors.size(); ++j) {
+    const auto place = static_cast<Eigen::Index>(j);
+    const ComparedParameter& p = run.parameters[j];
+    const double formal = std::sqrt(run.unknown_state.covariance(place, place)),
+                 factor = section_factor(*run.sections, place, formal);
+    if (!(factor > factors[j]) || p.estimate.value == 0.0) continue;
+    if (factor > worth_saying * factors[j])
+      widened += fmt::format("{}{} by {:.2g} % ({:.2g} times)", widened.empty() ? "" : ", ", p.estimate.name,
+                             100.0 * factor * p.estimate.deviation / std::abs(p.estimate.value), factor);
+    factors[j] = factor;
+    run.interval_factor = std::max(run.interval_factor, factor);
+  }
+  if (widened.empty()) return;
+  run.remarks.push_back(fmt::format(
+      "Over {} sections of {:.3g} periods the estimates vary by more than noise makes them: {}. Intervals are "
+      "widened to hold this; in brackets, over the formal deviation.",
+      run.sections->sections, run.sections->periods, widened));
+}
+
 // A filter more certain than record and prior allow has been linearised elsewhere, or has lost its spread:
 // its deviation becomes the least there is.
 double to_bound(ComparedParameter& p, double factor) {
@@ -87,8 +110,9 @@ void widen(ComparedRun& run, std::size_t j, double factor) {
 }
 
 void widen_intervals(const RunContext& context, ComparedRun& run) {
-  const std::vector<double> factors =
+  std::vector<double> factors =
       run.noise_in.empty() && context.analysis.modal ? by_mode(context, run) : by_influence(run);
+  if (run.sections) by_sections(run, factors);
   for (std::size_t j = 0; j < factors.size(); ++j) widen(run, j, factors[j]);
   if (!run.mode) return;
   run.mode->damping_ratio_deviation *= run.interval_factor;

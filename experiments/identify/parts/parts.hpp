@@ -18,7 +18,7 @@ struct IdentifiedPart {
     return (sections == Sections::exact ? exact : noisy).runs.front();
   }
   /// With the noise at its sections counted: only then it has an estimate that is joined.
-  bool converged() const { return run(Sections::noisy).status == ComparedRun::Status::converged; }
+  bool converged() const { return run(Sections::noisy).answers(); }
 };
 
 /// A parameter as all parts say together, weighed by their covariances.

@@ -131,7 +131,7 @@ std::vector<Figure> figures(const Comparison& comparison) {
   Runs alike;  // the models may differ in what they ask about
   for (const ComparedRun* run : runs)
     if (run->parameters.size() == runs.front()->parameters.size() &&
-        run->status == ComparedRun::Status::converged)
+        run->answers())
       alike.push_back(run);
   if (!alike.empty() && !alike.front()->parameters.empty())
     all.push_back(parameter_figure(comparison, alike));

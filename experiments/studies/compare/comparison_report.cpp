@@ -40,7 +40,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   for (const std::string& warning : comparison.warnings) results.warning(warning);
   const bool alone = comparison.runs.size() == 1;
   // Of a run without an estimate to rely on the first says why.
-  const std::size_t failures = alone && comparison.runs[0].status != ComparedRun::Status::converged ? 1 : 0;
+  const std::size_t failures = alone && !comparison.runs[0].answers() ? 1 : 0;
   std::size_t said = 0;
   for (const std::string& text : said_once(comparison, [](const ComparedRun& run) { return run.warnings; }))
     results.warning(text, said++ < failures);

@@ -14,7 +14,7 @@ namespace {
 
 // Whether a run says anything of its model.
 bool is_sound(const ComparedRun& run) {
-  return run.status == ComparedRun::Status::converged && run.step_cause.empty();
+  return run.answers() && run.step_cause.empty();
 }
 
 // An error many times its own deviation is not noise: the model is at fault.
@@ -44,7 +44,7 @@ bool worse_than_smaller(const Comparison& comparison, const ComparedRun& run) {
   constexpr double clearly = 1.25;
   return std::any_of(comparison.runs.begin(), comparison.runs.end(), [&](const ComparedRun& smaller) {
     const bool nested = run.reduction == "none" || method_of(smaller) == method_of(run);
-    return nested && smaller.status == ComparedRun::Status::converged &&
+    return nested && smaller.answers() &&
            smaller.coordinates < run.coordinates && smaller.filter == run.filter &&
            smaller.discretisation == run.discretisation &&
            clearly * smaller.response_error_percent < run.response_error_percent;
@@ -180,7 +180,7 @@ std::string excess_text(const Comparison& comparison, const ComparedRun& referen
 const ComparedRun* reference_run(const Comparison& comparison) {
   const ComparedRun* best = nullptr;
   for (const ComparedRun& run : comparison.runs) {
-    if (run.status != ComparedRun::Status::converged) continue;
+    if (!run.answers()) continue;
     const bool whole = run.reduction == "none";
     if (!best || (whole && best->reduction != "none") ||
         (whole == (best->reduction == "none") && run.coordinates > best->coordinates))
@@ -214,7 +214,7 @@ std::vector<std::string> words(const Comparison& comparison) {
   std::vector<std::string> paragraphs;
   if (!alone && reference) paragraphs.push_back("The reference: " + name_of(comparison, *reference) + ".");
   for (const ComparedRun& run : comparison.runs)
-    if (!alone && run.status != ComparedRun::Status::converged && run.warnings.empty())  // which say why
+    if (!alone && !run.answers() && run.warnings.empty())  // which say why
       paragraphs.push_back(fmt::format("{}: {}{}{}.", name_of(comparison, run), to_string(run.status),
                                        run.reason.empty() ? "" : ", ", run.reason));
   const auto add = [&](const std::vector<std::string>& texts) {

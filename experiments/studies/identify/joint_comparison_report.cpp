@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 using Json = nlohmann::ordered_json;
 
 bool converged(const Comparison& one) {
-  return one.runs.at(0).status == ComparedRun::Status::converged;
+  return one.runs.at(0).answers();
 }
 
 Table table_of(const JointComparison& joint, std::size_t which) {

@@ -49,7 +49,7 @@ SchemeAtStep of_run(const ComparedRun& run, const SchemeAtStep* exact, double in
     one.mean_nis = run.diagnostics->consistency->mean_normalised_square;
   if (exact && exact->is_valid()) one.predicted = predicted_mode(run.discretisation, *exact->found, interval);
   // A ratio that the modal analysis contradicts is what is looked for, but of the reference.
-  const bool usable = exact ? run.has_estimate() : run.status == ComparedRun::Status::converged;
+  const bool usable = exact ? run.has_estimate() : run.answers();
   if (run.has_estimate()) one.found = run.mode;
   if (!usable || !one.found) {
     if (one.reason.empty()) one.reason = to_string(run.status);

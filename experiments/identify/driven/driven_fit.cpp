@@ -1,0 +1,407 @@
+#include "experiments/identify/driven/driven_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "experiments/identify/compare/low_mode_fit.hpp"
+#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/motion/linear_response.hpp"
+#include "experiments/signal/random.hpp"
+#include "filters/levenberg_marquardt.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
+using Complex = std::complex<double>;
+using std::numbers::pi;
+
+constexpr double no_motion = std::numeric_limits<double>::infinity();  // J where there is none
+
+// What a converter that holds or joins samples by lines does to a frequency.
+Complex path_gain(InputPath path, double omega, double interval) {
+  if (path == InputPath::band_limited) return 1.0;
+  const double half = 0.5 * omega * interval, sinc = std::sin(half) / half;
+  return path == InputPath::linear ? Complex(sinc * sinc) : sinc * std::exp(Complex(0.0, -half));
+}
+
+// Complex lines as real rows.
+MatrixXd line_rows(const MatrixXcd& lines) {
+  MatrixXd rows(2 * lines.rows(), lines.cols());
+  rows << lines.real(), lines.imag();
+  return rows;
+}
+
+// What a model makes of one part of a record, at one theta.
+struct PartLines {
+  MatrixXcd driven;  // W G_k u_k, all channels of one line, then those of the next (p L)
+  MatrixXcd added;   // W Z (p L x c)
+};
+
+PartLines part_lines(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part) {
+  const Index p = part.outputs.rows(), lines = part.omega.size(), l = response.motion_size();
+  PartLines found{MatrixXcd(p * lines, 1), MatrixXcd::Zero(p * lines, l + 2 * p)};
+  MatrixXcd transfer, free;
+  for (Index k = 0; k < lines; ++k) {
+    const double omega = part.omega[k];
+    response.line(omega, part.interval, transfer, free);
+    found.driven.col(0).segment(k * p, p) =
+        path_gain(problem.path, omega, part.interval) * (problem.weights.asDiagonal() * (transfer * part.inputs.col(k)));
+    found.added.block(k * p, 0, p, l) = problem.weights.asDiagonal() * free;
+    for (Index i = 0; i < p; ++i) {
+      found.added(k * p + i, l + i) = 1.0;
+      found.added(k * p + i, l + p + i) = Complex(0.0, std::sin(omega * part.interval));
+    }
+  }
+  return found;
+}
+
+// What one part leaves, the ends of it projected out.
+struct PartAt {
+  PartLines lines;
+  Eigen::ColPivHouseholderQR<MatrixXd> ends;
+  VectorXd scale, coefficients;  // of the columns of Z
+  VectorXd left;                 // (2 p L)
+
+  PartAt(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part)
+      : lines(part_lines(problem, response, part)) {
+    MatrixXcd read = part.outputs;
+    read = problem.weights.asDiagonal() * read;
+    const VectorXd all = line_rows(Eigen::Map<VectorXcd>(read.data(), read.size()) - lines.driven.col(0));
+    MatrixXd columns = line_rows(lines.added);
+    scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    columns = columns * scale.asDiagonal();
+    ends.setThreshold(1e-10);
+    ends.compute(columns);
+    const VectorXd scaled = ends.solve(all);
+    left = all - columns * scaled;
+    coefficients = scale.asDiagonal() * scaled;
+  }
+
+  // Without what the ends of the part could make of it.
+  void project(VectorXd& rows) const {
+    rows.applyOnTheLeft(ends.householderQ().transpose());
+    rows.head(ends.rank()).setZero();
+    rows.applyOnTheLeft(ends.householderQ());
+  }
+};
+
+class DrivenLines {
+ public:
+  explicit DrivenLines(const DrivenProblem& problem)
+      : problem_(problem), motion_(dynamic_cast<const filters::LinearMotion&>(*problem.model->motion)) {
+    const MatrixXd& known = problem.prior.covariance;
+    prior_ = known.llt().solve(MatrixXd::Identity(known.rows(), known.cols()));
+  }
+
+  const MatrixXd& prior() const { return prior_; }
+  VectorXd off(const VectorXd& theta) const { return theta - problem_.prior.mean; }
+
+  // @throws std::runtime_error where nothing moves, or a motion grows
+  LinearResponse response(const VectorXd& theta) const {
+    constexpr double growth = 1e-9;
+    if (!theta.allFinite()) throw std::runtime_error("the unknowns are not finite");
+    LinearResponse found(motion_, state_of_unknowns(*problem_.model, theta));
+    const VectorXcd& poles = found.poles();
+    if ((poles.array().real() > growth * poles.cwiseAbs().maxCoeff()).any())
+      throw std::runtime_error("a motion of the model grows at these unknowns");
+    return found;
+  }
+
+  std::vector<PartAt> at(const VectorXd& theta) const {
+    const LinearResponse there = response(theta);
+    std::vector<PartAt> found;
+    for (const RecordLines& part : problem_.parts) found.emplace_back(problem_, there, part);
+    return found;
+  }
+
+  double cost(const std::vector<PartAt>& parts, const VectorXd& theta) const {
+    double sum = off(theta).dot(prior_ * off(theta));
+    for (const PartAt& part : parts) sum += part.left.squaredNorm();
+    return sum;
+  }
+  // Empty where there is no motion, or none that is finite.
+  std::vector<PartAt> tried_at(const VectorXd& theta) const {
+    try {
+      std::vector<PartAt> found = at(theta);
+      if (std::isfinite(cost(found, theta))) return found;
+    } catch (const std::runtime_error&) {
+    }
+    return {};
+  }
+
+  // d left / d theta of every part, up to its sign.
+  std::vector<MatrixXd> slopes(const std::vector<PartAt>& parts, const VectorXd& theta) const {
+    constexpr double share = 1e-4;  // of the deviations known beforehand
+    const Index q = theta.size();
+    std::vector<MatrixXd> found;
+    for (const PartAt& part : parts) found.emplace_back(part.left.size(), q);
+    for (Index j = 0; j < q; ++j) {
+      const double step = share * std::sqrt(problem_.prior.covariance(j, j));
+      const LinearResponse moved = response(theta + step * VectorXd::Unit(q, j));
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const PartLines there = part_lines(problem_, moved, problem_.parts[i]);
+        const VectorXcd change = (there.driven - parts[i].lines.driven +
+                                  (there.added - parts[i].lines.added) * parts[i].coefficients) /
+                                 step;
+        VectorXd rows = line_rows(change);
+        parts[i].project(rows);
+        found[i].col(j) = rows;
+      }
+    }
+    return found;
+  }
+
+ private:
+  const DrivenProblem& problem_;
+  const filters::LinearMotion& motion_;
+  MatrixXd prior_;
+};
+
+DrivenFit summary(const DrivenProblem& problem, const DrivenLines& lines, const std::vector<PartAt>& parts,
+                  const VectorXd& theta) {
+  const Index p = problem.weights.size(), q = theta.size();
+  DrivenFit fit;
+  fit.theta = theta;
+  fit.cost = lines.cost(parts, theta);
+  fit.information.setZero(q, q);
+  fit.scores.resize(q, static_cast<Index>(parts.size()));
+  const std::vector<MatrixXd> slopes = lines.slopes(parts, theta);
+  VectorXd left = VectorXd::Zero(p), read = VectorXd::Zero(p);
+  double freedom = 0.0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Index rows = parts[i].left.size() / 2;
+    fit.part_information.emplace_back(slopes[i].transpose() * slopes[i]);
+    fit.information += fit.part_information.back();
+    fit.scores.col(static_cast<Index>(i)) = slopes[i].transpose() * parts[i].left;
+    for (Index c = 0; c < p; ++c) {
+      const auto of = Eigen::seqN(c, rows / p, p);
+      left[c] += parts[i].left.head(rows)(of).squaredNorm() + parts[i].left.tail(rows)(of).squaredNorm();
+      read[c] += problem.parts[i].outputs.row(c).squaredNorm();
+    }
+    freedom += static_cast<double>(2 * (rows / p)) - static_cast<double>(parts[i].ends.rank()) / static_cast<double>(p);
+  }
+  left = left.cwiseQuotient(problem.weights.cwiseAbs2());
+  fit.left_share = std::sqrt(left.cwiseQuotient(read.cwiseMax(1e-300)).mean());
+  fit.left = (2.0 * left / std::max(freedom, 1.0)).cwiseSqrt();
+  return fit;
+}
+
+// Root mean square of every channel's lines (p).
+VectorXd sizes(const std::vector<RecordLines>& parts) {
+  VectorXd squares = VectorXd::Zero(parts.front().outputs.rows());
+  double lines = 0.0;
+  for (const RecordLines& part : parts) {
+    squares += part.outputs.cwiseAbs2().rowwise().sum();
+    lines += static_cast<double>(part.omega.size());
+  }
+  return (squares / lines).cwiseSqrt().cwiseMax(1e-150);
+}
+
+// Every ratio and dashpot that is small, so that resonances are wide enough to be found.
+VectorXd well_damped(const JointModel& model, VectorXd theta) {
+  constexpr double ratio = 0.03;
+  for (Index j = 0; j < theta.size(); ++j) {
+    const Unknown& unknown = model.unknowns[static_cast<std::size_t>(j)];
+    if (unknown.quantity == "damping_ratio" && unknown.to_physical(theta[j]) < ratio &&
+        !(unknown.upper < ratio))
+      theta[j] = unknown.to_state(ratio);
+  }
+  return theta;
+}
+
+// The prior's mean with its stiffnesses times a common factor; the least J among neighbours first.
+std::vector<VectorXd> scaled_starts(const DrivenProblem& problem, const DrivenLines& lines) {
+  constexpr int steps = 16;
+  constexpr double widest = 4.0;
+  const FirstGuess guess{state_of_unknowns(*problem.model, problem.prior.mean), {}};
+  std::vector<std::pair<double, VectorXd>> tried;
+  for (int i = -steps; i <= steps; ++i) {
+    const VectorXd change =
+        scaled_stiffness(*problem.model, guess, std::pow(widest, static_cast<double>(i) / steps));
+    if (change.size() == 0) continue;
+    const VectorXd theta = well_damped(*problem.model, problem.prior.mean + change);
+    const std::vector<PartAt> parts = lines.tried_at(theta);
+    tried.emplace_back(parts.empty() ? no_motion : lines.cost(parts, theta), theta);
+    if (change.isZero(0.0) && i != 0) break;  // no stiffness is asked about
+  }
+  std::vector<std::pair<double, VectorXd>> valleys;
+  for (std::size_t i = 0; i < tried.size(); ++i)
+    if (std::isfinite(tried[i].first) && (i == 0 || tried[i].first <= tried[i - 1].first) &&
+        (i + 1 == tried.size() || tried[i].first <= tried[i + 1].first))
+      valleys.push_back(tried[i]);
+  std::sort(valleys.begin(), valleys.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<VectorXd> starts{well_damped(*problem.model, problem.prior.mean)};
+  for (const auto& [cost, theta] : valleys) starts.push_back(theta);
+  return starts;
+}
+
+}  // namespace
+
+VectorXd state_of_unknowns(const JointModel& model, const VectorXd& theta) {
+  VectorXd state = VectorXd::Zero(static_cast<Index>(model.motion->state_labels().size()));
+  state(model.unknown_places) = theta;
+  return state;
+}
+
+MatrixXd DrivenFit::covariance(const filters::Gaussian& prior) const {
+  const Index q = theta.size();
+  const MatrixXd known = prior.covariance.llt().solve(MatrixXd::Identity(q, q));
+  return (2.0 * information + known).llt().solve(MatrixXd::Identity(q, q));
+}
+
+std::optional<DrivenProblem> driven_problem(const JointModel& model, const filters::Measurements& record,
+                                            filters::Gaussian prior) {
+  constexpr double all_but = 1e-3, highest_share = 0.9;  // of the squares; of half the sampling rate
+  const Index m = model.motion->input_size();
+  if (m == 0 || record.inputs.rows() < m || is_whole_mesh(model) ||
+      !dynamic_cast<const filters::LinearMotion*>(model.motion.get()))
+    return {};
+  try {
+    RecordLines lines = record_lines(record, record.inputs.topRows(m), highest_share * 0.5 / record.interval());
+    Index last = 7;
+    for (Index i = 0; i < lines.outputs.rows(); ++i) {
+      const VectorXd power = lines.outputs.row(i).cwiseAbs2().transpose();
+      double above = 0.0;
+      Index k = power.size() - 1;
+      for (const double limit = all_but * power.sum(); k > last && (above += power[k]) < limit;) --k;
+      last = std::max(last, k);
+    }
+    last = std::min(last, lines.omega.size() - 1);
+    lines.omega.conservativeResize(last + 1);
+    lines.outputs.conservativeResize(Eigen::NoChange, last + 1);
+    lines.inputs.conservativeResize(Eigen::NoChange, last + 1);
+    const auto degree = record.inputs.rows() / m - 1;
+    return DrivenProblem{&model,
+                         {std::move(lines)},
+                         degree == 0   ? InputPath::held
+                         : degree == 1 ? InputPath::linear
+                                       : InputPath::band_limited,
+                         {},
+                         std::move(prior)};
+  } catch (const std::invalid_argument&) {  // gaps, uneven stamps, or too short
+    return {};
+  }
+}
+
+std::optional<DrivenProblem> in_sections(const DrivenProblem& whole, const filters::Measurements& record,
+                                         Index sections) {
+  const Index length = record.size() / sections, m = whole.model->motion->input_size();
+  const double highest_hz = whole.parts.front().omega.tail(1)[0] / (2.0 * pi);
+  DrivenProblem found = whole;
+  found.parts.clear();
+  try {
+    for (Index i = 0; i < sections; ++i) {
+      filters::Measurements part;
+      part.time = record.time.segment(i * length, length);
+      part.outputs = record.outputs.middleCols(i * length, length);
+      part.time_resolution = record.time_resolution;
+      found.parts.push_back(record_lines(part, record.inputs.block(0, i * length, m, length), highest_hz));
+    }
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+  return found;
+}
+
+DrivenFit fit_driven_from(const DrivenProblem& problem, const VectorXd& start, int most_steps) {
+  constexpr double close_enough = 1e-3, longest = 3.0;  // of deviations of unit noise; of those beforehand
+  const DrivenLines lines(problem);
+  VectorXd theta = start;
+  std::vector<PartAt> now = lines.at(theta);
+  double cost = lines.cost(now, theta);
+  const VectorXd known = problem.prior.covariance.diagonal().cwiseSqrt();
+  MatrixXd normal;
+  VectorXd gradient;
+  const auto linearise = [&] {
+    const std::vector<MatrixXd> slopes = lines.slopes(now, theta);
+    normal = lines.prior();
+    gradient = -lines.prior() * lines.off(theta);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      normal += slopes[i].transpose() * slopes[i];
+      gradient += slopes[i].transpose() * now[i].left;
+    }
+  };
+  linearise();
+  const auto step = [&](double damping) {
+    VectorXd found = filters::solve_damped(normal, damping, gradient);
+    const double length = found.cwiseQuotient(known).cwiseAbs().maxCoeff();
+    if (length > longest) found *= longest / length;
+    return found;
+  };
+  bool converged = false;
+  const auto take = [&](const VectorXd& change) {
+    filters::TriedStep tried;
+    const double expected = change.dot(2.0 * gradient - normal * change);
+    if (change.dot(normal * change) < close_enough * close_enough * std::max(1.0, 1e-3 * cost)) {
+      tried.settled = converged = true;
+      return tried;
+    }
+    const VectorXd there = theta + change;
+    std::vector<PartAt> next = lines.tried_at(there);
+    const double reached = next.empty() ? no_motion : lines.cost(next, there);
+    if (!(reached < cost)) return tried;
+    now = std::move(next);
+    tried.gain = expected > 0.0 ? (cost - reached) / expected : 1.0;
+    converged = tried.settled = cost - reached < 1e-9 * cost;
+    theta = there;
+    cost = reached;
+    if (!tried.settled) linearise();
+    return tried;
+  };
+  filters::MarquardtDamping rule;
+  rule.first = 1e-3;
+  rule.most_steps = most_steps;
+  converged = filters::levenberg_marquardt(rule, step, take) != filters::DescentEnd::exhausted;
+  DrivenFit fit = summary(problem, lines, now, theta);
+  fit.converged = converged;
+  return fit;
+}
+
+DrivenFit evaluate_driven(const DrivenProblem& problem, const VectorXd& theta) {
+  const DrivenLines lines(problem);
+  return summary(problem, lines, lines.at(theta), theta);
+}
+
+std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
+  constexpr int first_steps = 12;
+  constexpr std::size_t most_valleys = 4;
+  constexpr int draws = 6;
+  constexpr double usual_left = 0.3, least_left = 1e-6;  // of what was read
+  constexpr double draw_spread = 0.15;                   // of deviations known beforehand
+  const Index q = problem.prior.mean.size();
+  const VectorXd size = sizes(problem.parts);
+  problem.weights = (usual_left * size).cwiseInverse();
+  std::optional<DrivenFit> best;
+  const auto descend = [&](const VectorXd& start, int most_steps) {
+    try {
+      DrivenFit fit = fit_driven_from(problem, start, most_steps);
+      if (!best || fit.cost < best->cost) best = std::move(fit);
+    } catch (const std::runtime_error&) {  // no motion there
+    }
+  };
+  const std::vector<VectorXd> starts = scaled_starts(problem, DrivenLines(problem));
+  for (std::size_t i = 0; i < std::min(starts.size(), most_valleys); ++i) descend(starts[i], first_steps);
+  if (!best) return best;
+  const VectorXd middle = best->theta, known = problem.prior.covariance.diagonal().cwiseSqrt();
+  for (int i = 0; i < draws; ++i)
+    descend(well_damped(*problem.model,
+                        middle + draw_spread * known.cwiseProduct(standard_normal(q, 1, static_cast<std::uint64_t>(i)))),
+            first_steps);
+  for (int i = 0; i < 2; ++i) {
+    problem.weights = best->left.cwiseMax(least_left * size).cwiseInverse();
+    const VectorXd start = best->theta;
+    best.reset();
+    descend(start, 60);
+    if (!best) return best;
+  }
+  return best;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,69 @@
+// The unknowns of a driven linear model, by output error on the lines of its record's spectrum.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "experiments/identify/parts/record_lines.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/record/record.hpp"
+#include "filters/gaussian.hpp"
+
+namespace beamid::experiments {
+
+/// With y_k and u_k the lines of outputs and inputs, G_k(theta) of the model (linear_response.hpp), Z_k what a
+/// part of a record that does not repeat itself adds to a line, W the channels' weights [pintelon2012, ch. 6]:
+///
+///     J(theta) = sum over parts, min over c of sum_k |W (y_k - G_k(theta) u_k - Z_k(theta) c)|^2
+///              + |theta - theta_0|^2_(P_0^-1)
+///
+/// c is projected out (variable projection [golub1973]). Z has a column for every coordinate of the motion and,
+/// for what a part's ends do to its inputs, a constant and a slope of every channel.
+struct DrivenProblem {
+  const JointModel* model = nullptr;  ///< its motion is a filters::LinearMotion
+  std::vector<RecordLines> parts;     ///< the whole record, or sections of it
+  InputPath path = InputPath::band_limited;
+  Eigen::VectorXd weights;            ///< of the channels [1 / unit] (p)
+  filters::Gaussian prior;            ///< theta_0, P_0 in the model's coordinates eta (q)
+};
+
+struct DrivenFit {
+  Eigen::VectorXd theta;           ///< in the model's coordinates eta (q)
+  double cost = 0.0;               ///< J
+  Eigen::VectorXd left;            ///< root mean square of what is left of each channel [unit] (p)
+  double left_share = 0.0;         ///< of the lines' size, what is left; channels weighed by their size
+  Eigen::MatrixXd information;     ///< of unit noise behind the weights: J^T J of all parts (q x q)
+  Eigen::MatrixXd scores;          ///< J^T r of each part (q x parts)
+  std::vector<Eigen::MatrixXd> part_information;  ///< J^T J of each part
+  bool converged = false;
+
+  /// Of theta with the noise of each channel that is left, what is known beforehand included (q x q).
+  Eigen::MatrixXd covariance(const filters::Gaussian& prior) const;
+};
+
+/// The whole record as one part, up to the frequency below which all but a thousandth of the squares of every
+/// channel lie. Absent where the model is not a small linear one, no input was measured, stamps are uneven,
+/// readings are missing, or samples are too few.
+/// @param record how its inputs run between samples tells the path
+std::optional<DrivenProblem> driven_problem(const JointModel& model, const filters::Measurements& record,
+                                            filters::Gaussian prior);
+
+/// The same in consecutive sections of equal length. Absent where one would be too short.
+std::optional<DrivenProblem> in_sections(const DrivenProblem& whole, const filters::Measurements& record,
+                                         Eigen::Index sections);
+
+/// Levenberg-Marquardt from one start. @throws std::runtime_error where the model has no motion there.
+DrivenFit fit_driven_from(const DrivenProblem& problem, const Eigen::VectorXd& start, int most_steps = 60);
+
+/// The same from several starts: every stiffness times a common factor of 1/4 to 4, modes well damped so that
+/// their resonances are wide, and draws about the best. The weights become those of what is left.
+/// @returns absent where no start has a motion
+std::optional<DrivenFit> fit_driven(DrivenProblem& problem);
+
+/// J^T J and J^T r of every part at a theta; no search.
+DrivenFit evaluate_driven(const DrivenProblem& problem, const Eigen::VectorXd& theta);
+
+/// The whole state of a model at its unknowns, its motion at rest.
+Eigen::VectorXd state_of_unknowns(const JointModel& model, const Eigen::VectorXd& theta);
+
+}  // namespace beamid::experiments
