@@ -53,12 +53,23 @@ std::vector<ParameterChoice> own_choices(const ModelSetting& setting) {
 // A measured input lets a search go far from the guess: what is positive by its nature stays so, by its
 // logarithm, unless a form or bounds are stated.
 std::vector<ParameterChoice> choices_of(const ModelSetting& setting) {
-  std::vector<ParameterChoice> choices = setting.parameters.empty() ? own_choices(setting) : setting.parameters;
+  std::vector<ParameterChoice> choices =
+      setting.parameters.empty() ? own_choices(setting) : setting.parameters;
   for (ParameterChoice& choice : choices) {
     require_quantity(choice, structure_quantities(), "beam");
     choice.keep_positive = !setting.forces.empty();
   }
   return choices;
+}
+
+// Ratios of modes that a reduction has left out are not asked about: reductions are compared on one list.
+void drop_ratios_above(Index modes, std::vector<ParameterChoice>& choices,
+                       std::vector<ParameterDefault>& defaults) {
+  for (std::size_t j = choices.size(); j-- > 0;)
+    if (choices[j].quantity == "damping_ratio" && choices[j].mode.value_or(1) > modes) {
+      choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(j));
+      defaults.erase(defaults.begin() + static_cast<std::ptrdiff_t>(j));
+    }
 }
 
 bool asks_about_dashpots(const fem::ParametricSystem& equations) {
@@ -180,7 +191,7 @@ std::unique_ptr<JointModel> make_part(const ModelSetting& setting, MotionDescrip
 std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters::Options& options) {
   if (!setting.storey_springs.empty()) return make_storeys(setting, options);
   MotionDescription description = describe_sensors("beam", setting, options);
-  const std::vector<ParameterChoice> choices = choices_of(setting);
+  std::vector<ParameterChoice> choices = choices_of(setting);
   if (!setting.continuum) beam_equations(setting, {});  // says what is missing
   std::vector<ParameterDefault> defaults = beam_defaults(setting.continuum->structure, choices);
 
@@ -205,6 +216,7 @@ std::unique_ptr<JointModel> make_beam(const ModelSetting& setting, const filters
       fem::modes(reduced.system, dense ? reduced.system.size()
                                        : std::min<Index>(static_cast<Index>(kept), reduced.system.size()));
 
+  if (setting.reduction) drop_ratios_above(elastic(modes).size(), choices, defaults);
   add_damping_defaults(setting.damping, elastic(modes), choices, defaults);
   description.unknowns = unknowns_of(choices, defaults);
   add_drives(equations, description);

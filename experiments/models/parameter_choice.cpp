@@ -111,8 +111,7 @@ Unknown unknown_of(const ParameterChoice& choice, const ParameterDefault& by_mod
   if (choice.lower.has_value() != choice.upper.has_value())
     refuse(choice, fmt::format("{} has one bound; expected both lower{} and upper{}, or none", unknown.name,
                                end, end));
-  const bool logarithmic =
-      choice.keep_positive && quantity.positive && !choice.known && unknown.guess > 0.0;
+  const bool logarithmic = choice.keep_positive && quantity.positive && !choice.known && unknown.guess > 0.0;
   unknown.form = choice.form.value_or(choice.lower  ? Form::bounded
                                       : logarithmic ? Form::logarithmic
                                                     : Form::linear);

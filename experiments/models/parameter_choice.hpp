@@ -13,9 +13,9 @@ namespace beamid::experiments {
 
 /// A quantity that models may ask about.
 struct ParameterQuantity {
-  std::string name;    ///< "bending_stiffness"
-  std::string unit;    ///< SI: "N m2"; empty when dimensionless
-  std::string suffix;  ///< as in a key: "n_m2"
+  std::string name;       ///< "bending_stiffness"
+  std::string unit;       ///< SI: "N m2"; empty when dimensionless
+  std::string suffix;     ///< as in a key: "n_m2"
   bool positive = false;  ///< by its nature: a logarithm of it may stand in a filter's state
 };
 const std::vector<ParameterQuantity>& parameter_quantities();
@@ -32,9 +32,9 @@ struct ParameterChoice {
   std::optional<double> relative_deviation = {};         ///< of the guess, instead of the deviation
   std::optional<Form> form = {};
   std::optional<double> lower = {}, upper = {};
-  bool known = false;  ///< a nuisance: known to its deviation
+  bool known = false;          ///< a nuisance: known to its deviation
   bool keep_positive = false;  ///< where no form is chosen, a positive quantity is logarithmic
-  Place place = {};    ///< for messages
+  Place place = {};            ///< for messages
 };
 
 /// What a model assumes of a parameter by itself.
@@ -44,8 +44,8 @@ struct ParameterDefault {
 };
 
 /// The unknown that a choice asks about. Absent: guess and deviation as the model says, the form linear, or
-/// bounded where bounds are given, or logarithmic where the choice keeps it positive; the name made of quantity
-/// and mode.
+/// bounded where bounds are given, or logarithmic where the choice keeps it positive; the name made of
+/// quantity and mode.
 /// @throws std::invalid_argument, or an InputError at the choice's place in a file, when the deviation comes
 /// out as zero or the guess is outside what the form allows.
 Unknown unknown_of(const ParameterChoice& choice, const ParameterDefault& by_model);

@@ -5,6 +5,10 @@
 namespace beamid::experiments {
 namespace {
 
+bool answers(const auto& row) {
+  return row.status == "converged" || row.status == "approximate";
+}
+
 using Rows = std::vector<const SweepRow*>;
 
 double square(double x) {
@@ -85,10 +89,10 @@ void add_point(std::size_t point, const Rows& rows, std::vector<PointStatistics>
       const bool failed = row->status == "failed";
       if (!failed && !one.same_run(*row)) continue;
       if (!row->parameter.empty() && row->parameter != one.parameter) continue;
-      one.converged += row->status == "converged";
+      one.converged += answers(*row);
       one.diverged += row->status == "diverged";
       one.unusable += failed || row->status == "refused";
-      if (row->status == "converged") found.push_back(row);
+      if (answers(*row)) found.push_back(row);
     }
     fill(one, found);
     if (one.converged + one.diverged > 0)

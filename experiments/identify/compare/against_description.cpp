@@ -110,6 +110,12 @@ std::string prior_text(const Estimate& e, double deviations) {
       std::isfinite(ratio) && e.prior_value != 0.0 ? fmt::format(" ({:.3g} times)", ratio) : "");
 }
 
+// In the coordinate that a filter's state carries.
+double deviations_from_prior(const Unknown& unknown, const Estimate& e) {
+  const double prior = unknown.to_state(e.prior_value);
+  return std::abs(unknown.to_state(e.value) - prior) * std::abs(unknown.slope(prior)) / e.prior_deviation;
+}
+
 }  // namespace
 
 std::string usual_scale(double factor, double near) {
@@ -129,15 +135,17 @@ std::string usual_scale(double factor, double near) {
   return {};
 }
 
-AgainstDescription against_description(const std::vector<ComparedParameter>& parameters, bool by_force) {
+AgainstDescription against_description(const std::vector<ComparedParameter>& parameters, bool by_force,
+                                       const std::vector<Unknown>& unknowns) {
   AgainstDescription found;
   const CommonFactor scale = by_force ? common_factor(parameters) : CommonFactor{};
   found.contradicts = scale.common && (scale.factor < 0.0 || scale.size() > far_from_prior * scale.deviation);
   if (found.contradicts || (scale.common && is_no_coincidence(scale, parameters)))
     found.scale = scale_text(scale, found.contradicts);
-  for (const ComparedParameter& p : parameters) {
-    const Estimate& e = p.estimate;
-    const double deviations = std::abs(e.value - e.prior_value) / e.prior_deviation;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const Estimate& e = parameters[j].estimate;
+    const double deviations = unknowns.empty() ? std::abs(e.value - e.prior_value) / e.prior_deviation
+                                               : deviations_from_prior(unknowns[j], e);
     if (states_a_prior(e) && deviations > far_from_prior && !(found.contradicts && has_force(e)))
       found.differences.push_back(prior_text(e, deviations));
   }
@@ -146,7 +154,7 @@ AgainstDescription against_description(const std::vector<ComparedParameter>& par
 
 void judge_description(const RunContext& context, ComparedRun& run) {
   const AgainstDescription found =
-      against_description(run.parameters, measures_force(context.analysis.record));
+      against_description(run.parameters, measures_force(context.analysis.record), run.unknowns);
   run.warnings.insert(run.warnings.end(), found.differences.begin(), found.differences.end());
   if (found.scale.empty()) return;
   if (!found.contradicts) {

@@ -26,7 +26,10 @@ struct AgainstDescription {
 ///
 /// A damping known to 100 % or less well states no prior, and is left out.
 /// @param by_force whether a force was measured, which the scale then comes from
-AgainstDescription against_description(const std::vector<ComparedParameter>& parameters, bool by_force);
+/// @param unknowns of the same parameters, in whose coordinates they are away from their priors; empty:
+/// linear
+AgainstDescription against_description(const std::vector<ComparedParameter>& parameters, bool by_force,
+                                       const std::vector<Unknown>& unknowns = {});
 
 /// ", as with 9.80665, a force in N taken for kgf ...": of a force's reading over the force, or a motion over
 /// its reading, what makes such a factor within exp(+-near); empty: nothing usual.

@@ -104,7 +104,7 @@ struct ComparedRun {
   std::vector<Unknown> unknowns;                   ///< of the model, in the order of the parameters (q)
   filters::Gaussian unknown_state, unknown_start;  ///< of what the filter's state carries for them: at the
                                                    ///< end, and at the start of the last pass (q)
-  std::optional<SectionScatter> sections;  ///< of a driven record that is long enough
+  std::optional<SectionScatter> sections;          ///< of a driven record that is long enough
   std::optional<ClockStep> clocks;   ///< of channels with clocks of their own; absent: there are none
   LikeliestClocks likeliest_clocks;  ///< of a driven record without such channels
   std::optional<ClockScatter> clock_scatter;  ///< of a free decay's channels that do not agree; by `identify`

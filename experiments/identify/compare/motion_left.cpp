@@ -45,32 +45,34 @@ bool is_noise_of_inputs(const RunContext& context, const ComparedRun& run) {
 
 namespace {
 
-// What a model without joints, rocking and a yielding base explains of a real structure; its sections show how
-// far that moves the estimates.
-bool is_mostly_explained(const ComparedRun& run) {
-  constexpr double most_left = 0.3;
-  return run.sections && run.sections->left_share < most_left;
-}
+// A sensor a storey off leaves 40, a mass off by half 20, no defect 0.4.
+constexpr double too_much_driven = 10.0, too_much_free = 50.0;  // %
 
 }  // namespace
+
+// What a model without joints, rocking and a yielding base explains of a real structure; its sections show
+// how far that moves the estimates.
+bool is_approximate(const ComparedRun& run) {
+  constexpr double most_left = 0.3;
+  return run.sections && run.sections->left_share < most_left && run.misfit_percent > too_much_driven;
+}
 
 // A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
 // that started otherwise. Nor is it where storeys follow laws, which no mode beside them can stand in for. A
 // free decay may hold modes that the model lacks, but not for the greater part.
 void judge_motion_left(const RunContext& context, ComparedRun& run) {
-  // A sensor a storey off leaves 40, a mass off by half 20, no defect 0.4.
-  constexpr double too_much_driven = 10.0, too_much_free = 50.0;
   const bool forced = context.analysis.forced();
   const double too_much = forced || has_storey_laws(*run.model) ? too_much_driven : too_much_free;
   if (!(run.misfit_percent > too_much) || is_noise_of_inputs(context, run)) return;
-  if (is_mostly_explained(run)) {
+  if (is_approximate(run)) {
     run.status = ComparedRun::Status::approximate;
     run.reason = fmt::format("the model explains {:.0f} % of the motion; the rest is not noise",
                              100.0 * (1.0 - run.sections->left_share));
-    run.warnings.insert(run.warnings.begin(),
-                        fmt::format("The model explains {:.0f} % of the motion; the rest is not noise. Intervals "
-                                    "hold the scatter over the record.",
-                                    100.0 * (1.0 - run.sections->left_share)));
+    run.warnings.insert(
+        run.warnings.begin(),
+        fmt::format("The model explains {:.0f} % of the motion; the rest is not noise. Intervals "
+                    "hold the scatter over the record.",
+                    100.0 * (1.0 - run.sections->left_share)));
     return;
   }
   run.status = ComparedRun::Status::contradicted;
@@ -91,6 +93,7 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
 
 void judge_innovations(const RunContext& context, ComparedRun& run) {
   if (!run.diagnostics || !run.diagnostics->consistency) return;
+  if (run.status == ComparedRun::Status::approximate) return;  // which says as much
   const double left = context.analysis.forced() ? run.misfit_percent : 0.0;
   const std::string text = innovations_text(*run.diagnostics->consistency, left);
   if (!text.empty()) run.warnings.push_back(text);

@@ -6,8 +6,13 @@
 namespace beamid::experiments {
 
 /// Contradicted where the best of all starts and parameters leaves more than 10 % of a record driven by a
-/// measured input, or of storeys that follow laws, and more than 50 % of a free decay.
+/// measured input, or of storeys that follow laws, and more than 50 % of a free decay; approximate where
+/// is_approximate().
 void judge_motion_left(const RunContext& context, ComparedRun& run);
+
+/// Whether the model explains at least 70 % of a driven record that sections were made of, and more than 10 %
+/// of it is left and no noise.
+bool is_approximate(const ComparedRun& run);
 
 /// A warning where the innovations are not those of a consistent filter: not white, or of changing size, with
 /// a probability below one in a thousand.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "experiments/identify/compare/motion_left.hpp"
 #include "experiments/identify/compare/passes.hpp"
 #include "experiments/identify/compare/run_bound.hpp"
 #include "experiments/identify/compare/run_mode.hpp"
@@ -74,8 +75,9 @@ void Passes::finish() {
   if (is_kept && context_.analysis.modal && context_.compared.clocks.empty())
     run_.clock_scatter = scatter_of_clocks(context_.analysis, *run_.model, motion_.initial_state);
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
-  if (inputs_are_asked && is_kept) look_for_input_noise();
   if (!drifts && context_.analysis.forced()) look_at_sections();
+  // What is left of a model that is not exact looks like noise of its inputs, too.
+  if (inputs_are_asked && is_kept && !is_approximate(run_)) look_for_input_noise();
   run_.response_seconds += seconds_since(start);
   if (settings_.keep == filters::Keep::last_estimate) return;
   if (first_start_.size() > 0)
@@ -96,6 +98,10 @@ void Passes::judge_motion() {
   const auto modes = recorded_modes(*run_.model, state, run_.unknown_state, record_hz);
   if (modes) run_.mode = modes->shown;
   FoundMode found = run_.mode.value_or(FoundMode{});
+  // A motion that makes most of the record is the record's, whatever stands out of its spectrum: where
+  // something drives a structure that need not be a mode.
+  constexpr double most_left = 30.0;  // %
+  const bool is_the_records = is_linear_and_driven() && motion_.response_error_percent < most_left;
   double lowest_hz = modes ? modes->lowest.frequency_hz : 0.0;
   if (!dynamic_cast<const filters::LinearMotion*>(run_.model->motion.get())) {
     if (!shown) return;
@@ -106,7 +112,7 @@ void Passes::judge_motion() {
   }
   if (lowest_hz > 0.0) run_.frequency_hz = lowest_hz;
   found.frequency_hz = shown_at(found.frequency_hz, 1.0 / dt_);
-  run_.reason = divergence(found, record_hz);
+  run_.reason = divergence(found, is_the_records ? std::nullopt : record_hz);
   if (!run_.reason.empty()) run_.status = ComparedRun::Status::diverged;
 }
 
@@ -130,7 +136,8 @@ void Passes::look_at_sections() {
   const filters::Gaussian known{started_.guess.mean(started_.model.unknown_places),
                                 own_guess(started_.model, setting_.observations, record_.outputs).unknowns,
                                 {}};
-  run_.sections = section_scatter(*run_.model, record_, known, run_.unknown_state.mean, modes->lowest.frequency_hz);
+  run_.sections =
+      section_scatter(*run_.model, record_, known, run_.unknown_state.mean, modes->lowest.frequency_hz);
 }
 
 // Lags that are unknown too leave less of the record to the unknowns.

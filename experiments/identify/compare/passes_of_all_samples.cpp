@@ -90,7 +90,8 @@ void Passes::take_unknowns(const filters::Gaussian& unknowns) {
 bool Passes::take_all_lines() {
   constexpr double lost = 0.6;  // of the lines
   if (!started_.guess.by_lines) return false;
-  const filters::Gaussian prior{started_.guess.mean(started_.model.unknown_places), started_.guess.unknowns, {}};
+  const filters::Gaussian prior{
+      started_.guess.mean(started_.model.unknown_places), started_.guess.unknowns, {}};
   try {
     begin_at(started_.guess.mean);
     auto problem = driven_problem(*run_.model, record_, prior);
@@ -113,7 +114,8 @@ bool Passes::take_all_lines() {
     run_.unknown_start = prior;
     take_unknowns({fit.theta, covariance, {}});
     run_.remarks.push_back(fmt::format(
-        "The filter lost its way ({}); the estimates are those of all lines of the spectrum (output error).", why));
+        "The filter lost its way ({}); the estimates are those of all lines of the spectrum (output error).",
+        why));
     return true;
   } catch (const std::runtime_error&) {  // no motion there
     return false;

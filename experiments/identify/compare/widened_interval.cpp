@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/identify/compare/run_mode.hpp"
 #include "experiments/identify/noise_near_mode.hpp"
 
 namespace beamid::experiments {
@@ -67,13 +68,13 @@ void by_sections(ComparedRun& run, std::vector<double>& factors) {
       widened += fmt::format("{}{} by {:.2g} % ({:.2g} times)", widened.empty() ? "" : ", ", p.estimate.name,
                              100.0 * factor * p.estimate.deviation / std::abs(p.estimate.value), factor);
     factors[j] = factor;
-    run.interval_factor = std::max(run.interval_factor, factor);
   }
   if (widened.empty()) return;
-  run.remarks.push_back(fmt::format(
-      "Over {} sections of {:.3g} periods the estimates vary by more than noise makes them: {}. Intervals are "
-      "widened to hold this; in brackets, over the formal deviation.",
-      run.sections->sections, run.sections->periods, widened));
+  run.remarks.push_back(
+      fmt::format("Over {} sections of {:.3g} periods the estimates vary by more than noise makes them: {}. "
+                  "Intervals are "
+                  "widened to hold this; in brackets, over the formal deviation.",
+                  run.sections->sections, run.sections->periods, widened));
 }
 
 // A filter more certain than record and prior allow has been linearised elsewhere, or has lost its spread:
@@ -117,6 +118,15 @@ void widen_intervals(const RunContext& context, ComparedRun& run) {
   if (!run.mode) return;
   run.mode->damping_ratio_deviation *= run.interval_factor;
   run.mode->frequency_deviation_hz *= run.interval_factor;
+  if (!run.sections) return;
+  const filters::Gaussian scattered{run.unknown_state.mean, run.sections->covariance, {}};
+  const auto modes = recorded_modes(*run.model, run.run.last.mean, scattered, run.mode->frequency_hz);
+  if (!modes) return;
+  const double student = student_factor(run.sections->freedom.minCoeff());
+  run.mode->damping_ratio_deviation =
+      std::max(run.mode->damping_ratio_deviation, student * modes->shown.damping_ratio_deviation);
+  run.mode->frequency_deviation_hz =
+      std::max(run.mode->frequency_deviation_hz, student * modes->shown.frequency_deviation_hz);
 }
 
 }  // namespace beamid::experiments

@@ -51,8 +51,8 @@ PartLines part_lines(const DrivenProblem& problem, const LinearResponse& respons
   for (Index k = 0; k < lines; ++k) {
     const double omega = part.omega[k];
     response.line(omega, part.interval, transfer, free);
-    found.driven.col(0).segment(k * p, p) =
-        path_gain(problem.path, omega, part.interval) * (problem.weights.asDiagonal() * (transfer * part.inputs.col(k)));
+    found.driven.col(0).segment(k * p, p) = path_gain(problem.path, omega, part.interval) *
+                                            (problem.weights.asDiagonal() * (transfer * part.inputs.col(k)));
     found.added.block(k * p, 0, p, l) = problem.weights.asDiagonal() * free;
     for (Index i = 0; i < p; ++i) {
       found.added(k * p + i, l + i) = 1.0;
@@ -185,7 +185,8 @@ DrivenFit summary(const DrivenProblem& problem, const DrivenLines& lines, const 
       left[c] += parts[i].left.head(rows)(of).squaredNorm() + parts[i].left.tail(rows)(of).squaredNorm();
       read[c] += problem.parts[i].outputs.row(c).squaredNorm();
     }
-    freedom += static_cast<double>(2 * (rows / p)) - static_cast<double>(parts[i].ends.rank()) / static_cast<double>(p);
+    freedom += static_cast<double>(2 * (rows / p)) -
+               static_cast<double>(parts[i].ends.rank()) / static_cast<double>(p);
   }
   left = left.cwiseQuotient(problem.weights.cwiseAbs2());
   fit.left_share = std::sqrt(left.cwiseQuotient(read.cwiseMax(1e-300)).mean());
@@ -264,7 +265,8 @@ std::optional<DrivenProblem> driven_problem(const JointModel& model, const filte
       !dynamic_cast<const filters::LinearMotion*>(model.motion.get()))
     return {};
   try {
-    RecordLines lines = record_lines(record, record.inputs.topRows(m), highest_share * 0.5 / record.interval());
+    RecordLines lines =
+        record_lines(record, record.inputs.topRows(m), highest_share * 0.5 / record.interval());
     Index last = 7;
     for (Index i = 0; i < lines.outputs.rows(); ++i) {
       const VectorXd power = lines.outputs.row(i).cwiseAbs2().transpose();
@@ -391,8 +393,8 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
   if (!best) return best;
   const VectorXd middle = best->theta, known = problem.prior.covariance.diagonal().cwiseSqrt();
   for (int i = 0; i < draws; ++i)
-    descend(well_damped(*problem.model,
-                        middle + draw_spread * known.cwiseProduct(standard_normal(q, 1, static_cast<std::uint64_t>(i)))),
+    descend(well_damped(*problem.model, middle + draw_spread * known.cwiseProduct(standard_normal(
+                                                                   q, 1, static_cast<std::uint64_t>(i)))),
             first_steps);
   for (int i = 0; i < 2; ++i) {
     problem.weights = best->left.cwiseMax(least_left * size).cwiseInverse();

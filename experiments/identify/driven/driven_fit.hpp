@@ -11,29 +11,30 @@
 
 namespace beamid::experiments {
 
-/// With y_k and u_k the lines of outputs and inputs, G_k(theta) of the model (linear_response.hpp), Z_k what a
-/// part of a record that does not repeat itself adds to a line, W the channels' weights [pintelon2012, ch. 6]:
+/// With y_k and u_k the lines of outputs and inputs, G_k(theta) of the model (linear_response.hpp), Z_k what
+/// a part of a record that does not repeat itself adds to a line, W the channels' weights [pintelon2012, ch.
+/// 6]:
 ///
 ///     J(theta) = sum over parts, min over c of sum_k |W (y_k - G_k(theta) u_k - Z_k(theta) c)|^2
 ///              + |theta - theta_0|^2_(P_0^-1)
 ///
-/// c is projected out (variable projection [golub1973]). Z has a column for every coordinate of the motion and,
-/// for what a part's ends do to its inputs, a constant and a slope of every channel.
+/// c is projected out (variable projection [golub1973]). Z has a column for every coordinate of the motion
+/// and, for what a part's ends do to its inputs, a constant and a slope of every channel.
 struct DrivenProblem {
   const JointModel* model = nullptr;  ///< its motion is a filters::LinearMotion
   std::vector<RecordLines> parts;     ///< the whole record, or sections of it
   InputPath path = InputPath::band_limited;
-  Eigen::VectorXd weights;            ///< of the channels [1 / unit] (p)
-  filters::Gaussian prior;            ///< theta_0, P_0 in the model's coordinates eta (q)
+  Eigen::VectorXd weights;  ///< of the channels [1 / unit] (p)
+  filters::Gaussian prior;  ///< theta_0, P_0 in the model's coordinates eta (q)
 };
 
 struct DrivenFit {
-  Eigen::VectorXd theta;           ///< in the model's coordinates eta (q)
-  double cost = 0.0;               ///< J
-  Eigen::VectorXd left;            ///< root mean square of what is left of each channel [unit] (p)
-  double left_share = 0.0;         ///< of the lines' size, what is left; channels weighed by their size
-  Eigen::MatrixXd information;     ///< of unit noise behind the weights: J^T J of all parts (q x q)
-  Eigen::MatrixXd scores;          ///< J^T r of each part (q x parts)
+  Eigen::VectorXd theta;        ///< in the model's coordinates eta (q)
+  double cost = 0.0;            ///< J
+  Eigen::VectorXd left;         ///< root mean square of what is left of each channel [unit] (p)
+  double left_share = 0.0;      ///< of the lines' size, what is left; channels weighed by their size
+  Eigen::MatrixXd information;  ///< of unit noise behind the weights: J^T J of all parts (q x q)
+  Eigen::MatrixXd scores;       ///< J^T r of each part (q x parts)
   std::vector<Eigen::MatrixXd> part_information;  ///< J^T J of each part
   bool converged = false;
 

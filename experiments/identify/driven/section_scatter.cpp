@@ -33,6 +33,7 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
     // Half of a line's squares are real: information of unit noise is twice J^T J.
     const MatrixXd known = prior.covariance.llt().solve(MatrixXd::Identity(q, q)),
                    information = 2.0 * fit.information + known;
+    const Eigen::LDLT<MatrixXd> all_sections(information);
     SectionScatter found;
     found.sections = sections;
     found.periods = periods / static_cast<double>(sections);
@@ -45,8 +46,7 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
     const VectorXd mean_score = 2.0 * fit.scores.rowwise().mean();
     for (Index i = 0; i < sections; ++i) {
       const MatrixXd own = 2.0 * fit.part_information[static_cast<std::size_t>(i)];
-      const VectorXd score = 2.0 * fit.scores.col(i) - mean_score,
-                     step = (information - own).ldlt().solve(score);
+      const VectorXd score = 2.0 * fit.scores.col(i) - mean_score, step = all_sections.solve(score);
       spread += step * step.transpose();
       const Eigen::LDLT<MatrixXd> alone(own + known);
       found.estimates.col(i) = theta + alone.solve(2.0 * fit.scores.col(i));
@@ -57,10 +57,9 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
       squares += own.diagonal().cwiseAbs2();
     }
     found.size /= std::max(1e-300, std::sqrt(found.size.squaredNorm() / static_cast<double>(sections)));
-    spread *= static_cast<double>(sections - 1) / static_cast<double>(sections);
-    found.deviation = spread.diagonal().cwiseMax(0.0).cwiseSqrt();
+    found.covariance = spread * (static_cast<double>(sections) / static_cast<double>(sections - 1));
     found.freedom = (weights.cwiseAbs2().cwiseQuotient(squares.cwiseMax(1e-300)).array() - 1.0).cwiseMax(1.0);
-    if (!found.deviation.allFinite()) return {};
+    if (!found.covariance.allFinite()) return {};
     return found;
   } catch (const std::runtime_error&) {  // no motion at these unknowns
     return {};
@@ -68,7 +67,8 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
 }
 
 double section_factor(const SectionScatter& scatter, Index unknown, double deviation) {
-  return deviation > 0.0 ? student_factor(scatter.freedom[unknown]) * scatter.deviation[unknown] / deviation : 1.0;
+  const double scattered = std::sqrt(std::max(0.0, scatter.covariance(unknown, unknown)));
+  return deviation > 0.0 ? student_factor(scatter.freedom[unknown]) * scattered / deviation : 1.0;
 }
 
 }  // namespace beamid::experiments

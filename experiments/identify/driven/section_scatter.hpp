@@ -10,16 +10,16 @@
 namespace beamid::experiments {
 
 /// A deviation from likelihood alone holds where the model is exact. What sections of a record say one by one
-/// counts what the model lacks, too: with s_i = J_i^T r_i and I_i = J_i^T J_i of section i at the estimate,
-/// and I the sum of the I_i and of what is known beforehand, the estimate without section i is one step away,
+/// counts what the model lacks, too: with s_i = J_i^T r_i of section i at the estimate, and I the sum of the
+/// sections' J_i^T J_i and of what is known beforehand,
 ///
-///     delta_i = (I - I_i)^-1 s_i,    V = (S - 1) / S sum_i delta_i delta_i^T
+///     V = S / (S - 1) I^-1 [sum_i (s_i - s)(s_i - s)^T] I^-1,    s the mean of the s_i
 ///
-/// the jackknife over clusters [bell2002], which a section that weighs much widens and does not hide.
+/// the covariance that holds whatever the errors within a section are [liang1986].
 struct SectionScatter {
   Eigen::Index sections = 0;      ///< S
   double periods = 0.0;           ///< of the lowest mode in each
-  Eigen::VectorXd deviation;      ///< sqrt(V_jj), in the model's coordinates eta (q)
+  Eigen::MatrixXd covariance;     ///< V, in the model's coordinates eta (q x q)
   Eigen::VectorXd freedom;        ///< sections that weigh in each unknown, less one (q)
   Eigen::MatrixXd estimates;      ///< one step from the whole estimate by each section alone (q x S)
   Eigen::MatrixXd own_deviation;  ///< of those, by what the record leaves (q x S)
@@ -27,8 +27,8 @@ struct SectionScatter {
   double left_share = 0.0;        ///< of the lines of the whole record, what the estimates leave
 };
 
-/// Of at least 6 sections of at least 20 periods of the lowest mode. Absent where the record is shorter, or has
-/// no lines (driven_problem()).
+/// Of at least 6 sections of at least 20 periods of the lowest mode. Absent where the record is shorter, or
+/// has no lines (driven_problem()).
 /// @param theta of the model's unknowns, in its coordinates (q)
 /// @param prior what is known beforehand of them
 std::optional<SectionScatter> section_scatter(const JointModel& model, const filters::Measurements& record,

@@ -97,9 +97,16 @@ class RecordFit {
   filters::Measurements record_;
 };
 
+// From what the experiment states, not from what a first fit has made of it.
 double distance_to_prior(const ComparedRun& run, const VectorXd& unknowns) {
-  const VectorXd away = unknowns - run.unknown_start.mean;
-  return away.cwiseQuotient(run.unknown_start.covariance.diagonal().cwiseSqrt()).squaredNorm();
+  double squares = 0.0;
+  for (Index j = 0; j < unknowns.size(); ++j) {
+    const Unknown& unknown = run.unknowns[static_cast<std::size_t>(j)];
+    const double guess = unknown.to_state(unknown.guess),
+                 deviation = unknown.deviation / std::abs(unknown.slope(guess));
+    squares += std::pow((unknowns[j] - guess) / deviation, 2);
+  }
+  return squares;
 }
 
 // In one of the stiffnesses by more than 2 %.

@@ -130,9 +130,7 @@ std::vector<Figure> figures(const Comparison& comparison) {
     all.push_back(motion_figure(comparison, runs, channel));
   Runs alike;  // the models may differ in what they ask about
   for (const ComparedRun* run : runs)
-    if (run->parameters.size() == runs.front()->parameters.size() &&
-        run->answers())
-      alike.push_back(run);
+    if (run->parameters.size() == runs.front()->parameters.size() && run->answers()) alike.push_back(run);
   if (!alike.empty() && !alike.front()->parameters.empty())
     all.push_back(parameter_figure(comparison, alike));
   return all;

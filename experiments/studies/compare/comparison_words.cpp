@@ -44,9 +44,8 @@ bool worse_than_smaller(const Comparison& comparison, const ComparedRun& run) {
   constexpr double clearly = 1.25;
   return std::any_of(comparison.runs.begin(), comparison.runs.end(), [&](const ComparedRun& smaller) {
     const bool nested = run.reduction == "none" || method_of(smaller) == method_of(run);
-    return nested && smaller.answers() &&
-           smaller.coordinates < run.coordinates && smaller.filter == run.filter &&
-           smaller.discretisation == run.discretisation &&
+    return nested && smaller.answers() && smaller.coordinates < run.coordinates &&
+           smaller.filter == run.filter && smaller.discretisation == run.discretisation &&
            clearly * smaller.response_error_percent < run.response_error_percent;
   });
 }
@@ -59,7 +58,7 @@ std::string misfit_text(const Comparison& comparison) {
   for (const ComparedRun& run : comparison.runs) {
     if (!is_sound(run)) continue;
     const bool worse = worse_than_smaller(comparison, run);
-    if (!worse && run.misfit_percent <= much) continue;
+    if (!worse && (run.misfit_percent <= much || run.status == ComparedRun::Status::approximate)) continue;
     std::string& list = worse ? wrong : poor;
     list += fmt::format("{}{} ({:.3g} %)", list.empty() ? "" : ", ", name_of(comparison, run),
                         run.response_error_percent);

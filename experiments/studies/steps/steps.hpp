@@ -31,7 +31,9 @@ struct StepsStudy {
   std::vector<RecordAtStep> steps;                              ///< the record's own first
   std::vector<std::string> notes, warnings;                     ///< warnings: the worst first
 
-  bool has_reference() const { return status == ComparedRun::Status::converged || status == ComparedRun::Status::approximate; }
+  bool has_reference() const {
+    return status == ComparedRun::Status::converged || status == ComparedRun::Status::approximate;
+  }
   const FoundMode& reference() const { return *steps[0].found[0].found; }
   /// f0 + a dt^p + b dt^(p+1) + ... through the valid steps below 1 rad of the motion, the four finest;
   /// nothing of fewer than two, nor of a scheme without an error to be carried on.
