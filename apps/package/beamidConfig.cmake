@@ -1,6 +1,6 @@
 # find_package(beamid [COMPONENTS fem reduction filters experiments apps]): targets beamid::fem, ... Only what
 # the components stand on is looked for; without components, what all of them do.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.25...3.31)
 include(CMakeFindDependencyMacro)
 
 set(known fem reduction filters experiments apps)

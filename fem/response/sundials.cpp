@@ -7,6 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "fem/response/sundials_versions.hpp"
+
 namespace beamid::fem {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -19,7 +21,7 @@ struct SundialsMotion::Klu {
 
   static Klu& of(SUNLinearSolver solver) { return *static_cast<Klu*>(solver->content); }
 
-  static int solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, realtype tolerance) {
+  static int solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance) {
     Klu& self = of(solver);
     const Index n = self.equations->size();
     view(self.right.get()) = self.equations->reduce(view(b));
@@ -60,18 +62,20 @@ struct SundialsMotion::Klu {
 SundialsMotion::SundialsMotion(const ResponseProblem& problem, const std::string& method, double absolute)
     : equations(problem, method) {
   const Index n = equations.size();
+  const auto unknowns = static_cast<sunindextype>(n);  // of 64 bits on Debian 12, of 32 on Debian 13
   SUNContext created = nullptr;
-  if (SUNContext_Create(nullptr, &created) != 0) throw std::bad_alloc();
+  if (create_sundials_context(&created) != 0) throw std::bad_alloc();
   context.reset(created);
   for (Sundials<N_Vector>* vector : {&state, &absolute_tolerances, &work}) {
-    vector->reset(N_VNew_Serial(2 * n, created));
+    vector->reset(N_VNew_Serial(2 * unknowns, created));
     if (!*vector) throw std::bad_alloc();
   }
   view(state.get()) = equations.initial_state();
   view(absolute_tolerances.get()).head(n).setConstant(absolute);
   view(absolute_tolerances.get()).tail(n).setConstant(absolute / problem.grid.interval);
   const SparseMatrix& pattern = equations.effective_matrix(0.0, view(state.get()));
-  matrix.reset(SUNSparseMatrix(n, n, pattern.nonZeros(), CSC_MAT, created));
+  matrix.reset(
+      SUNSparseMatrix(unknowns, unknowns, static_cast<sunindextype>(pattern.nonZeros()), CSC_MAT, created));
   if (!matrix) throw std::bad_alloc();
   set_matrix(matrix.get(), 0.0, state.get(), this);
   solver = Klu::create(equations, matrix.get(), created);
@@ -91,12 +95,12 @@ Response SundialsMotion::follow(const ResponseProblem& problem, const std::funct
   return std::move(recorder.response());
 }
 
-int SundialsMotion::rate(realtype t, N_Vector y, N_Vector y_rate, void* data) {
+int SundialsMotion::rate(sunrealtype t, N_Vector y, N_Vector y_rate, void* data) {
   static_cast<SundialsMotion*>(data)->equations.rate(t, view(y), view(y_rate));
   return 0;
 }
 
-int SundialsMotion::set_matrix(SUNMatrix matrix, realtype gamma, N_Vector y, void* data) {
+int SundialsMotion::set_matrix(SUNMatrix matrix, sunrealtype gamma, N_Vector y, void* data) {
   const SparseMatrix& from = static_cast<SundialsMotion*>(data)->equations.effective_matrix(gamma, view(y));
   if (SUNSparseMatrix_NNZ(matrix) != from.nonZeros()) return -1;
   std::copy_n(from.outerIndexPtr(), from.cols() + 1, SUNSparseMatrix_IndexPointers(matrix));

@@ -48,8 +48,8 @@ class SundialsMotion {
   Response follow(const ResponseProblem& problem, const std::function<void(double)>& advance);
 
   /// The callbacks; `data` is this object.
-  static int rate(realtype t, N_Vector y, N_Vector y_rate, void* data);
-  static int set_matrix(SUNMatrix matrix, realtype gamma, N_Vector y, void* data);
+  static int rate(sunrealtype t, N_Vector y, N_Vector y_rate, void* data);
+  static int set_matrix(SUNMatrix matrix, sunrealtype gamma, N_Vector y, void* data);
 
  private:
   struct Klu;  // content of the linear solver

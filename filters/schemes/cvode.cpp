@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "fem/response/sundials_versions.hpp"
 #include "filters/scheme.hpp"
 #include "filters/step_input.hpp"
 
@@ -40,7 +41,7 @@ struct Motion {
   MatrixXd jacobian;
 };
 
-int right_hand_side(realtype t, N_Vector z, N_Vector z_rate, void* data) {
+int right_hand_side(sunrealtype t, N_Vector z, N_Vector z_rate, void* data) {
   auto& motion = *static_cast<Motion*>(data);
   motion.take(t, z);
   motion.model->rate(motion.state, motion.input, motion.rate);
@@ -48,7 +49,7 @@ int right_hand_side(realtype t, N_Vector z, N_Vector z_rate, void* data) {
   return 0;
 }
 
-int sensitivities(int count, realtype t, N_Vector z, N_Vector, N_Vector* s, N_Vector* s_rate, void* data,
+int sensitivities(int count, sunrealtype t, N_Vector z, N_Vector, N_Vector* s, N_Vector* s_rate, void* data,
                   N_Vector, N_Vector) {
   auto& motion = *static_cast<Motion*>(data);
   motion.take(t, z);
@@ -62,13 +63,13 @@ class Integrator {
  public:
   Integrator(Index n, double tolerance, Motion& motion) : n_(static_cast<int>(n)) {
     SUNContext context = nullptr;
-    require(SUNContext_Create(nullptr, &context), "SUNContext_Create");
+    require(fem::create_sundials_context(&context), "SUNContext_Create");
     context_.reset(context);
-    state_.reset(N_VNew_Serial(n, context));
+    state_.reset(N_VNew_Serial(n_, context));
     sensitivity_.reset(N_VCloneVectorArray(n_, state_.get()));
     memory_.reset(CVodeCreate(CV_ADAMS, context));
     view(state_.get()).setZero();
-    require(CVodeSetErrFile(memory_.get(), nullptr), "CVodeSetErrFile");  // failures are thrown, not printed
+    require(fem::silence_cvode(memory_.get(), context), "silence_cvode");
     require(CVodeInit(memory_.get(), right_hand_side, 0.0, state_.get()), "CVodeInit");
     require(CVodeSStolerances(memory_.get(), tolerance, tolerance), "CVodeSStolerances");
     require(CVodeSetUserData(memory_.get(), &motion), "CVodeSetUserData");
@@ -94,7 +95,7 @@ class Integrator {
     } else {
       require(CVodeSensToggleOff(memory_.get()), "CVodeSensToggleOff");
     }
-    realtype reached = 0.0;
+    sunrealtype reached = 0.0;
     require(CVode(memory_.get(), dt, state_.get(), &reached, CV_NORMAL), "CVode");
     next = view(state_.get());
     if (!tangent) return;

@@ -87,7 +87,7 @@ class MatReader final : public RecordReader {
  private:
   static void collect(CollectedSignals& signals) {
     const std::string& name = signals.file();
-    Mat_LogInitFunc("beamid", [](int, char*) {});
+    Mat_LogInitFunc("beamid", [](int, auto*) {});
     const std::unique_ptr<mat_t, Closing> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
     if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
     if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);

@@ -57,7 +57,7 @@ void add_sparse(const matvar_t& variable, std::vector<double>& rows, std::vector
 
 void collect_matrices(CollectedSignals& signals, const std::string& wanted) {
   const std::string& name = signals.file();
-  Mat_LogInitFunc("beamid", [](int, char*) {});
+  Mat_LogInitFunc("beamid", [](int, auto*) {});
   const std::unique_ptr<mat_t, ClosingMatrixFile> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
   if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
   if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);

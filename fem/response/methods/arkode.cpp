@@ -3,16 +3,17 @@
 #include <arkode/arkode_arkstep.h>
 
 #include "fem/response/sundials.hpp"
+#include "fem/response/sundials_versions.hpp"
 
 namespace beamid::fem {
 namespace {
 
 void require_arkode(int flag, const char* call, double time) {
-  require_success(flag, "arkode", call, time, ARKStepGetReturnFlagName);
+  require_success(flag, "arkode", call, time, ARKodeGetReturnFlagName);
 }
 
-int linear_system(realtype, N_Vector y, N_Vector, SUNMatrix matrix, SUNMatrix, booleantype,
-                  booleantype* is_current, realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
+int linear_system(sunrealtype, N_Vector y, N_Vector, SUNMatrix matrix, SUNMatrix, sunbooleantype,
+                  sunbooleantype* is_current, sunrealtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
   *is_current = SUNTRUE;
   return SundialsMotion::set_matrix(matrix, gamma, y, data);
 }
@@ -23,34 +24,31 @@ Response arkode(const ResponseProblem& problem, const ResponseOptions& options) 
   require_option("arkode", options, "order", 2.0, 5.0, "2 to 5");
   SundialsMotion motion(problem, "arkode", options.at("absolute_tolerance"));
   struct Free {
-    void operator()(void* memory) const { ARKStepFree(&memory); }
+    void operator()(void* memory) const { ARKodeFree(&memory); }
   };
   const std::unique_ptr<void, Free> memory(
       ARKStepCreate(nullptr, SundialsMotion::rate, 0.0, motion.state.get(), motion.context.get()));
   if (!memory) throw std::bad_alloc();
-  require_arkode(ARKStepSetErrFile(memory.get(), nullptr), "ARKStepSetErrFile",
-                 0.0);  // failures are thrown, not printed
-  require_arkode(ARKStepSetUserData(memory.get(), &motion), "ARKStepSetUserData", 0.0);
-  require_arkode(ARKStepSetOrder(memory.get(), static_cast<int>(options.at("order"))), "ARKStepSetOrder",
-                 0.0);
-  require_arkode(ARKStepSVtolerances(memory.get(), options.at("tolerance"), motion.absolute_tolerances.get()),
-                 "ARKStepSVtolerances", 0.0);
-  require_arkode(ARKStepSetLinearSolver(memory.get(), motion.solver.get(), motion.matrix.get()),
-                 "ARKStepSetLinearSolver", 0.0);
-  require_arkode(ARKStepSetLinSysFn(memory.get(), linear_system), "ARKStepSetLinSysFn", 0.0);
-  if (motion.equations.is_linear())
-    require_arkode(ARKStepSetLinear(memory.get(), 0), "ARKStepSetLinear", 0.0);
-  require_arkode(ARKStepSetMaxNumSteps(memory.get(), 1000000), "ARKStepSetMaxNumSteps", 0.0);
+  require_arkode(silence_arkode(memory.get(), motion.context.get()), "silence_arkode", 0.0);
+  require_arkode(ARKodeSetUserData(memory.get(), &motion), "ARKodeSetUserData", 0.0);
+  require_arkode(ARKodeSetOrder(memory.get(), static_cast<int>(options.at("order"))), "ARKodeSetOrder", 0.0);
+  require_arkode(ARKodeSVtolerances(memory.get(), options.at("tolerance"), motion.absolute_tolerances.get()),
+                 "ARKodeSVtolerances", 0.0);
+  require_arkode(ARKodeSetLinearSolver(memory.get(), motion.solver.get(), motion.matrix.get()),
+                 "ARKodeSetLinearSolver", 0.0);
+  require_arkode(ARKodeSetLinSysFn(memory.get(), linear_system), "ARKodeSetLinSysFn", 0.0);
+  if (motion.equations.is_linear()) require_arkode(ARKodeSetLinear(memory.get(), 0), "ARKodeSetLinear", 0.0);
+  require_arkode(ARKodeSetMaxNumSteps(memory.get(), 1000000), "ARKodeSetMaxNumSteps", 0.0);
   if (problem.has_inputs())  // else it could step across a short pulse
-    require_arkode(ARKStepSetMaxStep(memory.get(), problem.grid.interval), "ARKStepSetMaxStep", 0.0);
+    require_arkode(ARKodeSetMaxStep(memory.get(), problem.grid.interval), "ARKodeSetMaxStep", 0.0);
 
   return motion.follow(problem, [&](double time) {
-    realtype reached = 0.0;
+    sunrealtype reached = 0.0;
     if (problem.has_inputs())  // they have a kink there, which no step may cross
-      require_arkode(ARKStepSetStopTime(memory.get(), time), "ARKStepSetStopTime", time);
-    require_arkode(ARKStepEvolve(memory.get(), time, motion.state.get(), &reached, ARK_NORMAL),
-                   "ARKStepEvolve", time);
-    require_arkode(ARKStepGetDky(memory.get(), time, 1, motion.work.get()), "ARKStepGetDky", time);
+      require_arkode(ARKodeSetStopTime(memory.get(), time), "ARKodeSetStopTime", time);
+    require_arkode(ARKodeEvolve(memory.get(), time, motion.state.get(), &reached, ARK_NORMAL), "ARKodeEvolve",
+                   time);
+    require_arkode(ARKodeGetDky(memory.get(), time, 1, motion.work.get()), "ARKodeGetDky", time);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "fem/response/sundials.hpp"
+#include "fem/response/sundials_versions.hpp"
 
 namespace beamid::fem {
 namespace {
@@ -15,8 +16,8 @@ void require_cvode(int flag, const char* call, double time) {
   require_success(flag, "cvode", call, time, CVodeGetReturnFlagName);
 }
 
-int linear_system(realtype, N_Vector y, N_Vector, SUNMatrix matrix, booleantype, booleantype* is_current,
-                  realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
+int linear_system(sunrealtype, N_Vector y, N_Vector, SUNMatrix matrix, sunbooleantype,
+                  sunbooleantype* is_current, sunrealtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
   *is_current = SUNTRUE;
   return SundialsMotion::set_matrix(matrix, gamma, y, data);
 }
@@ -34,8 +35,7 @@ Response cvode(const ResponseProblem& problem, const ResponseOptions& options) {
   };
   const std::unique_ptr<void, Free> memory(CVodeCreate(CV_BDF, motion.context.get()));
   if (!memory) throw std::bad_alloc();
-  require_cvode(CVodeSetErrFile(memory.get(), nullptr), "CVodeSetErrFile",
-                0.0);  // failures are thrown, not printed
+  require_cvode(silence_cvode(memory.get(), motion.context.get()), "silence_cvode", 0.0);
   require_cvode(CVodeInit(memory.get(), SundialsMotion::rate, 0.0, motion.state.get()), "CVodeInit", 0.0);
   require_cvode(CVodeSetUserData(memory.get(), &motion), "CVodeSetUserData", 0.0);
   require_cvode(CVodeSVtolerances(memory.get(), std::max(share * options.at("tolerance"), 1e-14),
@@ -50,7 +50,7 @@ Response cvode(const ResponseProblem& problem, const ResponseOptions& options) {
     require_cvode(CVodeSetMaxStep(memory.get(), problem.grid.interval), "CVodeSetMaxStep", 0.0);
 
   Response response = motion.follow(problem, [&](double time) {
-    realtype reached = 0.0;
+    sunrealtype reached = 0.0;
     if (problem.has_inputs())  // they have a kink there, which neither steps nor formulas may cross
       require_cvode(CVodeSetStopTime(memory.get(), time), "CVodeSetStopTime", time);
     require_cvode(CVode(memory.get(), time, motion.state.get(), &reached, CV_NORMAL), "CVode", time);
