@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -11,7 +10,6 @@
 #include "experiments/identify/mode_residual.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/decimation.hpp"
-#include "experiments/signal/in_double.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -70,12 +68,6 @@ SpectralLines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal
 }
 
 }  // namespace
-
-double student_factor(double freedom) {
-  constexpr double point = 0.975, least = 0.1;  // freedom, where the factor is 1e12; less overflows
-  const boost::math::students_t_distribution<double, InDouble> law(std::max(least, freedom));
-  return boost::math::quantile(law, point) / quantile_95;
-}
 
 NoiseNearMode noise_near_mode(const VectorXd& signal, double interval, const ModalEstimate& modal) {
   constexpr int most_steps = 100;

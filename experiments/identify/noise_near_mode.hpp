@@ -4,12 +4,9 @@
 #include <Eigen/Core>
 
 #include "experiments/modal/dominant_mode.hpp"
+#include "experiments/signal/chi_square_limit.hpp"
 
 namespace beamid::experiments {
-
-/// 97.5 % point of Student's t over that of the normal distribution: what not knowing a noise exactly adds to
-/// a 95 % interval.
-double student_factor(double freedom);
 
 /// The noise of a signal around the frequency of a mode.
 struct NoiseNearMode {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <unsupported/Eigen/FFT>
+#include <vector>
 
 #include "experiments/signal/amplitude_spectrum.hpp"
 
@@ -24,6 +26,19 @@ double strongest_frequency(const Eigen::VectorXd& signal, double interval) {
   const double shift = curvature < 0 ? 0.5 * (left - right) / curvature : 0;
   return (static_cast<double>(peak - magnitude.begin()) + (std::isfinite(shift) ? shift : 0)) /
          (static_cast<double>(length) * interval);
+}
+
+Eigen::MatrixXcd spectrum_lines(const Eigen::MatrixXd& signals, Eigen::Index samples, Eigen::Index lines) {
+  Eigen::MatrixXcd found(signals.rows(), lines);
+  Eigen::FFT<double> transform;
+  std::vector<std::complex<double>> spectrum;
+  for (Eigen::Index i = 0; i < signals.rows(); ++i) {
+    const Eigen::VectorXd signal = signals.row(i).head(samples).transpose();
+    transform.fwd(spectrum, std::vector<double>(signal.begin(), signal.end()));
+    for (Eigen::Index k = 0; k < lines; ++k)
+      found(i, k) = spectrum[static_cast<std::size_t>(k + 1)] / std::sqrt(static_cast<double>(samples));
+  }
+  return found;
 }
 
 }  // namespace beamid::experiments

@@ -13,4 +13,8 @@ namespace beamid::experiments {
 /// @throws std::invalid_argument when the signal has fewer than 16 samples or does not vary.
 double strongest_frequency(const Eigen::VectorXd& signal, double interval);
 
+/// Discrete Fourier transforms of the first N samples of every row, divided by sqrt(N), at the lines 1, 2,
+/// ..., L (p x L): white noise of deviation sigma has E |X|^2 = sigma^2 at every line.
+Eigen::MatrixXcd spectrum_lines(const Eigen::MatrixXd& signals, Eigen::Index samples, Eigen::Index lines);
+
 }  // namespace beamid::experiments

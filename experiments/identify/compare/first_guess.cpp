@@ -83,14 +83,21 @@ namespace {
 // Of a driven record, by all of its lines; absent where they leave more than a model that fits would.
 std::optional<FirstGuess> guess_by_lines(const JointModel& model, const filters::Measurements& record,
                                          const FirstGuess& own) {
-  constexpr double lost = 0.6;  // of the lines
+  constexpr double lost = 0.6;              // of the lines
+  if (model.motion_size() == 1) return {};  // whose own beginning leads as far
   auto problem = driven_problem(model, record, {own.mean(model.unknown_places), own.unknowns, {}});
   if (!problem) return {};
   const auto fit = fit_driven(*problem);
   if (!fit || fit->left_share > lost) return {};
   FirstGuess found = own;
   found.mean(model.unknown_places) = fit->theta;
-  found.unknowns = guess_covariance(own.unknowns, fit->covariance(problem->prior));
+  // What a line takes an input for between its samples is not quite what a filter does: a tenth of what was
+  // known beforehand, at least, is open to the filter.
+  constexpr double open = 0.1;
+  const VectorXd narrow =
+                     guess_covariance(own.unknowns, fit->covariance(problem->prior)).diagonal().cwiseSqrt(),
+                 known = own.unknowns.diagonal().cwiseSqrt();
+  found.unknowns = narrow.cwiseMax(open * known).cwiseMin(known).cwiseAbs2().asDiagonal();
   found.by_lines = true;
   return found;
 }
@@ -98,10 +105,11 @@ std::optional<FirstGuess> guess_by_lines(const JointModel& model, const filters:
 }  // namespace
 
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
-                       const filters::Measurements& record, double frequency_hz) {
+                       const filters::Measurements& record, double frequency_hz, bool may_use_lines) {
   const double dt = record.interval();
   const FirstGuess own = own_guess(model, observations, record.outputs);
-  if (const auto driven = guess_by_lines(model, record, own)) return *driven;
+  if (may_use_lines)
+    if (const auto driven = guess_by_lines(model, record, own)) return *driven;
   LowModeGuess found{own, 0.0};
   int levels = 0;
   const auto take = [&](const LowRecord& level) {

@@ -31,11 +31,15 @@ constexpr Eigen::Index longest_guess = 1024;  ///< samples at the full rate, whi
 /// level leaves more than 15 % of the record's beginning, that beginning is asked alone: a few periods of the
 /// fastest mode under a known force, then twice as many.
 ///
+/// Of a driven record without gaps all lines of its spectrum say it at once (driven_fit.hpp).
+///
 /// @param frequency_hz of the first mode, as the record shows it
+/// @param may_use_lines not where a mesh, in which every error of a start makes fast modes move, is started
+/// so
 /// @returns the guesses and their own deviations where the record is too short for it, or no motion of the
 /// model is near it.
 FirstGuess first_guess(const JointModel& model, const std::vector<Observation>& observations,
-                       const filters::Measurements& record, double frequency_hz);
+                       const filters::Measurements& record, double frequency_hz, bool may_use_lines = true);
 
 /// Of a guess (q x q) found within `prior`: 30 times the deviations found, and what was known before.
 Eigen::MatrixXd guess_covariance(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& found);

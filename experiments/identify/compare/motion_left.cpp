@@ -71,7 +71,8 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
     run.warnings.insert(
         run.warnings.begin(),
         fmt::format("The model explains {:.0f} % of the motion; the rest is not noise. Intervals "
-                    "hold the scatter over the record.",
+                    "hold the scatter over the record. A mass, a place or a gain "
+                    "described wrongly leaves motion, too, and moves estimates by more.",
                     100.0 * (1.0 - run.sections->left_share)));
     return;
   }

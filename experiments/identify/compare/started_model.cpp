@@ -70,7 +70,7 @@ StartedModel started_model(JointModel first, const Choice& model, const ModelSet
   truncated.reduction = reduction::reduction_registry().make(
       "modal_truncation", {{"modes", static_cast<double>(mesh ? modes : most_started_coordinates)}});
   const JointModel small = made(truncated);
-  const FirstGuess found = first_guess(small, setting.observations, record, frequency_hz);
+  const FirstGuess found = first_guess(small, setting.observations, record, frequency_hz, !mesh);
   if (mesh) {
     ModelSetting nearer = setting;
     nearer.parameters = choices_at(small, found.mean);

@@ -375,8 +375,10 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
   constexpr int first_steps = 12;
   constexpr std::size_t most_valleys = 4;
   constexpr int draws = 6;
-  constexpr double usual_left = 0.3, least_left = 1e-6;  // of what was read
-  constexpr double draw_spread = 0.15;                   // of deviations known beforehand
+  constexpr double usual_left = 0.3, least_left = 1e-6;    // of what was read
+  constexpr double draw_spread = 0.15, wide_spread = 0.4;  // of deviations known beforehand
+  constexpr double much_left = 0.3;                        // of the motion: a wrong valley
+  constexpr int more_draws = 18;
   const Index q = problem.prior.mean.size();
   const VectorXd size = sizes(problem.parts);
   problem.weights = (usual_left * size).cwiseInverse();
@@ -392,10 +394,14 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
   for (std::size_t i = 0; i < std::min(starts.size(), most_valleys); ++i) descend(starts[i], first_steps);
   if (!best) return best;
   const VectorXd middle = best->theta, known = problem.prior.covariance.diagonal().cwiseSqrt();
-  for (int i = 0; i < draws; ++i)
-    descend(well_damped(*problem.model, middle + draw_spread * known.cwiseProduct(standard_normal(
-                                                                   q, 1, static_cast<std::uint64_t>(i)))),
-            first_steps);
+  const auto draw_about = [&](int first, int count, double spread) {
+    for (int i = first; i < first + count; ++i)
+      descend(well_damped(*problem.model, middle + spread * known.cwiseProduct(standard_normal(
+                                                                q, 1, static_cast<std::uint64_t>(i)))),
+              first_steps);
+  };
+  draw_about(0, draws, draw_spread);
+  if (best->left_share > much_left) draw_about(draws, more_draws, wide_spread);
   for (int i = 0; i < 2; ++i) {
     problem.weights = best->left.cwiseMax(least_left * size).cwiseInverse();
     const VectorXd start = best->theta;

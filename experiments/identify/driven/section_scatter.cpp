@@ -57,7 +57,8 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
       squares += own.diagonal().cwiseAbs2();
     }
     found.size /= std::max(1e-300, std::sqrt(found.size.squaredNorm() / static_cast<double>(sections)));
-    found.covariance = spread * (static_cast<double>(sections) / static_cast<double>(sections - 1));
+    found.covariance =
+        spread * (static_cast<double>(sections) / static_cast<double>(std::max<Index>(1, sections - q)));
     found.freedom = (weights.cwiseAbs2().cwiseQuotient(squares.cwiseMax(1e-300)).array() - 1.0).cwiseMax(1.0);
     if (!found.covariance.allFinite()) return {};
     return found;

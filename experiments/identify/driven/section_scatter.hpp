@@ -13,9 +13,10 @@ namespace beamid::experiments {
 /// counts what the model lacks, too: with s_i = J_i^T r_i of section i at the estimate, and I the sum of the
 /// sections' J_i^T J_i and of what is known beforehand,
 ///
-///     V = S / (S - 1) I^-1 [sum_i (s_i - s)(s_i - s)^T] I^-1,    s the mean of the s_i
+///     V = S / (S - q) I^-1 [sum_i (s_i - s)(s_i - s)^T] I^-1,    s the mean of the s_i
 ///
-/// the covariance that holds whatever the errors within a section are [liang1986].
+/// the covariance that holds whatever the errors within a section are [liang1986], S / (S - q) for what q
+/// unknowns take out of the scores.
 struct SectionScatter {
   Eigen::Index sections = 0;      ///< S
   double periods = 0.0;           ///< of the lowest mode in each

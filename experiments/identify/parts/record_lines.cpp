@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <unsupported/Eigen/FFT>
 #include <vector>
 
 #include "experiments/signal/fast_length.hpp"
+#include "experiments/signal/spectrum.hpp"
 #include "filters/linear_gaussian.hpp"
 
 namespace beamid::experiments {
@@ -20,19 +20,6 @@ using std::numbers::pi;
 
 constexpr double usual_band = 0.6;  // of half the sampling rate
 constexpr Index fewest_lined_samples = 64, fewest_used_lines = 8;
-
-MatrixXcd spectrum_lines(const MatrixXd& signals, Index samples, Index lines) {
-  MatrixXcd found(signals.rows(), lines);
-  Eigen::FFT<double> transform;
-  std::vector<Complex> spectrum;
-  for (Index i = 0; i < signals.rows(); ++i) {
-    const VectorXd signal = signals.row(i).head(samples).transpose();
-    transform.fwd(spectrum, std::vector<double>(signal.begin(), signal.end()));
-    for (Index k = 0; k < lines; ++k)
-      found(i, k) = spectrum[static_cast<std::size_t>(k + 1)] / std::sqrt(static_cast<double>(samples));
-  }
-  return found;
-}
 
 Complex sum_of_powers(Complex pole, double omega, const RecordLines& record) {
   const double dt = record.interval;

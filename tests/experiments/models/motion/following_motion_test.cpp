@@ -30,6 +30,7 @@ ModelSetting setting() {
                        test::parameter("mass_damping"), test::parameter("stiffness_damping")};
   result.parameters[4].guess = 0.1;
   result.parameters[5].guess = 1e-6;
+  for (ParameterChoice& choice : result.parameters) choice.form = Form::linear;
   for (std::size_t j : {4u, 5u}) result.parameters[j].deviation = *result.parameters[j].guess;
   return result;
 }

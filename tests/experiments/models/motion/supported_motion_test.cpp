@@ -46,6 +46,7 @@ std::vector<ParameterChoice> storeys() {
     asked.push_back({"storey_stiffness", "", std::pair{top - 1.0, top}});
     asked.push_back({"storey_damping", "", std::pair{top - 1.0, top}});
   }
+  for (ParameterChoice& choice : asked) choice.form = Form::linear;
   return asked;
 }
 
