@@ -45,7 +45,8 @@ std::vector<Request> requests_of(const Values& values) {
   for (std::size_t k = 0; k < configs.size(); ++k) {
     Request request{configs[k], read_experiment(configs[k]), {}};
     require_linear_storeys(request.experiment, "check");
-    request.records = require_record_files(values, request.config, request.experiment.record_file);
+    request.records = require_record_files(values, request.config, request.experiment.record_file,
+                                           request.experiment.format);
     if (configs.size() > 1 && !records.empty()) request.records = {request.records[k]};
     requests.push_back(std::move(request));
   }

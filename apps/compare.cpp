@@ -66,7 +66,8 @@ int run_compare(const Values& values) {
   complete_compare(values, source.experiment);
   const fs::path folder = source.config.parent_path();
   std::vector<fs::path> file;
-  if (!values.has("truth")) file = record_files(values, source.config, source.experiment.record_file);
+  if (!values.has("truth"))
+    file = record_files(values, source.config, source.experiment.record_file, source.experiment.format);
   return deliver(values, [&] {
     return blame_config(source, [&] {
       const Progress progress = show_progress(values);

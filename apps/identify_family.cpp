@@ -31,8 +31,8 @@ Results identify_family(const Values& values, const std::vector<fs::path>& confi
     FamilyMember member{
         configs[k].filename().string(), read_experiment(configs[k]), configs[k].parent_path(), {}, {}};
     require_linear_storeys(member.experiment, "a family of beams");
-    const fs::path file =
-        require_record_files(values, configs[k], member.experiment.record_file)[records.empty() ? 0 : k];
+    const fs::path file = require_record_files(values, configs[k], member.experiment.record_file,
+                                               member.experiment.format)[records.empty() ? 0 : k];
     member.record_name = file.filename().string();
     member.record = prepared_record(file, member.experiment.format);
     members.push_back(std::move(member));

@@ -80,7 +80,8 @@ std::string damping_law(const Values& values) {
 std::vector<IdentifyRequest> identify_requests(const Values& values, const fs::path& config) {
   Experiment experiment = read_experiment(config);
   take_words(values, experiment);
-  const std::vector<fs::path> files = require_record_files(values, config, experiment.record_file);
+  const std::vector<fs::path> files =
+      require_record_files(values, config, experiment.record_file, experiment.format);
   std::vector<IdentifyRequest> requests;
   for (std::size_t r = 0; r < files.size(); ++r) {
     IdentifyRequest one{files[r], experiment, {}, {}};

@@ -11,8 +11,9 @@ using namespace experiments;
 
 int run_prepare(const Values& values) {
   const std::filesystem::path config = values.text("config");
-  const Experiment experiment = read_experiment(config);
-  const std::filesystem::path file = require_record_files(values, config, experiment.record_file)[0];
+  Experiment experiment = read_experiment(config);
+  const std::filesystem::path file =
+      require_record_files(values, config, experiment.record_file, experiment.format)[0];
   if (experiment.format.preparation.empty())
     throw InputError({config.string()}, "no step; expected at least one table [[record.prepare]]");
   return deliver(values, [&] {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
@@ -153,9 +154,20 @@ OptionGroup record_options() {
 }
 
 std::vector<fs::path> record_files(const Values& values, const fs::path& config,
-                                   const std::optional<std::string>& named) {
+                                   const std::optional<std::string>& named, RecordFormat& format) {
   std::vector<fs::path> files;
   for (const std::string& word : values.texts("record")) files.push_back(record_file(word));
+  std::size_t parts = format.files.size();
+  for (const ColumnDescription& channel : format.channels)
+    parts = std::max(parts, static_cast<std::size_t>(channel.file));
+  if (parts > 1 && (!files.empty() || format.files.empty())) {
+    if (files.size() != parts)
+      throw UsageError(fmt::format("{} RECORDs; expected {}, the files that the channels of {} come from",
+                                   files.size(), parts, config.string()));
+    format.files.clear();
+    for (const fs::path& file : files) format.files.push_back(file.string());
+    files.resize(1);
+  }
   if (!files.empty() || !named) return files;
   files.push_back(config.parent_path() / *named);
   if (!fs::exists(files[0])) {
@@ -167,8 +179,8 @@ std::vector<fs::path> record_files(const Values& values, const fs::path& config,
 }
 
 std::vector<fs::path> require_record_files(const Values& values, const fs::path& config,
-                                           const std::optional<std::string>& named) {
-  std::vector<fs::path> files = record_files(values, config, named);
+                                           const std::optional<std::string>& named, RecordFormat& format) {
+  std::vector<fs::path> files = record_files(values, config, named, format);
   if (files.empty() && config.empty()) throw UsageError("which RECORD?");
   if (files.empty())
     throw UsageError("no RECORD on the command line, and no 'file' under [record] in " + config.string());
@@ -187,7 +199,8 @@ std::vector<RecordRequest> record_requests(const Values& values) {
   }
   take_words(values, format);
   std::vector<RecordRequest> requests;
-  for (const fs::path& file : require_record_files(values, config, named)) requests.push_back({file, format});
+  for (const fs::path& file : require_record_files(values, config, named, format))
+    requests.push_back({file, format});
   return requests;
 }
 

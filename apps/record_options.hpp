@@ -17,14 +17,17 @@ Argument record_argument(bool several = false);
 OptionGroup record_options();
 
 /// The RECORDs of the command line, or else the `file` under [record] of the experiment file, if it names
-/// one. Standard input, "-", is copied to a file that is removed when the program ends.
+/// one. Standard input, "-", is copied to a file that is removed when the program ends. Where channels come
+/// from several files, all RECORDs are those of one record: the first is returned, `format` has them all.
 std::vector<std::filesystem::path> record_files(const Values& values, const std::filesystem::path& config,
-                                                const std::optional<std::string>& named);
+                                                const std::optional<std::string>& named,
+                                                experiments::RecordFormat& format);
 
 /// The same where there must be one. @throws UsageError
 std::vector<std::filesystem::path> require_record_files(const Values& values,
                                                         const std::filesystem::path& config,
-                                                        const std::optional<std::string>& named);
+                                                        const std::optional<std::string>& named,
+                                                        experiments::RecordFormat& format);
 
 /// A record's file and how to read it.
 struct RecordRequest {

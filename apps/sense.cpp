@@ -59,7 +59,7 @@ int run_sense(const Values& values) {
   std::optional<Choice> filter;
   if (!values.text("filter").empty())
     filter = parse_choice(values.text("filter"), "--filter", filters::filter_registry());
-  const std::vector<fs::path> file = record_files(values, config, experiment.record_file);
+  const std::vector<fs::path> file = record_files(values, config, experiment.record_file, experiment.format);
   return deliver(values, [&] {
     const Progress progress = show_progress(values);
     const Place place{config.string()};

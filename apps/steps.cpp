@@ -59,7 +59,8 @@ IdentificationRequest steps_request(const Values& values, const fs::path& config
     experiment.format.window = window;
     experiment.format.window_place = {"--window"};
   }
-  const fs::path file = require_record_files(values, config, experiment.record_file).front();
+  const fs::path file =
+      require_record_files(values, config, experiment.record_file, experiment.format).front();
   IdentificationRequest one{file, std::move(experiment), {}, {}};
   one.prepared = read_and_prepare(one.file, one.experiment.format);
   try {

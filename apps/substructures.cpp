@@ -18,13 +18,13 @@ using namespace experiments;
 int run_substructures(const Values& values) {
   const fs::path config = values.text("config");
   if (config.empty()) throw UsageError("--config FILE is missing");
-  const Experiment experiment = read_experiment(config);
+  Experiment experiment = read_experiment(config);
   require_linear_storeys(experiment, "substructures");
   if (experiment.parts.empty())
     throw InputError({config.string()}, "no [[substructures]]; expected the parts to be identified");
   if (experiment.parameters.empty())
     throw InputError({config.string()}, "no [[parameters]]; expected what is asked of the parts");
-  const std::vector<fs::path> file = record_files(values, config, experiment.record_file);
+  const std::vector<fs::path> file = record_files(values, config, experiment.record_file, experiment.format);
   return deliver(values, [&] {
     const Progress progress = show_progress(values);
     ComparedRecord record;

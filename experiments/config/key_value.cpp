@@ -25,7 +25,9 @@ KeyValue number_value(const TomlTable& table, const Key& key, double length) {
   if (!value) return {};
   if (key.range.on_beam && std::isnan(length)) return *value;
   Range range = key.range;
+  constexpr double rounding = 1e-12;  // heights that add up to 0.9 make 0.8999999999999999
   if (range.on_beam) range.most = length;
+  if (range.on_beam && *value > length && *value <= length * (1.0 + rounding)) return length;
   if (!range.contains(*value)) table.refuse(key.name, key.expected(length));
   return *value;
 }

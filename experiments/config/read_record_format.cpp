@@ -30,6 +30,11 @@ const Schema<DescribedRecord>& record_keys() {
       Schema<R>("record")
           .key("file", &R::file, "the record, relative to this file; a command may name another",
                "\"massa1_test1-1.txt\"")
+          .key("files", &R::files,
+               "in place of `file`: several files of one record, joined by their stamps; a channel names its "
+               "own "
+               "by `file`. As many words RECORD on the command line take their place",
+               "[\"ground.csv\", \"floor_1.csv\"]")
           .key("reader", &R::reader, "a name from `beamid list readers`", "\"lvm\"")
           .fallback("what the file shows to be")
           .choice(
@@ -100,6 +105,7 @@ struct DescribedColumn {
   std::string quantity, unit, place;
   std::optional<double> position, distance;
   double noise = 0.0;
+  int file = 1;
 };
 
 std::string quoted_symbols(const std::vector<Unit>& known, const char* separator) {
@@ -135,6 +141,7 @@ Schema<DescribedColumn> make_channel_keys() {
       .other("column", Key::Type::column, "the column's number, or its name in the header", "3",
              {1, most_columns})
       .required()
+      .key("file", &C::file, {1, most_columns}, "which of `files` has it, from 1", "2")
       .key("unit", &C::unit, "unit of its numbers", "\"g\"")
       .fallback("-")
       .values(all.c_str())
@@ -201,6 +208,7 @@ ColumnDescription read_channel(const TomlTable& table, const fem::Structure* str
   channel.distance = given.distance.value_or(0.0);
   channel.place = given.place;
   channel.noise = given.noise;
+  channel.file = given.file;
   if (structure != nullptr) {
     channel.place = read_place(table, *structure, false);
     check_gauge_position(table, *structure, channel.quantity);
@@ -213,6 +221,12 @@ DescribedRecord read_described(const TomlTable& table, const fem::Structure* str
   check_values(table, "record");
   DescribedRecord record = record_keys().read(table);
   if (record.file && record.file->empty()) table.refuse("file", "the name of a file");
+  if (record.file && !record.files.empty()) table.refuse("files", "either file or files");
+  if (!record.files.empty()) {
+    const std::filesystem::path folder = std::filesystem::path(table.value_place("files").file).parent_path();
+    record.file = record.files.front();
+    for (std::string& file : record.files) file = (folder / file).string();
+  }
   if (!record.reader.empty())
     at_place(table.value_place("reader"), [&] { record_reader_registry().find(record.reader); });
   if (record.window) record.window_place = table.value_place("window_s");
@@ -220,8 +234,11 @@ DescribedRecord read_described(const TomlTable& table, const fem::Structure* str
     record.time = read_column(*time);
     record.time->factor = factor_of(*time, "time", time_units());
   }
-  for (const TomlTable& channel : table.find_tables("channels"))
+  for (const TomlTable& channel : table.find_tables("channels")) {
     record.channels.push_back(read_channel(channel, structure));
+    if (!record.files.empty() && record.channels.back().file > static_cast<int>(record.files.size()))
+      channel.refuse("file", "one of the " + std::to_string(record.files.size()) + " files");
+  }
   record.preparation = read_preparation(table);
   return record;
 }

@@ -6,12 +6,14 @@
 #include <limits>
 #include <utility>
 
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {
 
+constexpr std::size_t most_metadata_lines = 1000;
 constexpr const char* rows_expected = "; expected rows of numbers in columns";
 
 /// One of the two decimal signs makes all fields numbers.
@@ -26,7 +28,7 @@ DelimitedText::DelimitedText(std::string file, std::string_view text, char separ
     : file_(std::move(file)), rest_(text), separator_(separator), decimal_(decimal), tolerant_(tolerant) {
   if (tolerant_ && header_lines == 0)
     find_rows();
-  else
+  else if (header_lines > 0 || !find_behind_metadata())
     find_header(header_lines);
   first_row_pending_ = true;
 }
@@ -46,28 +48,52 @@ void DelimitedText::find_header(int header_lines) {
   if (header_lines == 0 && !holds()) {
     header = line_, header_line_ = line_number_, comment_ = {};
     if (!next_row()) throw InputError({file_, 0, 0}, missing);
-    if (!holds())
-      throw InputError(
-          row_place(),
-          "a second row without numbers; expected one header line at most, or record.header_lines "
-          "in the configuration");
+    if (!holds()) {
+      const std::vector<std::string_view> units = fields_;
+      const std::string_view names = header, line_before = line_;
+      const std::size_t line_before_number = line_number_;
+      split_fields(names, separator_ == '\0' ? separator_of(names) : separator_, fields_);
+      if (fields_.size() != units.size() || !next_row() || !holds())
+        throw InputError(row_place(),
+                         "a second row without numbers; expected names and units of the columns at most, or "
+                         "record.header_lines in the configuration");
+      if (names_columns(units))  // the first row was a title of as many fields
+        header = line_before, header_line_ = line_before_number;
+      else
+        for (const std::string_view unit : units) units_.emplace_back(unquoted(unit));
+    }
   }
   if (header.empty()) header = comment_, header_line_ = comment_line_;
   choose_separator();
   if (!header.empty()) name_columns(header, header_line_);
 }
 
-void DelimitedText::find_rows() {
-  struct Line {
-    std::string_view text;
-    std::size_t number, width;
-    bool rows;  ///< numbers throughout, or, failing that, somewhere
-  };
+bool DelimitedText::find_behind_metadata() {
+  DelimitedText found(*this);
+  try {
+    found.find_rows(most_metadata_lines);
+  } catch (const InputError&) {  // no rows, or none so early
+    return false;
+  }
+  const std::size_t header = (found.names_.empty() ? 0 : 1) + (found.units_.empty() ? 0 : 1);
+  if (found.before_.size() < 2 || found.before_.size() == header) return false;
+  for (const EarlyLine& line : found.before_) {
+    if (found.header_line_ > 0 && line.number > found.header_line_ + (found.units_.empty() ? 0 : 1))
+      return false;
+    if (line.width == found.width_ && line.rows) return false;  // of numbers: refused as such
+  }
+  found.skipped_.clear();
+  *this = std::move(found);
+  return true;
+}
+
+void DelimitedText::find_rows(std::size_t most_lines) {
+  using Line = EarlyLine;
   const std::string_view whole = rest_;
   for (const bool strict : {true, false}) {
     rest_ = whole, line_number_ = 0;
     std::vector<Line> before;
-    while (next_row()) {
+    while (before.size() < most_lines && next_row()) {
       split_fields(line_, separator_ == '\0' ? separator_of(line_) : separator_, fields_);
       const bool row = strict ? numbers_throughout(fields_) : holds_number(fields_);
       before.push_back({line_, line_number_, fields_.size(), row});
@@ -81,6 +107,7 @@ void DelimitedText::find_rows() {
       rest_.remove_prefix(std::min(rest_.size(), std::size_t{rest_.starts_with("\r\n") ? 2u : 1u}));
       choose_separator();
       before.resize(before.size() - 2);
+      before_ = before;
       const auto names_width = [&](const Line& line) {
         split_fields(line.text, separator_, fields_);
         return fields_.size() == width_ && !holds_number(fields_) && !holds_number(fields_, ',');
@@ -91,7 +118,11 @@ void DelimitedText::find_rows() {
       }
       if (before.empty())
         skipped_.clear();  // no names: what stands before the rows is a header of another kind
-      if (before.size() > 1 && names_width(before[before.size() - 2])) {
+      const auto named = [&](const Line& line) {
+        split_fields(line.text, separator_, fields_);
+        return names_columns(fields_);
+      };
+      if (before.size() > 1 && names_width(before[before.size() - 2]) && !named(before.back())) {
         split_fields(before.back().text, separator_, fields_);
         for (const std::string_view field : fields_) units_.emplace_back(unquoted(field));
         before.pop_back();

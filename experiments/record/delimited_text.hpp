@@ -13,8 +13,12 @@ namespace beamid::experiments {
 ///
 /// Blank lines and comment lines (# or % first) are passed over, lines end with LF, CRLF or CR. The names of
 /// the columns come from the last non-blank of the header lines, or, without header lines, from a first row
-/// in which nothing is a number, or else from the comment just before the first row where it names as many
-/// columns. Cells at the end of a row that hold nothing count where the row has its separators.
+/// in which nothing is a number, a second such row being their units, or else from the comment just before
+/// the first row where it names as many columns. Cells at the end of a row that hold nothing count where the
+/// row has its separators.
+///
+/// Lines of words in front of the names, of whatever number, are passed over where the names stand just
+/// before the first two rows of equal length.
 ///
 /// A tolerant walk begins at the first two rows in succession that are numbers throughout and equally long.
 /// The lines before them that hold as many fields and no number name the columns and then their units; rows
@@ -34,7 +38,7 @@ class DelimitedText {
   const std::vector<std::string>& names() const {
     return names_;
   }  ///< of the columns; empty when they have none
-  const std::vector<std::string>& units() const { return units_; }  ///< likewise; of a tolerant walk only
+  const std::vector<std::string>& units() const { return units_; }  ///< likewise
   char separator() const { return separator_; }
   char decimal() const { return decimal_; }
   const std::vector<std::size_t>& skipped_lines() const { return skipped_; }  ///< of a tolerant walk
@@ -57,12 +61,19 @@ class DelimitedText {
   double number(std::size_t column) const;
 
  private:
+  struct EarlyLine {
+    std::string_view text;
+    std::size_t number, width;
+    bool rows;  ///< numbers throughout, or, failing that, somewhere
+  };
+
   bool next_line();                    ///< of any kind
   bool next_row();                     ///< passes over blank lines and comments, remembering the last comment
   void find_header(int header_lines);  ///< and the first row after it
-  void find_rows();                    ///< the same of a tolerant walk
-  void choose_separator();             ///< and the decimal sign, by the first rows
-  void split_row();                    ///< of this line, with cells at its end that hold nothing
+  void find_rows(std::size_t most_lines = ~std::size_t{0});  ///< the same of a tolerant walk
+  bool find_behind_metadata();  ///< the same behind lines of words; false: it has none, or no rows
+  void choose_separator();      ///< and the decimal sign, by the first rows
+  void split_row();             ///< of this line, with cells at its end that hold nothing
   void name_columns(std::string_view header, std::size_t line);
 
   std::string file_;
@@ -71,6 +82,7 @@ class DelimitedText {
   char separator_, decimal_;
   bool tolerant_;
   std::vector<std::size_t> skipped_;
+  std::vector<EarlyLine> before_;  ///< what stands before the first row
   bool first_row_pending_ = false;
   std::vector<std::string_view> fields_;
   std::vector<std::string> names_, units_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/record/joined_record.hpp"
 #include "experiments/record/record_columns.hpp"
 #include "experiments/record/record_places.hpp"
 #include "experiments/record/record_reader.hpp"
@@ -169,6 +170,10 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
 }  // namespace
 
 Record read_record(const std::filesystem::path& file, const RecordFormat& format) {
+  if (format.files.size() > 1) {
+    const Record joined = joined_record(format);
+    return format.window ? cut(joined, format, file.string()) : joined;
+  }
   RecordTable table = read_table(file, format);
   const RecordColumns columns = find_columns(table, format);
   std::vector<Used> used;

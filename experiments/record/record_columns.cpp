@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/text/spelling.hpp"
 
@@ -56,22 +57,147 @@ RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
   return column;
 }
 
+// Whole numbers one after the other: the samples counted.
+bool counts_samples(const std::vector<double>& values) {
+  if (values.size() < 2 || (values[0] != 0.0 && values[0] != 1.0)) return false;
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (values[k] != values[k - 1] + 1.0) return false;
+  return true;
+}
+
+bool rises(const std::vector<double>& values) {
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (!(values[k] > values[k - 1])) return false;
+  return values.size() > 1;
+}
+
+// Stamps of a computer's clock: seconds, milliseconds, microseconds or nanoseconds since 1970, by their size.
+double seconds_of_epoch(double first) {
+  for (const double unit : {1e-9, 1e-6, 1e-3})
+    if (first * unit > 3e8 && first * unit < 4e9) return unit;
+  return 1.0;
+}
+
+// Of columns whose names are not this project's own, what was recognised.
+class Recognition {
+ public:
+  // @returns whether the column means something, if only that it is no channel
+  bool take(RecordTable& table, std::size_t index, RecordColumns& columns) {
+    const std::string& name = table.names[index];
+    const auto found = recognise_column(name, index < table.units.size() ? table.units[index] : "");
+    if (!found) return false;
+    const auto add = [&](std::string& list) { list += (list.empty() ? "'" : ", '") + name + "'"; };
+    switch (found->kind) {
+      case RecognisedColumn::Kind::count:
+        if (!counted_) counted_ = index;
+        break;
+      case RecognisedColumn::Kind::other:
+        add(other_);
+        break;
+      case RecognisedColumn::Kind::time:
+        if (columns.time || table.time) {
+          add(other_);
+        } else if (!found->states_unit && counts_samples(table.columns[index])) {
+          counted_ = index;
+        } else {
+          const double epoch = found->states_unit ? 1.0 : seconds_of_epoch(table.columns[index].front());
+          columns.time = RecordColumn{index, found->factor * epoch, {}};
+          read_ += fmt::format("{}'{}' as time in {}", read_.empty() ? "" : ", ", name,
+                               unit_of_time(found->factor * epoch));
+        }
+        break;
+      case RecognisedColumn::Kind::signal: {
+        columns.channels.push_back({index, found->factor, {found->quantity, name}});
+        const bool as_it_is = !found->states_unit;
+        read_ += fmt::format("{}'{}' as {}{}", read_.empty() ? "" : ", ", name, to_string(found->quantity),
+                             as_it_is ? ", its unit taken for " + std::string(si_unit(found->quantity)) : "");
+      }
+    }
+    return true;
+  }
+
+  // Stamps alone, where channels are stated.
+  void take_time(RecordTable& table, RecordColumns& columns) {
+    for (std::size_t index = 0; index < std::min(table.names.size(), table.width()); ++index) {
+      const auto found =
+          recognise_column(table.names[index], index < table.units.size() ? table.units[index] : "");
+      if (found &&
+          (found->kind == RecognisedColumn::Kind::time || found->kind == RecognisedColumn::Kind::count))
+        take(table, index, columns);
+    }
+    other_.clear();
+    report(table, columns);
+  }
+
+  // Says it in one line, and asks the one question that is left.
+  void report(RecordTable& table, RecordColumns& columns) const {
+    if (!read_.empty()) table.remarks.push_back("Read: " + read_ + ".");
+    if (!other_.empty()) table.remarks.push_back("No channels of motion, left out: " + other_ + ".");
+    if (!columns.time && !table.time) columns.counted = counted_;
+    drop_first_zeros(table, columns);
+  }
+
+ private:
+  std::string read_, other_;
+  std::optional<std::size_t> counted_;
+
+  static std::string unit_of_time(double factor) {
+    return factor == 1.0    ? "s"
+           : factor == 1e-3 ? "ms"
+           : factor == 1e-6 ? "us"
+                            : fmt::format("{:g} s", factor);
+  }
+
+  // A logger's first sample, before its sensor has answered.
+  static void drop_first_zeros(RecordTable& table, const RecordColumns& columns) {
+    constexpr std::size_t enough = 16;
+    if (columns.channels.empty() || table.rows() < enough) return;
+    for (const RecordColumn& column : columns.channels)
+      if (table.columns[column.index][0] != 0.0 || table.columns[column.index][1] == 0.0) return;
+    if (columns.channels.size() < 2 && table.width() < 3) return;
+    std::vector<bool> kept(table.rows(), true);
+    kept[0] = false;
+    table.keep(kept);
+    table.remarks.emplace_back("The first sample, zero in every channel, is left out.");
+  }
+};
+
+// The first column that rises is time, the rest are signals.
+RecordColumns columns_without_header(RecordTable& table) {
+  RecordColumns columns;
+  std::size_t first = 0;
+  if (table.width() > 1 && (table.time || rises(table.columns[0]))) {
+    first = 1;
+    if (!table.time && counts_samples(table.columns[0]))
+      columns.counted = 0;
+    else if (!table.time)
+      columns.time = RecordColumn{0, seconds_of_epoch(table.columns[0].front()), {}};
+  }
+  for (std::size_t index = first; index < table.width(); ++index)
+    columns.channels.push_back({index, 1.0, {Quantity::acceleration, fmt::format("column_{}", index + 1)}});
+  table.remarks.push_back(fmt::format(
+      "No header: {}{} taken for acceleration in m/s2. Frequency and damping ratio do not depend on it.",
+      columns.time ? "column 1 is taken for time in s, " : "",
+      columns.channels.size() == 1 ? fmt::format("column {} is", first + 1)
+                                   : fmt::format("columns {} to {} are", first + 1, table.width())));
+  return columns;
+}
+
 RecordColumns columns_of_header(RecordTable& table) {
   RecordColumns columns;
   const Place header{table.file, table.header_line, 0};
-  if (table.names.empty())
-    throw InputError({table.file},
-                     fmt::format("no header; expected one that names every column with its unit ({}), or {}",
-                                 known_column_names(), in_configuration));
+  if (table.names.empty() && table.by_people) return columns_without_header(table);
   if (table.names.size() != table.width())
     throw InputError(header,
                      fmt::format("a header of {} names for {}; expected one each, with its unit ({}), or {}",
                                  table.names.size(), count_of_columns(table.width()), known_column_names(),
                                  in_configuration));
   std::string unknown;
+  Recognition recognition;
   for (std::size_t index = 0; index < table.width(); ++index) {
     if (table.time == index) continue;
     const auto meaning = stated_meaning(table, index);
+    if (!meaning && table.by_people && recognition.take(table, index, columns)) continue;
     if (!meaning && table.units.empty())
       throw InputError(header, fmt::format("unknown column '{}'; expected names with units ({}), or {}",
                                            table.names[index], known_column_names(), in_configuration));
@@ -88,6 +214,7 @@ RecordColumns columns_of_header(RecordTable& table) {
     else
       columns.time = RecordColumn{index, meaning->factor, {}};
   }
+  recognition.report(table, columns);
   if (columns.channels.empty() && !unknown.empty())
     throw InputError(
         header, fmt::format("no unit says what is measured: {}; expected {}", unknown, in_configuration));
@@ -163,6 +290,22 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   for (std::size_t index = 0; !columns.time && index < std::min(table.names.size(), table.width()); ++index)
     if (const auto meaning = stated_meaning(table, index); meaning && !meaning->quantity)
       columns.time = RecordColumn{index, meaning->factor, {}};
+  if (!columns.time && !format.channels.empty() && table.by_people && !table.clock && !format.sampling_rate)
+    Recognition().take_time(table, columns);
+  if (!columns.time && !table.clock && !format.sampling_rate && table.stated_rate) {
+    table.clock = Clock{0.0, 1.0 / *table.stated_rate};
+    table.remarks.push_back(fmt::format(
+        "The file states {:.6g} Hz above its columns: samples are taken at that rate.", *table.stated_rate));
+  }
+  if (!columns.time && !table.clock && !format.sampling_rate &&
+      (columns.counted || (table.width() == 1 && table.names.empty())))
+    throw InputError({table.file, 0, 0},
+                     columns.counted
+                         ? fmt::format("Column {} counts samples; expected the sampling rate: --rate HZ, or "
+                                       "record.sampling_rate_hz in the configuration",
+                                       *columns.counted + 1)
+                         : std::string("One column, and no times; expected the sampling rate: --rate HZ, or "
+                                       "record.sampling_rate_hz in the configuration"));
   if (!columns.time && !table.clock && !format.sampling_rate)
     throw InputError({table.file, 0, 0},
                      "no times; expected a column time_s, or record.time or record.sampling_rate_hz in the "

@@ -19,6 +19,7 @@ struct RecordColumn {
 struct RecordColumns {
   std::optional<RecordColumn> time;
   std::vector<RecordColumn> channels;
+  std::optional<std::size_t> counted = {};  ///< a column that counts samples, where there are no stamps
 };
 
 /// What a column's name says ("acceleration_g"), or the unit that the file gives it.

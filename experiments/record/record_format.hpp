@@ -22,6 +22,7 @@ struct ColumnDescription {
   std::string place = {};               ///< by name, where places have names
   bool stated = true;                   ///< false: quantity and factor are what the file itself says
   double noise = 0.0;                   ///< standard deviation, in the column's unit; 0: not stated
+  int file = 1;                         ///< of RecordFormat::files, from 1
 };
 
 /// What becomes of rows in which not every used column holds a number.
@@ -40,7 +41,8 @@ enum class MissingInput {
 
 /// How a record's file is to be read, and what is done with the record before anything else sees it.
 struct RecordFormat {
-  std::string reader;     ///< registered; empty: the one that recognises the file
+  std::vector<std::string> files;  ///< of one record, a sensor or more each (joined_record.hpp); empty: one
+  std::string reader;              ///< registered; empty: the one that recognises the file
   char separator = '\0';  ///< '\0': the first of tab, semicolon, comma in the first row, else blanks (' ')
   int header_lines = 0;   ///< before the rows, the last non-blank one naming columns; 0 finds a single one
   char decimal = '\0';    ///< between whole and fraction, '.' or ','; '\0': what the first rows show

@@ -29,10 +29,12 @@ struct RecordTable {
   std::string file;
   std::vector<std::string> names;  ///< of the columns; empty where the file gives none
   std::vector<std::string> units;  ///< of the columns, as the file spells them; empty where it gives none
+  bool by_people = false;          ///< names are as people write them, or none: what they say is recognised
   std::vector<std::vector<double>> columns;  ///< NaN where the file holds no finite number
   std::vector<PrintedPrecision> precision;   ///< of the columns: how finely they were written
   std::optional<std::size_t> time;           ///< the column of time [s], where the format knows one by itself
   std::optional<Clock> clock;                ///< where the format states one
+  std::optional<double> stated_rate;         ///< in words above the columns, for files without stamps [Hz]
   std::size_t header_line = 0;               ///< where the names stand; 0 where unknown
   std::vector<std::size_t> lines;            ///< of the rows; empty in binary files
   std::vector<std::size_t> skipped_lines;    ///< left out already, as they have another number of columns

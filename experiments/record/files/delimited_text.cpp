@@ -5,8 +5,10 @@
 #include <memory>
 #include <string>
 
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_reader.hpp"
 #include "experiments/record/text_cells.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/text_file.hpp"
 
 namespace beamid::experiments {
@@ -25,24 +27,41 @@ class DelimitedTextReader final : public RecordReader {
     RecordTable table;
     table.file = file.string();
     table.names = text.names();
+    table.by_people = true;
     table.units = text.units();
     table.header_line = text.header_line();
     table.columns.resize(text.width());
     table.precision.resize(text.width());
     TextCells cells(table.file, content);
     std::string token;
+    std::vector<std::optional<double>> first_stamp(
+        text.width());  // whole seconds: a double holds the rest finely
     while (text.next()) {
       cells.add(text.line(), text.line_number());
       table.lines.push_back(text.line_number());
       for (std::size_t column = 0; column < text.width(); ++column) {
         table.columns[column].push_back(text.value(column));
         token = text.field(column);
+        if (!std::isfinite(table.columns[column].back()))
+          if (const auto stamp = seconds_of_stamp(unquoted(token))) {
+            if (!first_stamp[column]) first_stamp[column] = std::floor(*stamp);
+            table.columns[column].back() = *stamp - *first_stamp[column];
+            if (!table.time && table.lines.size() == 1) table.time = column;
+            // What a stamp's printing shows: its fraction, behind as many digits as seconds since 1970 have.
+            const std::size_t point = token.find_last_of(".,");
+            token = "1000000000" + (point == std::string::npos
+                                        ? ""
+                                        : token.substr(point, token.find_first_of("Z+", point) - point));
+          }
         if (text.decimal() == ',')
           for (char& sign : token) sign = sign == ',' ? '.' : sign;
         if (std::isfinite(table.columns[column].back())) table.precision[column].add(token);
       }
     }
     table.cell = cells.cells(text.separator());
+    if (!table.time)
+      if (const auto rate = stated_rate(content->substr(0, std::min<std::size_t>(content->size(), 2000))))
+        table.stated_rate = rate;
     table.skipped_lines = text.skipped_lines();
     if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");
     return table;

@@ -1,8 +1,10 @@
 // Oracles: the numbers written in the files; the published facts of the measured records.
 #include "experiments/record/read_record.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "experiments/record/units.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::read_record_test {
@@ -152,7 +154,8 @@ TEST(ReadRecord, RefusesBadNumbersAtTheirPlaces) {
        {"0,1\n1,0x10\n", "bad.txt:2:3: column 2 holds '0x10'; expected a number"},
        {"0,1\n1,+-1\n", "bad.txt:2:3: column 2 holds '+-1'; expected a number"},
        {"some,text\nmore,text\n",
-        "bad.txt:2:1: a second row without numbers; expected one header line at most, or record.header_lines "
+        "bad.txt:2:1: a second row without numbers; expected names and units of the columns at most, or "
+        "record.header_lines "
         "in the configuration"},
        {"0,1,2\n1,1\n", "bad.txt:2:1: 2 columns; expected 3 as in the first row"},
        {"0 1\n1 1 1\n", "bad.txt:2:1: 3 columns; expected 2 as in the first row"},
@@ -215,15 +218,79 @@ TEST(ReadRecord, RefusesColumnsThatAreNotThere) {
 
 TEST(ReadRecord, RefusesHeadersThatDoNotTellTheUnits) {
   expect_refused(
-      {}, {{"time_s,acc\n0,1\n1,1\n", "bad.txt:1: unknown column 'acc'; expected names with units (" KNOWN
-                                      "), or record.channels in the configuration"},
-           {"0,1\n1,1\n", "bad.txt: no header; expected one that names every column with its unit (" KNOWN
-                          "), or record.channels in the configuration"},
+      {}, {{"time_s,acceleration_ft_per_s2\n0,1\n1,1\n",
+            "bad.txt:1: unknown column 'acceleration_ft_per_s2'; expected names with units (" KNOWN
+            "), or record.channels in the configuration"},
            {"time_s\n0\n1\n", "bad.txt:1: no column but time; expected a measured quantity"},
            {"time_s,time_ms,force_n\n0,1,2\n1,1,2\n", "bad.txt:1: two columns of time; expected one"},
            {"force_n\n0\n1\n",
             "bad.txt: no times; expected a column time_s, or record.time or record.sampling_rate_hz in the "
             "configuration"}});
+}
+
+// One decay at 400 Hz, 4 m/s2 at first, as people write it.
+TEST(ReadRecord, RecognisesHeadersAsPeopleWriteThem) {
+  struct Case {
+    const char* header;
+    double time, value;  // of one unit in the file, in SI units
+    char separator;
+  };
+  for (const auto& [header, time, value, separator] :
+       {Case{"time [s],acceleration [m/s2]", 1, 1, ','}, Case{"Time (s),Acceleration (m/s^2)", 1, 1, ','},
+        Case{"t/s,a/(m/s2)", 1, 1, ','}, Case{"t,a", 1, 1, ','},
+        Case{"time_ms,acc_g", 1e-3, standard_gravity, ','}, Case{"Time (s),gFx", 1, standard_gravity, ','},
+        Case{"Zeit [s];Beschleunigung [m/s²]", 1, 1, ';'},
+        Case{"temps (ms);accélération (mm/s2)", 1e-3, 1e-3, ';'},
+        Case{"tiempo [s];aceleración [m/s2]", 1, 1, ';'},
+        Case{"tempo (s);accelerazione (g)", 1, standard_gravity, ';'},
+        Case{"Time\tAcc\ns\tm/s^2", 1, 1, '\t'}, Case{"time_s,Linear Acceleration x (m/s^2)", 1, 1, ','},
+        Case{"Time (s),Accel-Tip (mg)", 1, 1e-3 * standard_gravity, ','},
+        Case{"SampleTimeFine,Acc_X", 1e-6, 1, ','}}) {
+    std::string text = std::string(header) + "\n";
+    for (int k = 0; k < 20; ++k)
+      text += fmt::format("{:.6f}{}{}\n", 0.0025 * (k + 1) / time, separator, 4.0 - 0.1 * k);
+    const Record record = read_text_record(text, {});
+    ASSERT_EQ(record.channels.size(), 1u) << header;
+    EXPECT_EQ(record.channels[0].quantity, Quantity::acceleration) << header;
+    EXPECT_NEAR(record.interval(), 0.0025, 1e-8) << header;
+    EXPECT_NEAR(record.samples(0, 1), 3.9 * value, 1e-12) << header;
+  }
+}
+
+TEST(ReadRecord, TakesNoOrientationAndNoCountForAChannelOrATime) {
+  std::string text = "sep=,\nDeviceTag: 1\n\nPacketCounter,SampleTimeFine,Euler_X,Acc_X,Gyr_X\n";
+  for (int k = 0; k < 20; ++k)
+    text += fmt::format("{},{},{},{},{}\n", 17 + k, 991011697 + 8333 * k, 10.5, k == 0 ? 0.0 : 0.25 + 0.1 * k,
+                        1.5);
+  RecordFormat format;
+  format.header_lines = 4;
+  const Record record = read_text_record(text, format);
+  ASSERT_EQ(record.channels.size(), 1u);
+  EXPECT_EQ(record.channels[0].name, "Acc_X");
+  EXPECT_NEAR(record.interval(), 0.008333, 1e-9);
+  EXPECT_EQ(record.size(), 19) << "the first sample is a logger's zero";
+}
+
+TEST(ReadRecord, ReadsStampsOfADateAndIntervalsStatedAboveTheColumns) {
+  std::string stamped = "timestamp,x\n", stated = "# Sample rate: 400 Hz\nSample,Acc X [g]\n", bare;
+  for (int k = 0; k < 20; ++k) {
+    stamped += fmt::format("2026-11-26T23:59:{:06.3f}Z,{}\n", 58.0 + 0.05 * k, 1 + k);
+    stated += fmt::format("{},{}\n", k, 1 + k);
+    bare += fmt::format("{:.4f} {}\n", 0.0025 * k, 1 + k);
+  }
+  EXPECT_NEAR(read_text_record(stamped, {}).interval(), 0.05, 1e-6);
+  const Record counted = read_text_record(stated, {});
+  EXPECT_NEAR(counted.interval(), 0.0025, 1e-12);
+  EXPECT_NEAR(counted.samples(0, 0), standard_gravity, 1e-12);
+  EXPECT_NEAR(read_text_record(bare, {}).interval(), 0.0025, 1e-9);
+}
+
+TEST(ReadRecord, AsksForTheRateWhereAColumnCountsSamples) {
+#define RATE "; expected the sampling rate: --rate HZ, or record.sampling_rate_hz in the configuration"
+  expect_refused({}, {{"Sample,Acc X [g]\n0,1\n1,1\n2,1\n", "bad.txt: Column 1 counts samples" RATE},
+                      {"0,1\n1,1\n", "bad.txt: Column 1 counts samples" RATE},
+                      {"1\n2\n1\n", "bad.txt: One column, and no times" RATE}});
+#undef RATE
 }
 
 TEST(ReadRecord, RefusesIrregularTimes) {

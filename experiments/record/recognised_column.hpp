@@ -1,0 +1,47 @@
+// What a column is, from a name as people write it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/record/record.hpp"
+
+namespace beamid::experiments {
+
+struct RecognisedColumn {
+  enum class Kind {
+    time,    ///< stamps; `factor` to seconds
+    count,   ///< of samples or packets: no time
+    signal,  ///< a channel of motion or force
+    other    ///< an orientation, a rate of turn, a temperature: no channel
+  };
+  Kind kind = Kind::signal;
+  Quantity quantity = Quantity::acceleration;
+  double factor = 1.0;           ///< to SI units
+  bool states_quantity = false;  ///< else it is taken for an acceleration
+  bool states_unit = false;      ///< else values stay as in the file
+};
+
+/// "Time (s)", "t/s", "Zeit [s]", "acc_g", "gFx", "Linear Acceleration x (m/s^2)", "Accel-Tip", "Sample",
+/// "Roll": words of six languages (English, German, French, Spanish, Italian, Portuguese), and a unit in
+/// brackets, behind a slash, a comma or an underscore, or in a row of its own.
+/// @param unit that the file gives the column; empty: none
+/// @returns absent where the name looks like one of this project's own with a unit that is not known
+/// ("acceleration_ft_per_s2")
+std::optional<RecognisedColumn> recognise_column(std::string_view name, std::string_view unit);
+
+/// Whether a row of fields names columns: one of them at least is time or a quantity, and none is a unit
+/// alone.
+bool names_columns(const std::vector<std::string_view>& fields);
+
+/// The rate that the lines above the columns state: "Sample rate: 400 Hz", "fs = 400", "dt = 0.0025",
+/// "Sampling interval (s): 0.0025" [Hz].
+std::optional<double> stated_rate(std::string_view lines);
+
+/// Seconds since 1970-01-01 of "2026-11-26T10:00:00.125Z" or with a blank, a comma or an offset; absent where
+/// it is no such stamp. Without an offset it counts as UTC: intervals do not depend on it.
+std::optional<double> seconds_of_stamp(std::string_view text);
+
+}  // namespace beamid::experiments
