@@ -1,14 +1,19 @@
 // beamid modal: modes from vibration records, without a beam.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
+#include "experiments/modal/study/driven_study.hpp"
 #include "experiments/modal/study/hammer_study.hpp"
+#include "experiments/modal/study/record_kind.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/studies/modal/amplitude_report.hpp"
+#include "experiments/studies/modal/driven_report.hpp"
 #include "experiments/studies/modal/event_report.hpp"
 #include "experiments/studies/modal/hammer_report.hpp"
 #include "experiments/studies/modal/mass_report.hpp"
@@ -26,10 +31,10 @@ OptionGroup modal_options() {
       "Options",
       {modal_method_option(
            "era for free decays, ssi_cov for random vibration, bayoma for one mode of it, frf_lscf for "
-           "hammer hits with a measured "
-           "force; at the peaks of the spectrum: damped_sine, hilbert_envelope, logarithmic_decrement, "
-           "half_power, frf_half_power (beamid list modal_methods)")
-           .by_default("era"),
+           "hammer hits with a measured force, output_error for a moving base or a shaker; at the peaks of "
+           "the spectrum: damped_sine, hilbert_envelope, logarithmic_decrement, half_power, frf_half_power "
+           "(beamid list modal_methods); without it the record decides between the first two, frf_lscf and "
+           "output_error"),
        band_option("frequencies to look at [Hz]; else all where the spectrum shows something"),
        whole("order", "N", 4, 80, "largest model order").by_default("30"),
        whole("modes", "N", 1, 1000, "the N strongest modes only"),
@@ -44,7 +49,8 @@ OptionGroup modal_options() {
 
 ModalStudySettings modal_settings_of(const Values& values) {
   ModalStudySettings settings;
-  settings.method = parse_choice(values.text("method"), "--method", modal_method_registry());
+  if (values.has("method"))
+    settings.method = parse_choice(values.text("method"), "--method", modal_method_registry());
   settings.band_hz = values.from_to("band");
   settings.largest_order = values.whole("order");
   if (values.has("modes")) settings.modes = values.whole("modes");
@@ -80,16 +86,70 @@ Results hammer_results(const std::vector<std::string>& names, const std::vector<
   return results;
 }
 
-/// Modes of each record, and those of all.
-Results decay_results(const std::vector<RecordRequest>& requests, const std::vector<std::string>& names,
-                      const std::vector<Record>& records, const ModalStudySettings& settings,
-                      bool amplitude) {
+std::vector<RecordModes> modes_without_input(const std::vector<RecordRequest>& requests,
+                                             const std::vector<std::string>& names,
+                                             const std::vector<Record>& records,
+                                             const ModalStudySettings& settings) {
   std::vector<RecordModes> found;
   for (std::size_t r = 0; r < records.size(); ++r) {
     try {
       found.push_back(find_modes(names[r], records[r], requests[r].format.window.has_value(), settings));
     } catch (const std::invalid_argument& error) {
       throw InputError({requests[r].file.string()}, error.what());
+    }
+  }
+  return found;
+}
+
+/// Modes of each record from its measured inputs.
+/// @returns absent where the record decides, and a free decay explains it better
+std::optional<Results> driven_results(const std::vector<RecordRequest>& requests,
+                                      const std::vector<std::string>& names,
+                                      const std::vector<Record>& records, const ModalStudySettings& settings,
+                                      bool decides) {
+  std::vector<DrivenStudy> found;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    try {
+      found.push_back(study_driven(names[r], records[r], settings));
+      if (decides && found.back().modes.empty()) return {};
+    } catch (const std::invalid_argument& error) {
+      if (decides) return {};
+      throw InputError({requests[r].file.string()}, error.what());
+    }
+  }
+  if (decides) try {
+      ModalStudySettings decay = settings;
+      decay.method = ModalStudySettings().method;
+      const std::vector<RecordModes> decaying = modes_without_input(requests, names, records, decay);
+      for (std::size_t r = 0; r < records.size(); ++r)
+        if (!decaying[r].modes.empty() && decaying[r].left() < found[r].fit.left_share) return {};
+    } catch (const InputError&) {  // no decay
+    }
+  return report(settings, found);
+}
+
+/// Modes of each record, and those of all.
+/// @param decides whether records that do not decay are taken for random vibration
+Results decay_results(const std::vector<RecordRequest>& requests, const std::vector<std::string>& names,
+                      const std::vector<Record>& records, ModalStudySettings settings, bool amplitude,
+                      bool decides) {
+  std::vector<RecordModes> found = modes_without_input(requests, names, records, settings);
+  if (decides && std::ranges::none_of(found, &RecordModes::decays)) {
+    ModalStudySettings random = settings;
+    random.method = {"ssi_cov", {}};
+    std::vector<RecordModes> shaken;
+    try {
+      shaken = modes_without_input(requests, names, records, random);
+    } catch (const InputError&) {  // too short for it
+    }
+    if (!shaken.empty() && std::ranges::all_of(shaken, [](const RecordModes& one) {
+          return one.steady && !one.modes.empty();
+        })) {
+      found = std::move(shaken);
+      settings = random;
+      for (RecordModes& one : found)
+        one.remarks.emplace_back(
+            "The record does not decay: method ssi_cov takes it as random vibration (--method overrides).");
     }
   }
   Results results = report(settings, found);
@@ -108,12 +168,16 @@ Results decay_results(const std::vector<RecordRequest>& requests, const std::vec
 }
 
 int run_modal(const Values& values) {
-  const ModalStudySettings settings = modal_settings_of(values);
+  ModalStudySettings settings = modal_settings_of(values);
   const std::vector<RecordRequest> requests = record_requests(values);
-  const bool hammer =
-      modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response);
-  if (hammer && values.has("amplitude"))
+  const auto has_contract = [&](const char* contract) {
+    return modal_method_registry().find(settings.method.name).contracts.contains(contract);
+  };
+  if (values.has("amplitude") &&
+      (has_contract(contract::frequency_response) || has_contract(contract::measured_input)))
     throw UsageError("--amplitude follows a free decay; take --method era for it");
+  const bool decides =
+      !values.has("method") && !values.has("amplitude") && !values.has("polish") && !values.has("events");
   if (values.has("events"))
     for (const char* const other : {"amplitude", "modes", "polish", "no-polish"})
       if (values.has(other)) throw UsageError(std::string("--events takes no --") + other);
@@ -132,11 +196,22 @@ int run_modal(const Values& values) {
       names.push_back(request.file.filename().string());
     }
     if (!values.has("events")) check_same_channels(records, requests);
+    if (decides && std::ranges::all_of(records, is_struck))
+      settings.method = {"frf_lscf", {}};
+    else if (decides && std::ranges::all_of(records, is_driven))
+      settings.method = {"output_error", {}};
     Results results;
     try {
-      results = values.has("events") ? event_report(names, records, settings.band_hz)
-                : hammer             ? hammer_results(names, records, settings)
-                         : decay_results(requests, names, records, settings, values.has("amplitude"));
+      std::optional<Results> driven;
+      if (has_contract(contract::measured_input)) {
+        driven = driven_results(requests, names, records, settings, decides);
+        if (!driven) settings.method = ModalStudySettings().method;
+      }
+      results = driven                 ? *driven
+                : values.has("events") ? event_report(names, records, settings.band_hz)
+                : has_contract(contract::frequency_response)
+                    ? hammer_results(names, records, settings)
+                    : decay_results(requests, names, records, settings, values.has("amplitude"), decides);
     } catch (const std::invalid_argument& error) {
       throw InputError({requests[0].file.string()}, error.what());
     }
@@ -157,11 +232,12 @@ Command modal_command() {
           "  beamid modal tip_acceleration.csv\n"
           "  beamid modal run1.csv run2.csv --window 0.5 4 --band 2 60 --out results\n"
           "  beamid modal export.txt --column 3 --quantity acceleration --unit g --rate 1651.6129\n"
-          "  beamid modal wind.csv --method ssi_cov --order 40 --out results\n"
+          "  beamid modal wind.csv --order 40 --out results\n"
           "  beamid modal tip_acceleration.csv --amplitude --out results\n"
           "  beamid modal --config cantilever.toml --method half_power --out results\n"
           "  beamid modal event1.NS1 event2.NS1 event3.NS1 --events --out column\n"
-          "  beamid modal hits.csv more_hits.csv --method frf_lscf --band 5 200 --out results\n",
+          "  beamid modal hits.csv more_hits.csv --band 5 200 --out results\n"
+          "  beamid modal shaken_frame.csv --out results\n",
           run_modal,
           "",
           "3  --events: a sign, the order or the clocks of base and response are not as described; the first "

@@ -38,7 +38,8 @@ class ModalMethod {
   /// @throws std::invalid_argument when the record is too short or not finite.
   virtual PoleSearch search(const Eigen::MatrixXd& outputs, double interval, int largest_order) const = 0;
 
-  /// The same of frequency responses (p x F) at s = i 2 pi f + shift, for the contract frequency_response.
+  /// The same of frequency responses (p x F) at s = i 2 pi f + shift, for the contracts
+  /// frequency_response and measured_input.
   /// @throws std::invalid_argument from all other methods.
   virtual std::vector<OrderPoles> search_responses(const Eigen::VectorXd& frequency_hz,
                                                    const Eigen::MatrixXcd& responses, double shift,
@@ -51,6 +52,7 @@ inline constexpr const char* free_decay = "free_decay";  ///< the record is one,
 /// There are no orders to compare: the poles of the only one, 0, are the modes.
 inline constexpr const char* mode_by_mode = "mode_by_mode";
 inline constexpr const char* frequency_response = "frequency_response";  ///< a measured force is needed
+inline constexpr const char* measured_input = "measured_input";          ///< that acts all the time is needed
 }  // namespace contract
 
 using ModalMethodRegistry = filters::Registry<ModalMethod>;

@@ -115,6 +115,7 @@ void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found
   const bool decays =
       (found.polished && !found.modes.empty()) ||
       (found.reproduced.size() > 0 && (found.target - found.reproduced).norm() < reproduced * motion.norm());
+  const std::size_t before = found.warnings.size();
   if (found.free_decay && !decays && late > 0.7 * early)
     found.warnings.push_back(
         "The record does not decay: its second half is nearly as strong as its first, and no decaying modes "
@@ -130,7 +131,9 @@ void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found
         fmt::format("Nothing was released: the record moves as much before its largest reading, at {:.4g} s, "
                     "as after. {}",
                     found.record.time[0], no_decay));
-  if (!found.free_decay && std::max(early, late) > 10 * std::min(early, late))
+  found.decays = found.warnings.size() == before;
+  found.steady = found.free_decay || std::max(early, late) <= 10 * std::min(early, late);
+  if (!found.steady)
     found.warnings.push_back(
         "The record is not steady: one half is much stronger than the other. For a free decay take --method "
         "era; for random vibration, a --window without the strong part.");
@@ -186,6 +189,10 @@ void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found)
 }
 
 }  // namespace
+
+double RecordModes::left() const {
+  return reproduced.size() > 0 ? (target - reproduced).norm() / target.norm() : 1.0;
+}
 
 const ModeEstimate& RecordModes::strongest() const {
   return *std::max_element(modes.begin(), modes.end(), [](const ModeEstimate& a, const ModeEstimate& b) {

@@ -43,6 +43,8 @@ struct RecordModes {
   bool free_decay = true;             ///< as the method takes it
   bool mode_by_mode = false;          ///< without model orders
   bool polished = false;
+  bool decays = true;  ///< of a method for free decays: whether the record is one
+  bool steady = true;  ///< of a method for random vibration: whether both halves are about as strong
   std::pair<double, double> band_hz;
   double interval = 0;  ///< after decimation [s]
   double start = 0;     ///< time of the first column of `target` [s]
@@ -52,6 +54,7 @@ struct RecordModes {
   Eigen::MatrixXd target;           ///< (p x L) what the modes were to reproduce: record or autocorrelations
   Eigen::MatrixXd reproduced;       ///< (p x L)
 
+  double left() const;                    ///< of the target's size, what the modes leave; 1 without any
   const ModeEstimate& strongest() const;  ///< of one mode at least
 };
 

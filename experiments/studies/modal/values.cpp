@@ -59,7 +59,7 @@ Json values(const std::vector<RecordModes>& records, const std::vector<MergedMod
                                  {"stable_orders", cluster.orders},
                                  {"reason", cluster.objection}});
     if (found.reproduced.size() > 0)
-      one["response_error_percent"] = 100 * (found.target - found.reproduced).norm() / found.target.norm();
+      one["response_error_percent"] = 100 * found.left();
     json["records"].push_back(std::move(one));
   }
   if (records.size() < 2) return json;
