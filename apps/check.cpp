@@ -203,7 +203,7 @@ Command check_command() {
           "[RECORD...] --config FILE... [--model-error PERCENT] [--out DIR]",
           "predicted modes against those of records, and what would explain the difference",
           {record_argument(true)},
-          {check_options(), output_options()},
+          {check_options(), column_options(), output_options()},
           "  beamid check tip_acceleration.csv --config cantilever.toml\n"
           "  beamid check run1.csv run2.csv --config cantilever.toml --model-error 1 --out results\n"
           "  beamid check light.csv heavy.csv --config light.toml heavy.toml --out results\n"

@@ -107,7 +107,7 @@ Command compare_command() {
           "[RECORD | --truth FILE] [--config FILE] [--reduction NAME]... [--out DIR]",
           "one record identified on the continuum and on reductions of it: what each costs and saves",
           {record_argument()},
-          {compare_options(), beam_options(), output_options()},
+          {compare_options(), beam_options(), column_options(), output_options()},
           "  beamid compare --config cantilever.toml --out results\n"
           "  beamid compare tip.csv --config cantilever.toml --reduction none --reduction rayleigh\n"
           "  beamid compare --config described.toml --truth damaged.toml --filter ekf --filter ukf\n",

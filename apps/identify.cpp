@@ -152,7 +152,7 @@ int run_identify(const Values& values) {
       }
     });
   }
-  const fs::path config = configs[0];
+  const fs::path config = configs.empty() ? fs::path() : fs::path(configs[0]);
   const std::string law = damping_law(values);
   const std::vector<IdentifyRequest> requests = identify_requests(values, config);
   if (requests.size() > 1) refuse_what_needs_one_record(requests);
@@ -164,7 +164,7 @@ int run_identify(const Values& values) {
       warn(results, requests[0].experiment);
       return results;
     } catch (const std::invalid_argument& error) {
-      throw InputError({config.string()}, error.what());
+      throw InputError({config.empty() ? requests[0].file.string() : config.string()}, error.what());
     }
   });
 }
@@ -173,10 +173,12 @@ int run_identify(const Values& values) {
 
 Command identify_command() {
   return {"identify",
-          "[RECORD...] --config FILE [--window FROM TO]... [--out DIR]",
+          "[RECORD...] [--config FILE] [--window FROM TO]... [--out DIR]",
           "stiffness, damping, frequency and damping ratio from vibration records",
           {record_argument(true)},
-          {identify_options(), output_options()},
+          {identify_options(), column_options(), output_options()},
+          "  beamid identify phone.csv\n"
+          "  beamid identify phone.csv --mass 2.5\n"
           "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
           "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
           "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"

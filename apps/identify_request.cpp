@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "apps/method_options.hpp"
@@ -9,6 +12,8 @@
 #include "experiments/config/failure_response.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/damping_law/damping_law.hpp"
+#include "experiments/modal/study/modal_study.hpp"
+#include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/text/spelling.hpp"
 #include "filters/smoother.hpp"
 
@@ -17,6 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace experiments;
+using Eigen::Index, Eigen::VectorXd;
 
 /// What the command line says in place of the experiment file.
 void take_words(const Values& values, Experiment& experiment) {
@@ -57,8 +63,9 @@ OptionGroup identify_options() {
                "experiment file: beam, columns, units, window, filter (docs/configuration.md); once for "
                "each record: beams that share the [[parameters]] of one name, as lengths of one strip "
                "share its stiffness")
-               .repeated()
-               .needed(),
+               .repeated(),
+           number("mass", "KG", "without --config: the mass that moves, for stiffness and damping")
+               .greater_than(0),
            window.several().repeated(), on_failure_option(),
            smoother_option("what the whole record says of every instant, in smoothed.csv and a figure"),
            text("estimator", "WHICH", "filter, or both: beside it the batch estimate, all samples at once")
@@ -77,7 +84,87 @@ std::string damping_law(const Values& values) {
   return law;
 }
 
+namespace {
+
+/// One mode of a record that nobody describes: its frequency and damping ratio by the modal analysis are the
+/// first guess. @throws InputError where the record is no free decay of one
+Experiment one_mode(const fs::path& file, const Record& record, const RecordFormat& format, double mass,
+                    Index& channel) {
+  const auto refuse = [&](const std::string& what) {
+    return InputError({file.string()},
+                      what + "; `beamid modal " + file.string() +
+                          "` says what modes it has, and --config FILE describes a structure "
+                          "to identify (beamid new)");
+  };
+  if (std::ranges::any_of(record.channels, [](const Channel& one) { return is_input(one.quantity); }))
+    throw refuse("an input was measured; expected a free decay of one mode, or a structure");
+  const RecordModes found =
+      find_modes(file.filename().string(), made_analysable(record), format.window.has_value(), {});
+  if (found.modes.empty()) throw refuse("no decaying mode was found");
+  if (!found.decays) throw refuse("the record does not decay");
+  const Pole& pole = found.strongest().pole;
+  VectorXd share = pole.shape.cwiseAbs();
+  for (Index i = 0; i < share.size(); ++i) share[i] /= std::max(record.samples.row(i).norm(), 1e-300);
+  share.maxCoeff(&channel);
+  const double w = 2.0 * std::numbers::pi * pole.frequency_hz();
+  Experiment experiment = read_experiment(TomlTable::parse(
+      fmt::format(
+          "title = \"{}\"\n[chain]\nmasses_kg = [{:.17g}]\nstiffnesses_n_per_m = [{:.17g}]\nheights_m = "
+          "[1.0]\n[damping]\nlaw = \"modal\"\nratio = {:.17g}\n",
+          file.filename().string(), mass, mass * w * w, pole.damping_ratio()),
+      file.string()));
+  experiment.format = format;
+  experiment.is_described = false;
+  return experiment;
+}
+
+/// The channel alone that shows the mode best: nobody says how the others move with it.
+void keep_channel(Index channel, Record& record) {
+  record.samples = record.samples.row(channel).eval();
+  record.channels = {record.channels[static_cast<std::size_t>(channel)]};
+}
+
+std::vector<IdentifyRequest> undescribed_requests(const Values& values) {
+  RecordFormat format;
+  format.irregular = true;
+  const std::vector<fs::path> files = record_files(values, {}, {}, format);
+  if (files.empty()) throw UsageError("--config FILE is missing");
+  std::vector<IdentifyRequest> requests;
+  for (std::size_t r = 0; r < files.size(); ++r) {
+    Experiment cut;
+    cut.format = format;
+    take_window(values, r, files.size(), cut);
+    PreparedRecord prepared = read_and_prepare(files[r], cut.format);
+    Index channel = 0;
+    IdentifyRequest one{files[r], {}, {}, {}};
+    try {
+      one.experiment = one_mode(files[r], prepared.record, cut.format,
+                                values.has("mass") ? values.number("mass") : 1.0, channel);
+      one.experiment.mass_is_stated = values.has("mass");
+      take_words(values, one.experiment);
+      const bool several = prepared.record.channels.size() > 1;
+      const std::string name = prepared.record.channels[static_cast<std::size_t>(channel)].name;
+      keep_channel(channel, prepared.record);
+      keep_channel(channel, prepared.raw);
+      if (several)
+        prepared.record.remarks.push_back(
+            fmt::format("Of the channels '{}' shows the mode best and is identified.", name));
+      one.prepared = std::move(prepared);
+      cut_decay(one);
+      keep_out_higher_modes(one);
+    } catch (const std::invalid_argument& error) {
+      throw InputError({files[r].string()}, error.what());
+    }
+    requests.push_back(std::move(one));
+  }
+  return requests;
+}
+
+}  // namespace
+
 std::vector<IdentifyRequest> identify_requests(const Values& values, const fs::path& config) {
+  if (config.empty()) return undescribed_requests(values);
+  if (values.has("mass")) throw UsageError("--mass is for records without --config; it states masses");
   Experiment experiment = read_experiment(config);
   take_words(values, experiment);
   const std::vector<fs::path> files =

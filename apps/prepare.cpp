@@ -32,6 +32,7 @@ Command prepare_command() {
           {{"Options",
             {config_option("experiment file with the steps, [[record.prepare]] (docs/configuration.md)")
                  .needed()}},
+           column_options(),
            output_options()},
           "  beamid prepare tip_acceleration.csv --config cantilever.toml --out results\n"
           "  beamid list steps\n",

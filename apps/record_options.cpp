@@ -71,23 +71,6 @@ ColumnDescription time_column(const std::string& word) {
   return described;
 }
 
-void take_words(const Values& values, RecordFormat& format) {
-  const Words columns = values.texts("column"), quantities = values.texts("quantity"),
-              units_given = values.texts("unit");
-  if (columns.empty() && (!quantities.empty() || !units_given.empty()))
-    throw UsageError("--quantity and --unit of which column? Add --column");
-  if (!columns.empty()) format.channels = channels(columns, quantities, units_given);
-  if (values.has("time")) format.time = time_column(values.text("time"));
-  if (values.has("rate")) format.sampling_rate = values.number("rate");
-  if (const auto window = values.from_to("window")) {
-    format.window = window;
-    format.window_place = {"--window"};
-  }
-  if (values.has("reader")) format.reader = values.text("reader");
-  if (values.has("skip-malformed")) format.malformed = MalformedRows::skip;
-  if (values.has("stamps")) format.irregular = values.text("stamps") == "as_they_are";
-}
-
 /// Standard input in a file of its own: readers look at the beginning of a file first, and a pipe is read
 /// once.
 class StandardInput {
@@ -127,11 +110,24 @@ Words quantity_names() {
 
 }  // namespace
 
+void take_record_words(const Values& values, RecordFormat& format) {
+  const auto given = [&](const char* name) { return values.has(name) ? values.texts(name) : Words{}; };
+  const Words columns = given("column"), quantities = given("quantity"), units_given = given("unit");
+  if (columns.empty() && (!quantities.empty() || !units_given.empty()))
+    throw UsageError("--quantity and --unit of which column? Add --column");
+  if (!columns.empty()) format.channels = channels(columns, quantities, units_given);
+  if (values.has("time")) format.time = time_column(values.text("time"));
+  if (values.has("rate")) format.sampling_rate = values.number("rate");
+  if (values.has("reader")) format.reader = values.text("reader");
+  if (values.has("skip-malformed")) format.malformed = MalformedRows::skip;
+  if (values.has("stamps")) format.irregular = values.text("stamps") == "as_they_are";
+}
+
 Argument record_argument(bool several) {
   return {.name = "record", .several = several};
 }
 
-OptionGroup record_options() {
+OptionGroup column_options() {
   return {"Record",
           {text("column", "N|NAME", "a column to use, by number from 1 or by name").repeated(),
            text("quantity", "WHAT", "that it measures; one for each column or for all")
@@ -143,18 +139,26 @@ OptionGroup record_options() {
            number("rate", "HZ", "exact sampling rate, in place of rounded times or where there are none [Hz]")
                .greater_than(0)
                .less_than(1e300),
-           from_to("window", "part of the record to use [s]"),
            text("stamps", "HOW", "as_they_are: times may be at unequal intervals; even: they must not")
                .by_default("as_they_are")
                .one_of({"even", "as_they_are"}),
            flag("skip-malformed", "leave malformed lines out, counted and located"),
            text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
-               .one_of(names_in(record_reader_registry())),
-           config_option("take all this from [record] of an experiment file (docs/configuration.md)")}};
+               .one_of(names_in(record_reader_registry()))}};
+}
+
+OptionGroup record_options() {
+  OptionGroup group = column_options();
+  const auto after_rate = std::ranges::find(group.options, "rate", &Option::name) + 1;
+  group.options.insert(after_rate, from_to("window", "part of the record to use [s]"));
+  group.options.push_back(
+      config_option("take all this from [record] of an experiment file (docs/configuration.md)"));
+  return group;
 }
 
 std::vector<fs::path> record_files(const Values& values, const fs::path& config,
                                    const std::optional<std::string>& named, RecordFormat& format) {
+  take_record_words(values, format);
   std::vector<fs::path> files;
   for (const std::string& word : values.texts("record")) files.push_back(record_file(word));
   std::size_t parts = format.files.size();
@@ -197,7 +201,10 @@ std::vector<RecordRequest> record_requests(const Values& values) {
     format = section.format;
     named = section.file;
   }
-  take_words(values, format);
+  if (const auto window = values.from_to("window")) {
+    format.window = window;
+    format.window_place = {"--window"};
+  }
   std::vector<RecordRequest> requests;
   for (const fs::path& file : require_record_files(values, config, named, format))
     requests.push_back({file, format});

@@ -92,6 +92,7 @@ Command sense_command() {
                  .several(),
              filter_option("histories sample after sample by this filter, in place of the smoother: "
                            "gillijns_de_moor and dual_kf take nothing for known of the forces")}},
+           column_options(),
            output_options()},
           "  beamid sense record.csv --config mast.toml --at 0 --out sensed\n"
           "  beamid sense --config mast.toml\n"

@@ -167,7 +167,7 @@ Command steps_command() {
       "RECORD --config FILE [--discretisation NAME]... [--out DIR]",
       "one record at dt, 2 dt, 4 dt, ...: how wrong a filter's discretisation makes its damping",
       {record_argument()},
-      {steps_options(), published_options(), output_options()},
+      {steps_options(), published_options(), column_options(), output_options()},
       "  beamid steps tip_acceleration.csv --config cantilever.toml --out results\n"
       "  beamid steps --config cantilever.toml --discretisation forward_euler --discretisation "
       "runge_kutta_2\n"

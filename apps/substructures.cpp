@@ -59,6 +59,7 @@ Command substructures_command() {
           {{"Options",
             {config_option("experiment file with [[substructures]] (docs/configuration.md)"),
              flag("no-whole", "leave out the identification of the whole structure beside its parts")}},
+           column_options(),
            output_options()},
           "  beamid substructures --config building.toml --out parts\n"
           "  beamid substructures record.csv --config building.toml --no-whole\n",

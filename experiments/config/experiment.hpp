@@ -28,6 +28,8 @@ namespace beamid::experiments {
 struct Experiment {
   std::optional<TomlTable> file;  ///< what it was read from, with what was set from outside
   std::string title;
+  bool is_described = true;    ///< else made from a record alone: one mode of a mass of 1 kg
+  bool mass_is_stated = true;  ///< of such a mode: else K and C are not said
   fem::Structure structure;
   std::vector<StoreySpring> storey_springs;  ///< of a chain, those that follow laws; the others are linear
   int elements = 40;                         ///< of a beam, or of each member of a frame

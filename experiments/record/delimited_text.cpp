@@ -183,7 +183,7 @@ void DelimitedText::name_columns(std::string_view header, std::size_t line) {
     split_fields(header, separator_of(header), others);
     if (others.size() == width_) fields = others;
   }
-  if (comment && fields.size() != width_) {
+  if (comment && (fields.size() != width_ || holds_number(fields))) {
     header_line_ = 0;
     return;
   }

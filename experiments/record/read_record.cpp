@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -136,7 +137,9 @@ bool is_missing(const RecordTable& table, std::size_t row, std::size_t column) {
   if (!table.cell) return std::isnan(table.columns[column][row]);
   std::string text = unquoted(table.cell(row, column).text);
   for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return text.empty() || text == "nan" || text == "na" || text == "null";
+  static const std::set<std::string> nothing{"",     "nan",      "na",  "n/a", "#n/a", "null",
+                                             "none", "overflow", "ovf", "ol",  "-",    "--"};
+  return nothing.contains(text);
 }
 
 /// A column that is read, and what one of its unit is in that of the record.
@@ -167,6 +170,25 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
   table.keep(kept);
 }
 
+/// Of a file that nobody described: an axis that is not connected is no channel.
+void leave_out_dead(Record& record, std::vector<std::string>& remarks) {
+  std::vector<Eigen::Index> alive;
+  std::string dead;
+  for (Eigen::Index i = 0; i < record.samples.rows(); ++i) {
+    const double first = record.samples(i, 0);
+    if ((record.samples.row(i).array() != first).any())
+      alive.push_back(i);
+    else
+      dead += (dead.empty() ? "'" : ", '") + record.channels[static_cast<std::size_t>(i)].name + "'";
+  }
+  if (alive.empty() || dead.empty()) return;
+  record.samples = record.samples(alive, Eigen::all).eval();
+  std::vector<Channel> kept;
+  for (const Eigen::Index i : alive) kept.push_back(record.channels[static_cast<std::size_t>(i)]);
+  record.channels = std::move(kept);
+  remarks.push_back("Without any motion, left out: " + dead + ".");
+}
+
 }  // namespace
 
 Record read_record(const std::filesystem::path& file, const RecordFormat& format) {
@@ -179,7 +201,10 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   std::vector<Used> used;
   if (columns.time) used.push_back({columns.time->index, 1.0});
   for (const RecordColumn& column : columns.channels) used.push_back({column.index, column.factor});
-  check_rows(table, used, columns.time ? std::optional(columns.time->index) : std::nullopt, format.malformed);
+  // A file that nobody described has its gaps: what says that nothing was read is missing.
+  const bool has_gaps = columns.recognised && format.malformed == MalformedRows::refuse;
+  check_rows(table, used, columns.time ? std::optional(columns.time->index) : std::nullopt,
+             has_gaps ? MalformedRows::as_missing : format.malformed);
   if (table.rows() < 2)
     throw InputError(
         table.rows() ? table.row_place(table.rows() - 1) : Place{table.file},
@@ -198,6 +223,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
           values[row] * column.factor;
     record.channels.push_back(column.channel);
   }
+  if (columns.recognised) leave_out_dead(record, table.remarks);
   record.input_path = format.input;
   record.own_clock = format.own_clock;
   if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
@@ -205,7 +231,9 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   record.warnings = table.warnings;
   std::vector<std::string> names;
   for (const RecordColumn& column : columns.channels)
-    names.push_back(column.index < table.names.size() ? table.names[column.index] : "");
+    if (std::ranges::any_of(record.channels,
+                            [&](const Channel& one) { return one.name == column.channel.name; }))
+      names.push_back(column.index < table.names.size() ? table.names[column.index] : "");
   take_places(file, names, record);
   return format.window ? cut(record, format, table.file) : record;
 }

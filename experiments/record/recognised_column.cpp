@@ -64,10 +64,11 @@ bool any_word(const std::vector<std::string>& words, const std::set<std::string>
                      [&](const std::string& word) { return list.contains(word); });
 }
 
-const std::set<std::string> times{"t",        "time",     "times",    "timestamp", "zeit", "zeitstempel",
-                                  "temps",    "tiempo",   "tempo",    "seconds",   "secs", "elapsed",
-                                  "sekunden", "secondes", "segundos", "secondi",   "date", "datetime",
-                                  "datum",    "fecha",    "data",     "uhrzeit"};
+const std::set<std::string> times{
+    "t",       "time",    "times",   "timestamp", "zeit",     "zeitstempel", "temps",   "tiempo", "tempo",
+    "seconds", "secs",    "elapsed", "sekunden",  "secondes", "segundos",    "secondi", "date",   "datetime",
+    "datum",   "fecha",   "uhrzeit",   "epoch",    "unix",        "second",  "sec",    "sekunde",
+    "seconde", "segundo", "secondo", "hora",      "heure",    "ora"};
 const std::set<std::string> counts{
     "sample",        "samples", "index",       "idx",      "n",       "nr",     "no",     "packet",
     "packetcounter", "counter", "count",       "row",      "id",      "i",      "k",      "probe",
@@ -235,6 +236,28 @@ std::optional<double> seconds_of_stamp(std::string_view text) {
   }
   const auto days = std::chrono::sys_days(date).time_since_epoch().count();
   return 86400.0 * static_cast<double>(days) + 3600.0 * hour + 60.0 * minute + second + fraction - offset;
+}
+
+std::optional<double> seconds_of_day(std::string_view text) {
+  const std::size_t first = text.find(':'),
+                    second = first == std::string_view::npos ? first : text.find(':', first + 1);
+  if (first == 0 || first > 2 || second != first + 3 || text.size() < second + 3) return {};
+  double parts[3];
+  const std::string_view fields[] = {text.substr(0, first), text.substr(first + 1, 2),
+                                     text.substr(second + 1)};
+  for (int i = 0; i < 3; ++i) {
+    std::string field(fields[i]);
+    std::replace(field.begin(), field.end(), ',', '.');
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), parts[i]);
+    if (error != std::errc() || end != field.data() + field.size() || !(parts[i] >= 0.0)) return {};
+  }
+  if (parts[0] > 24.0 || parts[1] >= 60.0 || parts[2] >= 61.0) return {};
+  return 3600.0 * parts[0] + 60.0 * parts[1] + parts[2];
+}
+
+bool is_date(std::string_view text) {
+  static const std::regex date(R"((\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}))");
+  return text.size() >= 6 && text.size() <= 10 && std::regex_match(text.begin(), text.end(), date);
 }
 
 }  // namespace beamid::experiments

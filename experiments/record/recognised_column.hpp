@@ -44,4 +44,10 @@ std::optional<double> stated_rate(std::string_view lines);
 /// it is no such stamp. Without an offset it counts as UTC: intervals do not depend on it.
 std::optional<double> seconds_of_stamp(std::string_view text);
 
+/// Seconds since midnight of "10:00:00.125" or "9:05:07"; absent where it is none.
+std::optional<double> seconds_of_day(std::string_view text);
+
+/// "2026-11-27", "27.11.2026", "11/27/2026": a date alone, which a column of times beside it completes.
+bool is_date(std::string_view text);
+
 }  // namespace beamid::experiments

@@ -71,8 +71,14 @@ bool rises(const std::vector<double>& values) {
   return values.size() > 1;
 }
 
-// Stamps of a computer's clock: seconds, milliseconds, microseconds or nanoseconds since 1970, by their size.
-double seconds_of_epoch(double first) {
+// Stamps of a computer's clock: seconds, milliseconds, microseconds or nanoseconds since 1970, by their size;
+// days of a spreadsheet, or of MATLAB, by their size and that they hardly change from row to row.
+double seconds_of_epoch(const std::vector<double>& stamps) {
+  // A step that would be 200 kHz in seconds is 2.3 Hz in days.
+  constexpr double a_day = 86400.0, fastest = 5e-6, longest = 30.0;
+  const double first = stamps.front(), step = stamps.size() > 1 ? stamps[1] - first : 1.0;
+  const bool date = (first > 3e4 && first < 7e4) || (first > 6.9e5 && first < 8e5);
+  if (date && step > 0.0 && step < fastest && stamps.back() - first < longest) return a_day;
   for (const double unit : {1e-9, 1e-6, 1e-3})
     if (first * unit > 3e8 && first * unit < 4e9) return unit;
   return 1.0;
@@ -100,7 +106,7 @@ class Recognition {
         } else if (!found->states_unit && counts_samples(table.columns[index])) {
           counted_ = index;
         } else {
-          const double epoch = found->states_unit ? 1.0 : seconds_of_epoch(table.columns[index].front());
+          const double epoch = found->states_unit ? 1.0 : seconds_of_epoch(table.columns[index]);
           columns.time = RecordColumn{index, found->factor * epoch, {}};
           read_ += fmt::format("{}'{}' as time in {}", read_.empty() ? "" : ", ", name,
                                unit_of_time(found->factor * epoch));
@@ -108,6 +114,7 @@ class Recognition {
         break;
       case RecognisedColumn::Kind::signal: {
         columns.channels.push_back({index, found->factor, {found->quantity, name}});
+        columns.recognised = true;
         const bool as_it_is = !found->states_unit;
         read_ += fmt::format("{}'{}' as {}{}", read_.empty() ? "" : ", ", name, to_string(found->quantity),
                              as_it_is ? ", its unit taken for " + std::string(si_unit(found->quantity)) : "");
@@ -142,10 +149,11 @@ class Recognition {
   std::optional<std::size_t> counted_;
 
   static std::string unit_of_time(double factor) {
-    return factor == 1.0    ? "s"
-           : factor == 1e-3 ? "ms"
-           : factor == 1e-6 ? "us"
-                            : fmt::format("{:g} s", factor);
+    return factor == 1.0       ? "s"
+           : factor == 1e-3    ? "ms"
+           : factor == 1e-6    ? "us"
+           : factor == 86400.0 ? "days"
+                               : fmt::format("{:g} s", factor);
   }
 
   // A logger's first sample, before its sensor has answered.
@@ -165,16 +173,21 @@ class Recognition {
 // The first column that rises is time, the rest are signals.
 RecordColumns columns_without_header(RecordTable& table) {
   RecordColumns columns;
+  columns.recognised = true;
   std::size_t first = 0;
   if (table.width() > 1 && (table.time || rises(table.columns[0]))) {
     first = 1;
     if (!table.time && counts_samples(table.columns[0]))
       columns.counted = 0;
     else if (!table.time)
-      columns.time = RecordColumn{0, seconds_of_epoch(table.columns[0].front()), {}};
+      columns.time = RecordColumn{0, seconds_of_epoch(table.columns[0]), {}};
   }
+  const auto never_moves = [](const std::vector<double>& values) {  // dates beside times of day
+    return std::ranges::all_of(values, [&](double value) { return value == 0.0; });
+  };
   for (std::size_t index = first; index < table.width(); ++index)
-    columns.channels.push_back({index, 1.0, {Quantity::acceleration, fmt::format("column_{}", index + 1)}});
+    if (table.time != index && !never_moves(table.columns[index]))
+      columns.channels.push_back({index, 1.0, {Quantity::acceleration, fmt::format("column_{}", index + 1)}});
   table.remarks.push_back(fmt::format(
       "No header: {}{} taken for acceleration in m/s2. Frequency and damping ratio do not depend on it.",
       columns.time ? "column 1 is taken for time in s, " : "",

@@ -19,6 +19,7 @@ struct RecordColumn {
 struct RecordColumns {
   std::optional<RecordColumn> time;
   std::vector<RecordColumn> channels;
+  bool recognised = false;                  ///< channels by names as people write them, or without any
   std::optional<std::size_t> counted = {};  ///< a column that counts samples, where there are no stamps
 };
 

@@ -25,6 +25,32 @@ void require_fitting(const std::filesystem::path& file, double bytes) {
   }
 }
 
+/// UTF-16 in UTF-8: text of spreadsheets and of instruments' software. @param high whether the first byte is
+/// the higher
+std::string from_utf16(const std::string& bytes, bool high) {
+  std::string text;
+  const auto unit = [&](std::size_t at) {
+    const auto first = static_cast<unsigned char>(bytes[at]),
+               second = static_cast<unsigned char>(bytes[at + 1]);
+    return static_cast<unsigned>(high ? first << 8 | second : second << 8 | first);
+  };
+  for (std::size_t at = 2; at + 1 < bytes.size(); at += 2) {
+    unsigned code = unit(at);
+    if (code >= 0xD800 && code < 0xDC00 && at + 3 < bytes.size()) {
+      code = 0x10000 + ((code - 0xD800) << 10) + (unit(at + 2) - 0xDC00);
+      at += 2;
+    }
+    if (code < 0x80) {
+      text += static_cast<char>(code);
+      continue;
+    }
+    const int more = code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+    text += static_cast<char>((more == 1 ? 0xC0 : more == 2 ? 0xE0 : 0xF0) | (code >> (6 * more) & 0x1F));
+    for (int k = more - 1; k >= 0; --k) text += static_cast<char>(0x80 | (code >> (6 * k) & 0x3F));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::ifstream open_input(const std::filesystem::path& file, const std::string& expected) {
@@ -70,6 +96,8 @@ std::string read_text(const std::filesystem::path& file, const std::string& expe
   const Place place{file.string(), 0, 0};
   std::string text = read_bytes(file, expected);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    text = from_utf16(text, text.starts_with("\xFE"));
   if (text.empty()) throw InputError(place, "an empty file; expected " + expected);
   if (const auto byte = std::find_if(text.begin(), text.end(), is_binary); byte != text.end()) {
     const auto line = std::count(text.begin(), byte, '\n') + 1;

@@ -66,7 +66,7 @@ class Vocabulary(unittest.TestCase):
     def test_what_the_command_says_of_options_is_said_of_keywords(self):
         for call, message in (
                 (lambda: beamid.modes(elements=0), "modes: elements is 0; expected a whole number from 1 to "),
-                (lambda: beamid.identify("a.csv"), "identify needs a structure; expected a Beam, "),
+                (lambda: beamid.identify("a.csv"), "a.csv: no such file"),
                 (lambda: beamid.identify("a.csv", "nowhere.toml"), "nowhere.toml: no such file")):
             with self.assertRaises(beamid.InputError) as refused:
                 call()

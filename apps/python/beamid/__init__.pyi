@@ -107,10 +107,10 @@ class Record:
         base_acceleration_mm_per_s2: npt.ArrayLike = ..., base_acceleration_g: npt.ArrayLike = ...,
         support_acceleration_m_per_s2: npt.ArrayLike = ..., support_acceleration_mm_per_s2: npt.ArrayLike = ...,
         support_acceleration_g: npt.ArrayLike = ..., angular_acceleration_rad_per_s2: npt.ArrayLike = ...,
-        angular_acceleration_mrad_per_s2: npt.ArrayLike = ..., reader: str = ..., separator: str = ...,
-        decimal: str = ..., header_lines: int = ..., malformed: str = ..., missing_input: str = ...,
-        stamps: str = ..., input: str = ..., own_clock: Sequence[str] = ..., sampling_rate_hz: _Number = ...,
-        window_s: Sequence[_Number] = ..., prepare: _Tables = ...) -> None: ...
+        angular_acceleration_mrad_per_s2: npt.ArrayLike = ..., files: Sequence[str] = ..., reader: str = ...,
+        separator: str = ..., decimal: str = ..., header_lines: int = ..., malformed: str = ...,
+        missing_input: str = ..., stamps: str = ..., input: str = ..., own_clock: Sequence[str] = ...,
+        sampling_rate_hz: _Number = ..., window_s: Sequence[_Number] = ..., prepare: _Tables = ...) -> None: ...
     @property
     def numbers(self) -> int: ...
     @property
@@ -181,8 +181,8 @@ class Experiment(_Structure):
     @classmethod
     def read(cls, path: _Path) -> Experiment: ...
 
-def read(path: _Path, *, reader: str = ..., separator: str = ..., decimal: str = ..., header_lines: int = ...,
-    malformed: str = ..., missing_input: str = ..., stamps: str = ..., input: str = ...,
+def read(path: _Path, *, files: Sequence[str] = ..., reader: str = ..., separator: str = ..., decimal: str = ...,
+    header_lines: int = ..., malformed: str = ..., missing_input: str = ..., stamps: str = ..., input: str = ...,
     own_clock: Sequence[str] = ..., sampling_rate_hz: _Number = ..., window_s: Sequence[_Number] = ...,
     time: _Table | _Structure = ..., channels: _Tables = ..., prepare: _Tables = ...) -> RecordFile: ...
 def modes(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., modes: int | None = ...,
@@ -202,9 +202,12 @@ def simulate(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...
     root_rotational_stiffness: _Number | None = ..., support: str | None = ..., damping_ratio: _Number | None = ...,
     elements: int | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
     no_progress: bool | None = ..., **keys: Any) -> Results: ...
-def identify(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
+def identify(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., mass: _Number | None = ...,
     window: Sequence[_Number] | Sequence[Sequence[_Number]] | None = ..., on_failure: str | None = ...,
-    smoother: str | None = ..., estimator: str | None = ..., damping_law: str | None = ..., out: _Path | None = ...,
+    smoother: str | None = ..., estimator: str | None = ..., damping_law: str | None = ...,
+    column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
+    unit: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
+    stamps: str | None = ..., skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ...,
     force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def modal(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., method: str | None = ...,
     band: Sequence[_Number] | None = ..., order: int | None = ..., modes: int | None = ...,
@@ -222,8 +225,11 @@ def compare(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     youngs_modulus: _Number | None = ..., density: _Number | None = ..., beam_mass: _Number | None = ...,
     tip_mass: _Number | None = ..., tip_inertia: _Number | None = ..., tip_eccentricity: _Number | None = ...,
     axial_load: _Number | None = ..., root_rotational_stiffness: _Number | None = ..., support: str | None = ...,
-    damping_ratio: _Number | None = ..., elements: int | None = ..., out: _Path | None = ...,
-    force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    damping_ratio: _Number | None = ..., elements: int | None = ..., column: str | Sequence[str] | None = ...,
+    quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ..., time: str | None = ...,
+    rate: _Number | None = ..., stamps: str | None = ..., skip_malformed: bool | None = ...,
+    reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
+    no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def report(*arguments: _Argument, out: _Path | None = ..., pdf: _Path | None = ..., all: bool | None = ...,
     force: bool | None = ...) -> str: ...
 def inspect(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
@@ -232,7 +238,10 @@ def inspect(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     window: Sequence[_Number] | None = ..., stamps: str | None = ..., skip_malformed: bool | None = ...,
     reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
     no_progress: bool | None = ..., **keys: Any) -> Results: ...
-def prepare(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., out: _Path | None = ...,
+def prepare(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
+    column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
+    unit: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
+    stamps: str | None = ..., skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ...,
     force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def track(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., band: Sequence[_Number] | None = ...,
     walk: _Number | None = ..., false_alarms: _Number | None = ..., shortest: _Number | None = ...,
@@ -253,19 +262,29 @@ def stream(record: Record | RecordFile | _Path, *arguments: _Argument, config: _
     save_state: _Path | None = ..., **keys: Any) -> dict[str, npt.NDArray[Any]]: ...
 def check(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
     shape_error: _Number | None = ..., candidate: str | Sequence[str] | None = ..., method: str | None = ...,
-    band: Sequence[_Number] | None = ..., out: _Path | None = ..., force: bool | None = ...,
-    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    band: Sequence[_Number] | None = ..., column: str | Sequence[str] | None = ...,
+    quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ..., time: str | None = ...,
+    rate: _Number | None = ..., stamps: str | None = ..., skip_malformed: bool | None = ...,
+    reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
+    no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     window: Sequence[_Number] | None = ..., discretisation: str | Sequence[str] | None = ...,
     steps: int | None = ..., published_xi: _Number | None = ..., scheme: str | None = ...,
-    interval: _Number | None = ..., frequency: _Number | None = ..., out: _Path | None = ...,
-    force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
-def sense(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., at: str | Sequence[str] | None = ...,
-    filter: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
+    interval: _Number | None = ..., frequency: _Number | None = ..., column: str | Sequence[str] | None = ...,
+    quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ..., time: str | None = ...,
+    rate: _Number | None = ..., stamps: str | None = ..., skip_malformed: bool | None = ...,
+    reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
     no_progress: bool | None = ..., **keys: Any) -> Results: ...
+def sense(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., at: str | Sequence[str] | None = ...,
+    filter: str | None = ..., column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
+    unit: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
+    stamps: str | None = ..., skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ...,
+    force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def substructures(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., no_whole: bool | None = ...,
-    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
-    **keys: Any) -> Results: ...
+    column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
+    unit: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
+    stamps: str | None = ..., skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ...,
+    force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def update(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
     shape_error: _Number | None = ..., starts: int | None = ..., out: _Path | None = ..., force: bool | None = ...,
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...

@@ -143,6 +143,21 @@ ComparedRun identified_or_refused(const RunContext& context, ReducedBeam& made, 
   }
 }
 
+// What of the description would explain what a driven model leaves.
+void look_for_faults(const RunContext& context, const ReducedBeam& made, const Choice& reduction,
+                     const std::filesystem::path& folder, ComparedRun& run) {
+  if (!context.analysis.forced() || !run.answers() || !made.started || !run.model ||
+      !context.compared.clocks.empty() || has_noise(run.settings.input_noise))
+    return;
+  const JointModel& model = made.started->model;
+  const filters::Gaussian known{
+      made.started->guess.mean(model.unknown_places),
+      own_guess(model, made.setting->observations, measurements(context.analysis.record).outputs).unknowns,
+      {}};
+  run.faults = description_faults(context.experiment, context.analysis.record, reduction, folder, *run.model,
+                                  known, run.unknown_state.mean);
+}
+
 }  // namespace
 
 const char* to_string(ComparedRun::Status status) {
@@ -244,6 +259,7 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
         run.filter =
             choice_text(settings.filter, filters::filter_registry().find(settings.filter.name).options);
         run.discretisation = settings.discretisation;
+        if (keep == filters::Keep::all_estimates) look_for_faults(context, made, reduction, folder, run);
         judge_run(context, run);
         comparison.runs.push_back(std::move(run));
       }

@@ -12,6 +12,7 @@
 #include "experiments/identify/batch.hpp"
 #include "experiments/identify/clocks/likeliest_clock.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
+#include "experiments/identify/driven/description_faults.hpp"
 #include "experiments/identify/driven/section_scatter.hpp"
 #include "experiments/identify/noise_in_estimates.hpp"
 #include "experiments/modal/clock_scatter.hpp"
@@ -105,6 +106,7 @@ struct ComparedRun {
   filters::Gaussian unknown_state, unknown_start;  ///< of what the filter's state carries for them: at the
                                                    ///< end, and at the start of the last pass (q)
   std::optional<SectionScatter> sections;          ///< of a driven record that is long enough
+  std::vector<DescriptionFault> faults;            ///< of a driven linear model; by `identify`
   std::optional<ClockStep> clocks;   ///< of channels with clocks of their own; absent: there are none
   LikeliestClocks likeliest_clocks;  ///< of a driven record without such channels
   std::optional<ClockScatter> clock_scatter;  ///< of a free decay's channels that do not agree; by `identify`

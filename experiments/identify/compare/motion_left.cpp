@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "experiments/identify/compare/run_noise.hpp"
 #include "experiments/models/finest_discretisation.hpp"
@@ -90,6 +92,46 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
           : run.step_cause);
   if (run.reason.ends_with('.')) run.reason.pop_back();
   run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
+}
+
+bool judge_faults(ComparedRun& run) {
+  constexpr double mostly = 0.5, surely = 5.0;
+  constexpr std::size_t most_named = 3;
+  const auto share = [](const DescriptionFault& fault) {
+    return fmt::format("{} ({:.0f} % of what is left, in squares)", fault.sentence, 100.0 * fault.explained);
+  };
+  // By how much a change moves the unknown that it moves most, in deviations as they are reported.
+  const auto farthest = [&](const DescriptionFault& fault) {
+    std::pair<double, std::size_t> most{0.0, 0};
+    for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+      const auto at = static_cast<Eigen::Index>(j);
+      const Unknown& unknown = run.unknowns[j];
+      const double from = run.unknown_state.mean[at],
+                   change = unknown.to_physical(from + fault.moved[at]) - unknown.to_physical(from),
+                   moved = std::abs(change) / run.parameters[j].estimate.deviation;
+      if (moved > most.first) most = {moved, j};
+    }
+    return most;
+  };
+  std::string named;
+  std::size_t count = 0;
+  for (const DescriptionFault& fault : run.faults)
+    if (fault.explained > mostly && count < most_named) named += (count++ == 0 ? "" : "; or ") + share(fault);
+  if (count == 0 && run.status == ComparedRun::Status::converged)
+    for (const DescriptionFault& fault : run.faults) {
+      const auto [moved, unknown] = farthest(fault);
+      if (!(fault.score > surely) || !(moved > quantile_95)) continue;
+      named = fmt::format("{}; allowed for, it moves {} by {:.2g} of its deviations", share(fault),
+                          run.parameters[unknown].estimate.name, moved);
+      break;
+    }
+  if (named.empty()) return false;
+  const std::string text =
+      "CONTRADICTED: one thing described otherwise explains the record better: " + named + ".";
+  run.warnings.insert(run.warnings.begin(), text);
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = named;
+  return true;
 }
 
 void judge_innovations(const RunContext& context, ComparedRun& run) {

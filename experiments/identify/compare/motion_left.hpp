@@ -14,6 +14,11 @@ void judge_motion_left(const RunContext& context, ComparedRun& run);
 /// of it is left and no noise.
 bool is_approximate(const ComparedRun& run);
 
+/// Contradicted where one described quantity, changed alone, explains half of what is left or more, or where
+/// one surely differs, by five of its deviations, and moves an unknown by more than the interval reported.
+/// @returns whether a cause was named
+bool judge_faults(ComparedRun& run);
+
 /// A warning where the innovations are not those of a consistent filter: not white, or of changing size, with
 /// a probability below one in a thousand.
 void judge_innovations(const RunContext& context, ComparedRun& run);

@@ -83,7 +83,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
     run.warnings.insert(run.warnings.begin(), text);
   judge_settling(run);
   judge_motion_left(context, run);
-  judge_inputs(context, run);
+  if (!judge_faults(run)) judge_inputs(context, run);
   judge_decay(context, run);
   judge_moved_mass(run);
   judge_what_is_said(run);

@@ -1,7 +1,6 @@
 #include "experiments/identify/driven/driven_fit.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -10,8 +9,8 @@
 #include <stdexcept>
 
 #include "experiments/identify/compare/low_mode_fit.hpp"
+#include "experiments/identify/driven/driven_part.hpp"
 #include "experiments/models/finest_discretisation.hpp"
-#include "experiments/models/motion/linear_response.hpp"
 #include "experiments/signal/random.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
@@ -24,77 +23,9 @@ using std::numbers::pi;
 
 constexpr double no_motion = std::numeric_limits<double>::infinity();  // J where there is none
 
-// What a converter that holds or joins samples by lines does to a frequency.
-Complex path_gain(InputPath path, double omega, double interval) {
-  if (path == InputPath::band_limited) return 1.0;
-  const double half = 0.5 * omega * interval, sinc = std::sin(half) / half;
-  return path == InputPath::linear ? Complex(sinc * sinc) : sinc * std::exp(Complex(0.0, -half));
-}
-
-// Complex lines as real rows.
-MatrixXd line_rows(const MatrixXcd& lines) {
-  MatrixXd rows(2 * lines.rows(), lines.cols());
-  rows << lines.real(), lines.imag();
-  return rows;
-}
-
-// What a model makes of one part of a record, at one theta.
-struct PartLines {
-  MatrixXcd driven;  // W G_k u_k, all channels of one line, then those of the next (p L)
-  MatrixXcd added;   // W Z (p L x c)
-};
-
-PartLines part_lines(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part) {
-  const Index p = part.outputs.rows(), lines = part.omega.size(), l = response.motion_size();
-  PartLines found{MatrixXcd(p * lines, 1), MatrixXcd::Zero(p * lines, l + 2 * p)};
-  MatrixXcd transfer, free;
-  for (Index k = 0; k < lines; ++k) {
-    const double omega = part.omega[k];
-    response.line(omega, part.interval, transfer, free);
-    found.driven.col(0).segment(k * p, p) = path_gain(problem.path, omega, part.interval) *
-                                            (problem.weights.asDiagonal() * (transfer * part.inputs.col(k)));
-    found.added.block(k * p, 0, p, l) = problem.weights.asDiagonal() * free;
-    for (Index i = 0; i < p; ++i) {
-      found.added(k * p + i, l + i) = 1.0;
-      found.added(k * p + i, l + p + i) = Complex(0.0, std::sin(omega * part.interval));
-    }
-  }
-  return found;
-}
-
-// What one part leaves, the ends of it projected out.
-struct PartAt {
-  PartLines lines;
-  Eigen::ColPivHouseholderQR<MatrixXd> ends;
-  VectorXd scale, coefficients;  // of the columns of Z
-  VectorXd left;                 // (2 p L)
-
-  PartAt(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part)
-      : lines(part_lines(problem, response, part)) {
-    MatrixXcd read = part.outputs;
-    read = problem.weights.asDiagonal() * read;
-    const VectorXd all = line_rows(Eigen::Map<VectorXcd>(read.data(), read.size()) - lines.driven.col(0));
-    MatrixXd columns = line_rows(lines.added);
-    scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-    columns = columns * scale.asDiagonal();
-    ends.setThreshold(1e-10);
-    ends.compute(columns);
-    const VectorXd scaled = ends.solve(all);
-    left = all - columns * scaled;
-    coefficients = scale.asDiagonal() * scaled;
-  }
-
-  // Without what the ends of the part could make of it.
-  void project(VectorXd& rows) const {
-    rows.applyOnTheLeft(ends.householderQ().transpose());
-    rows.head(ends.rank()).setZero();
-    rows.applyOnTheLeft(ends.householderQ());
-  }
-};
-
-class DrivenLines {
+class MotionLines {
  public:
-  explicit DrivenLines(const DrivenProblem& problem)
+  explicit MotionLines(const DrivenProblem& problem)
       : problem_(problem), motion_(dynamic_cast<const filters::LinearMotion&>(*problem.model->motion)) {
     const MatrixXd& known = problem.prior.covariance;
     prior_ = known.llt().solve(MatrixXd::Identity(known.rows(), known.cols()));
@@ -164,7 +95,7 @@ class DrivenLines {
   MatrixXd prior_;
 };
 
-DrivenFit summary(const DrivenProblem& problem, const DrivenLines& lines, const std::vector<PartAt>& parts,
+DrivenFit summary(const DrivenProblem& problem, const MotionLines& lines, const std::vector<PartAt>& parts,
                   const VectorXd& theta) {
   const Index p = problem.weights.size(), q = theta.size();
   DrivenFit fit;
@@ -218,7 +149,7 @@ VectorXd well_damped(const JointModel& model, VectorXd theta) {
 }
 
 // The prior's mean with its stiffnesses times a common factor; the least J among neighbours first.
-std::vector<VectorXd> scaled_starts(const DrivenProblem& problem, const DrivenLines& lines) {
+std::vector<VectorXd> scaled_starts(const DrivenProblem& problem, const MotionLines& lines) {
   constexpr int steps = 16;
   constexpr double widest = 4.0;
   const FirstGuess guess{state_of_unknowns(*problem.model, problem.prior.mean), {}};
@@ -314,7 +245,7 @@ std::optional<DrivenProblem> in_sections(const DrivenProblem& whole, const filte
 
 DrivenFit fit_driven_from(const DrivenProblem& problem, const VectorXd& start, int most_steps) {
   constexpr double close_enough = 1e-3, longest = 3.0;  // of deviations of unit noise; of those beforehand
-  const DrivenLines lines(problem);
+  const MotionLines lines(problem);
   VectorXd theta = start;
   std::vector<PartAt> now = lines.at(theta);
   double cost = lines.cost(now, theta);
@@ -367,7 +298,7 @@ DrivenFit fit_driven_from(const DrivenProblem& problem, const VectorXd& start, i
 }
 
 DrivenFit evaluate_driven(const DrivenProblem& problem, const VectorXd& theta) {
-  const DrivenLines lines(problem);
+  const MotionLines lines(problem);
   return summary(problem, lines, lines.at(theta), theta);
 }
 
@@ -375,10 +306,8 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
   constexpr int first_steps = 12;
   constexpr std::size_t most_valleys = 4;
   constexpr int draws = 6;
-  constexpr double usual_left = 0.3, least_left = 1e-6;    // of what was read
-  constexpr double draw_spread = 0.15, wide_spread = 0.4;  // of deviations known beforehand
-  constexpr double much_left = 0.3;                        // of the motion: a wrong valley
-  constexpr int more_draws = 18;
+  constexpr double usual_left = 0.3, least_left = 1e-6;  // of what was read
+  constexpr double draw_spread = 0.15;                   // of deviations known beforehand
   const Index q = problem.prior.mean.size();
   const VectorXd size = sizes(problem.parts);
   problem.weights = (usual_left * size).cwiseInverse();
@@ -390,18 +319,14 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
     } catch (const std::runtime_error&) {  // no motion there
     }
   };
-  const std::vector<VectorXd> starts = scaled_starts(problem, DrivenLines(problem));
+  const std::vector<VectorXd> starts = scaled_starts(problem, MotionLines(problem));
   for (std::size_t i = 0; i < std::min(starts.size(), most_valleys); ++i) descend(starts[i], first_steps);
   if (!best) return best;
   const VectorXd middle = best->theta, known = problem.prior.covariance.diagonal().cwiseSqrt();
-  const auto draw_about = [&](int first, int count, double spread) {
-    for (int i = first; i < first + count; ++i)
-      descend(well_damped(*problem.model, middle + spread * known.cwiseProduct(standard_normal(
-                                                                q, 1, static_cast<std::uint64_t>(i)))),
-              first_steps);
-  };
-  draw_about(0, draws, draw_spread);
-  if (best->left_share > much_left) draw_about(draws, more_draws, wide_spread);
+  for (int i = 0; i < draws; ++i)
+    descend(well_damped(*problem.model, middle + draw_spread * known.cwiseProduct(standard_normal(
+                                                                   q, 1, static_cast<std::uint64_t>(i)))),
+            first_steps);
   for (int i = 0; i < 2; ++i) {
     problem.weights = best->left.cwiseMax(least_left * size).cwiseInverse();
     const VectorXd start = best->theta;

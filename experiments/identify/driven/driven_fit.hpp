@@ -28,6 +28,7 @@ struct DrivenProblem {
   filters::Gaussian prior;  ///< theta_0, P_0 in the model's coordinates eta (q)
 };
 
+/// Where a search ended, with what a part of the record says there.
 struct DrivenFit {
   Eigen::VectorXd theta;        ///< in the model's coordinates eta (q)
   double cost = 0.0;            ///< J

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "experiments/modal/study/channel_clocks.hpp"
+#include "experiments/modal/study/close_pair.hpp"
 #include "experiments/modal/study/drifting_mode.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/modal/study/phase_wander.hpp"
@@ -146,6 +147,7 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
         lost.push_back(mode);
     for (std::size_t m = 0; m < poles.size(); ++m) found.modes[m].pole = poles[m];
     try_again(lost, settings, found, *fit);
+    if (found.free_decay) split_close_pairs(found, *fit);
     if (found.free_decay) {
       compare_clocks(*fit, found);
       follow_phases(*fit, found);

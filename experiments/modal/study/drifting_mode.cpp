@@ -24,48 +24,57 @@ bool near(Complex a, Complex b, double duration) {
          most_cycles;
 }
 
-/// exp(sum_k c_k x^k) at x from 0 to 1 (N).
-VectorXcd drifting(const VectorXcd& c, const VectorXd& x) {
-  const Eigen::ArrayXcd t = x.cast<Complex>();
-  return (((c[3] * t + c[2]) * t + c[1]) * t + c[0]).exp();
+/// Powers 0 to 3 of x from 0 to 1 (N x 4).
+MatrixXd powers_of_time(Index count) {
+  const VectorXd x = VectorXd::LinSpaced(count, 0, 1);
+  MatrixXd basis(count, terms);
+  basis.col(0).setOnes();
+  for (Index j = 1; j < terms; ++j) basis.col(j) = basis.col(j - 1).cwiseProduct(x);
+  return basis;
+}
+
+/// 1, x, a and a^2 with the amplitude a = e^(-decay x): what a rate that follows the amplitude makes of the
+/// phase and of the logarithm of the amplitude, to second order.
+MatrixXd powers_of_amplitude(Index count, double decay) {
+  MatrixXd basis = powers_of_time(count);
+  basis.col(2) = (-decay * basis.col(1).array()).exp();
+  basis.col(3) = basis.col(2).cwiseAbs2();
+  return basis;
+}
+
+VectorXcd drifting(const VectorXcd& c, const MatrixXd& basis) {
+  return (basis.cast<Complex>() * c).array().exp();
 }
 
 /// c of least squares through log z, weighted by |z|.
-VectorXcd through_logarithm(const VectorXcd& z, const VectorXd& x) {
-  Eigen::MatrixXcd powers(z.size(), terms);
-  VectorXcd right = unwrapped_logarithm(z);
-  for (Index k = 0; k < z.size(); ++k) {
-    const double weight = std::abs(z[k]);
-    double power = weight;
-    for (Index j = 0; j < terms; ++j, power *= x[k]) powers(k, j) = power;
-    right[k] *= weight;
-  }
-  return complex_least_squares(powers, right);
+VectorXcd through_logarithm(const VectorXcd& z, const MatrixXd& basis) {
+  const VectorXd weight = z.cwiseAbs();
+  return complex_least_squares(weight.asDiagonal() * basis.cast<Complex>(),
+                               weight.asDiagonal() * unwrapped_logarithm(z));
 }
 
 /// d Re z / d (Re c_1, Im c_1, ...) (N x 2 terms).
-MatrixXd drift_slope(const VectorXcd& z, const VectorXd& x) {
+MatrixXd drift_slope(const VectorXcd& z, const MatrixXd& basis) {
   MatrixXd slope(z.size(), 2 * terms);
-  VectorXcd part = z;
-  for (Index j = 0; j < terms; ++j, part.array() *= x.array().cast<Complex>()) {
-    slope.col(2 * j) = part.real();
-    slope.col(2 * j + 1) = -part.imag();
+  for (Index j = 0; j < terms; ++j) {
+    slope.col(2 * j) = z.real().cwiseProduct(basis.col(j));
+    slope.col(2 * j + 1) = -z.imag().cwiseProduct(basis.col(j));
   }
   return slope;
 }
 
-/// Sum of squares that the best c near `c` leaves of y.
-double left_by_drifting(const VectorXd& y, const VectorXd& x, VectorXcd c) {
-  VectorXcd z = drifting(c, x);
+/// Sum of squares that the best c leaves of y, from that of z on.
+double left_by_drifting(const VectorXd& y, const MatrixXd& basis, const VectorXcd& near) {
+  VectorXcd c = through_logarithm(near, basis), z = drifting(c, basis);
   double squares = (y - z.real()).squaredNorm();
   const auto step = [&](double damping) -> VectorXd {
-    const MatrixXd slope = drift_slope(z, x);
+    const MatrixXd slope = drift_slope(z, basis);
     return filters::solve_damped(slope.transpose() * slope, damping, slope.transpose() * (y - z.real()));
   };
   const auto take = [&](const VectorXd& tried) {
     VectorXcd next = c;
     for (Index j = 0; j < terms; ++j) next[j] += Complex(tried[2 * j], tried[2 * j + 1]);
-    const VectorXcd there = drifting(next, x);
+    const VectorXcd there = drifting(next, basis);
     const double left = (y - there.real()).squaredNorm();
     if (!(left < squares)) return filters::TriedStep{};
     const bool settled = squares - left < 1e-6 * squares;
@@ -80,24 +89,33 @@ double left_by_drifting(const VectorXd& y, const VectorXd& x, VectorXcd c) {
 
 }  // namespace
 
-bool is_one_drifting_mode(const JointDecayFit& fit, std::size_t a, std::size_t b, const MatrixXd& target,
-                          double interval) {
+PairAgainstDrift pair_against_drift(const JointDecayFit& fit, std::size_t a, std::size_t b,
+                                    const MatrixXd& target, double interval, Index channel) {
   const Index count = target.cols();
-  if (!near(fit.rates[a], fit.rates[b], interval * static_cast<double>(count))) return false;
-  Index channel = 0;
-  (fit.shapes.col(static_cast<Index>(a)).cwiseAbs() + fit.shapes.col(static_cast<Index>(b)).cwiseAbs())
-      .cwiseQuotient(fit.residual_standard_deviation.cwiseMax(1e-300))
-      .maxCoeff(&channel);
   VectorXcd pair(count);
   for (Index k = 0; k < count; ++k) {
     const double time = interval * static_cast<double>(k);
     pair[k] = fit.shapes(channel, static_cast<Index>(a)) * std::exp(fit.rates[a] * time) +
               fit.shapes(channel, static_cast<Index>(b)) * std::exp(fit.rates[b] * time);
   }
-  const VectorXd left_by_pair = (target.row(channel) - fit.reconstruction.row(channel)).transpose();
-  const VectorXd x = VectorXd::LinSpaced(count, 0, 1);
-  return left_by_drifting(left_by_pair + pair.real(), x, through_logarithm(pair, x)) <=
-         left_by_pair.squaredNorm();
+  const VectorXd left_by_pair = (target.row(channel) - fit.reconstruction.row(channel)).transpose(),
+                 both = left_by_pair + pair.real();
+  const double decay =
+      -0.5 * (fit.rates[a].real() + fit.rates[b].real()) * interval * static_cast<double>(count);
+  return {left_by_pair.squaredNorm(),
+          std::min(left_by_drifting(both, powers_of_time(count), pair),
+                   left_by_drifting(both, powers_of_amplitude(count, decay), pair))};
+}
+
+bool is_one_drifting_mode(const JointDecayFit& fit, std::size_t a, std::size_t b, const MatrixXd& target,
+                          double interval) {
+  if (!near(fit.rates[a], fit.rates[b], interval * static_cast<double>(target.cols()))) return false;
+  Index channel = 0;
+  (fit.shapes.col(static_cast<Index>(a)).cwiseAbs() + fit.shapes.col(static_cast<Index>(b)).cwiseAbs())
+      .cwiseQuotient(fit.residual_standard_deviation.cwiseMax(1e-300))
+      .maxCoeff(&channel);
+  const PairAgainstDrift found = pair_against_drift(fit, a, b, target, interval, channel);
+  return found.left_by_drift <= found.left_by_pair;
 }
 
 }  // namespace beamid::experiments

@@ -23,6 +23,7 @@ struct SecondOrderForm {
   Eigen::MatrixXd rows;       ///< h (p x r) where what sensors read depends on the unknowns too; else empty
 };
 
+/// z'' + D z' + W z = B u, with matrices that depend on the unknowns.
 class SecondOrderMotion : public filters::LinearMotion {
  public:
   /// @param rows what the observations read of the coordinates (p x r), at the guess

@@ -36,14 +36,28 @@ class DelimitedTextReader final : public RecordReader {
     std::string token;
     std::vector<std::optional<double>> first_stamp(
         text.width());  // whole seconds: a double holds the rest finely
+    constexpr double half_a_day = 43200.0;
+    std::vector<double> days(text.width(), 0.0);  // that have passed [s]
     while (text.next()) {
       cells.add(text.line(), text.line_number());
       table.lines.push_back(text.line_number());
       for (std::size_t column = 0; column < text.width(); ++column) {
         table.columns[column].push_back(text.value(column));
         token = text.field(column);
-        if (!std::isfinite(table.columns[column].back()))
-          if (const auto stamp = seconds_of_stamp(unquoted(token))) {
+        if (!std::isfinite(table.columns[column].back())) {
+          const std::string_view field = unquoted(token);
+          if (const auto of_day = seconds_of_day(field)) {  // past midnight the days go on
+            double& value = table.columns[column].back();
+            value = *of_day + days[column];
+            const std::size_t rows = table.columns[column].size();
+            if (rows > 1 && value < table.columns[column][rows - 2] - half_a_day)
+              value += 2.0 * half_a_day, days[column] += 2.0 * half_a_day;
+            if (!table.time && table.lines.size() == 1) table.time = column;
+            const std::size_t point = token.find_last_of(".,");
+            token = "10000" + (point == std::string::npos ? "" : token.substr(point));
+          } else if (is_date(field)) {
+            table.columns[column].back() = 0.0;
+          } else if (const auto stamp = seconds_of_stamp(unquoted(token))) {
             if (!first_stamp[column]) first_stamp[column] = std::floor(*stamp);
             table.columns[column].back() = *stamp - *first_stamp[column];
             if (!table.time && table.lines.size() == 1) table.time = column;
@@ -53,6 +67,7 @@ class DelimitedTextReader final : public RecordReader {
                                         ? ""
                                         : token.substr(point, token.find_first_of("Z+", point) - point));
           }
+        }
         if (text.decimal() == ',')
           for (char& sign : token) sign = sign == ',' ? '.' : sign;
         if (std::isfinite(table.columns[column].back())) table.precision[column].add(token);

@@ -33,6 +33,64 @@ constexpr NumberType types[] = {
     {"<i2", 2, number_at<std::int16_t>, 5},  {"<i4", 4, number_at<std::int32_t>, 10},
     {"<i8", 8, number_at<std::int64_t>, 16}, {"<u2", 2, number_at<std::uint16_t>, 5}};
 
+/// The columns of one array, named `name`, behind those that are there; a number alone states the rate or the
+/// interval.
+void add_array(RecordTable& table, const std::string& bytes, const std::string& name) {
+  const auto refuse = [&](const std::string& found) {
+    return InputError({table.file}, (name.empty() ? "" : "'" + name + "': ") + found +
+                                        "; expected a NumPy array of one or two dimensions of "
+                                        "little-endian numbers (<f8, <f4, <i2, <i4, <i8, <u2)");
+  };
+  const bool wide = bytes.size() > 8 && bytes[6] >= 2;  // version 2: four bytes of length
+  const std::size_t start = wide ? 12 : 10;
+  if (bytes.size() < start) throw refuse("a header that is cut short");
+  const auto byte = [&](std::size_t at) {
+    return static_cast<std::size_t>(static_cast<unsigned char>(bytes[at]));
+  };
+  std::size_t length = byte(8) | byte(9) << 8;
+  if (wide) length |= byte(10) << 16 | byte(11) << 24;
+  if (bytes.size() < start + length) throw refuse("a header that is cut short");
+  const std::string header = bytes.substr(start, length);
+  std::smatch type, shape;
+  if (!std::regex_search(header, type, std::regex(R"('descr'\s*:\s*'([^']+)')")) ||
+      (!std::regex_search(header, shape, std::regex(R"('shape'\s*:\s*\((\d+),\s*(\d*)\s*\))")) &&
+       !std::regex_search(header, shape, std::regex(R"('shape'\s*:\s*\((\s*)(\s*)\))"))))
+    throw refuse("an array of records or of more dimensions");
+  const NumberType* numbers = nullptr;
+  for (const NumberType& one : types)
+    if (one.name == type[1].str()) numbers = &one;
+  if (!numbers) throw refuse(fmt::format("numbers of type '{}'", type[1].str()));
+  const bool by_columns = header.find("'fortran_order': True") != std::string::npos;
+  if (shape[1].length() == 0) {  // a number alone
+    if (bytes.size() < start + length + numbers->size) throw refuse("a header without its number");
+    const double value = numbers->read(bytes.data() + start + length);
+    const bool interval = name.starts_with("dt") || name.find("interval") != std::string::npos;
+    if (value > 0.0 && !interval &&
+        (name.starts_with("fs") || name.starts_with("Fs") || name.find("rate") != std::string::npos))
+      table.stated_rate = value;
+    if (value > 0.0 && interval) table.stated_rate = 1.0 / value;
+    return;
+  }
+  const std::size_t rows = std::stoull(shape[1]), width = shape[2].length() > 0 ? std::stoull(shape[2]) : 1;
+  const std::size_t count = (bytes.size() - start - length) / numbers->size;
+  if (width == 0 || rows == 0 || rows > count / width) throw refuse("fewer numbers than the header states");
+
+  const char* const data = bytes.data() + start + length;
+  const bool lying = rows < width && rows <= 32;  // a row for each channel
+  const std::size_t added = lying ? rows : width, first = table.columns.size();
+  if (first > 0 && rows != table.rows() && !(lying && width == table.rows()))
+    throw refuse("another length than the arrays before it");
+  table.columns.resize(first + added);
+  table.precision.resize(first + added, PrintedPrecision::of_digits(numbers->digits));
+  for (std::size_t k = 0; k < added && !name.empty(); ++k)
+    table.names.push_back(added > 1 ? fmt::format("{}_{}", name, k + 1) : name);
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t column = 0; column < width; ++column) {
+      const std::size_t at = by_columns ? column * rows + row : row * width + column;
+      table.columns[first + (lying ? row : column)].push_back(numbers->read(data + at * numbers->size));
+    }
+}
+
 class NpyReader final : public RecordReader {
  public:
   bool recognises(std::string_view beginning) const override { return beginning.starts_with(magic); }
@@ -40,46 +98,54 @@ class NpyReader final : public RecordReader {
   RecordTable read(const std::filesystem::path& file, const RecordFormat&) const override {
     std::ifstream stream = open_input(file, "a NumPy array");
     const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    const auto refuse = [&](const std::string& found) {
-      return InputError({file.string()}, found +
-                                             "; expected a NumPy array of one or two dimensions of "
-                                             "little-endian numbers (<f8, <f4, <i2, <i4, <i8, <u2)");
-    };
-    const bool wide = bytes.size() > 8 && bytes[6] >= 2;  // version 2: four bytes of length
-    const std::size_t start = wide ? 12 : 10;
-    if (bytes.size() < start) throw refuse("a header that is cut short");
-    const auto byte = [&](std::size_t at) {
-      return static_cast<std::size_t>(static_cast<unsigned char>(bytes[at]));
-    };
-    std::size_t length = byte(8) | byte(9) << 8;
-    if (wide) length |= byte(10) << 16 | byte(11) << 24;
-    if (bytes.size() < start + length) throw refuse("a header that is cut short");
-    const std::string header = bytes.substr(start, length);
-    std::smatch type, shape;
-    if (!std::regex_search(header, type, std::regex(R"('descr'\s*:\s*'([^']+)')")) ||
-        !std::regex_search(header, shape, std::regex(R"('shape'\s*:\s*\((\d+),\s*(\d*)\s*\))")))
-      throw refuse("an array of records or of more dimensions");
-    const NumberType* numbers = nullptr;
-    for (const NumberType& one : types)
-      if (one.name == type[1].str()) numbers = &one;
-    if (!numbers) throw refuse(fmt::format("numbers of type '{}'", type[1].str()));
-    const bool by_columns = header.find("'fortran_order': True") != std::string::npos;
-    std::size_t rows = std::stoull(shape[1]), width = shape[2].length() > 0 ? std::stoull(shape[2]) : 1;
-    const std::size_t count = (bytes.size() - start - length) / numbers->size;
-    if (width == 0 || rows == 0 || rows > count / width) throw refuse("fewer numbers than the header states");
-
-    const char* const data = bytes.data() + start + length;
-    const bool lying = rows < width && rows <= 32;  // a row for each channel
     RecordTable table;
     table.file = file.string();
     table.by_people = true;
-    table.columns.resize(lying ? rows : width);
-    table.precision.assign(table.columns.size(), PrintedPrecision::of_digits(numbers->digits));
-    for (std::size_t row = 0; row < rows; ++row)
-      for (std::size_t column = 0; column < width; ++column) {
-        const std::size_t at = by_columns ? column * rows + row : row * width + column;
-        table.columns[lying ? row : column].push_back(numbers->read(data + at * numbers->size));
-      }
+    add_array(table, bytes, "");
+    return table;
+  }
+};
+
+/// A zip archive of arrays, as np.savez writes it: each entry stored, its name that of the array.
+class NpzReader final : public RecordReader {
+ public:
+  bool recognises(std::string_view beginning) const override {
+    return beginning.starts_with("PK\x03\x04") &&
+           beginning.substr(0, 200).find(".npy") != std::string_view::npos;
+  }
+
+  RecordTable read(const std::filesystem::path& file, const RecordFormat&) const override {
+    constexpr std::string_view entry = "PK\x01\x02";
+    constexpr std::size_t fixed = 46, local = 30;
+    std::ifstream stream = open_input(file, "NumPy arrays");
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    const auto number = [&](std::size_t at, int length) {
+      std::size_t value = 0;
+      for (int k = length - 1; k >= 0; --k)
+        value = value << 8 | (at + static_cast<std::size_t>(k) < bytes.size()
+                                  ? static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(k)])
+                                  : 0U);
+      return value;
+    };
+    const auto refuse = [&](const std::string& found) {
+      return InputError({file.string()},
+                        found + "; expected arrays as numpy.savez writes them, not compressed");
+    };
+    RecordTable table;
+    table.file = file.string();
+    table.by_people = true;
+    std::size_t at = bytes.find(entry);
+    for (;
+         at != std::string::npos && bytes.compare(at, entry.size(), entry) == 0 && at + fixed <= bytes.size();
+         at += fixed + number(at + 28, 2) + number(at + 30, 2) + number(at + 32, 2)) {
+      const std::string name = bytes.substr(at + fixed, number(at + 28, 2));
+      const std::size_t size = number(at + 20, 4), header = number(at + 42, 4);
+      if (number(at + 10, 2) != 0) throw refuse("'" + name + "' is compressed");
+      const std::size_t begin = header + local + number(header + 26, 2) + number(header + 28, 2);
+      if (begin > bytes.size() || size > bytes.size() - begin) throw refuse("'" + name + "' is cut short");
+      add_array(table, bytes.substr(begin, size), name.substr(0, name.rfind(".npy")));
+    }
+    if (table.columns.empty()) throw refuse("no array");
     return table;
   }
 };
@@ -91,6 +157,13 @@ const bool npy_registered = record_reader_registry().add(
      {},
      {},
      [](const filters::Options&) { return std::make_unique<NpyReader>(); }});
+const bool npz_registered = record_reader_registry().add(
+    {"npz",
+     "archives of NumPy arrays of one length, not compressed, each by its name; fs or dt state the rate",
+     "[npy]",
+     {},
+     {},
+     [](const filters::Options&) { return std::make_unique<NpzReader>(); }});
 
 }  // namespace
 }  // namespace beamid::experiments

@@ -17,7 +17,10 @@
 namespace beamid::experiments {
 namespace {
 
-Table parameter_table(const RecordIdentification& found) {
+// Of one mode without a mass: frequency and damping ratio alone.
+constexpr std::size_t without_mass = 2;
+
+Table parameter_table(const Experiment& experiment, const RecordIdentification& found) {
   Table table{"parameters", ""};
   table.column({"", "parameter"})
       .column({"estimate", "estimate", "{}"})
@@ -34,6 +37,7 @@ Table parameter_table(const RecordIdentification& found) {
     together = parameters(found, *found.batch->identification);
   }
   for (const Parameter& p : parameters(found)) {
+    if (!experiment.mass_is_stated && table.rows() == without_mass) break;
     const auto shown = [&](double value) { return Rounded{p.shown * value, p.shown * p.deviation}; };
     std::vector<Cell> cells{
         p.name,         shown(p.estimate),           shown(p.lower_95()), shown(p.upper_95()),
@@ -43,6 +47,12 @@ Table parameter_table(const RecordIdentification& found) {
       for (const double value : {b.estimate, b.lower_95(), b.upper_95()}) cells.emplace_back(shown(value));
     }
     table.row(cells);
+  }
+  if (!experiment.mass_is_stated) {
+    table.note =
+        "Stiffness and damping need the mass that moves: --mass KG. Modal analysis: eigensystem realisation "
+        "polished by least squares.";
+    return table;
   }
   table.note = fmt::format(
       "Intervals take the mass as known: Meq = {:.4f} kg; a mass wrong by 1 % makes K and C wrong by 1 %. "
@@ -183,6 +193,10 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   results.command = "identify";
   results.configuration = configuration(experiment, record, found, record_name);
   results.values = values(found, record);
+  if (!experiment.is_described) results.values.erase("beam_frequency_hz");
+  if (!experiment.mass_is_stated)
+    for (const char* key : {"stiffness_n_per_m", "damping_n_s_per_m", "equivalent_mass_kg", "covariance"})
+      results.values.erase(key);
   const Record placed = with_places(record, experiment);
   results.values["channels"] = channel_values(placed);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
@@ -194,15 +208,16 @@ Results report(const Experiment& experiment, const Record& record, const std::st
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),
       experiment.filter.name, experiment.model.name, experiment.discretisation, found.passes,
       found.passes == 1 ? "" : "es"));
-  if (record.channels.size() > 1 || !experiment.structure.has_positions() ||
-      *placed.channels[0].position != fem::natural_point(experiment.structure).position)
+  if (experiment.is_described &&
+      (record.channels.size() > 1 || !experiment.structure.has_positions() ||
+       *placed.channels[0].position != fem::natural_point(experiment.structure).position))
     results.paragraph("Stiffness, damping and mass are those of the motion at the first channel. Channels: " +
                       channels_text(placed) + ".");
   if (found.identification.run.failure) return results;
   results.arrays = {{"", "innovations", found.identification.run.innovations},
                     {"", "reproduced", found.reproduced},
                     {"", "time_s", record.time.transpose()}};
-  results.table(parameter_table(found));
+  results.table(parameter_table(experiment, found));
   if (found.batch) results.paragraph(batch_text(found));
   results.notes(found.remarks);
   results.paragraph(consistency_text(found));
@@ -211,10 +226,11 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   if (const std::string text = failure_sentences(found.identification.run.events); !text.empty())
     results.paragraph("The filter had trouble (--on-failure says what it then does). " + text);
   results.paragraph(noise_text(record, found));
-  results.paragraph(fmt::format(
-      "The finite-element beam as described has its first mode at {:.3f} Hz; the measured frequency {}.",
-      found.beam_frequency_hz,
-      difference_words(percent(found.identification.found.frequency_hz(), found.beam_frequency_hz))));
+  if (experiment.is_described)
+    results.paragraph(fmt::format(
+        "The finite-element beam as described has its first mode at {:.3f} Hz; the measured frequency {}.",
+        found.beam_frequency_hz,
+        difference_words(percent(found.identification.found.frequency_hz(), found.beam_frequency_hz))));
   if (const std::string text = companion_text(found); !text.empty()) results.paragraph(text);
   results.figures = figures(record, found);
   std::vector<std::string> titles;

@@ -33,8 +33,7 @@ std::string introduction(const ModalStudySettings& settings, const RecordModes& 
                         found.search.orders.empty() ? 0 : found.search.orders.back().order);
   text += found.polished ? ", all modes polished together by least squares." : ".";
   if (found.reproduced.size() > 0)
-    text += fmt::format(" The modes leave {:.2g} % of the {}.",
-                        100 * found.left(),
+    text += fmt::format(" The modes leave {:.2g} % of the {}.", 100 * found.left(),
                         found.free_decay ? "motion in the band" : "autocorrelations");
   return text;
 }

@@ -1,0 +1,330 @@
+#include "experiments/identify/driven/description_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "experiments/identify/driven/driven_part.hpp"
+#include "experiments/identify/model_check/candidates.hpp"
+#include "experiments/identify/model_setting.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
+
+constexpr double worth_following = 0.1, mostly = 0.5, surely = 5.0;  // of what is left; deviations
+constexpr double hopeless = 1.5;                                     // times what is left, after a few steps
+
+/// What is left at the unknowns, its slopes, and what they leave of other directions.
+class LeftOver {
+ public:
+  LeftOver(const DrivenProblem& problem, const VectorXd& theta)
+      : problem_(&problem), theta_(theta), part_(at(*problem.model, problem)) {
+    const Index q = theta.size();
+    slopes_.resize(part_.left.size(), q);
+    for (Index j = 0; j < q; ++j) {
+      const double step = 1e-4 * std::sqrt(problem.prior.covariance(j, j));
+      VectorXd there = theta;
+      there[j] += step;
+      slopes_.col(j) = change_of(*problem.model, there) / step;
+    }
+    normal_.compute(slopes_.transpose() * slopes_);
+  }
+
+  const VectorXd& left() const { return part_.left; }
+
+  /// d of another model, or of other unknowns: how the lines made differ, ends projected out.
+  VectorXd change_of(const JointModel& model, const VectorXd& theta) const {
+    const LinearResponse there(dynamic_cast<const filters::LinearMotion&>(*model.motion),
+                               state_of_unknowns(model, theta));
+    const PartLines made = part_lines(*problem_, there, problem_->parts.front());
+    if (made.added.cols() != part_.lines.added.cols())
+      throw std::runtime_error("another number of coordinates");
+    return projected(made.driven - part_.lines.driven +
+                     (made.added - part_.lines.added) * part_.coefficients);
+  }
+  VectorXd change_of(const JointModel& model) const { return change_of(model, theta_); }
+
+  /// Of a gain of one channel.
+  VectorXd gain_of(Index channel) const {
+    VectorXcd lines = VectorXcd::Zero(part_.lines.driven.rows());
+    const auto of = Eigen::seqN(channel, lines.size() / problem_->weights.size(), problem_->weights.size());
+    lines(of) = part_.lines.driven.col(0)(of);
+    return projected(lines);
+  }
+
+  /// Of a gain of all inputs.
+  VectorXd gain_of_inputs() const { return projected(part_.lines.driven); }
+
+  struct Score {
+    double change, deviation, score, explained;
+    VectorXd moved;
+  };
+
+  /// Absent where the unknowns make of it what it makes.
+  std::optional<Score> score(const VectorXd& direction) const {
+    constexpr double collinear = 0.02;  // what the unknowns leave of it, at least
+    const VectorXd coefficients = normal_.solve(slopes_.transpose() * direction);
+    const VectorXd own = direction - slopes_ * coefficients;
+    const double squares = own.squaredNorm();
+    if (!(squares > collinear * collinear * direction.squaredNorm())) return {};
+    const VectorXd at_once = part_.left - slopes_ * normal_.solve(slopes_.transpose() * part_.left);
+    const Index half = own.size() / 2;
+    const double sum = own.dot(at_once), change = sum / squares;
+    // Of the change itself, by what is left with it: lines of their own noise, one that weighs much by more.
+    const VectorXd rest = at_once - change * own;
+    double variance = 0.0;
+    for (Index k = 0; k < half; ++k) {
+      const double weight = own[k] * own[k] + own[k + half] * own[k + half],
+                   product = own[k] * rest[k] + own[k + half] * rest[k + half];
+      variance += std::pow(product / std::max(1e-3, 1.0 - weight / squares), 2);
+    }
+    const double spread = std::sqrt(variance);
+    return Score{change, spread / squares, std::abs(sum) / std::max(spread, 1e-300),
+                 sum * sum / (squares * std::max(part_.left.squaredNorm(), 1e-300)), -change * coefficients};
+  }
+
+ private:
+  const DrivenProblem* problem_;
+  VectorXd theta_;
+  PartAt part_;
+  MatrixXd slopes_;
+  Eigen::LDLT<MatrixXd> normal_;
+
+  PartAt at(const JointModel& model, const DrivenProblem& problem) const {
+    return {problem,
+            LinearResponse(dynamic_cast<const filters::LinearMotion&>(*model.motion),
+                           state_of_unknowns(model, theta_)),
+            problem.parts.front()};
+  }
+  VectorXd projected(const VectorXcd& lines) const {
+    VectorXd rows = line_rows(lines);
+    part_.project(rows);
+    return rows;
+  }
+};
+
+/// The model of another description.
+class OtherModels {
+ public:
+  OtherModels(const Experiment& experiment, const Record& record, const Choice& reduction,
+              const std::filesystem::path& folder)
+      : experiment_(experiment), record_(record), reduction_(reduction), folder_(folder) {}
+
+  JointModel of(const fem::Structure& structure) const {
+    Experiment other = experiment_;
+    other.structure = structure;
+    return made(other, record_);
+  }
+  JointModel with_place(Index channel, double position) const {
+    Record other = record_;
+    other.channels[static_cast<std::size_t>(channel)].position = position;
+    return made(experiment_, other);
+  }
+
+ private:
+  const Experiment& experiment_;
+  const Record& record_;
+  const Choice& reduction_;
+  const std::filesystem::path& folder_;
+
+  JointModel made(const Experiment& experiment, const Record& record) const {
+    const ModelSetting setting = model_setting(experiment, record, reduction_, folder_);
+    return std::move(*model_registry().make(experiment.model.name, experiment.model.options, setting));
+  }
+};
+
+/// The unknowns fitted anew, if a few steps get anywhere. @param most of what is left after these
+std::optional<DrivenFit> promising_fit(const DrivenProblem& problem, const VectorXd& from, double most) {
+  constexpr int few_steps = 3, more_steps = 6;
+  const DrivenFit first = fit_driven_from(problem, from, few_steps);
+  if (!(first.cost < most)) return {};
+  return first.converged ? first : fit_driven_from(problem, first.theta, more_steps);
+}
+
+struct FollowedChange {
+  double change = 0.0, deviation = 0.0, left = 0.0;  // of x; squares of what remains
+  VectorXd theta;
+};
+
+/// A change of the structure to where it explains most, the unknowns with it.
+FollowedChange followed(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
+                        const Candidate& candidate, const VectorXd& theta, double first,
+                        const VectorXd& moved_per_change) {
+  constexpr int rounds = 4;
+  FollowedChange best;
+  best.left = std::numeric_limits<double>::infinity();
+  double x = first;
+  VectorXd from = theta + first * moved_per_change;
+  const double whole = evaluate_driven(problem, theta).cost;
+  for (int round = 0; round < rounds; ++round) {
+    x = std::clamp(x, candidate.lower, candidate.upper);
+    const JointModel model = models.of(candidate.changed(experiment.structure, x));
+    DrivenProblem there = problem;
+    there.model = &model;
+    const auto fit = promising_fit(there, from, round == 0 ? hopeless * whole : best.left);
+    if (!fit) break;
+    const LeftOver left(there, fit->theta);
+    const double step = 0.02 * candidate.scale();
+    const JointModel moved = models.of(candidate.changed(experiment.structure, x + step));
+    const auto score = left.score(left.change_of(moved) / step);
+    if (!(left.left().squaredNorm() < best.left) || !score) break;
+    best = {x, score->deviation, left.left().squaredNorm(), fit->theta};
+    x += score->change;
+    from = fit->theta + score->moved;
+  }
+  return best;
+}
+
+std::string value_text(const Candidate& candidate, const fem::Structure& structure, double x,
+                       double deviation) {
+  if (!candidate.value)
+    return fmt::format("{} by the record {:+.3g} +- {:.2g} % of that described", candidate.label, 100.0 * x,
+                       196.0 * deviation);
+  const double step = 1e-3 * candidate.scale(),
+               slope = (candidate.value(structure, x + step) - candidate.value(structure, x)) / step;
+  return fmt::format("{} described as {:.4g} {}, by the record {:.4g} +- {:.2g} {}", candidate.label,
+                     candidate.value(structure, 0.0), candidate.value_unit, candidate.value(structure, x),
+                     1.96 * std::abs(slope) * deviation, candidate.value_unit);
+}
+
+/// Whether the unknowns hold it already.
+bool is_asked(const Experiment& experiment, const Candidate& candidate) {
+  return std::ranges::any_of(experiment.parameters, [&](const ParameterChoice& asked) {
+    return candidate.name.starts_with(asked.quantity) ||
+           (!asked.name.empty() && candidate.name == asked.name);
+  });
+}
+
+void add_structure_changes(const DrivenProblem& problem, const OtherModels& models,
+                           const Experiment& experiment, const LeftOver& left, const VectorXd& theta,
+                           bool much_is_left, std::vector<DescriptionFault>& faults) {
+  const double whole = left.left().squaredNorm();
+  for (const Candidate& candidate : candidates_of({experiment.structure})) {
+    if (candidate.of_clock || is_asked(experiment, candidate)) continue;
+    try {
+      const double step = 0.02 * candidate.scale();
+      const JointModel model = models.of(candidate.changed(experiment.structure, step));
+      const auto score = left.score(left.change_of(model) / step);
+      if (!score) continue;
+      DescriptionFault fault{value_text(candidate, experiment.structure, score->change, score->deviation),
+                             score->score, score->explained, score->moved};
+      // Where the unknowns have moved by many widths of a resonance, what is left is not linear in x.
+      std::vector<double> firsts;
+      if (score->explained > worth_following) firsts.push_back(score->change);
+      if (much_is_left && !(score->explained > mostly))
+        firsts.insert(firsts.end(), {0.5 * candidate.scale(), -0.5 * candidate.scale()});
+      for (const double first : firsts) {
+        const FollowedChange end =
+            followed(problem, models, experiment, candidate, theta, first, score->moved / score->change);
+        if (!std::isfinite(end.left) || !(1.0 - end.left / whole > fault.explained)) continue;
+        fault = {value_text(candidate, experiment.structure, end.change, end.deviation),
+                 std::max(score->score, std::abs(end.change) / end.deviation), 1.0 - end.left / whole,
+                 end.theta - theta};
+      }
+      if (fault.score > surely) faults.push_back(std::move(fault));
+    } catch (const std::exception&) {  // there is no such structure, or it does not move so
+    }
+  }
+}
+
+void add_gains(const Record& record, const LeftOver& left, std::vector<DescriptionFault>& faults) {
+  const auto add = [&](const std::string& name, const VectorXd& direction) {
+    const auto score = left.score(direction);
+    constexpr double largest = 0.6, turned = 0.2;  // a sign is a gain of -1
+    if (!score || !(score->score > surely)) return;
+    if (std::abs(score->change) > largest && std::abs(score->change + 2.0) > turned) return;
+    faults.push_back({fmt::format("gain of {} {:.4g} +- {:.2g} by the record", name, 1.0 + score->change,
+                                  1.96 * score->deviation),
+                      score->score, score->explained, score->moved});
+  };
+  const std::vector<Index> outputs = output_channels(record), inputs = input_channels(record);
+  for (std::size_t i = 0; i < outputs.size() && outputs.size() > 1; ++i)
+    add(record.channels[static_cast<std::size_t>(outputs[i])].name, left.gain_of(static_cast<Index>(i)));
+  const std::string driver = inputs.size() == 1 ? record.channels[static_cast<std::size_t>(inputs[0])].name
+                                                : "the inputs, beside that of the outputs,";
+  add(driver, left.gain_of_inputs());
+}
+
+/// Every sensor of a chain at every other floor.
+void add_places(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
+                const Record& record, const LeftOver& left, const VectorXd& theta,
+                std::vector<DescriptionFault>& faults) {
+  constexpr std::size_t most_floors = 12;
+  if (!experiment.structure.is_chain()) return;
+  std::vector<double> floors;
+  for (const fem::Body& body : experiment.structure.beam().bodies) floors.push_back(body.position);
+  if (floors.size() > most_floors) return;
+  const double whole = left.left().squaredNorm();
+  for (const Index channel : output_channels(record)) {
+    const Channel& described = record.channels[static_cast<std::size_t>(channel)];
+    for (std::size_t floor = 0; described.position && floor < floors.size(); ++floor) {
+      if (std::abs(floors[floor] - *described.position) < 1e-6 * floors.back()) continue;
+      try {
+        const JointModel model = models.with_place(channel, floors[floor]);
+        DrivenProblem there = problem;
+        there.model = &model;
+        double best = whole;
+        VectorXd moved = theta;
+        DrivenProblem anew = there;  // its weights become those of what that leaves
+        if (const auto fit = fit_driven(anew)) {
+          const double cost = evaluate_driven(there, fit->theta).cost;
+          if (cost < best) best = cost, moved = fit->theta;
+        }
+        if (1.0 - best / whole > worth_following)
+          faults.push_back({fmt::format("{} sits at {:g} m by the record, not at {:g} m", described.name,
+                                        floors[floor], *described.position),
+                            std::numeric_limits<double>::infinity(), 1.0 - best / whole, moved - theta});
+      } catch (const std::exception&) {  // no motion there
+      }
+    }
+  }
+}
+
+/// Of a long record every so many lines: each costs all trials alike.
+void thin_out(RecordLines& part) {
+  constexpr Index most_numbers = 2000;
+  const Index stride = part.outputs.size() / most_numbers + 1, kept = part.omega.size() / stride;
+  const auto lines = Eigen::seqN(stride / 2, kept, stride);
+  part.omega = part.omega(lines).eval();
+  part.outputs = part.outputs(Eigen::all, lines).eval();
+  part.inputs = part.inputs(Eigen::all, lines).eval();
+}
+
+}  // namespace
+
+std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,
+                                                 const Choice& reduction, const std::filesystem::path& folder,
+                                                 const JointModel& model, const filters::Gaussian& prior,
+                                                 const VectorXd& theta) {
+  std::vector<DescriptionFault> faults;
+  auto problem = driven_problem(model, measurements(record), prior);
+  if (!problem) return faults;
+  thin_out(problem->parts.front());
+  try {
+    problem->weights.setOnes(output_channels(record).size());
+    const DrivenFit fit = evaluate_driven(*problem, theta);
+    problem->weights = fit.left.cwiseMax(1e-150).cwiseInverse();
+    const LeftOver left(*problem, theta);
+    const OtherModels models(experiment, record, reduction, folder);
+    constexpr double much = 0.03;
+    const bool much_is_left = fit.left_share > much;
+    add_structure_changes(*problem, models, experiment, left, theta, much_is_left, faults);
+    add_gains(record, left, faults);
+    constexpr double misplaced = 0.15;  // a sensor a floor off leaves 20 % and more
+    if (fit.left_share > misplaced) add_places(*problem, models, experiment, record, left, theta, faults);
+  } catch (const std::runtime_error&) {  // no motion at these unknowns
+  }
+  std::stable_sort(faults.begin(), faults.end(), [](const DescriptionFault& a, const DescriptionFault& b) {
+    return a.explained > b.explained;
+  });
+  return faults;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,41 @@
+// What of a description, changed alone, would explain what a driven model leaves of its record.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/config/experiment.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/record/record.hpp"
+#include "filters/gaussian.hpp"
+
+namespace beamid::experiments {
+
+/// One described quantity, changed: a mass, a gain, a place.
+struct DescriptionFault {
+  std::string sentence;    ///< "floor_mass_2: 1155 kg as described, 1004 +- 3 kg by the record"
+  double score = 0.0;      ///< |z| of the change; infinite for a place
+  double explained = 0.0;  ///< share of what is left, in squares
+  Eigen::VectorXd moved;   ///< by how much the unknowns move with it, in the model's coordinates eta (q)
+};
+
+/// Score tests [rao1948], one quantity x at a time. With r what is left of all lines, J its slopes by the
+/// unknowns, d that by x, and d' what J leaves of d:
+///
+///     x = d'^T r / d'^T d',   z = x d'^T d' / sqrt(sum_k (d'_k r'_k / (1 - h_k))^2),
+///     explained = (d'^T r)^2 / (d'^T d' r^T r)
+///
+/// with r' = r - d' x and h_k = d'_k^2 / d'^T d' of line k, whatever the noise of each [mackinnon1985]. x are
+/// the candidates of model_check/candidates.hpp that are not asked about, gains of channels and inputs. A
+/// change that explains a tenth or more is followed to its end, by fits of the unknowns with it. Of a chain
+/// each sensor is tried at every other floor likewise.
+/// @param theta the unknowns that were found, in the model's coordinates (q)
+/// @returns the best first; empty where the record is none of a small linear model with measured inputs.
+std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,
+                                                 const Choice& reduction, const std::filesystem::path& folder,
+                                                 const JointModel& model, const filters::Gaussian& prior,
+                                                 const Eigen::VectorXd& theta);
+
+}  // namespace beamid::experiments

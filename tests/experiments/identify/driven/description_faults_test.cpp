@@ -1,0 +1,84 @@
+// One thing described wrongly of a shaken building, and nothing. Oracle: the building as it was simulated
+// (shaken_building.hpp).
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiments/config/read_experiment.hpp"
+#include "experiments/identify/compare/comparison.hpp"
+#include "tests/experiments/shaken_building.hpp"
+
+namespace beamid::experiments::description_faults_test {
+namespace {
+
+using testing::HasSubstr;
+
+const Progress silent = [](const std::string&) {};
+
+ComparedRun identified(const Record& record, double mass_1, double mass_2) {
+  std::string text = fmt::format(
+      "[chain]\nmasses_kg = [{}, {}, 1]\nstiffnesses_n_per_m = [3000, 3000, 3000]\nheights_m = [3, 3, 3]\n"
+      "[damping]\nlaw = \"modal\"\nratio = 0.02\n[model]\nname = \"beam\"\n[reduction]\nmethod = \"none\"\n",
+      mass_1, mass_2);
+  for (int storey = 0; storey < 3; ++storey)
+    text += fmt::format("[[parameters]]\nquantity = \"storey_stiffness\"\nfrom_m = {}\nto_m = {}\n",
+                        3 * storey, 3 * storey + 3);
+  for (int mode = 1; mode <= 3; ++mode)
+    text += fmt::format("[[parameters]]\nquantity = \"damping_ratio\"\nmode = {}\n", mode);
+  return identify_with_model(read_experiment(TomlTable::parse(text, "building.toml")),
+                             measured_record("building", record), {}, silent)
+      .runs.front();
+}
+
+Record shaken(std::uint64_t seed) {
+  return test::ShakenBuilding{0.05, 0.0, seed}.record(3000);
+}
+
+TEST(DescriptionFaults, NothingWrongIsNothingNamed) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const ComparedRun run = identified(shaken(seed), 1.0, 1.0);
+    EXPECT_EQ(run.status, ComparedRun::Status::converged) << seed << ": " << run.reason;
+    for (const DescriptionFault& fault : run.faults) EXPECT_LT(fault.explained, 0.1) << fault.sentence;
+  }
+}
+
+TEST(DescriptionFaults, AMassIsNamedWithItsValue) {
+  const ComparedRun run = identified(shaken(1), 1.0, 1.15);
+  EXPECT_EQ(run.status, ComparedRun::Status::contradicted);
+  ASSERT_FALSE(run.faults.empty());
+  EXPECT_THAT(run.faults.front().sentence, HasSubstr("floor mass 2 described as 1.15 kg, by the record "));
+  EXPECT_GT(run.faults.front().explained, 0.9);
+}
+
+TEST(DescriptionFaults, AGainOfTheBaseIsNamed) {
+  Record record = shaken(1);
+  record.samples.row(0) *= 0.9;
+  const ComparedRun run = identified(record, 1.0, 1.0);
+  EXPECT_EQ(run.status, ComparedRun::Status::contradicted);
+  ASSERT_FALSE(run.faults.empty());
+  EXPECT_THAT(run.faults.front().sentence, HasSubstr("gain of table 1.1"));
+  EXPECT_GT(run.faults.front().explained, 0.9);
+}
+
+TEST(DescriptionFaults, AGainOfOneSensorIsNamed) {
+  Record record = shaken(1);
+  record.samples.row(2) *= 1.1;
+  const ComparedRun run = identified(record, 1.0, 1.0);
+  EXPECT_EQ(run.status, ComparedRun::Status::contradicted);
+  ASSERT_FALSE(run.faults.empty());
+  EXPECT_THAT(run.faults.front().sentence, HasSubstr("gain of floor_2 1."));
+}
+
+TEST(DescriptionFaults, APlaceIsNamed) {
+  Record record = shaken(1);
+  record.samples = record.samples({0, 1, 3}, Eigen::all).eval();
+  record.channels = {record.channels[0], record.channels[1], record.channels[3]};
+  record.channels[1].position = 6.0;
+  const ComparedRun run = identified(record, 1.0, 1.0);
+  EXPECT_EQ(run.status, ComparedRun::Status::contradicted);
+  ASSERT_FALSE(run.faults.empty());
+  EXPECT_THAT(run.faults.front().sentence, HasSubstr("floor_1 sits at 3 m by the record, not at 6 m"));
+}
+
+}  // namespace
+}  // namespace beamid::experiments::description_faults_test
