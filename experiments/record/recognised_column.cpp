@@ -65,10 +65,10 @@ bool any_word(const std::vector<std::string>& words, const std::set<std::string>
 }
 
 const std::set<std::string> times{
-    "t",       "time",    "times",   "timestamp", "zeit",     "zeitstempel", "temps",   "tiempo", "tempo",
-    "seconds", "secs",    "elapsed", "sekunden",  "secondes", "segundos",    "secondi", "date",   "datetime",
-    "datum",   "fecha",   "uhrzeit",   "epoch",    "unix",        "second",  "sec",    "sekunde",
-    "seconde", "segundo", "secondo", "hora",      "heure",    "ora"};
+    "t",     "time",     "times",   "timestamp", "zeit",     "zeitstempel", "temps",    "tiempo",
+    "tempo", "seconds",  "secs",    "elapsed",   "sekunden", "secondes",    "segundos", "secondi",
+    "date",  "datetime", "datum",   "fecha",     "uhrzeit",  "epoch",       "unix",     "second",
+    "sec",   "sekunde",  "seconde", "segundo",   "secondo",  "hora",        "heure",    "ora"};
 const std::set<std::string> counts{
     "sample",        "samples", "index",       "idx",      "n",       "nr",     "no",     "packet",
     "packetcounter", "counter", "count",       "row",      "id",      "i",      "k",      "probe",

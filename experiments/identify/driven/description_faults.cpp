@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "experiments/identify/driven/driven_part.hpp"
 #include "experiments/identify/model_check/candidates.hpp"
@@ -19,7 +20,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
 
 constexpr double worth_following = 0.1, mostly = 0.5, surely = 5.0;  // of what is left; deviations
-constexpr double hopeless = 1.5;                                     // times what is left, after a few steps
+constexpr double hopeless = 2.5;                                     // times what is left, after a few steps
 
 /// What is left at the unknowns, its slopes, and what they leave of other directions.
 class LeftOver {
@@ -67,9 +68,8 @@ class LeftOver {
     VectorXd moved;
   };
 
-  /// Absent where the unknowns make of it what it makes.
-  std::optional<Score> score(const VectorXd& direction) const {
-    constexpr double collinear = 0.02;  // what the unknowns leave of it, at least
+  /// Absent where the unknowns make of it what it makes. @param collinear what they leave of it, at least
+  std::optional<Score> score(const VectorXd& direction, double collinear = 1e-3) const {
     const VectorXd coefficients = normal_.solve(slopes_.transpose() * direction);
     const VectorXd own = direction - slopes_ * coefficients;
     const double squares = own.squaredNorm();
@@ -142,7 +142,7 @@ class OtherModels {
 
 /// The unknowns fitted anew, if a few steps get anywhere. @param most of what is left after these
 std::optional<DrivenFit> promising_fit(const DrivenProblem& problem, const VectorXd& from, double most) {
-  constexpr int few_steps = 3, more_steps = 6;
+  constexpr int few_steps = 8, more_steps = 6;
   const DrivenFit first = fit_driven_from(problem, from, few_steps);
   if (!(first.cost < most)) return {};
   return first.converged ? first : fit_driven_from(problem, first.theta, more_steps);
@@ -216,13 +216,16 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
       DescriptionFault fault{value_text(candidate, experiment.structure, score->change, score->deviation),
                              score->score, score->explained, score->moved};
       // Where the unknowns have moved by many widths of a resonance, what is left is not linear in x.
-      std::vector<double> firsts;
-      if (score->explained > worth_following) firsts.push_back(score->change);
+      const VectorXd along = score->moved / score->change, unmoved = VectorXd::Zero(theta.size());
+      std::vector<std::pair<double, VectorXd>> firsts;  // of x, and how the unknowns move with it at first
+      if (score->explained > worth_following) firsts.emplace_back(score->change, along);
       if (much_is_left && !(score->explained > mostly))
-        firsts.insert(firsts.end(), {0.5 * candidate.scale(), -0.5 * candidate.scale()});
-      for (const double first : firsts) {
-        const FollowedChange end =
-            followed(problem, models, experiment, candidate, theta, first, score->moved / score->change);
+        for (const double sign : {1.0, -1.0}) {
+          firsts.emplace_back(0.5 * sign * candidate.scale(), along);
+          firsts.emplace_back(sign * candidate.scale(), unmoved);
+        }
+      for (const auto& [first, moving] : firsts) {
+        const FollowedChange end = followed(problem, models, experiment, candidate, theta, first, moving);
         if (!std::isfinite(end.left) || !(1.0 - end.left / whole > fault.explained)) continue;
         fault = {value_text(candidate, experiment.structure, end.change, end.deviation),
                  std::max(score->score, std::abs(end.change) / end.deviation), 1.0 - end.left / whole,
@@ -236,7 +239,8 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
 
 void add_gains(const Record& record, const LeftOver& left, std::vector<DescriptionFault>& faults) {
   const auto add = [&](const std::string& name, const VectorXd& direction) {
-    const auto score = left.score(direction);
+    constexpr double least = 0.02;  // a gain is next to the masses and stiffnesses that are asked
+    const auto score = left.score(direction, least);
     constexpr double largest = 0.6, turned = 0.2;  // a sign is a gain of -1
     if (!score || !(score->score > surely)) return;
     if (std::abs(score->change) > largest && std::abs(score->change + 2.0) > turned) return;

@@ -12,7 +12,7 @@
 namespace beamid::experiments {
 namespace {
 
-constexpr std::string_view magic = "\x93NUMPY";
+constexpr std::string_view magic = "\x93NUMPY", archive_magic = "PK\x03\x04";
 
 template <class Number>
 double number_at(const char* bytes) {
@@ -91,9 +91,41 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
     }
 }
 
+/// The entries of a zip archive, as np.savez writes it: each stored, its name that of the array.
+void add_archive(RecordTable& table, const std::string& bytes) {
+  constexpr std::string_view entry = "PK\x01\x02";
+  constexpr std::size_t fixed = 46, local = 30;
+  const auto number = [&](std::size_t at, int length) {
+    std::size_t value = 0;
+    for (int k = length - 1; k >= 0; --k)
+      value = value << 8 | (at + static_cast<std::size_t>(k) < bytes.size()
+                                ? static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(k)])
+                                : 0U);
+    return value;
+  };
+  const auto refuse = [&](const std::string& found) {
+    return InputError({table.file}, found + "; expected arrays as numpy.savez writes them, not compressed");
+  };
+  const std::size_t end = bytes.rfind("PK\x05\x06");  // which says where the directory begins
+  std::size_t at = end == std::string::npos ? end : number(end + 16, 4);
+  for (; at < bytes.size() && bytes.compare(at, entry.size(), entry) == 0 && at + fixed <= bytes.size();
+       at += fixed + number(at + 28, 2) + number(at + 30, 2) + number(at + 32, 2)) {
+    const std::string name = bytes.substr(at + fixed, number(at + 28, 2));
+    const std::size_t size = number(at + 20, 4), header = number(at + 42, 4);
+    if (number(at + 10, 2) != 0) throw refuse("'" + name + "' is compressed");
+    const std::size_t begin = header + local + number(header + 26, 2) + number(header + 28, 2);
+    if (begin > bytes.size() || size > bytes.size() - begin) throw refuse("'" + name + "' is cut short");
+    add_array(table, bytes.substr(begin, size), name.substr(0, name.rfind(".npy")));
+  }
+  if (table.columns.empty()) throw refuse("no array");
+}
+
 class NpyReader final : public RecordReader {
  public:
-  bool recognises(std::string_view beginning) const override { return beginning.starts_with(magic); }
+  bool recognises(std::string_view beginning) const override {
+    return beginning.starts_with(magic) || (beginning.starts_with(archive_magic) &&
+                                            beginning.substr(0, 200).find(".npy") != std::string_view::npos);
+  }
 
   RecordTable read(const std::filesystem::path& file, const RecordFormat&) const override {
     std::ifstream stream = open_input(file, "a NumPy array");
@@ -101,69 +133,22 @@ class NpyReader final : public RecordReader {
     RecordTable table;
     table.file = file.string();
     table.by_people = true;
-    add_array(table, bytes, "");
+    if (bytes.starts_with(archive_magic))
+      add_archive(table, bytes);
+    else
+      add_array(table, bytes, "");
     return table;
   }
 };
 
-/// A zip archive of arrays, as np.savez writes it: each entry stored, its name that of the array.
-class NpzReader final : public RecordReader {
- public:
-  bool recognises(std::string_view beginning) const override {
-    return beginning.starts_with("PK\x03\x04") &&
-           beginning.substr(0, 200).find(".npy") != std::string_view::npos;
-  }
-
-  RecordTable read(const std::filesystem::path& file, const RecordFormat&) const override {
-    constexpr std::string_view entry = "PK\x01\x02";
-    constexpr std::size_t fixed = 46, local = 30;
-    std::ifstream stream = open_input(file, "NumPy arrays");
-    const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    const auto number = [&](std::size_t at, int length) {
-      std::size_t value = 0;
-      for (int k = length - 1; k >= 0; --k)
-        value = value << 8 | (at + static_cast<std::size_t>(k) < bytes.size()
-                                  ? static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(k)])
-                                  : 0U);
-      return value;
-    };
-    const auto refuse = [&](const std::string& found) {
-      return InputError({file.string()},
-                        found + "; expected arrays as numpy.savez writes them, not compressed");
-    };
-    RecordTable table;
-    table.file = file.string();
-    table.by_people = true;
-    std::size_t at = bytes.find(entry);
-    for (;
-         at != std::string::npos && bytes.compare(at, entry.size(), entry) == 0 && at + fixed <= bytes.size();
-         at += fixed + number(at + 28, 2) + number(at + 30, 2) + number(at + 32, 2)) {
-      const std::string name = bytes.substr(at + fixed, number(at + 28, 2));
-      const std::size_t size = number(at + 20, 4), header = number(at + 42, 4);
-      if (number(at + 10, 2) != 0) throw refuse("'" + name + "' is compressed");
-      const std::size_t begin = header + local + number(header + 26, 2) + number(header + 28, 2);
-      if (begin > bytes.size() || size > bytes.size() - begin) throw refuse("'" + name + "' is cut short");
-      add_array(table, bytes.substr(begin, size), name.substr(0, name.rfind(".npy")));
-    }
-    if (table.columns.empty()) throw refuse("no array");
-    return table;
-  }
-};
-
-const bool npy_registered = record_reader_registry().add(
-    {"npy",
-     "NumPy's array files, a column (or a row) for each signal, the first rising one time",
-     "[npy]",
-     {},
-     {},
-     [](const filters::Options&) { return std::make_unique<NpyReader>(); }});
-const bool npz_registered = record_reader_registry().add(
-    {"npz",
-     "archives of NumPy arrays of one length, not compressed, each by its name; fs or dt state the rate",
-     "[npy]",
-     {},
-     {},
-     [](const filters::Options&) { return std::make_unique<NpzReader>(); }});
+const bool npy_registered =
+    record_reader_registry().add({"npy",
+                                  "NumPy's .npy and .npz, a column (or a row) for each signal, the first "
+                                  "rising one time; fs or dt as a number",
+                                  "[npy]",
+                                  {},
+                                  {},
+                                  [](const filters::Options&) { return std::make_unique<NpyReader>(); }});
 
 }  // namespace
 }  // namespace beamid::experiments

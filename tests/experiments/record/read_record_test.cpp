@@ -285,6 +285,104 @@ TEST(ReadRecord, ReadsStampsOfADateAndIntervalsStatedAboveTheColumns) {
   EXPECT_NEAR(read_text_record(bare, {}).interval(), 0.0025, 1e-9);
 }
 
+// Every file holds 40 samples at 200 Hz, the k-th of 4 - k / 10.
+TEST(ReadRecord, ReadsStampsOfClocksDaysAndSpreadsheets) {
+  struct Case {
+    const char* header;
+    std::string (*stamp)(int);
+  };
+  for (const auto& [header, stamp] :
+       {Case{"Time,Acc\n", [](int k) { return fmt::format("23:59:59.{:03},", 900 + 5 * k); }},
+        Case{"Date,Time,Acc [g]\n",
+             [](int k) { return fmt::format("2026-11-27,10:00:{:02}.{:03},", k / 20, 50 * (k % 20)); }},
+        Case{"epoch,acc\n", [](int k) { return fmt::format("{},", 1700000000000LL + 5 * k); }},
+        Case{"time,acc\n", [](int k) { return fmt::format("{},", 1700000000000000LL + 5000 * k); }},
+        Case{"Date,acc\n", [](int k) { return fmt::format("{:.10f},", 45000.0 + 0.005 * k / 86400.0); }},
+        Case{"Source,CH1\nSecond,Volt\n", [](int k) { return fmt::format("{:.6e},", 0.005 * k - 0.1); }},
+        Case{"Recorder: X100\nOperator,me\nDate: 2026-11-27\n\ntime (s),a\n",
+             [](int k) { return fmt::format("{:.3f},", 0.005 * k); }},
+        Case{"// logger\n// fs = 200\nt,a\n", [](int k) { return fmt::format("{:.3f},", 0.005 * k); }}}) {
+    std::string text = header;
+    for (int k = 0; k < 20; ++k) text += stamp(k) + fmt::format("{:.1f}\n", 4.0 - 0.1 * k);
+    const Record record = read_text_record(text, {});
+    ASSERT_EQ(record.channels.size(), 1U) << header;
+    const double interval = std::string(header).starts_with("Date,Time") ? 0.05 : 0.005;
+    EXPECT_NEAR(record.interval(), interval, 2e-6) << header;
+    EXPECT_EQ(record.size(), 20) << header;
+  }
+}
+
+TEST(ReadRecord, GoesOnPastMidnight) {
+  std::string text = "Time,Acc\n";
+  for (int k = 0; k < 20; ++k)
+    text += (k < 10 ? fmt::format("23:59:59.{:02},", 90 + k) : fmt::format("00:00:00.{:02},", k - 10)) +
+            fmt::format("{}\n", k % 7);
+  EXPECT_NEAR(read_text_record(text, {}).interval(), 0.01, 1e-9);
+}
+
+TEST(ReadRecord, TakesGapsOfAFileThatNobodyDescribedForWhatTheyAre) {
+  std::string text = "t,a\n";
+  const char* const gaps[] = {"", "NaN", "OVERFLOW", "n/a"};
+  for (int k = 0; k < 40; ++k)
+    text +=
+        fmt::format("{:.3f},{}\n", 0.005 * k, k >= 10 && k < 14 ? gaps[k - 10] : fmt::format("{}", k % 7));
+  const Record record = read_text_record(text, {});
+  EXPECT_EQ(record.size(), 40);
+  EXPECT_EQ(record.samples.array().isNaN().count(), 4);
+}
+
+TEST(ReadRecord, LeavesOutAnAxisThatDoesNotMove) {
+  std::string text = "t,ax,ay,az\n";
+  for (int k = 0; k < 20; ++k) text += fmt::format("{:.3f},{},0,9.81\n", 0.005 * k, k % 7);
+  const Record record = read_text_record(text, {});
+  ASSERT_EQ(record.channels.size(), 1U);
+  EXPECT_EQ(record.channels[0].name, "ax");
+}
+
+// A zip archive of one stored array of 16 doubles and a number fs = 100, and what is left of it.
+TEST(ReadRecord, ReadsStoredArchivesOfArraysAndRefusesDamagedOnes) {
+  std::string bytes, directory;
+  const auto number = [](std::size_t value, int length) {
+    std::string text;
+    for (int k = 0; k < length; ++k, value >>= 8) text += static_cast<char>(value & 0xFF);
+    return text;
+  };
+  const auto add = [&](const std::string& name, const std::string& shape, const std::vector<double>& values) {
+    std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': " + shape + ", }\n",
+                array = "\x93NUMPY\x01" + std::string(1, '\0') + number(header.size(), 2) + header;
+    array.append(reinterpret_cast<const char*>(values.data()), 8 * values.size());
+    const std::string sizes = number(0, 4) + number(array.size(), 4) + number(array.size(), 4) +
+                              number(name.size(), 2) + number(0, 2),
+                      common = number(20, 2) + number(0, 2) + number(0, 2) + number(0, 4) + sizes;
+    directory += "PK\x01\x02" + number(20, 2) + common + number(0, 2) + number(0, 2) + number(0, 2) +
+                 number(0, 4) + number(bytes.size(), 4) + name;
+    bytes += "PK\x03\x04" + common + name + array;
+  };
+  std::vector<double> values;
+  for (int k = 0; k < 16; ++k) values.push_back(k % 5);
+  add("acc.npy", "(16,)", values);
+  add("fs.npy", "()", {100.0});
+  const std::string whole = bytes + directory + "PK\x05\x06" + number(0, 4) + number(2, 2) + number(2, 2) +
+                            number(directory.size(), 4) + number(bytes.size(), 4) + number(0, 2);
+  const TemporaryFile file("record.npz", whole);
+  const Record record = read_record(file.path(), {});
+  ASSERT_EQ(record.size(), 16);
+  EXPECT_EQ(record.channels[0].name, "acc");
+  EXPECT_NEAR(record.interval(), 0.01, 1e-12);
+  for (std::size_t length = 8; length + 22 < whole.size(); length += 7) {
+    const TemporaryFile cut("cut.npz", whole.substr(0, length));
+    EXPECT_THROW(read_record(cut.path(), {}), InputError) << length;
+  }
+}
+
+TEST(ReadRecord, ReadsUtf16) {
+  std::string text = "\xFF\xFE";
+  std::string plain = "Zeit [s];Beschl. [m/s2]\n";
+  for (int k = 0; k < 20; ++k) plain += fmt::format("{:.3f};{}\n", 0.005 * k, k % 7);
+  for (const char byte : plain) text += byte, text += '\0';
+  EXPECT_EQ(read_text_record(text, {}).size(), 20);
+}
+
 TEST(ReadRecord, AsksForTheRateWhereAColumnCountsSamples) {
 #define RATE "; expected the sampling rate: --rate HZ, or record.sampling_rate_hz in the configuration"
   expect_refused({}, {{"Sample,Acc X [g]\n0,1\n1,1\n2,1\n", "bad.txt: Column 1 counts samples" RATE},
