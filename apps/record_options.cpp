@@ -71,6 +71,19 @@ ColumnDescription time_column(const std::string& word) {
   return described;
 }
 
+void take_words(const Values& values, RecordFormat& format) {
+  const auto given = [&](const char* name) { return values.has(name) ? values.texts(name) : Words{}; };
+  const Words columns = given("column"), quantities = given("quantity"), units_given = given("unit");
+  if (columns.empty() && (!quantities.empty() || !units_given.empty()))
+    throw UsageError("--quantity and --unit of which column? Add --column");
+  if (!columns.empty()) format.channels = channels(columns, quantities, units_given);
+  if (values.has("time")) format.time = time_column(values.text("time"));
+  if (values.has("rate")) format.sampling_rate = values.number("rate");
+  if (values.has("reader")) format.reader = values.text("reader");
+  if (values.has("skip-malformed")) format.malformed = MalformedRows::skip;
+  if (values.has("stamps")) format.irregular = values.text("stamps") == "as_they_are";
+}
+
 /// Standard input in a file of its own: readers look at the beginning of a file first, and a pipe is read
 /// once.
 class StandardInput {
@@ -110,19 +123,6 @@ Words quantity_names() {
 
 }  // namespace
 
-void take_record_words(const Values& values, RecordFormat& format) {
-  const auto given = [&](const char* name) { return values.has(name) ? values.texts(name) : Words{}; };
-  const Words columns = given("column"), quantities = given("quantity"), units_given = given("unit");
-  if (columns.empty() && (!quantities.empty() || !units_given.empty()))
-    throw UsageError("--quantity and --unit of which column? Add --column");
-  if (!columns.empty()) format.channels = channels(columns, quantities, units_given);
-  if (values.has("time")) format.time = time_column(values.text("time"));
-  if (values.has("rate")) format.sampling_rate = values.number("rate");
-  if (values.has("reader")) format.reader = values.text("reader");
-  if (values.has("skip-malformed")) format.malformed = MalformedRows::skip;
-  if (values.has("stamps")) format.irregular = values.text("stamps") == "as_they_are";
-}
-
 Argument record_argument(bool several) {
   return {.name = "record", .several = several};
 }
@@ -158,7 +158,7 @@ OptionGroup record_options() {
 
 std::vector<fs::path> record_files(const Values& values, const fs::path& config,
                                    const std::optional<std::string>& named, RecordFormat& format) {
-  take_record_words(values, format);
+  take_words(values, format);
   std::vector<fs::path> files;
   for (const std::string& word : values.texts("record")) files.push_back(record_file(word));
   std::size_t parts = format.files.size();

@@ -19,9 +19,6 @@ OptionGroup record_options();
 /// The same without --window and --config, for commands that have their own.
 OptionGroup column_options();
 
-/// What these options say, in the place of what a file said.
-void take_record_words(const Values& values, experiments::RecordFormat& format);
-
 /// The RECORDs of the command line, or else the `file` under [record] of the experiment file, if it names
 /// one. Standard input, "-", is copied to a file that is removed when the program ends. Where channels come
 /// from several files, all RECORDs are those of one record: the first is returned, `format` has them all.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "experiments/modal/residue_fit.hpp"
 #include "experiments/signal/least_squares.hpp"
@@ -50,6 +51,21 @@ VectorXcd roots(const VectorXd& coefficients) {
   return companion.eigenvalues();
 }
 
+class CommonDenominatorMethod final : public ModalMethod {
+ public:
+  explicit CommonDenominatorMethod(std::string refusal) : refusal_(std::move(refusal)) {}
+
+  PoleSearch search(const MatrixXd&, double, int) const override { throw std::invalid_argument(refusal_); }
+
+  std::vector<OrderPoles> search_responses(const VectorXd& frequency_hz, const MatrixXcd& responses,
+                                           double shift, int largest_order) const override {
+    return common_denominator_poles(frequency_hz, responses, shift, largest_order);
+  }
+
+ private:
+  std::string refusal_;
+};
+
 }  // namespace
 
 std::vector<OrderPoles> common_denominator_poles(const VectorXd& frequency_hz, const MatrixXcd& responses,
@@ -89,6 +105,10 @@ std::vector<OrderPoles> common_denominator_poles(const VectorXd& frequency_hz, c
     orders.push_back(std::move(at));
   }
   return orders;
+}
+
+std::unique_ptr<ModalMethod> common_denominator_method(std::string refusal) {
+  return std::make_unique<CommonDenominatorMethod>(std::move(refusal));
 }
 
 }  // namespace beamid::experiments

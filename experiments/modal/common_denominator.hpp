@@ -2,9 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "experiments/modal/pole.hpp"
+#include "experiments/modal/modal_method.hpp"
 
 namespace beamid::experiments {
 
@@ -22,5 +24,8 @@ namespace beamid::experiments {
 std::vector<OrderPoles> common_denominator_poles(const Eigen::VectorXd& frequency_hz,
                                                  const Eigen::MatrixXcd& responses, double shift,
                                                  int largest_order);
+
+/// The method that it makes. @param refusal what is said where no responses can be had
+std::unique_ptr<ModalMethod> common_denominator_method(std::string refusal);
 
 }  // namespace beamid::experiments

@@ -35,13 +35,6 @@ VectorXd logarithms(const std::vector<Complex>& rates) {
   return theta;
 }
 
-// Complex lines as real rows.
-MatrixXd line_rows(const MatrixXcd& lines) {
-  MatrixXd rows(2 * lines.rows(), lines.cols());
-  rows << lines.real(), lines.imag();
-  return rows;
-}
-
 // What one mode can make of the lines (L x 2 (m + 1)): u_j / den and s u_j / den of every input, then the
 // ends.
 MatrixXcd mode_columns(const DrivenLines& lines, double frequency, double ratio) {
@@ -338,10 +331,6 @@ DrivenPoles fit_driven_poles(const DrivenLines& lines, const std::vector<Complex
   for (Index j = 0; j < inputs; ++j) fit.transfer.middleRows(p * j, p) = at.transfer(theta, j);
   fit.left = left_of(at, lines);
   const Index count = lines.omega.size();
-  MatrixXcd left(count, p);
-  left.real() = at.left().topRows(count);
-  left.imag() = at.left().bottomRows(count);
-  fit.reproduced = lines.outputs - left.transpose();
   fit.left_share = std::sqrt(at.left()
                                  .colwise()
                                  .squaredNorm()

@@ -34,12 +34,11 @@ struct DrivenPoles {
   /// (2K x 2K) of ln w_1, ln zeta_1, ln w_2, ...: sandwich over the lines [white1982], or over sections of
   /// the record where they scatter more
   Eigen::MatrixXd covariance;
-  Eigen::VectorXd left;         ///< (p) root mean square of what is left of the lines [unit]
-  Eigen::MatrixXcd reproduced;  ///< (p x L) outputs, ends of the record included
-  Eigen::MatrixXcd transfer;    ///< (p m x L) from input j to channel i in row i + p j
-  Eigen::VectorXd share;        ///< (K) of the outputs' size that goes with the mode
-  Eigen::VectorXd ratio;        ///< (K) squares that go with it, over those that noise around it would take
-  double left_share = 0.0;      ///< of the outputs' size; channels weighed by their size
+  Eigen::VectorXd left;       ///< (p) root mean square of what is left of the lines [unit]
+  Eigen::MatrixXcd transfer;  ///< (p m x L) from input j to channel i in row i + p j
+  Eigen::VectorXd share;      ///< (K) of the outputs' size that goes with the mode
+  Eigen::VectorXd ratio;      ///< (K) squares that go with it, over those that noise around it would take
+  double left_share = 0.0;    ///< of the outputs' size; channels weighed by their size
 };
 
 /// @param rates where to start

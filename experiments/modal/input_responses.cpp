@@ -36,7 +36,7 @@ InputResponses input_responses(const MatrixXd& outputs, const MatrixXd& inputs, 
       yu(static_cast<std::size_t>(lines), MatrixXcd::Zero(p, m));
   InputResponses found;
   MatrixXd yy = MatrixXd::Zero(p, lines);
-  found.input_spectrum = MatrixXd::Zero(m, lines);
+  double largest = 0.0;  // power of an input
   for (Index begin = 0; begin + length <= outputs.cols(); begin += std::max<Index>(1, length / overlapping)) {
     const MatrixXcd y = block(outputs, begin), u = block(inputs, begin);
     for (Index k = 0; k < lines; ++k) {
@@ -44,15 +44,14 @@ InputResponses input_responses(const MatrixXd& outputs, const MatrixXd& inputs, 
       yu[static_cast<std::size_t>(k)] += y.col(k) * u.col(k).adjoint();
     }
     yy += y.cwiseAbs2();
-    found.input_spectrum += u.cwiseAbs2();
     ++found.averages;
   }
-  found.input_spectrum = (found.input_spectrum / found.averages).cwiseSqrt();
+  for (const MatrixXcd& power : uu) largest = std::max(largest, power.diagonal().real().maxCoeff());
   found.duration = interval * static_cast<double>(length);
   found.frequency_hz = VectorXd::LinSpaced(lines, 1.0, static_cast<double>(lines)) / found.duration;
   found.h1.resize(p * m, lines);
   found.coherence.resize(p, lines);
-  const double least = tiny * found.averages * found.input_spectrum.cwiseAbs2().maxCoeff();
+  const double least = tiny * largest;
   for (Index k = 0; k < lines; ++k) {
     MatrixXcd power = uu[static_cast<std::size_t>(k)];
     power.diagonal().array() += least;

@@ -10,9 +10,8 @@ struct InputResponses {
   Eigen::VectorXd frequency_hz;  ///< (F)
   Eigen::MatrixXcd h1;        ///< (p m x F), channel i to input j in row i + p j [unit / unit of the input]
   Eigen::MatrixXd coherence;  ///< (p x F) multiple coherence, 0 to 1
-  Eigen::MatrixXd input_spectrum;  ///< (m x F) root mean square over the blocks
-  int averages = 0;                ///< blocks, which overlap by three quarters
-  double duration = 0.0;           ///< of a block [s]
+  int averages = 0;           ///< blocks, which overlap by three quarters
+  double duration = 0.0;      ///< of a block [s]
 };
 
 /// H1 = S_yu S_uu^-1 over blocks under a Hann window; the coherence is what H1 u has of the power of y

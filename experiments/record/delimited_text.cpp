@@ -88,18 +88,17 @@ bool DelimitedText::find_behind_metadata() {
 }
 
 void DelimitedText::find_rows(std::size_t most_lines) {
-  using Line = EarlyLine;
   const std::string_view whole = rest_;
   for (const bool strict : {true, false}) {
     rest_ = whole, line_number_ = 0;
-    std::vector<Line> before;
+    std::vector<EarlyLine> before;
     while (before.size() < most_lines && next_row()) {
       split_fields(line_, separator_ == '\0' ? separator_of(line_) : separator_, fields_);
       const bool row = strict ? numbers_throughout(fields_) : holds_number(fields_);
       before.push_back({line_, line_number_, fields_.size(), row});
       if (before.size() < 2) continue;
-      const Line& last = before.back();
-      const Line& first = before[before.size() - 2];
+      const EarlyLine& last = before.back();
+      const EarlyLine& first = before[before.size() - 2];
       if (!last.rows || !first.rows || last.width != first.width) continue;
 
       line_ = first.text, line_number_ = first.number;
@@ -108,7 +107,7 @@ void DelimitedText::find_rows(std::size_t most_lines) {
       choose_separator();
       before.resize(before.size() - 2);
       before_ = before;
-      const auto names_width = [&](const Line& line) {
+      const auto names_width = [&](const EarlyLine& line) {
         split_fields(line.text, separator_, fields_);
         return fields_.size() == width_ && !holds_number(fields_) && !holds_number(fields_, ',');
       };
@@ -118,7 +117,7 @@ void DelimitedText::find_rows(std::size_t most_lines) {
       }
       if (before.empty())
         skipped_.clear();  // no names: what stands before the rows is a header of another kind
-      const auto named = [&](const Line& line) {
+      const auto named = [&](const EarlyLine& line) {
         split_fields(line.text, separator_, fields_);
         return names_columns(fields_);
       };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "experiments/record/read_record.hpp"
 #include "experiments/signal/band_limited.hpp"
@@ -51,15 +52,22 @@ void name_apart(std::vector<RecordPart>& parts) {
         channel.name = part.record.channels.size() == 1 ? part.stem : part.stem + " " + channel.name;
 }
 
-/// Whether the stamps of all files are those of one clock.
-bool share_clock(const std::vector<RecordPart>& parts) {
-  constexpr double least = 0.5;  // of the shortest, in common
-  double from = -1e300, to = 1e300, shortest = 1e300;
+/// What all files have in common [s].
+std::pair<double, double> common_part(const std::vector<RecordPart>& parts) {
+  double from = parts.front().start(), to = parts.front().end();
   for (const RecordPart& part : parts) {
     from = std::max(from, part.start());
     to = std::min(to, part.end());
-    shortest = std::min(shortest, part.end() - part.start());
   }
+  return {from, to};
+}
+
+/// Whether the stamps of all files are those of one clock.
+bool share_clock(const std::vector<RecordPart>& parts) {
+  constexpr double least = 0.5;  // of the shortest, in common
+  double shortest = parts.front().end() - parts.front().start();
+  for (const RecordPart& part : parts) shortest = std::min(shortest, part.end() - part.start());
+  const auto [from, to] = common_part(parts);
   return to - from >= least * shortest;
 }
 
@@ -95,13 +103,10 @@ Record joined_record(const RecordFormat& format) {
       parts[i].record.time.array() += parts[0].start() - parts[i].start();
       for (const Channel& channel : parts[i].record.channels) joined.own_clock.push_back(channel.name);
     }
-  double from = -1e300, to = 1e300;
+  const auto [from, to] = common_part(parts);
   const RecordPart* fastest = &parts.front();
-  for (const RecordPart& part : parts) {
-    from = std::max(from, part.start());
-    to = std::min(to, part.end());
+  for (const RecordPart& part : parts)
     if (part.record.interval() < 0.999 * fastest->record.interval()) fastest = &part;
-  }
   const VectorXd& stamps = fastest->record.time;
   const double rounding = 1e-6 * fastest->record.interval();
   const Index first = std::lower_bound(stamps.begin(), stamps.end(), from - rounding) - stamps.begin(),

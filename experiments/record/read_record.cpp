@@ -170,23 +170,21 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
   table.keep(kept);
 }
 
-/// Of a file that nobody described: an axis that is not connected is no channel.
-void leave_out_dead(Record& record, std::vector<std::string>& remarks) {
-  std::vector<Eigen::Index> alive;
+/// Of a file that nobody described: an axis that is not connected is no channel, unless no other moves
+/// either.
+void leave_out_dead(RecordTable& table, RecordColumns& columns) {
+  std::vector<RecordColumn> alive;
   std::string dead;
-  for (Eigen::Index i = 0; i < record.samples.rows(); ++i) {
-    const double first = record.samples(i, 0);
-    if ((record.samples.row(i).array() != first).any())
-      alive.push_back(i);
+  for (const RecordColumn& column : columns.channels) {
+    const std::vector<double>& values = table.columns[column.index];
+    if (std::ranges::any_of(values, [&](double value) { return value != values.front(); }))
+      alive.push_back(column);
     else
-      dead += (dead.empty() ? "'" : ", '") + record.channels[static_cast<std::size_t>(i)].name + "'";
+      dead += (dead.empty() ? "'" : ", '") + column.channel.name + "'";
   }
   if (alive.empty() || dead.empty()) return;
-  record.samples = record.samples(alive, Eigen::all).eval();
-  std::vector<Channel> kept;
-  for (const Eigen::Index i : alive) kept.push_back(record.channels[static_cast<std::size_t>(i)]);
-  record.channels = std::move(kept);
-  remarks.push_back("Without any motion, left out: " + dead + ".");
+  columns.channels = std::move(alive);
+  table.remarks.push_back("Without any motion, left out: " + dead + ".");
 }
 
 }  // namespace
@@ -197,7 +195,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
     return format.window ? cut(joined, format, file.string()) : joined;
   }
   RecordTable table = read_table(file, format);
-  const RecordColumns columns = find_columns(table, format);
+  RecordColumns columns = find_columns(table, format);
   std::vector<Used> used;
   if (columns.time) used.push_back({columns.time->index, 1.0});
   for (const RecordColumn& column : columns.channels) used.push_back({column.index, column.factor});
@@ -209,6 +207,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
     throw InputError(
         table.rows() ? table.row_place(table.rows() - 1) : Place{table.file},
         fmt::format("{} of numbers; expected at least two", table.rows() ? "one row" : "no row"));
+  if (columns.recognised) leave_out_dead(table, columns);
 
   Record record;
   const Stamps stamps{&table, columns.time, &format};
@@ -223,7 +222,6 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
           values[row] * column.factor;
     record.channels.push_back(column.channel);
   }
-  if (columns.recognised) leave_out_dead(record, table.remarks);
   record.input_path = format.input;
   record.own_clock = format.own_clock;
   if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
@@ -231,9 +229,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   record.warnings = table.warnings;
   std::vector<std::string> names;
   for (const RecordColumn& column : columns.channels)
-    if (std::ranges::any_of(record.channels,
-                            [&](const Channel& one) { return one.name == column.channel.name; }))
-      names.push_back(column.index < table.names.size() ? table.names[column.index] : "");
+    names.push_back(column.index < table.names.size() ? table.names[column.index] : "");
   take_places(file, names, record);
   return format.window ? cut(record, format, table.file) : record;
 }

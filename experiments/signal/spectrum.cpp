@@ -41,4 +41,23 @@ Eigen::MatrixXcd spectrum_lines(const Eigen::MatrixXd& signals, Eigen::Index sam
   return found;
 }
 
+Eigen::Index last_strong_line(const Eigen::MatrixXcd& lines) {
+  constexpr double all_but = 1e-3;
+  Eigen::Index last = 0;
+  for (Eigen::Index i = 0; i < lines.rows(); ++i) {
+    const Eigen::VectorXd power = lines.row(i).cwiseAbs2().transpose();
+    double above = 0.0;
+    Eigen::Index k = power.size() - 1;
+    for (const double limit = all_but * power.sum(); k > last && (above += power[k]) < limit;) --k;
+    last = std::max(last, k);
+  }
+  return last;
+}
+
+Eigen::MatrixXd line_rows(const Eigen::MatrixXcd& lines) {
+  Eigen::MatrixXd rows(2 * lines.rows(), lines.cols());
+  rows << lines.real(), lines.imag();
+  return rows;
+}
+
 }  // namespace beamid::experiments

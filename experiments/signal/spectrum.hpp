@@ -17,4 +17,10 @@ double strongest_frequency(const Eigen::VectorXd& signal, double interval);
 /// ..., L (p x L): white noise of deviation sigma has E |X|^2 = sigma^2 at every line.
 Eigen::MatrixXcd spectrum_lines(const Eigen::MatrixXd& signals, Eigen::Index samples, Eigen::Index lines);
 
+/// The last line up to which all but a thousandth of every row's squares lie. @param lines (p x L)
+Eigen::Index last_strong_line(const Eigen::MatrixXcd& lines);
+
+/// Complex lines as real rows: real parts of all, then imaginary ones (2 rows).
+Eigen::MatrixXd line_rows(const Eigen::MatrixXcd& lines);
+
 }  // namespace beamid::experiments

@@ -149,11 +149,8 @@ void look_for_faults(const RunContext& context, const ReducedBeam& made, const C
   if (!context.analysis.forced() || !run.answers() || !made.started || !run.model ||
       !context.compared.clocks.empty() || has_noise(run.settings.input_noise))
     return;
-  const JointModel& model = made.started->model;
-  const filters::Gaussian known{
-      made.started->guess.mean(model.unknown_places),
-      own_guess(model, made.setting->observations, measurements(context.analysis.record).outputs).unknowns,
-      {}};
+  const filters::Gaussian known =
+      known_about_start(*made.started, *made.setting, measurements(context.analysis.record).outputs);
   run.faults = description_faults(context.experiment, context.analysis.record, reduction, folder, *run.model,
                                   known, run.unknown_state.mean);
 }

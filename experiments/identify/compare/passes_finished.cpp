@@ -133,9 +133,7 @@ void Passes::weigh_noise() {
 void Passes::look_at_sections() {
   const auto modes = recorded_modes(*run_.model, run_.run.last.mean, run_.unknown_state, {});
   if (!modes) return;
-  const filters::Gaussian known{started_.guess.mean(started_.model.unknown_places),
-                                own_guess(started_.model, setting_.observations, record_.outputs).unknowns,
-                                {}};
+  const filters::Gaussian known = known_about_start(started_, setting_, record_.outputs);
   run_.sections =
       section_scatter(*run_.model, record_, known, run_.unknown_state.mean, modes->lowest.frequency_hz);
 }

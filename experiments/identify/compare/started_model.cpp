@@ -80,6 +80,13 @@ StartedModel started_model(JointModel first, const Choice& model, const ModelSet
   return {std::move(first), {mean, found.unknowns, found.by_lines}};
 }
 
+filters::Gaussian known_about_start(const StartedModel& started, const ModelSetting& setting,
+                                    const Eigen::MatrixXd& outputs) {
+  return {started.guess.mean(started.model.unknown_places),
+          own_guess(started.model, setting.observations, outputs).unknowns,
+          {}};
+}
+
 JointModel on_basis_at(const Choice& model, const ModelSetting& setting, const JointModel& from,
                        const Eigen::VectorXd& state) {
   const auto* storeys = dynamic_cast<const StoreyMotion*>(from.motion.get());

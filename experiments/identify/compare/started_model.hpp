@@ -42,6 +42,11 @@ std::optional<StartedModel> started_from_mode(const JointModel& model, const Pri
 StartedModel started_model(JointModel made, const Choice& model, const ModelSetting& setting,
                            const filters::Measurements& record, double frequency_hz);
 
+/// What is known of the unknowns without the record, about where the first fit has them (q).
+/// @param outputs (p x N), for the sizes of what the model guesses by itself
+filters::Gaussian known_about_start(const StartedModel& started, const ModelSetting& setting,
+                                    const Eigen::MatrixXd& outputs);
+
 /// The model with its basis where a state's unknowns are, what is known beforehand as it was; the model
 /// itself where its motion does not depend on a basis that the beam's properties turn, or none can be made
 /// there.

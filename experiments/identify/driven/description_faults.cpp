@@ -13,6 +13,8 @@
 #include "experiments/identify/driven/driven_part.hpp"
 #include "experiments/identify/model_check/candidates.hpp"
 #include "experiments/identify/model_setting.hpp"
+#include "experiments/models/estimates.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -25,43 +27,36 @@ constexpr double hopeless = 2.5;                                     // times wh
 /// What is left at the unknowns, its slopes, and what they leave of other directions.
 class LeftOver {
  public:
-  LeftOver(const DrivenProblem& problem, const VectorXd& theta)
-      : problem_(&problem), theta_(theta), part_(at(*problem.model, problem)) {
-    const Index q = theta.size();
-    slopes_.resize(part_.left.size(), q);
-    for (Index j = 0; j < q; ++j) {
-      const double step = 1e-4 * std::sqrt(problem.prior.covariance(j, j));
-      VectorXd there = theta;
-      there[j] += step;
-      slopes_.col(j) = change_of(*problem.model, there) / step;
-    }
+  LeftOver(const DrivenProblem& problem, const VectorXd& theta) : problem_(problem), theta_(theta) {
+    const DrivenMotion motion(problem);
+    parts_ = motion.at(theta);
+    slopes_ = motion.slopes(parts_, theta).front();
     normal_.compute(slopes_.transpose() * slopes_);
+    at_once_ = left() - slopes_ * normal_.solve(slopes_.transpose() * left());
   }
 
-  const VectorXd& left() const { return part_.left; }
+  const VectorXd& left() const { return part().left; }
 
-  /// d of another model, or of other unknowns: how the lines made differ, ends projected out.
-  VectorXd change_of(const JointModel& model, const VectorXd& theta) const {
+  /// d of another model at the same unknowns: how the lines made differ, ends projected out.
+  VectorXd change_of(const JointModel& model) const {
     const LinearResponse there(dynamic_cast<const filters::LinearMotion&>(*model.motion),
-                               state_of_unknowns(model, theta));
-    const PartLines made = part_lines(*problem_, there, problem_->parts.front());
-    if (made.added.cols() != part_.lines.added.cols())
+                               state_of_unknowns(model, theta_));
+    const PartLines made = part_lines(problem_, there, problem_.parts.front());
+    if (made.added.cols() != part().lines.added.cols())
       throw std::runtime_error("another number of coordinates");
-    return projected(made.driven - part_.lines.driven +
-                     (made.added - part_.lines.added) * part_.coefficients);
+    return part().change_to(made);
   }
-  VectorXd change_of(const JointModel& model) const { return change_of(model, theta_); }
 
   /// Of a gain of one channel.
   VectorXd gain_of(Index channel) const {
-    VectorXcd lines = VectorXcd::Zero(part_.lines.driven.rows());
-    const auto of = Eigen::seqN(channel, lines.size() / problem_->weights.size(), problem_->weights.size());
-    lines(of) = part_.lines.driven.col(0)(of);
+    VectorXcd lines = VectorXcd::Zero(part().lines.driven.rows());
+    const auto of = Eigen::seqN(channel, lines.size() / problem_.weights.size(), problem_.weights.size());
+    lines(of) = part().lines.driven.col(0)(of);
     return projected(lines);
   }
 
   /// Of a gain of all inputs.
-  VectorXd gain_of_inputs() const { return projected(part_.lines.driven); }
+  VectorXd gain_of_inputs() const { return projected(part().lines.driven); }
 
   struct Score {
     double change, deviation, score, explained;
@@ -74,11 +69,10 @@ class LeftOver {
     const VectorXd own = direction - slopes_ * coefficients;
     const double squares = own.squaredNorm();
     if (!(squares > collinear * collinear * direction.squaredNorm())) return {};
-    const VectorXd at_once = part_.left - slopes_ * normal_.solve(slopes_.transpose() * part_.left);
     const Index half = own.size() / 2;
-    const double sum = own.dot(at_once), change = sum / squares;
+    const double sum = own.dot(at_once_), change = sum / squares;
     // Of the change itself, by what is left with it: lines of their own noise, one that weighs much by more.
-    const VectorXd rest = at_once - change * own;
+    const VectorXd rest = at_once_ - change * own;
     double variance = 0.0;
     for (Index k = 0; k < half; ++k) {
       const double weight = own[k] * own[k] + own[k + half] * own[k + half],
@@ -87,25 +81,21 @@ class LeftOver {
     }
     const double spread = std::sqrt(variance);
     return Score{change, spread / squares, std::abs(sum) / std::max(spread, 1e-300),
-                 sum * sum / (squares * std::max(part_.left.squaredNorm(), 1e-300)), -change * coefficients};
+                 sum * sum / (squares * std::max(left().squaredNorm(), 1e-300)), -change * coefficients};
   }
 
  private:
-  const DrivenProblem* problem_;
+  const DrivenProblem& problem_;
   VectorXd theta_;
-  PartAt part_;
+  std::vector<PartAt> parts_;  // one
   MatrixXd slopes_;
   Eigen::LDLT<MatrixXd> normal_;
+  VectorXd at_once_;  // what no unknowns make, to first order
 
-  PartAt at(const JointModel& model, const DrivenProblem& problem) const {
-    return {problem,
-            LinearResponse(dynamic_cast<const filters::LinearMotion&>(*model.motion),
-                           state_of_unknowns(model, theta_)),
-            problem.parts.front()};
-  }
+  const PartAt& part() const { return parts_.front(); }
   VectorXd projected(const VectorXcd& lines) const {
     VectorXd rows = line_rows(lines);
-    part_.project(rows);
+    part().project(rows);
     return rows;
   }
 };
@@ -154,15 +144,15 @@ struct FollowedChange {
 };
 
 /// A change of the structure to where it explains most, the unknowns with it.
+/// @param whole J without it
 FollowedChange followed(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
                         const Candidate& candidate, const VectorXd& theta, double first,
-                        const VectorXd& moved_per_change) {
+                        const VectorXd& moved_per_change, double whole) {
   constexpr int rounds = 4;
   FollowedChange best;
   best.left = std::numeric_limits<double>::infinity();
   double x = first;
   VectorXd from = theta + first * moved_per_change;
-  const double whole = evaluate_driven(problem, theta).cost;
   for (int round = 0; round < rounds; ++round) {
     x = std::clamp(x, candidate.lower, candidate.upper);
     const JointModel model = models.of(candidate.changed(experiment.structure, x));
@@ -186,12 +176,12 @@ std::string value_text(const Candidate& candidate, const fem::Structure& structu
                        double deviation) {
   if (!candidate.value)
     return fmt::format("{} by the record {:+.3g} +- {:.2g} % of that described", candidate.label, 100.0 * x,
-                       196.0 * deviation);
+                       100.0 * quantile_95 * deviation);
   const double step = 1e-3 * candidate.scale(),
                slope = (candidate.value(structure, x + step) - candidate.value(structure, x)) / step;
   return fmt::format("{} described as {:.4g} {}, by the record {:.4g} +- {:.2g} {}", candidate.label,
                      candidate.value(structure, 0.0), candidate.value_unit, candidate.value(structure, x),
-                     1.96 * std::abs(slope) * deviation, candidate.value_unit);
+                     quantile_95 * std::abs(slope) * deviation, candidate.value_unit);
 }
 
 /// Whether the unknowns hold it already.
@@ -205,7 +195,7 @@ bool is_asked(const Experiment& experiment, const Candidate& candidate) {
 void add_structure_changes(const DrivenProblem& problem, const OtherModels& models,
                            const Experiment& experiment, const LeftOver& left, const VectorXd& theta,
                            bool much_is_left, std::vector<DescriptionFault>& faults) {
-  const double whole = left.left().squaredNorm();
+  const double whole = left.left().squaredNorm(), cost = evaluate_driven(problem, theta).cost;
   for (const Candidate& candidate : candidates_of({experiment.structure})) {
     if (candidate.of_clock || is_asked(experiment, candidate)) continue;
     try {
@@ -225,7 +215,8 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
           firsts.emplace_back(sign * candidate.scale(), unmoved);
         }
       for (const auto& [first, moving] : firsts) {
-        const FollowedChange end = followed(problem, models, experiment, candidate, theta, first, moving);
+        const FollowedChange end =
+            followed(problem, models, experiment, candidate, theta, first, moving, cost);
         if (!std::isfinite(end.left) || !(1.0 - end.left / whole > fault.explained)) continue;
         fault = {value_text(candidate, experiment.structure, end.change, end.deviation),
                  std::max(score->score, std::abs(end.change) / end.deviation), 1.0 - end.left / whole,
@@ -245,7 +236,7 @@ void add_gains(const Record& record, const LeftOver& left, std::vector<Descripti
     if (!score || !(score->score > surely)) return;
     if (std::abs(score->change) > largest && std::abs(score->change + 2.0) > turned) return;
     faults.push_back({fmt::format("gain of {} {:.4g} +- {:.2g} by the record", name, 1.0 + score->change,
-                                  1.96 * score->deviation),
+                                  quantile_95 * score->deviation),
                       score->score, score->explained, score->moved});
   };
   const std::vector<Index> outputs = output_channels(record), inputs = input_channels(record);

@@ -12,6 +12,7 @@
 #include "experiments/identify/driven/driven_part.hpp"
 #include "experiments/models/finest_discretisation.hpp"
 #include "experiments/signal/random.hpp"
+#include "experiments/signal/spectrum.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {
@@ -23,79 +24,7 @@ using std::numbers::pi;
 
 constexpr double no_motion = std::numeric_limits<double>::infinity();  // J where there is none
 
-class MotionLines {
- public:
-  explicit MotionLines(const DrivenProblem& problem)
-      : problem_(problem), motion_(dynamic_cast<const filters::LinearMotion&>(*problem.model->motion)) {
-    const MatrixXd& known = problem.prior.covariance;
-    prior_ = known.llt().solve(MatrixXd::Identity(known.rows(), known.cols()));
-  }
-
-  const MatrixXd& prior() const { return prior_; }
-  VectorXd off(const VectorXd& theta) const { return theta - problem_.prior.mean; }
-
-  // @throws std::runtime_error where nothing moves, or a motion grows
-  LinearResponse response(const VectorXd& theta) const {
-    constexpr double growth = 1e-9;
-    if (!theta.allFinite()) throw std::runtime_error("the unknowns are not finite");
-    LinearResponse found(motion_, state_of_unknowns(*problem_.model, theta));
-    const VectorXcd& poles = found.poles();
-    if ((poles.array().real() > growth * poles.cwiseAbs().maxCoeff()).any())
-      throw std::runtime_error("a motion of the model grows at these unknowns");
-    return found;
-  }
-
-  std::vector<PartAt> at(const VectorXd& theta) const {
-    const LinearResponse there = response(theta);
-    std::vector<PartAt> found;
-    for (const RecordLines& part : problem_.parts) found.emplace_back(problem_, there, part);
-    return found;
-  }
-
-  double cost(const std::vector<PartAt>& parts, const VectorXd& theta) const {
-    double sum = off(theta).dot(prior_ * off(theta));
-    for (const PartAt& part : parts) sum += part.left.squaredNorm();
-    return sum;
-  }
-  // Empty where there is no motion, or none that is finite.
-  std::vector<PartAt> tried_at(const VectorXd& theta) const {
-    try {
-      std::vector<PartAt> found = at(theta);
-      if (std::isfinite(cost(found, theta))) return found;
-    } catch (const std::runtime_error&) {
-    }
-    return {};
-  }
-
-  // d left / d theta of every part, up to its sign.
-  std::vector<MatrixXd> slopes(const std::vector<PartAt>& parts, const VectorXd& theta) const {
-    constexpr double share = 1e-4;  // of the deviations known beforehand
-    const Index q = theta.size();
-    std::vector<MatrixXd> found;
-    for (const PartAt& part : parts) found.emplace_back(part.left.size(), q);
-    for (Index j = 0; j < q; ++j) {
-      const double step = share * std::sqrt(problem_.prior.covariance(j, j));
-      const LinearResponse moved = response(theta + step * VectorXd::Unit(q, j));
-      for (std::size_t i = 0; i < parts.size(); ++i) {
-        const PartLines there = part_lines(problem_, moved, problem_.parts[i]);
-        const VectorXcd change = (there.driven - parts[i].lines.driven +
-                                  (there.added - parts[i].lines.added) * parts[i].coefficients) /
-                                 step;
-        VectorXd rows = line_rows(change);
-        parts[i].project(rows);
-        found[i].col(j) = rows;
-      }
-    }
-    return found;
-  }
-
- private:
-  const DrivenProblem& problem_;
-  const filters::LinearMotion& motion_;
-  MatrixXd prior_;
-};
-
-DrivenFit summary(const DrivenProblem& problem, const MotionLines& lines, const std::vector<PartAt>& parts,
+DrivenFit summary(const DrivenProblem& problem, const DrivenMotion& lines, const std::vector<PartAt>& parts,
                   const VectorXd& theta) {
   const Index p = problem.weights.size(), q = theta.size();
   DrivenFit fit;
@@ -149,7 +78,7 @@ VectorXd well_damped(const JointModel& model, VectorXd theta) {
 }
 
 // The prior's mean with its stiffnesses times a common factor; the least J among neighbours first.
-std::vector<VectorXd> scaled_starts(const DrivenProblem& problem, const MotionLines& lines) {
+std::vector<VectorXd> scaled_starts(const DrivenProblem& problem, const DrivenMotion& lines) {
   constexpr int steps = 16;
   constexpr double widest = 4.0;
   const FirstGuess guess{state_of_unknowns(*problem.model, problem.prior.mean), {}};
@@ -190,7 +119,8 @@ MatrixXd DrivenFit::covariance(const filters::Gaussian& prior) const {
 
 std::optional<DrivenProblem> driven_problem(const JointModel& model, const filters::Measurements& record,
                                             filters::Gaussian prior) {
-  constexpr double all_but = 1e-3, highest_share = 0.9;  // of the squares; of half the sampling rate
+  constexpr double highest_share = 0.9;  // of half the sampling rate
+  constexpr Index fewest_lines = 8;
   const Index m = model.motion->input_size();
   if (m == 0 || record.inputs.rows() < m || is_whole_mesh(model) ||
       !dynamic_cast<const filters::LinearMotion*>(model.motion.get()))
@@ -198,15 +128,8 @@ std::optional<DrivenProblem> driven_problem(const JointModel& model, const filte
   try {
     RecordLines lines =
         record_lines(record, record.inputs.topRows(m), highest_share * 0.5 / record.interval());
-    Index last = 7;
-    for (Index i = 0; i < lines.outputs.rows(); ++i) {
-      const VectorXd power = lines.outputs.row(i).cwiseAbs2().transpose();
-      double above = 0.0;
-      Index k = power.size() - 1;
-      for (const double limit = all_but * power.sum(); k > last && (above += power[k]) < limit;) --k;
-      last = std::max(last, k);
-    }
-    last = std::min(last, lines.omega.size() - 1);
+    const Index last =
+        std::min(std::max(fewest_lines - 1, last_strong_line(lines.outputs)), lines.omega.size() - 1);
     lines.omega.conservativeResize(last + 1);
     lines.outputs.conservativeResize(Eigen::NoChange, last + 1);
     lines.inputs.conservativeResize(Eigen::NoChange, last + 1);
@@ -245,7 +168,7 @@ std::optional<DrivenProblem> in_sections(const DrivenProblem& whole, const filte
 
 DrivenFit fit_driven_from(const DrivenProblem& problem, const VectorXd& start, int most_steps) {
   constexpr double close_enough = 1e-3, longest = 3.0;  // of deviations of unit noise; of those beforehand
-  const MotionLines lines(problem);
+  const DrivenMotion lines(problem);
   VectorXd theta = start;
   std::vector<PartAt> now = lines.at(theta);
   double cost = lines.cost(now, theta);
@@ -298,7 +221,7 @@ DrivenFit fit_driven_from(const DrivenProblem& problem, const VectorXd& start, i
 }
 
 DrivenFit evaluate_driven(const DrivenProblem& problem, const VectorXd& theta) {
-  const MotionLines lines(problem);
+  const DrivenMotion lines(problem);
   return summary(problem, lines, lines.at(theta), theta);
 }
 
@@ -319,7 +242,7 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
     } catch (const std::runtime_error&) {  // no motion there
     }
   };
-  const std::vector<VectorXd> starts = scaled_starts(problem, MotionLines(problem));
+  const std::vector<VectorXd> starts = scaled_starts(problem, DrivenMotion(problem));
   for (std::size_t i = 0; i < std::min(starts.size(), most_valleys); ++i) descend(starts[i], first_steps);
   if (!best) return best;
   const VectorXd middle = best->theta, known = problem.prior.covariance.diagonal().cwiseSqrt();

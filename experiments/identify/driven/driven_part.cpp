@@ -1,7 +1,11 @@
 #include "experiments/identify/driven/driven_part.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <complex>
+#include <stdexcept>
+
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -17,12 +21,6 @@ Complex path_gain(InputPath path, double omega, double interval) {
 }
 
 }  // namespace
-
-MatrixXd line_rows(const MatrixXcd& lines) {
-  MatrixXd rows(2 * lines.rows(), lines.cols());
-  rows << lines.real(), lines.imag();
-  return rows;
-}
 
 PartLines part_lines(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part) {
   const Index p = part.outputs.rows(), lines = part.omega.size(), l = response.motion_size();
@@ -61,6 +59,64 @@ void PartAt::project(VectorXd& rows) const {
   rows.applyOnTheLeft(ends.householderQ().transpose());
   rows.head(ends.rank()).setZero();
   rows.applyOnTheLeft(ends.householderQ());
+}
+
+VectorXd PartAt::change_to(const PartLines& others) const {
+  VectorXd rows = line_rows(others.driven - lines.driven + (others.added - lines.added) * coefficients);
+  project(rows);
+  return rows;
+}
+
+DrivenMotion::DrivenMotion(const DrivenProblem& problem)
+    : problem_(problem), motion_(dynamic_cast<const filters::LinearMotion&>(*problem.model->motion)) {
+  const MatrixXd& known = problem.prior.covariance;
+  prior_ = known.llt().solve(MatrixXd::Identity(known.rows(), known.cols()));
+}
+
+LinearResponse DrivenMotion::response(const VectorXd& theta) const {
+  constexpr double growth = 1e-9;
+  if (!theta.allFinite()) throw std::runtime_error("the unknowns are not finite");
+  LinearResponse found(motion_, state_of_unknowns(*problem_.model, theta));
+  const VectorXcd& poles = found.poles();
+  if ((poles.array().real() > growth * poles.cwiseAbs().maxCoeff()).any())
+    throw std::runtime_error("a motion of the model grows at these unknowns");
+  return found;
+}
+
+std::vector<PartAt> DrivenMotion::at(const VectorXd& theta) const {
+  const LinearResponse there = response(theta);
+  std::vector<PartAt> found;
+  for (const RecordLines& part : problem_.parts) found.emplace_back(problem_, there, part);
+  return found;
+}
+
+std::vector<PartAt> DrivenMotion::tried_at(const VectorXd& theta) const {
+  try {
+    std::vector<PartAt> found = at(theta);
+    if (std::isfinite(cost(found, theta))) return found;
+  } catch (const std::runtime_error&) {  // no motion there
+  }
+  return {};
+}
+
+double DrivenMotion::cost(const std::vector<PartAt>& parts, const VectorXd& theta) const {
+  double sum = off(theta).dot(prior_ * off(theta));
+  for (const PartAt& part : parts) sum += part.left.squaredNorm();
+  return sum;
+}
+
+std::vector<MatrixXd> DrivenMotion::slopes(const std::vector<PartAt>& parts, const VectorXd& theta) const {
+  constexpr double share = 1e-4;  // of the deviations known beforehand
+  const Index q = theta.size();
+  std::vector<MatrixXd> found;
+  for (const PartAt& part : parts) found.emplace_back(part.left.size(), q);
+  for (Index j = 0; j < q; ++j) {
+    const double step = share * std::sqrt(problem_.prior.covariance(j, j));
+    const LinearResponse moved = response(theta + step * VectorXd::Unit(q, j));
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      found[i].col(j) = parts[i].change_to(part_lines(problem_, moved, problem_.parts[i])) / step;
+  }
+  return found;
 }
 
 }  // namespace beamid::experiments

@@ -2,23 +2,9 @@
 #include <stdexcept>
 
 #include "experiments/modal/common_denominator.hpp"
-#include "experiments/modal/modal_method.hpp"
 
 namespace beamid::experiments {
 namespace {
-
-class FrequencyResponseMethod final : public ModalMethod {
- public:
-  PoleSearch search(const Eigen::MatrixXd&, double, int) const override {
-    throw std::invalid_argument("frf_lscf needs a measured force; era takes a record without one");
-  }
-
-  std::vector<OrderPoles> search_responses(const Eigen::VectorXd& frequency_hz,
-                                           const Eigen::MatrixXcd& responses, double shift,
-                                           int largest_order) const override {
-    return common_denominator_poles(frequency_hz, responses, shift, largest_order);
-  }
-};
 
 const bool frf_lscf_registered = modal_method_registry().add(
     {"frf_lscf",
@@ -30,7 +16,7 @@ const bool frf_lscf_registered = modal_method_registry().add(
      [](const filters::Options& options) {
        if (const std::string& word = options.text("estimator"); word != "h1" && word != "h2")
          throw std::invalid_argument("frf_lscf: estimator is '" + word + "'; expected h1 or h2");
-       return std::make_unique<FrequencyResponseMethod>();
+       return common_denominator_method("frf_lscf needs a measured force; era takes a record without one");
      }});
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "experiments/modal/study/decay_part.hpp"
 #include "experiments/modal/study/signal_band.hpp"
 #include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -33,16 +34,9 @@ MatrixXd rows_of(const Record& record, bool input, std::vector<Channel>& channel
 
 /// From 1.5 lines of a block to where all but a thousandth of every channel's squares lie.
 std::pair<double, double> reach(const MatrixXd& outputs, double interval, double block_s) {
-  constexpr double all_but = 1e-3, highest_share = 0.45, margin = 1.1;
+  constexpr double highest_share = 0.45, margin = 1.1;
   const DrivenLines lines = driven_lines(outputs, outputs, interval, {0.0, highest_share / interval});
-  double highest = 0.0;
-  for (Index i = 0; i < outputs.rows(); ++i) {
-    const VectorXd power = lines.outputs.row(i).cwiseAbs2().transpose();
-    double above = 0.0;
-    Index k = power.size() - 1;
-    for (const double limit = all_but * power.sum(); k > 0 && (above += power[k]) < limit;) --k;
-    highest = std::max(highest, lines.omega[k] / (2.0 * pi));
-  }
+  const double highest = lines.omega[last_strong_line(lines.outputs)] / (2.0 * pi);
   return {1.5 / block_s, std::min(margin * highest, highest_share / interval)};
 }
 
@@ -282,7 +276,6 @@ DrivenStudy study_driven(const std::string& name, const Record& record, const Mo
     for (Index a = 0; a < scatter.rows(); ++a) {
       const double by_lines = std::sqrt(study.fit.covariance(a, a)),
                    by_sections = student * std::sqrt(std::max(0.0, scatter(a, a)));
-      study.scatter_ratio = std::max(study.scatter_ratio, by_sections / by_lines);
       if (by_sections > by_lines) {
         study.fit.covariance.row(a) *= by_sections / by_lines;
         study.fit.covariance.col(a) *= by_sections / by_lines;

@@ -33,7 +33,6 @@ struct DrivenStudy {
   DrivenPoles fit;
   std::vector<DrivenMode> modes;               ///< by rising frequency
   int sections = 0;                            ///< over which poles were asked for their scatter; 0: too few
-  double scatter_ratio = 0.0;                  ///< largest deviation by sections over that by lines
   std::vector<std::string> remarks, warnings;  ///< sentences
 
   double explained() const { return 1.0 - fit.left_share; }  ///< of the root mean square

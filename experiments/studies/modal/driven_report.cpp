@@ -102,12 +102,7 @@ Json describe(const DrivenStudy& study) {
     if (p > 1) one["phase_collinearity"] = phase_collinearity(mode.pole.shape);
     json["modes"].push_back(std::move(one));
   }
-  json["rejected"] = Json::array();
-  for (const PoleCluster& cluster : study.stabilisation.rejected)
-    json["rejected"].push_back({{"frequency_hz", cluster.pole.frequency_hz()},
-                                {"damping_ratio", cluster.pole.damping_ratio()},
-                                {"stable_orders", cluster.orders},
-                                {"reason", cluster.objection}});
+  json["rejected"] = rejected_values(study.stabilisation);
   return json;
 }
 

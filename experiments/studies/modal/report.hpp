@@ -15,6 +15,9 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
 /// Stabilisation diagram, measured and reproduced motion and spectrum, singular values; `suffix` of names.
 std::vector<Figure> figures(const RecordModes& found, const std::string& suffix);
 
+/// Poles that are no modes, and why.
+nlohmann::ordered_json rejected_values(const Stabilisation& stabilisation);
+
 /// The keys of results.json.
 nlohmann::ordered_json values(const std::vector<RecordModes>& records, const std::vector<MergedMode>& merged);
 nlohmann::ordered_json configuration(const ModalStudySettings& settings,

@@ -39,6 +39,16 @@ Json describe_mode(const MergedValue& value) {
 
 }  // namespace
 
+Json rejected_values(const Stabilisation& stabilisation) {
+  Json json = Json::array();
+  for (const PoleCluster& cluster : stabilisation.rejected)
+    json.push_back({{"frequency_hz", cluster.pole.frequency_hz()},
+                    {"damping_ratio", cluster.pole.damping_ratio()},
+                    {"stable_orders", cluster.orders},
+                    {"reason", cluster.objection}});
+  return json;
+}
+
 Json values(const std::vector<RecordModes>& records, const std::vector<MergedMode>& merged) {
   Json json;
   json["records"] = Json::array();
@@ -52,14 +62,8 @@ Json values(const std::vector<RecordModes>& records, const std::vector<MergedMod
              {"polished", found.polished}};
     one["modes"] = Json::array();
     for (const ModeEstimate& mode : found.modes) one["modes"].push_back(describe_mode(mode, found.record));
-    one["rejected"] = Json::array();
-    for (const PoleCluster& cluster : found.stabilisation.rejected)
-      one["rejected"].push_back({{"frequency_hz", cluster.pole.frequency_hz()},
-                                 {"damping_ratio", cluster.pole.damping_ratio()},
-                                 {"stable_orders", cluster.orders},
-                                 {"reason", cluster.objection}});
-    if (found.reproduced.size() > 0)
-      one["response_error_percent"] = 100 * found.left();
+    one["rejected"] = rejected_values(found.stabilisation);
+    if (found.reproduced.size() > 0) one["response_error_percent"] = 100 * found.left();
     json["records"].push_back(std::move(one));
   }
   if (records.size() < 2) return json;

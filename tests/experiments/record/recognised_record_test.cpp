@@ -1,0 +1,172 @@
+// Files as people and their instruments write them, read without a word about them. Oracle: what was written.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "experiments/record/read_record.hpp"
+#include "experiments/record/units.hpp"
+#include "tests/experiments/config/temporary_file.hpp"
+
+namespace beamid::experiments::recognised_record_test {
+namespace {
+
+Record recognised(const std::string& content, const RecordFormat& format = {}) {
+  const TemporaryFile file("record.txt", content);
+  return read_record(file.path(), format);
+}
+
+TEST(RecognisedRecord, RecognisesHeadersAsPeopleWriteThem) {
+  struct Case {
+    const char* header;
+    double time, value;  // of one unit in the file, in SI units
+    char separator;
+  };
+  for (const auto& [header, time, value, separator] :
+       {Case{"time [s],acceleration [m/s2]", 1, 1, ','}, Case{"Time (s),Acceleration (m/s^2)", 1, 1, ','},
+        Case{"t/s,a/(m/s2)", 1, 1, ','}, Case{"t,a", 1, 1, ','},
+        Case{"time_ms,acc_g", 1e-3, standard_gravity, ','}, Case{"Time (s),gFx", 1, standard_gravity, ','},
+        Case{"Zeit [s];Beschleunigung [m/s²]", 1, 1, ';'},
+        Case{"temps (ms);accélération (mm/s2)", 1e-3, 1e-3, ';'},
+        Case{"tiempo [s];aceleración [m/s2]", 1, 1, ';'},
+        Case{"tempo (s);accelerazione (g)", 1, standard_gravity, ';'},
+        Case{"Time\tAcc\ns\tm/s^2", 1, 1, '\t'}, Case{"time_s,Linear Acceleration x (m/s^2)", 1, 1, ','},
+        Case{"Time (s),Accel-Tip (mg)", 1, 1e-3 * standard_gravity, ','},
+        Case{"SampleTimeFine,Acc_X", 1e-6, 1, ','}}) {
+    std::string text = std::string(header) + "\n";
+    for (int k = 0; k < 20; ++k)
+      text += fmt::format("{:.6f}{}{}\n", 0.0025 * (k + 1) / time, separator, 4.0 - 0.1 * k);
+    const Record record = recognised(text);
+    ASSERT_EQ(record.channels.size(), 1u) << header;
+    EXPECT_EQ(record.channels[0].quantity, Quantity::acceleration) << header;
+    EXPECT_NEAR(record.interval(), 0.0025, 1e-8) << header;
+    EXPECT_NEAR(record.samples(0, 1), 3.9 * value, 1e-12) << header;
+  }
+}
+
+TEST(RecognisedRecord, TakesNoOrientationAndNoCountForAChannelOrATime) {
+  std::string text = "sep=,\nDeviceTag: 1\n\nPacketCounter,SampleTimeFine,Euler_X,Acc_X,Gyr_X\n";
+  for (int k = 0; k < 20; ++k)
+    text += fmt::format("{},{},{},{},{}\n", 17 + k, 991011697 + 8333 * k, 10.5, k == 0 ? 0.0 : 0.25 + 0.1 * k,
+                        1.5);
+  RecordFormat format;
+  format.header_lines = 4;
+  const Record record = recognised(text, format);
+  ASSERT_EQ(record.channels.size(), 1u);
+  EXPECT_EQ(record.channels[0].name, "Acc_X");
+  EXPECT_NEAR(record.interval(), 0.008333, 1e-9);
+  EXPECT_EQ(record.size(), 19) << "the first sample is a logger's zero";
+}
+
+TEST(RecognisedRecord, ReadsStampsOfADateAndIntervalsStatedAboveTheColumns) {
+  std::string stamped = "timestamp,x\n", stated = "# Sample rate: 400 Hz\nSample,Acc X [g]\n", bare;
+  for (int k = 0; k < 20; ++k) {
+    stamped += fmt::format("2026-11-26T23:59:{:06.3f}Z,{}\n", 58.0 + 0.05 * k, 1 + k);
+    stated += fmt::format("{},{}\n", k, 1 + k);
+    bare += fmt::format("{:.4f} {}\n", 0.0025 * k, 1 + k);
+  }
+  EXPECT_NEAR(recognised(stamped).interval(), 0.05, 1e-6);
+  const Record counted = recognised(stated);
+  EXPECT_NEAR(counted.interval(), 0.0025, 1e-12);
+  EXPECT_NEAR(counted.samples(0, 0), standard_gravity, 1e-12);
+  EXPECT_NEAR(recognised(bare).interval(), 0.0025, 1e-9);
+}
+
+// Every file holds 40 samples at 200 Hz, the k-th of 4 - k / 10.
+TEST(RecognisedRecord, ReadsStampsOfClocksDaysAndSpreadsheets) {
+  struct Case {
+    const char* header;
+    std::string (*stamp)(int);
+  };
+  for (const auto& [header, stamp] :
+       {Case{"Time,Acc\n", [](int k) { return fmt::format("23:59:59.{:03},", 900 + 5 * k); }},
+        Case{"Date,Time,Acc [g]\n",
+             [](int k) { return fmt::format("2026-11-27,10:00:{:02}.{:03},", k / 20, 50 * (k % 20)); }},
+        Case{"epoch,acc\n", [](int k) { return fmt::format("{},", 1700000000000LL + 5 * k); }},
+        Case{"time,acc\n", [](int k) { return fmt::format("{},", 1700000000000000LL + 5000 * k); }},
+        Case{"Date,acc\n", [](int k) { return fmt::format("{:.10f},", 45000.0 + 0.005 * k / 86400.0); }},
+        Case{"Source,CH1\nSecond,Volt\n", [](int k) { return fmt::format("{:.6e},", 0.005 * k - 0.1); }},
+        Case{"Recorder: X100\nOperator,me\nDate: 2026-11-27\n\ntime (s),a\n",
+             [](int k) { return fmt::format("{:.3f},", 0.005 * k); }},
+        Case{"// logger\n// fs = 200\nt,a\n", [](int k) { return fmt::format("{:.3f},", 0.005 * k); }}}) {
+    std::string text = header;
+    for (int k = 0; k < 20; ++k) text += stamp(k) + fmt::format("{:.1f}\n", 4.0 - 0.1 * k);
+    const Record record = recognised(text);
+    ASSERT_EQ(record.channels.size(), 1U) << header;
+    const double interval = std::string(header).starts_with("Date,Time") ? 0.05 : 0.005;
+    EXPECT_NEAR(record.interval(), interval, 2e-6) << header;
+    EXPECT_EQ(record.size(), 20) << header;
+  }
+}
+
+TEST(RecognisedRecord, GoesOnPastMidnight) {
+  std::string text = "Time,Acc\n";
+  for (int k = 0; k < 20; ++k)
+    text += (k < 10 ? fmt::format("23:59:59.{:02},", 90 + k) : fmt::format("00:00:00.{:02},", k - 10)) +
+            fmt::format("{}\n", k % 7);
+  EXPECT_NEAR(recognised(text).interval(), 0.01, 1e-9);
+}
+
+TEST(RecognisedRecord, TakesGapsOfAFileThatNobodyDescribedForWhatTheyAre) {
+  std::string text = "t,a\n";
+  const char* const gaps[] = {"", "NaN", "OVERFLOW", "n/a"};
+  for (int k = 0; k < 40; ++k)
+    text +=
+        fmt::format("{:.3f},{}\n", 0.005 * k, k >= 10 && k < 14 ? gaps[k - 10] : fmt::format("{}", k % 7));
+  const Record record = recognised(text);
+  EXPECT_EQ(record.size(), 40);
+  EXPECT_EQ(record.samples.array().isNaN().count(), 4);
+}
+
+TEST(RecognisedRecord, LeavesOutAnAxisThatDoesNotMove) {
+  std::string text = "t,ax,ay,az\n";
+  for (int k = 0; k < 20; ++k) text += fmt::format("{:.3f},{},0,9.81\n", 0.005 * k, k % 7);
+  const Record record = recognised(text);
+  ASSERT_EQ(record.channels.size(), 1U);
+  EXPECT_EQ(record.channels[0].name, "ax");
+}
+
+// A zip archive of one stored array of 16 doubles and a number fs = 100, and what is left of it.
+TEST(RecognisedRecord, ReadsStoredArchivesOfArraysAndRefusesDamagedOnes) {
+  std::string bytes, directory;
+  const auto number = [](std::size_t value, int length) {
+    std::string text;
+    for (int k = 0; k < length; ++k, value >>= 8) text += static_cast<char>(value & 0xFF);
+    return text;
+  };
+  const auto add = [&](const std::string& name, const std::string& shape, const std::vector<double>& values) {
+    std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': " + shape + ", }\n",
+                array = "\x93NUMPY\x01" + std::string(1, '\0') + number(header.size(), 2) + header;
+    array.append(reinterpret_cast<const char*>(values.data()), 8 * values.size());
+    const std::string sizes = number(0, 4) + number(array.size(), 4) + number(array.size(), 4) +
+                              number(name.size(), 2) + number(0, 2),
+                      common = number(20, 2) + number(0, 2) + number(0, 2) + number(0, 4) + sizes;
+    directory += "PK\x01\x02" + number(20, 2) + common + number(0, 2) + number(0, 2) + number(0, 2) +
+                 number(0, 4) + number(bytes.size(), 4) + name;
+    bytes += "PK\x03\x04" + common + name + array;
+  };
+  std::vector<double> values;
+  for (int k = 0; k < 16; ++k) values.push_back(k % 5);
+  add("acc.npy", "(16,)", values);
+  add("fs.npy", "()", {100.0});
+  const std::string whole = bytes + directory + "PK\x05\x06" + number(0, 4) + number(2, 2) + number(2, 2) +
+                            number(directory.size(), 4) + number(bytes.size(), 4) + number(0, 2);
+  const TemporaryFile file("record.npz", whole);
+  const Record record = read_record(file.path(), {});
+  ASSERT_EQ(record.size(), 16);
+  EXPECT_EQ(record.channels[0].name, "acc");
+  EXPECT_NEAR(record.interval(), 0.01, 1e-12);
+  for (std::size_t length = 8; length + 22 < whole.size(); length += 7) {
+    const TemporaryFile cut("cut.npz", whole.substr(0, length));
+    EXPECT_THROW(read_record(cut.path(), {}), InputError) << length;
+  }
+}
+
+TEST(RecognisedRecord, ReadsUtf16) {
+  std::string text = "\xFF\xFE";
+  std::string plain = "Zeit [s];Beschl. [m/s2]\n";
+  for (int k = 0; k < 20; ++k) plain += fmt::format("{:.3f};{}\n", 0.005 * k, k % 7);
+  for (const char byte : plain) text += byte, text += '\0';
+  EXPECT_EQ(recognised(text).size(), 20);
+}
+
+}  // namespace
+}  // namespace beamid::experiments::recognised_record_test
