@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
@@ -102,11 +103,12 @@ std::vector<RecordModes> modes_without_input(const std::vector<RecordRequest>& r
 }
 
 /// Modes of each record from its measured inputs.
+/// @param decaying set to the modes of the records as free decays, where the record decides and has any
 /// @returns absent where the record decides, and a free decay explains it better
 std::optional<Results> driven_results(const std::vector<RecordRequest>& requests,
                                       const std::vector<std::string>& names,
                                       const std::vector<Record>& records, const ModalStudySettings& settings,
-                                      bool decides) {
+                                      bool decides, std::vector<RecordModes>& decaying) {
   std::vector<DrivenStudy> found;
   for (std::size_t r = 0; r < records.size(); ++r) {
     try {
@@ -120,7 +122,7 @@ std::optional<Results> driven_results(const std::vector<RecordRequest>& requests
   if (decides) try {
       ModalStudySettings decay = settings;
       decay.method = ModalStudySettings().method;
-      const std::vector<RecordModes> decaying = modes_without_input(requests, names, records, decay);
+      decaying = modes_without_input(requests, names, records, decay);
       for (std::size_t r = 0; r < records.size(); ++r)
         if (!decaying[r].modes.empty() && decaying[r].left() < found[r].fit.left_share) return {};
     } catch (const InputError&) {  // no decay
@@ -129,11 +131,12 @@ std::optional<Results> driven_results(const std::vector<RecordRequest>& requests
 }
 
 /// Modes of each record, and those of all.
+/// @param found of the settings' method, where it was asked already; else empty
 /// @param decides whether records that do not decay are taken for random vibration
 Results decay_results(const std::vector<RecordRequest>& requests, const std::vector<std::string>& names,
                       const std::vector<Record>& records, ModalStudySettings settings, bool amplitude,
-                      bool decides) {
-  std::vector<RecordModes> found = modes_without_input(requests, names, records, settings);
+                      bool decides, std::vector<RecordModes> found) {
+  if (found.empty()) found = modes_without_input(requests, names, records, settings);
   if (decides && std::ranges::none_of(found, &RecordModes::decays)) {
     ModalStudySettings random = settings;
     random.method = {"ssi_cov", {}};
@@ -203,15 +206,17 @@ int run_modal(const Values& values) {
     Results results;
     try {
       std::optional<Results> driven;
+      std::vector<RecordModes> decaying;
       if (has_contract(contract::measured_input)) {
-        driven = driven_results(requests, names, records, settings, decides);
+        driven = driven_results(requests, names, records, settings, decides, decaying);
         if (!driven) settings.method = ModalStudySettings().method;
       }
       results = driven                 ? *driven
                 : values.has("events") ? event_report(names, records, settings.band_hz)
                 : has_contract(contract::frequency_response)
                     ? hammer_results(names, records, settings)
-                    : decay_results(requests, names, records, settings, values.has("amplitude"), decides);
+                    : decay_results(requests, names, records, settings, values.has("amplitude"), decides,
+                                    std::move(decaying));
     } catch (const std::invalid_argument& error) {
       throw InputError({requests[0].file.string()}, error.what());
     }

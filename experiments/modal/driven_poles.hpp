@@ -45,9 +45,9 @@ struct DrivenPoles {
 /// @throws std::runtime_error when nothing is found that is finite.
 DrivenPoles fit_driven_poles(const DrivenLines& lines, const std::vector<std::complex<double>>& rates);
 
-/// Where one pole more would take most of what a fit leaves: among frequencies of the band, a twelfth of an
-/// octave or two lines apart, and damping ratios of 0.5, 2 and 6 %, by what the columns of the fit leave of
-/// its columns. Without any rates, of the record itself.
+/// Where one pole more would reduce the residual of a fit most: among frequencies of the band, a twelfth of
+/// an octave or two lines apart, and damping ratios of 0.5, 2 and 6 %, by what the columns of the fit leave
+/// of its columns. Without any rates, of the record itself.
 std::complex<double> next_pole(const DrivenLines& lines, const std::vector<std::complex<double>>& rates,
                                const Eigen::VectorXd& left);
 

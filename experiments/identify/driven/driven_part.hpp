@@ -18,7 +18,7 @@ struct PartLines {
 
 PartLines part_lines(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part);
 
-/// What one part leaves, the ends of it projected out.
+/// The residual of one part, the ends of it projected out.
 struct PartAt {
   PartLines lines;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> ends;

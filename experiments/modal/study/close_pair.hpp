@@ -7,16 +7,14 @@
 namespace beamid::experiments {
 
 /// Poles less than a line apart are one pole to a search over orders, and a line that is wider than its mode.
-/// For each mode that is found a pair is tried in its place: the realisation of order 4 of what the other
-/// modes leave [juang1985], then least squares of all. The pair stays where
+/// For each mode that is found a pair is tried in its place: the realisation of order 4 [juang1985] of the
+/// record without the other modes, then least squares of all. The pair stays where
 ///
-/// - it takes more of the squares than chance does, chi-square of 2 + 2 p degrees of freedom at 1e-6, noise
-/// as dense as
-///   what the pair leaves near it;
-/// - one mode whose frequency and damping drift (drifting_mode.hpp), of as many numbers, leaves 25 times that
-/// noise more;
-/// - what it leaves is as dense near it as farther away: a frequency that follows the amplitude is no pair
-/// either.
+/// - it reduces the squares by more than chance does: chi-square of 2 + 2 p degrees of freedom at 1e-6, by
+///   the density of its residual near it;
+/// - one mode whose frequency and damping drift (drifting_mode.hpp), of as many numbers, has squares larger
+///   by 25 times that density;
+/// - its residual is as dense near it as farther away: a frequency that follows the amplitude is no pair.
 ///
 /// @param fit of found's modes, before and after
 void split_close_pairs(RecordModes& found, JointDecayFit& fit);

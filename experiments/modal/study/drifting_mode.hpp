@@ -5,8 +5,8 @@
 
 namespace beamid::experiments {
 
-/// Squares that modes a and b of a joint fit leave of one channel, and those that one drifting mode in their
-/// place leaves; see is_one_drifting_mode().
+/// Squares of the residual of modes a and b of a joint fit in one channel, and of one drifting mode in their
+/// place; see is_one_drifting_mode().
 struct PairAgainstDrift {
   double left_by_pair = 0.0, left_by_drift = 0.0;
 };

@@ -1,4 +1,4 @@
-// What a record is, by its inputs: which method of modal analysis it asks for.
+// What a record is, by its inputs: which method of modal analysis suits it.
 #pragma once
 
 #include "experiments/record/record.hpp"
