@@ -1,5 +1,5 @@
 // beamid backbone: the force law of an oscillator out of windows of changing amplitude.
-#include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/modal/study/decay_part.hpp"

@@ -5,15 +5,14 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
-#include "experiments/config/storey_laws.hpp"
-#include "experiments/identify/model_check/observed_modes.hpp"
+#include "experiments/config/structure_description.hpp"
+#include "experiments/identify/model_check/model_check.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/studies/check/report.hpp"

@@ -1,7 +1,9 @@
 // A command of `beamid`: what it takes, stated once, and what it does with it.
 #pragma once
 
+#include <exception>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,46 @@
 #include "apps/values.hpp"
 
 namespace beamid::apps {
+
+// From the command line to a subcommand, and from an exception to an exit code.
+
+// The name that was probably meant.
+
+/// "; did you mean 'modes'?", or nothing where no name is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& known);
+
+/// Libraries list what they know: "unknown filter 'ufk'; known: ekf, enkf, ..., ukf". Here a name that is
+/// near takes the place of a list longer than a few: "unknown filter 'ufk'; did you mean 'ukf'?". Line by
+/// line.
+std::string with_suggestions(const std::string& message);
+
+class Receiver;
+
+/// What is said where memory ends.
+inline constexpr char no_memory[] =
+    "beamid: more memory was asked for than there is; expected a smaller record, mesh or ensemble";
+
+/// The whole of `beamid`, with every method that is registered in the program that calls it; its exit code:
+///
+///     0  success (a filter that diverged is a result)     1  failure with nothing usable     2  bad input
+///
+/// Throws nothing: what went wrong is told on standard error.
+int run_command_line(int count, char** words);
+
+/// One command for a program around it: what it finds goes to the receiver, what it otherwise prints to
+/// standard output, and an exception means what described() says. Its exit code.
+/// @param words behind the command's name
+int run_command(const std::string& name, const std::vector<std::string>& words, Receiver& receiver);
+
+/// Why a command ended without results.
+struct Refusal {
+  int code = 1;         ///< 2: bad input
+  std::string message;  ///< clean lines, with the name that was probably meant
+  std::string hint;     ///< "Try: beamid modes --help"; empty: none
+};
+
+/// What an exception of a command means. @param command empty: none was reached
+Refusal described(const std::exception_ptr& failure, const std::string& command);
 
 /// A word that is no option.
 struct Argument {
@@ -82,5 +124,19 @@ Command update_command();
 Command validate_command();
 /// Every registered study is a command of its own.
 std::vector<Command> study_commands();
+
+// What a command says of itself.
+
+/// All commands, a line each. @param width of the terminal
+void print_overview(std::ostream& stream, std::size_t width);
+
+/// One of them: its synopsis, options with their defaults, examples, exit codes.
+void print_help(std::ostream& stream, const Command& command, std::size_t width);
+
+/// "how many, the lowest [10]"
+std::string described(const Option& option);
+
+/// "0  done\n1  ...\n": of every command, and the command's own.
+std::string exit_codes(const Command& command);
 
 }  // namespace beamid::apps

@@ -2,7 +2,6 @@
 #include <filesystem>
 
 #include "apps/beam_options.hpp"
-#include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"

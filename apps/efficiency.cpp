@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
-#include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "experiments/studies/efficiency/interval_coverage.hpp"
 #include "experiments/studies/efficiency/laboratory_records.hpp"

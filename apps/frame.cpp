@@ -3,7 +3,7 @@
 
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/studies/continuum/modes_study.hpp"
 

@@ -1,7 +1,7 @@
 // beamid frf: frequency responses from point to point.
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/studies/continuum/frequency_response_report.hpp"
 
 namespace beamid::apps {

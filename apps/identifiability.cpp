@@ -1,7 +1,6 @@
 // beamid identifiability: what a test can tell about a beam, before it is made.
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/studies/bounds/report.hpp"

@@ -8,8 +8,16 @@
 #include "apps/command.hpp"
 #include "apps/values.hpp"
 #include "experiments/identify/identification_request.hpp"
+#include "experiments/results/results.hpp"
 
 namespace beamid::apps {
+
+// beamid identify --config A --config B ...: several beams at once.
+
+/// One record for each experiment file, in their order: those of the command line, or those that the files
+/// name.
+/// @throws UsageError, InputError
+experiments::Results identify_family(const Values& values, const std::vector<std::filesystem::path>& configs);
 
 /// One record of the command; its experiment includes what the command line says.
 using IdentifyRequest = experiments::IdentificationRequest;

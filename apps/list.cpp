@@ -1,16 +1,22 @@
 // beamid list: what can be chosen by name.
 #include <algorithm>
 #include <iostream>
+#include <ostream>
+#include <stdexcept>
+#include <string>
 
 #include "apps/command.hpp"
-#include "apps/key_list.hpp"
-#include "apps/method_list.hpp"
-#include "apps/terminal.hpp"
+#include "apps/method_options.hpp"
+#include "apps/values.hpp"
+#include "experiments/config/key_tables.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/springs/spring_law.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/record_reader.hpp"
+#include "experiments/results/print.hpp"
+#include "experiments/results/table.hpp"
+#include "experiments/results/text.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/text/spelling.hpp"
 #include "fem/response/response.hpp"
@@ -21,6 +27,66 @@
 
 namespace beamid::apps {
 namespace {
+
+// The keys of an experiment file, told to a reader.
+
+/// Key, what it may be, unit, default and meaning of every key of a table.
+/// @throws std::invalid_argument "unknown table 'beem' of an experiment file; did you mean 'beam'?"
+void print_keys(std::ostream& stream, const std::string& table, const experiments::Page& page);
+
+using experiments::Key;
+using experiments::KeyTable;
+
+/// Markdown marks words of a file by backticks; a terminal needs none.
+std::string plain(std::string text) {
+  std::erase(text, '`');
+  return text;
+}
+
+std::string or_dash(const std::string& text) {
+  return text.empty() ? "-" : text;
+}
+
+/// The tables of a file and how many keys each has.
+void print_tables(std::ostream& stream, const experiments::Page& page) {
+  experiments::Table table{"keys", ""};
+  table.column({"table", "table"}).column({"keys", "keys"});
+  for (const KeyTable* one : experiments::key_tables()) {
+    std::vector<std::string> names;
+    for (const Key& key : one->keys())
+      if (!key.is_table()) names.push_back(key.name);
+    constexpr std::size_t most = 30;  // [[parameters]] has a key for every unit
+    const std::size_t more = names.size() > most ? names.size() - most : 0;
+    names.resize(names.size() - more);
+    table.row({experiments::heading_of(*one), experiments::joined(names) +
+                                                  (more ? ", and " + std::to_string(more) + " more" : "") +
+                                                  (one->has_options() ? ", options of the method" : "")});
+  }
+  experiments::print(stream, table, page);
+}
+
+void print_keys(std::ostream& stream, const std::string& name, const experiments::Page& page) {
+  const KeyTable* const keys = experiments::find_key_table(name);
+  if (keys == nullptr) {
+    std::vector<std::string> known;
+    for (const KeyTable* one : experiments::key_tables())
+      if (!one->name().empty()) known.push_back(one->name());
+    throw std::invalid_argument("unknown table '" + name + "' of an experiment file; " +
+                                experiments::known_names(name, known));
+  }
+  experiments::Table table{"keys", ""};
+  table.column({"key", "key"})
+      .column({"value", "value"})
+      .column({"unit", "unit"})
+      .column({"default", "default"})
+      .column({"meaning", "meaning"});
+  for (const Key& key : keys->keys())
+    if (!key.is_table())
+      table.row({key.name, plain(experiments::values_text(key)), or_dash(experiments::unit_in_key(key.name)),
+                 plain(key.fallback), plain(key.meaning)});
+  stream << experiments::heading_of(*keys) << "\n\n";
+  experiments::print(stream, table, page);
+}
 
 template <class Registry>
 MethodList methods_of(const Registry& registry) {

@@ -6,7 +6,7 @@
 #include <exception>
 #include <new>
 
-#include "apps/command_line.hpp"
+#include "apps/command.hpp"
 
 namespace {
 

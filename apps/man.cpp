@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "apps/command.hpp"
-#include "apps/help.hpp"
 #include "experiments/results/file.hpp"
 
 namespace beamid::apps {

@@ -6,18 +6,15 @@
 #include <optional>
 #include <utility>
 
-#include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/modal/study/driven_study.hpp"
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/modal/study/record_kind.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
-#include "experiments/studies/modal/amplitude_report.hpp"
 #include "experiments/studies/modal/driven_report.hpp"
 #include "experiments/studies/modal/event_report.hpp"
 #include "experiments/studies/modal/hammer_report.hpp"
-#include "experiments/studies/modal/mass_report.hpp"
 #include "experiments/studies/modal/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/choice_text.hpp"

@@ -1,7 +1,7 @@
 // beamid modes: natural frequencies and mode shapes, each with what tells how far to trust it.
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/studies/continuum/modes_study.hpp"
 
 namespace beamid::apps {

@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "apps/deliver.hpp"
-#include "apps/update_options.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
-#include "experiments/config/storey_laws.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/identify/plausibility.hpp"
-#include "experiments/identify/sensing/sensing_record.hpp"
+#include "experiments/identify/sensing/sensing_model.hpp"
 #include "experiments/studies/posterior/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/input_error.hpp"

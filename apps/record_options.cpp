@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "experiments/config/read_record_format.hpp"
+#include "experiments/config/read_place.hpp"
 #include "experiments/record/record_reader.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/text/spelling.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/command.hpp"
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 
 namespace beamid::apps {
 

@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "apps/sensed_record.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_sensing.hpp"
-#include "experiments/config/storey_laws.hpp"
+#include "experiments/config/read_simulation.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/models/structure_points.hpp"
 #include "experiments/studies/sensing/report.hpp"

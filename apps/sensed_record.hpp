@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/progress.hpp"

@@ -1,7 +1,7 @@
 // beamid simulate: the virtual test rig.
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/studies/continuum/simulation_report.hpp"
 #include "fem/response/response.hpp"
 

@@ -5,11 +5,10 @@
 #include <filesystem>
 
 #include "apps/command.hpp"
-#include "apps/deliver.hpp"
 #include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/storey_laws.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/steps/published.hpp"

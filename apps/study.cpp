@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "apps/command.hpp"
-#include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -2,10 +2,10 @@
 #include <filesystem>
 
 #include "apps/beam_options.hpp"
-#include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/storey_laws.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/substructures/report.hpp"
 

@@ -1,5 +1,5 @@
 // beamid track: a stiffness that changes in time, followed through a record; no beam is needed.
-#include "apps/deliver.hpp"
+#include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"

@@ -1,11 +1,10 @@
 // beamid twins: every set of parameters that explains the modes as well.
-#include "apps/deliver.hpp"
-#include "apps/update_options.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
-#include "experiments/config/storey_laws.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/identify/plausibility.hpp"
-#include "experiments/studies/twins/report.hpp"
+#include "experiments/studies/twins/record_report.hpp"
 
 namespace beamid::apps {
 namespace {

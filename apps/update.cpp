@@ -1,9 +1,8 @@
 // beamid update: parameters of a structure from measured frequencies and shapes.
-#include "apps/deliver.hpp"
-#include "apps/update_options.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_modal_data.hpp"
-#include "experiments/config/storey_laws.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/update/report.hpp"
 

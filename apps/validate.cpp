@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "apps/command.hpp"
-#include "apps/terminal.hpp"
+#include "apps/values.hpp"
 #include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
 #include "experiments/config/read_experiment.hpp"

@@ -8,8 +8,7 @@
 #include <tuple>
 
 #include "fem/elements/element.hpp"
-#include "fem/refinement.hpp"
-#include "fem/triplets.hpp"
+#include "fem/parametric_system.hpp"
 
 namespace beamid::fem {
 namespace {
@@ -289,6 +288,29 @@ Point natural_point(const Beam& beam) {
   for (std::size_t i = 1; i < held.size(); ++i)
     if (held[i] - held[i - 1] > (held[longest] - held[longest - 1]) * (1 + 1e-9)) longest = i;
   return {"midspan", 0.5 * (held[longest - 1] + held[longest])};
+}
+
+Mesh refined(const Mesh& mesh, int parts) {
+  if (parts < 1)
+    throw std::invalid_argument("parts of an element are " + std::to_string(parts) + "; expected at least 1");
+  Mesh fine;
+  fine.nodes.push_back(mesh.nodes.front());
+  for (const Mesh::Element& whole : mesh.elements) {
+    const Mesh::Node &a = mesh.nodes[static_cast<std::size_t>(whole.first)],
+                     &b = mesh.nodes[static_cast<std::size_t>(whole.second)];
+    for (int i = 1; i <= parts; ++i) {
+      const double begin = static_cast<double>(i - 1) / parts, end = static_cast<double>(i) / parts;
+      Mesh::Element part = whole;
+      part.first = static_cast<int>(fine.nodes.size()) - 1;
+      part.second = part.first + 1;
+      part.length = whole.length / parts;
+      part.from = whole.from + begin * (whole.to - whole.from);
+      part.to = i == parts ? whole.to : whole.from + end * (whole.to - whole.from);
+      fine.elements.push_back(part);
+      fine.nodes.push_back(i == parts ? b : Mesh::Node{a.x + end * (b.x - a.x), a.y + end * (b.y - a.y)});
+    }
+  }
+  return fine;
 }
 
 }  // namespace beamid::fem

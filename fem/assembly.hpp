@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/beam.hpp"
-#include "fem/structural_system.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::fem {
 
@@ -49,5 +49,15 @@ Eigen::VectorXd nodal_axial(const StructuralSystem& system, const Eigen::VectorX
 
 /// Of one kind of coordinate [m] or [rad] at every node, likewise.
 Eigen::VectorXd nodal(const StructuralSystem& system, const Eigen::VectorXd& q, Coordinate::Kind kind);
+
+// The same beam on a finer mesh.
+
+/// The mesh with every element cut into so many of equal length. @throws std::invalid_argument when parts < 1
+Mesh refined(const Mesh& mesh, int parts);
+
+/// assemble() on refined(cut(beam, elements, ...), parts): finer by the same factor everywhere, which a cut
+/// into parts * elements need not be.
+StructuralSystem assemble_refined(const Beam& beam, int elements, int parts,
+                                  const std::vector<Point>& points);
 
 }  // namespace beamid::fem

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "fem/section.hpp"
 
 namespace beamid::fem {
@@ -95,5 +97,64 @@ struct Beam {
 /// @throws std::invalid_argument naming the first quantity that is not finite, has an impossible sign or lies
 /// off the beam.
 void validate(const Beam& beam);
+
+// The beam of the study: a uniform Euler-Bernoulli cantilever with a rigid tip body.
+
+///     root (clamped) |=============================( M, J )   tip
+///                    |<---------- length -------->|-e-|
+struct Cantilever {
+  double length = 0.0;              ///< L [m]
+  double bending_stiffness = 0.0;   ///< E I [N m2]
+  double mass_per_length = 0.0;     ///< rho A [kg/m]
+  double tip_mass = 0.0;            ///< M [kg]
+  double tip_rotary_inertia = 0.0;  ///< J about the tip mass's own centre [kg m2]
+  double tip_eccentricity = 0.0;    ///< e of that centre beyond the tip, along the axis [m]
+
+  double mass() const { return mass_per_length * length; }  ///< of the beam alone [kg]
+
+  /// Static stiffness at the tip, 3 E I / L^3 [N/m].
+  double tip_stiffness() const { return 3.0 * bending_stiffness / (length * length * length); }
+
+  /// The same in general terms.
+  operator Beam() const {
+    Beam beam;
+    beam.segments = {{length, {bending_stiffness, mass_per_length, 0.0, {}, {}, {}}}};
+    beam.supports = {{0.0, true, true}};
+    if (tip_mass != 0.0 || tip_rotary_inertia != 0.0)
+      beam.bodies = {{length, tip_mass, tip_rotary_inertia, tip_eccentricity}};
+    return beam;
+  }
+};
+
+// Nodes and elements.
+
+/// Lines cut into elements: in the plane, a straight beam on y = 0; or in space.
+struct Mesh {
+  struct Node {
+    double x = 0.0, y = 0.0, z = 0.0;  ///< [m]
+  };
+  struct Element {
+    int first = 0, second = 0;    ///< nodes
+    int segment = 0;              ///< of the beam, or member of a frame
+    double from = 0.0, to = 1.0;  ///< part of the segment that it covers, s as in Variation
+    double length = 0.0;          ///< h [m], the same number for all elements between two breaks
+    double remaining = 1.0;       ///< of the bending stiffness, below 1 where damaged
+  };
+  std::vector<Node> nodes;
+  std::vector<Element> elements;
+  bool spatial = false;  ///< a space frame's, which moves out of the plane of x and y
+
+  Eigen::VectorXd positions() const;  ///< x of the nodes [m]
+
+  /// The node at x. @throws std::invalid_argument when no node lies there, to 1e-9 of the beam's length.
+  int node_at(double x) const;
+};
+
+/// Cuts a beam into `elements` of nearly equal length, with a node wherever something begins, ends or sits:
+/// segments, bodies, supports, springs, dashpots, absorbers, damage, added mass, and the points [m] asked
+/// for. Between two such breaks the elements are equally long. There are never fewer elements than breaks
+/// demand.
+/// @throws std::invalid_argument when the beam is impossible, elements < 1 or a point is off the beam.
+Mesh cut(const Beam& beam, int elements, const std::vector<double>& points = {});
 
 }  // namespace beamid::fem

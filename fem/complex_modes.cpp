@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "fem/modes.hpp"
-#include "fem/response/complex_pair.hpp"
+#include "fem/response/dynamic_stiffness.hpp"
 #include "fem/stiffness_solver.hpp"
 
 namespace beamid::fem {

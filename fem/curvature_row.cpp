@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "fem/parametric_system.hpp"
-#include "fem/triplets.hpp"
 
 namespace beamid::fem {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fem/structural_system.hpp"
-#include "fem/triplets.hpp"
+#include "fem/damping.hpp"
+#include "fem/parametric_system.hpp"
 
 namespace beamid::fem {
 

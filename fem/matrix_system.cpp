@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "fem/triplets.hpp"
+#include "fem/parametric_system.hpp"
 
 namespace beamid::fem {
 namespace {

@@ -9,14 +9,82 @@
 #include <string>
 #include <vector>
 
-#include "fem/solvers/dense_modes.hpp"
-#include "fem/solvers/lanczos.hpp"
-#include "fem/solvers/repeated_rows.hpp"
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SparseLU>
+
+#include "fem/damping.hpp"
+#include "fem/solvers/rigid_complement.hpp"
+#include "fem/stiffness_solver.hpp"
 
 namespace beamid::fem {
 namespace {
 
+// All modes of a small system.
+
+/// Shapes (n x m) of all modes that are not rigid, frequencies ascending; m is n less the rigid-body motions
+/// and less what has no mass.
+///
+/// With Z (n x (n-k)) an M-orthonormal basis of the complement of the rigid-body motions and D = U^T U, they
+/// are Z times the right singular vectors of U B Z, whose singular values are the frequencies themselves and
+/// not their squares. Where an axial load has made D indefinite, Z times the eigenvectors of (B Z)^T D (B Z).
+/// Where M is only semidefinite, eigenvectors of the flexibility K^-1 against M.
+Eigen::MatrixXd all_shapes(const StructuralSystem& system, const StiffnessSolver& solver,
+                           const RigidComplement& complement);
+
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using Solver = Eigen::SelfAdjointEigenSolver<MatrixXd>;
+
+// Z = L^-T V with M = L L^T, V orthonormal and orthogonal to L^T R.
+MatrixXd complement_basis(const Eigen::LLT<MatrixXd>& mass, const RigidComplement& complement) {
+  const Index n = mass.rows(), rigid = complement.count();
+  if (rigid == 0) return mass.matrixU().solve(MatrixXd::Identity(n, n));
+  const Eigen::HouseholderQR<MatrixXd> qr(mass.matrixU() * complement.modes());
+  const MatrixXd q = qr.householderQ() * MatrixXd::Identity(n, n);
+  return mass.matrixU().solve(q.rightCols(n - rigid));
+}
+
+// The upper half of the spectrum of [0 A; A^T 0] holds the singular values of A, with the right singular
+// vectors in the lower part of its eigenvectors: as accurate as a singular value decomposition, whose
+// templates take far longer to compile.
+MatrixXd right_singular_vectors(const MatrixXd& a) {
+  const Index s = a.rows(), n = a.cols();
+  MatrixXd symmetric = MatrixXd::Zero(s + n, s + n);  // the solver reads its lower triangle only
+  symmetric.bottomLeftCorner(n, s) = a.transpose();
+  return Solver(symmetric).eigenvectors().bottomRightCorner(n, n);
+}
+
+MatrixXd shapes_from_flexibility(const StructuralSystem& system, const StiffnessSolver& solver,
+                                 const RigidComplement& complement) {
+  const Index n = system.size();
+  MatrixXd flexibility = MatrixXd::Identity(n, n);
+  for (Index i = 0; i < n; ++i) complement.project_load(flexibility.col(i));
+  flexibility = solver.solve(flexibility);
+  for (Index i = 0; i < n; ++i) complement.project_motion(flexibility.col(i));
+  const Solver factors(0.5 * (flexibility + flexibility.transpose()));
+  const VectorXd& values = factors.eigenvalues();
+  if (!(values[0] > -1e-9 * values[n - 1]))
+    throw std::runtime_error(
+        "modes: with parts that have no mass, an axial load beyond buckling is not supported");
+  const MatrixXd root = factors.eigenvectors() * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Solver modes(root.transpose() * (system.mass * root));  // ascending in 1/omega^2
+  constexpr double no_mass = 1e-14;
+  Index count = 0;
+  while (count < n && modes.eigenvalues()[n - 1 - count] > no_mass * modes.eigenvalues()[n - 1]) ++count;
+  return root * modes.eigenvectors().rightCols(count).rowwise().reverse();
+}
+
+MatrixXd all_shapes(const StructuralSystem& system, const StiffnessSolver& solver,
+                    const RigidComplement& complement) {
+  const Eigen::LLT<MatrixXd> mass{MatrixXd(system.mass)};
+  if (mass.info() != Eigen::Success) return shapes_from_flexibility(system, solver, complement);
+  const MatrixXd basis = complement_basis(mass, complement), strain = system.stiffness.strain * basis;
+  const Eigen::LLT<MatrixXd> rigidity{MatrixXd(system.stiffness.rigidity)};
+  if (rigidity.info() == Eigen::Success) return basis * right_singular_vectors(rigidity.matrixU() * strain);
+  return basis * Solver(strain.transpose() * (system.stiffness.rigidity * strain)).eigenvectors();
+}
 
 // Below this residual the complementary quotient, which errs by its square, is the better one.
 constexpr double converged = 1e-6;
@@ -139,6 +207,103 @@ Modes modes(const StructuralSystem& system, Index count) {
   }
   sort(result);
   return result;
+}
+
+namespace {
+
+/// [F, M phi; (M phi)^T, 0].
+SparseMatrix bordered(const SparseMatrix& inner, const VectorXd& border) {
+  const Index n = inner.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index column = 0; column < inner.outerSize(); ++column)
+    for (SparseMatrix::InnerIterator entry(inner, column); entry; ++entry)
+      entries.emplace_back(entry.row(), entry.col(), entry.value());
+  for (Index i = 0; i < n; ++i) {
+    entries.emplace_back(i, n, border[i]);
+    entries.emplace_back(n, i, border[i]);
+  }
+  SparseMatrix result(n + 1, n + 1);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+/// K_j phi and M_j phi of all parameters, which every mode needs.
+struct ParameterMatrices {
+  std::vector<SparseMatrix> stiffness, mass;  ///< q
+};
+
+ModeCurve curve_of(const ParametricSystem& equations, const ParameterMatrices& by,
+                   const SparseMatrix& stiffness, double square, const VectorXd& shape) {
+  const SparseMatrix &mass = equations.system.mass, &outputs = equations.system.outputs;
+  const Index n = shape.size(), q = equations.values.size(), p = outputs.rows();
+  const VectorXd momentum = mass * shape;
+  // Both parts of a size: the border as large as F is.
+  const double scale = square * momentum.norm() / momentum.squaredNorm();
+  Eigen::SparseLU<SparseMatrix> solver;
+  solver.compute(bordered(stiffness - square * mass, scale * momentum));
+  if (solver.info() != Eigen::Success)
+    throw std::runtime_error("a mode at omega^2 = " + std::to_string(square) +
+                             " shares its frequency with another: its shape has no derivative");
+  const auto solve = [&](const VectorXd& force, double along) -> VectorXd {
+    VectorXd right(n + 1);
+    right << force, scale * along;
+    return solver.solve(right).head(n);
+  };
+
+  ModeCurve curve{square,         VectorXd(q),
+                  MatrixXd(q, q), outputs * shape,
+                  MatrixXd(p, q), std::vector<MatrixXd>(static_cast<std::size_t>(p), MatrixXd(q, q))};
+  MatrixXd stiff(n, q), heavy(n, q), shapes(n, q);  // K_j phi, M_j phi, phi_j
+  for (Index j = 0; j < q; ++j) {
+    stiff.col(j) = by.stiffness[static_cast<std::size_t>(j)] * shape;
+    heavy.col(j) = by.mass[static_cast<std::size_t>(j)] * shape;
+    curve.square_slope[j] = shape.dot(stiff.col(j) - square * heavy.col(j));
+    const VectorXd turned = stiff.col(j) - square * heavy.col(j) - curve.square_slope[j] * momentum;
+    shapes.col(j) = solve(-turned, -0.5 * shape.dot(heavy.col(j)));
+  }
+  curve.reading_slope = outputs * shapes;
+
+  const VectorXd& slope = curve.square_slope;
+  const auto turn = [&](Index j, const VectorXd& on) -> VectorXd {  // F_j on a shape
+    return by.stiffness[static_cast<std::size_t>(j)] * on -
+           square * (by.mass[static_cast<std::size_t>(j)] * on) - slope[j] * (mass * on);
+  };
+  for (Index j = 0; j < q; ++j)
+    for (Index l = 0; l <= j; ++l) {
+      const double bend =
+          2.0 * shapes.col(l).dot(stiff.col(j) - square * heavy.col(j)) - slope[l] * shape.dot(heavy.col(j));
+      const VectorXd force = turn(j, shapes.col(l)) + turn(l, shapes.col(j)) - bend * momentum -
+                             slope[j] * heavy.col(l) - slope[l] * heavy.col(j);
+      const double along = -shapes.col(l).dot(mass * shapes.col(j)) - heavy.col(l).dot(shapes.col(j)) -
+                           heavy.col(j).dot(shapes.col(l));
+      const VectorXd reading = outputs * solve(-force, along);
+      curve.square_curvature(j, l) = curve.square_curvature(l, j) = bend;
+      for (Index i = 0; i < p; ++i) {
+        MatrixXd& curvature = curve.reading_curvature[static_cast<std::size_t>(i)];
+        curvature(j, l) = curvature(l, j) = reading[i];
+      }
+    }
+  return curve;
+}
+
+}  // namespace
+
+std::vector<ModeCurve> mode_curves(const ParametricSystem& equations, const Modes& modes) {
+  if (modes.rigid > 0)
+    throw std::invalid_argument(std::to_string(modes.rigid) +
+                                " rigid modes; expected a structure that is held");
+  ParameterMatrices by;
+  for (std::size_t j = 0; j < equations.derivatives.size(); ++j) {
+    by.stiffness.push_back(equations.stiffness_derivative(j));
+    by.mass.push_back(equations.derivatives[j].mass);
+  }
+  const SparseMatrix stiffness = equations.system.stiffness.assembled();
+  std::vector<ModeCurve> curves;
+  for (Index i = 0; i < modes.size(); ++i) {
+    const double omega = modes.angular_frequency[i];
+    curves.push_back(curve_of(equations, by, stiffness, omega * omega, modes.shape.col(i)));
+  }
+  return curves;
 }
 
 }  // namespace beamid::fem

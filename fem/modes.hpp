@@ -1,9 +1,12 @@
 // Natural frequencies and mode shapes.
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
-#include "fem/structural_system.hpp"
+#include "fem/damping.hpp"
+#include "fem/parametric_system.hpp"
 
 namespace beamid::fem {
 
@@ -32,11 +35,40 @@ struct Modes {
 };
 
 /// Lowest `count` modes (all of them at most). Rigid-body motions are found from the strains and set apart.
-/// Of the rest, few modes of a large system: shift-invert Lanczos at shift zero (lanczos.hpp). Most modes, or
-/// a small system: dense (dense_modes.hpp).
+/// Of the rest, few modes of a large system: shift-invert Lanczos at shift zero (rigid_complement.hpp). Most
+/// modes, or a small system: dense (modes.cpp).
 /// @throws std::invalid_argument when count is not in 1..n; std::runtime_error when Lanczos does not converge
 /// or what it found has a residual above 1e-4, when a mode has a negative omega^2 (an axial load beyond
 /// buckling), when fewer than `count` modes have mass.
 Modes modes(const StructuralSystem& system, Eigen::Index count);
+
+// How natural frequencies and mode shapes move with a beam's parameters.
+
+/// One mode near p_0, to the second order in x = p - p_0:
+///
+///     omega^2(p) = square + slope . x + x . curvature x / 2,      likewise every reading h phi(p)
+///
+/// for phi^T M(p) phi = 1 at every p.
+struct ModeCurve {
+  double square = 0.0;               ///< omega^2 [rad2/s2]
+  Eigen::VectorXd square_slope;      ///< (q)
+  Eigen::MatrixXd square_curvature;  ///< (q x q)
+
+  Eigen::VectorXd reading;                         ///< H phi (p)
+  Eigen::MatrixXd reading_slope;                   ///< (p x q)
+  std::vector<Eigen::MatrixXd> reading_curvature;  ///< of reading i (q x q)
+};
+
+/// The curves of these modes. With F = K - omega^2 M and its derivatives F_j = K_j - (omega^2)_j M -
+/// omega^2 M_j, the shapes' come from [nelson1976]
+///
+///     F phi_j = -F_j phi,      phi^T M phi_j = -phi^T M_j phi / 2
+///
+/// as one bordered system per mode, which is regular where F is not; the second derivatives from the same
+/// system again.
+/// @param modes of equations.system, none of them rigid, frequencies distinct
+/// @throws std::invalid_argument when there is a rigid mode. @throws std::runtime_error when two modes share
+/// a frequency.
+std::vector<ModeCurve> mode_curves(const ParametricSystem& equations, const Modes& modes);
 
 }  // namespace beamid::fem

@@ -1,18 +1,74 @@
-#include <Eigen/Geometry>
 #include <array>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "fem/elements/released_ends.hpp"
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
 #include "fem/elements/space_frame_element.hpp"
+#include "fem/frame.hpp"
 #include "fem/frame_equations.hpp"
-#include "fem/frame_graph.hpp"
 #include "fem/space_frame.hpp"
 
 namespace beamid::fem {
 namespace {
 
+// Which rotations of members' ends are free of their joints.
+
+/// Directions in which a member's end turns without its joint, of length 1 and across each other, as columns
+/// (3 x 0 to 3).
+using ReleasedDirections = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+
 using Eigen::Matrix3d, Eigen::Vector3d;
+
+constexpr double no_direction = 1e-9;  // squared sine of the angle between two directions that are one
+
+ReleasedDirections released_axes(const SpaceFrame::End& end, const Matrix3d& axes) {
+  ReleasedDirections directions(3, int{end.x} + int{end.y} + int{end.z});
+  int column = 0;
+  for (const auto& [released, axis] : {std::pair{end.x, 0}, {end.y, 1}, {end.z, 2}})
+    if (released) directions.col(column++) = axes.col(axis);
+  return directions;
+}
+
+// The directions within `from` that are across all of `without`.
+ReleasedDirections across(const ReleasedDirections& from, const ReleasedDirections& without) {
+  const Matrix3d kept = from * from.transpose() - without * without.transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(kept);
+  return solver.eigenvectors().rightCols(from.cols() - without.cols());
+}
+
+/// Of each member at its first and at its second end. Where a direction is free of all members of a joint and
+/// no support holds it, nothing would turn the joint: the first of these members keeps it.
+std::vector<std::array<ReleasedDirections, 2>> released_ends(const SpaceFrame& frame) {
+  const std::size_t count = frame.joints.size();
+  std::vector<std::array<ReleasedDirections, 2>> released(frame.members.size());
+  std::vector<Matrix3d> turned(count, Matrix3d::Zero());  // sums of the directions in which a joint is turned
+  std::vector<ReleasedDirections*> first(count, nullptr);
+  for (std::size_t i = 0; i < frame.members.size(); ++i) {
+    const SpaceFrame::Member& member = frame.members[i];
+    const Matrix3d axes = frame.axes(i);
+    released[i] = {released_axes(member.at_first, axes), released_axes(member.at_second, axes)};
+    for (const auto& [joint, end] : {std::pair{member.first, 0}, {member.second, 1}}) {
+      ReleasedDirections& own = released[i][static_cast<std::size_t>(end)];
+      turned[static_cast<std::size_t>(joint)] += Matrix3d::Identity() - own * own.transpose();
+      if (first[static_cast<std::size_t>(joint)] == nullptr) first[static_cast<std::size_t>(joint)] = &own;
+    }
+  }
+  for (const SpaceFrame::Support& support : frame.supports)
+    for (const auto& [held, axis] : {std::pair{support.rx, 0}, {support.ry, 1}, {support.rz, 2}})
+      if (held) turned[static_cast<std::size_t>(support.joint)](axis, axis) += 1.0;
+  for (std::size_t joint = 0; joint < count; ++joint) {
+    if (first[joint] == nullptr || first[joint]->cols() == 0) continue;
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(turned[joint]);
+    const Eigen::Index idle = (solver.eigenvalues().array() < no_direction).count();
+    if (idle > 0) *first[joint] = across(*first[joint], solver.eigenvectors().leftCols(idle));
+  }
+  return released;
+}
+
 using Kind = Coordinate::Kind;
 
 constexpr std::array displacement_kinds{Kind::axial, Kind::deflection, Kind::lateral};

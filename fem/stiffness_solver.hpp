@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "fem/structural_system.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::fem {
 

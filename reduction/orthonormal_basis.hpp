@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "fem/structural_system.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::reduction {
 

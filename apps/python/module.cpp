@@ -7,7 +7,7 @@
 #include "apps/python/records.hpp"
 #include "apps/python/run.hpp"
 #include "apps/python/specification.hpp"
-#include "experiments/config/known_names.hpp"
+#include "experiments/config/key_tables.hpp"
 
 namespace py = pybind11;
 using beamid::python::Outcome;

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "apps/command.hpp"
-#include "apps/receiver.hpp"
+#include "apps/method_options.hpp"
 #include "experiments/results/print.hpp"
 #include "filters/stop_request.hpp"
 

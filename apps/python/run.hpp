@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/command_line.hpp"
+#include "apps/command.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::python {

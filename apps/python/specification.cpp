@@ -3,8 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command.hpp"
-#include "apps/help.hpp"
-#include "experiments/config/key_page.hpp"
 #include "experiments/config/key_tables.hpp"
 #include "experiments/record/units.hpp"
 

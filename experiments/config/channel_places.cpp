@@ -1,10 +1,10 @@
 #include "experiments/config/channel_places.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "experiments/config/read_place.hpp"
 #include "experiments/config/structure_description.hpp"
@@ -12,6 +12,45 @@
 #include "experiments/record/column_name.hpp"
 
 namespace beamid::experiments {
+
+const char* to_string(Excitation::Kind kind) {
+  switch (kind) {
+    case Excitation::Kind::release:
+      return "release";
+    case Excitation::Kind::step:
+      return "static";
+    case Excitation::Kind::impulse:
+      return "impulse";
+    case Excitation::Kind::harmonic:
+      return "harmonic";
+    case Excitation::Kind::random:
+      return "random";
+    case Excitation::Kind::base:
+      return "base";
+    case Excitation::Kind::table:
+      return "table";
+    case Excitation::Kind::free:
+      break;
+  }
+  return "none";
+}
+
+using Response = FrequencyResponseSettings::Kind;
+
+const char* to_string(Response kind) {
+  return kind == Response::receptance ? "receptance"
+         : kind == Response::mobility ? "mobility"
+                                      : "accelerance";
+}
+
+const char* unit_of(Response kind) {
+  return kind == Response::receptance ? "m/N" : kind == Response::mobility ? "m/(N s)" : "1/kg";
+}
+
+const char* suffix_of(Response kind) {
+  return kind == Response::receptance ? "m_per_n" : kind == Response::mobility ? "m_per_n_s" : "per_kg";
+}
+
 namespace {
 
 // "x0.25m", in a column's name "x0_25m", "tip", "root", also where a second channel of that name has been

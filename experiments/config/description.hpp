@@ -1,13 +1,31 @@
 // How the commands on the beam itself say what they worked on.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
-#include "experiments/config/experiment.hpp"
+#include <nlohmann/json.hpp>
+
+#include "experiments/config/channel_places.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
+
+// What an experiment file comes to, as results.json keeps it.
+
+/// The keys of the file, of what the command line set, and the defaults of every table that stands once, by
+/// the names and in the order of docs/configuration.md: written as TOML they are the same experiment. A
+/// default that is worked out from other values is left out, and so are those of tables in arrays.
+/// @param also tables whose defaults hold though the file does not have them
+nlohmann::ordered_json effective_keys(const TomlTable& root, const std::vector<std::string>& also = {});
+
+/// Those of an experiment's file, with the methods, their options' defaults and the window that were chosen
+/// since; nothing where it was read from none.
+nlohmann::ordered_json effective_keys(const Experiment& experiment,
+                                      const std::vector<std::string>& also = {});
+
+/// The name of a method under a key of its table, and its options.
+nlohmann::ordered_json keys_of(const Choice& choice, const char* key);
 
 /// The beam in a sentence or two: length, stiffness, masses, what holds it, mesh.
 std::string beam_text(const fem::Beam& beam, int elements, Eigen::Index coordinates);

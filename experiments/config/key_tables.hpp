@@ -9,6 +9,12 @@
 
 namespace beamid::experiments {
 
+// What a name might have been.
+
+/// "did you mean 'ukf'?" where a name is near, and then "known: rts, urts" only where they are few; else
+/// "known: " and all of them. To stand behind "unknown filter 'ufk'; ".
+std::string known_names(const std::string& word, const std::vector<std::string>& known);
+
 /// Makes the keys of a table known; every file that describes one does it:
 ///
 ///     const bool spring_keys_registered = register_keys([]() -> const KeyTable& { return spring_keys(); });
@@ -37,5 +43,21 @@ void check_values(const TomlTable& table, const std::string& name = "");
 
 /// Tables of rooms above this one. @throws InputError as they do
 void check_tables_of_others(const TomlTable& root);
+
+// The keys as docs/configuration.md and `beamid list keys` show them.
+
+/// "[beam]", "[[beam.springs]]" or "The file itself".
+std::string heading_of(const KeyTable& section);
+
+/// What a key may be, in Markdown: "number > 0", "`\"direct\"`, `\"modal\"`".
+std::string values_text(const Key& key);
+
+/// "| `length_m` | number > 0 | m | - | of this segment | `0.4` |"
+std::string page_row(const Key& key);
+
+/// A page with its tables of keys as the schemas have them. Below a heading that names a table, "###
+/// `[beam]`", every row of a key that the table has is written anew, a row of another key is dropped, and
+/// what is missing is added behind the last row; the text around stays.
+std::string with_current_keys(const std::string& page);
 
 }  // namespace beamid::experiments

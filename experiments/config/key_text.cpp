@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "experiments/config/key_page.hpp"
+#include "experiments/config/key_tables.hpp"
 #include "experiments/text/words.hpp"
 
 namespace beamid::experiments {

@@ -10,7 +10,7 @@
 namespace beamid::experiments {
 
 /// One segment described in [beam] itself, or several in [[beam.segments]] (read_segment.hpp); how its ends
-/// are held; what sits on it (read_attachments.hpp). The sensor's mass rides on the tip, beside the tip mass.
+/// are held; what sits on it (read_beam.cpp). The sensor's mass rides on the tip, beside the tip mass.
 /// @throws InputError for missing, contradicting and useless keys at the table's place or the key's, for a
 /// bad value at its own.
 fem::Beam read_beam(const TomlTable& table);

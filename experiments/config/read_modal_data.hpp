@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/modal/modal_data.hpp"
 
 namespace beamid::experiments {

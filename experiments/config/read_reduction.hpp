@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/text/toml_table.hpp"
 #include "reduction/reduction.hpp"
 
@@ -35,5 +35,13 @@ Choice parse_reduction(const std::string& text, const std::string& origin);
 
 /// The same text again, without the options that are at their defaults.
 std::string to_text(const Choice& choice);
+
+// The methods chosen: [reduction], [model], [filter], and what is compared: [[reductions]], [[filters]],
+// [compare].
+
+/// Methods are completed with the defaults of their options; an absent table means the Experiment's own
+/// default.
+/// @param root table of the file. @throws InputError at an unknown method, discretisation or option.
+void read_methods(const TomlTable& root, Experiment& experiment);
 
 }  // namespace beamid::experiments

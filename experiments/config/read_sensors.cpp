@@ -1,8 +1,6 @@
 #include <iterator>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_acquisition.hpp"
-#include "experiments/config/read_gauge.hpp"
 #include "experiments/config/read_place.hpp"
 #include "experiments/config/read_simulation.hpp"
 #include "experiments/config/useless_keys.hpp"

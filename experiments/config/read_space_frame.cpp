@@ -1,20 +1,178 @@
 #include "experiments/config/read_space_frame.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <Eigen/Core>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/member_keys.hpp"
-#include "experiments/config/read_space_attachments.hpp"
-#include "experiments/config/space_section_keys.hpp"
-#include "experiments/config/vector_keys.hpp"
+#include "experiments/config/section_keys.hpp"
 #include "experiments/text/spelling.hpp"
+#include "experiments/text/toml_table.hpp"
+#include "fem/space_frame.hpp"
 
 namespace beamid::experiments {
 namespace {
 
+// Keys whose value is a vector in space or a choice of several names.
+
+/// Three numbers of a key; `absent` where it is not given. @throws InputError where they are not three
+Eigen::Vector3d vector_of(const TomlTable& table, const char* key, const std::vector<double>& values,
+                          const Eigen::Vector3d& absent = Eigen::Vector3d::Zero());
+
 using Eigen::Vector3d;
+
+Vector3d vector_of(const TomlTable& table, const char* key, const std::vector<double>& values,
+                   const Vector3d& absent) {
+  if (!table.contains(key)) return absent;
+  if (values.size() != 3) table.refuse(key, "three numbers, along x, y and z");
+  return {values[0], values[1], values[2]};
+}
+
+/// Sets the flags that the texts of a key name. @throws InputError at a text that names none
+void set_named(const TomlTable& table, const char* key, const std::vector<std::string>& given,
+               const std::vector<std::pair<std::string, bool*>>& flags) {
+  std::vector<std::string> names;
+  for (const auto& flag : flags) names.push_back(flag.first);
+  for (const std::string& name : given) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) table.refuse(key, "texts from " + joined(names));
+    *flags[static_cast<std::size_t>(at - names.begin())].second = true;
+  }
+}
+
+// What holds a space frame and sits on it: [[space_frame.supports]], [[space_frame.bodies]],
+// [[space_frame.springs]], [[space_frame.dashpots]].
+
+/// Into a frame whose joints are known. @param table [space_frame]
+/// @throws InputError naming file, line and column, what was found and what was expected.
+void read_space_attachments(const TomlTable& table, fem::SpaceFrame& frame);
+
+using fem::SpaceFrame;
+
+/// What the keys of vectors and lists hold.
+struct GivenSpaceSupport {
+  std::string kind;
+  std::vector<std::string> holds;
+};
+struct GivenSpaceBody {
+  double mass = 0.0;
+  std::vector<double> inertia, offset;
+};
+struct GivenSpaceCoefficients {
+  std::vector<double> translational, rotational;
+};
+
+const Schema<GivenSpaceSupport>& space_support_keys() {
+  using S = GivenSpaceSupport;
+  static const Schema<S> keys =
+      at_joint(Schema<S>("space_frame.supports"), "which joint is held", "1")
+          .key("kind", &S::kind, "all six motions, or the displacements alone", "\"pinned\"")
+          .one_of({"clamped", "pinned"})
+          .fallback("either this")
+          .key("holds", &S::holds,
+               "the displacements `x`, `y`, `z` and rotations `rx`, `ry`, `rz` that it holds",
+               "[\"z\", \"rx\"]")
+          .fallback("or this")
+          .exactly_one("what the support holds", {"kind", "holds"});
+  return keys;
+}
+
+const Schema<GivenSpaceBody>& space_body_keys() {
+  using B = GivenSpaceBody;
+  static const Schema<B> keys =
+      at_joint(Schema<B>("space_frame.bodies"), "where", "2")
+          .key("mass_kg", &B::mass, not_negative, "its mass", "120")
+          .key("inertia_kg_m2", &B::inertia, not_negative, "about x, y and z through its own centre",
+               "[3.5, 3.5, 5.0]")
+          .fallback("none")
+          .key("offset_m", &B::offset, "of its centre from the joint, rigidly: x, y, z", "[0, 0, 0.4]")
+          .fallback("none")
+          .at_least_one({"mass_kg", "inertia_kg_m2"});
+  return keys;
+}
+
+struct CoefficientKey {
+  const char *name, *meaning, *example;
+};
+
+/// Of springs or dashpots against the ground.
+Schema<GivenSpaceCoefficients> coefficient_keys(const char* table, const char* joint,
+                                                const CoefficientKey& translational,
+                                                const CoefficientKey& rotational) {
+  using G = GivenSpaceCoefficients;
+  return at_joint(Schema<G>(table), joint, "3")
+      .key(translational.name, &G::translational, not_negative, translational.meaning, translational.example)
+      .fallback("none")
+      .key(rotational.name, &G::rotational, not_negative, rotational.meaning, rotational.example)
+      .fallback("none")
+      .at_least_one({translational.name, rotational.name});
+}
+
+const Schema<GivenSpaceCoefficients>& space_spring_keys() {
+  static const auto keys =
+      coefficient_keys("space_frame.springs", "where",
+                       {"translational_n_per_m", "k of forces along x, y and z", "[2e5, 2e5, 0]"},
+                       {"rotational_n_m_per_rad", "k of moments about x, y and z", "[0, 0, 1e4]"});
+  return keys;
+}
+
+const Schema<GivenSpaceCoefficients>& space_dashpot_keys() {
+  static const auto keys =
+      coefficient_keys("space_frame.dashpots", "where, against the ground",
+                       {"translational_n_s_per_m", "c of velocities along x, y and z", "[150, 150, 0]"},
+                       {"rotational_n_m_s_per_rad", "c of turning about x, y and z", "[0, 0, 20]"});
+  return keys;
+}
+
+const bool space_attachment_keys_registered[] = {
+    register_keys([]() -> const KeyTable& { return space_support_keys(); }),
+    register_keys([]() -> const KeyTable& { return space_body_keys(); }),
+    register_keys([]() -> const KeyTable& { return space_spring_keys(); }),
+    register_keys([]() -> const KeyTable& { return space_dashpot_keys(); })};
+
+SpaceFrame::Support read_space_support(const TomlTable& table, const SpaceFrame& frame) {
+  const GivenSpaceSupport given = space_support_keys().read(table);
+  const bool all = given.kind == "clamped", pinned = all || given.kind == "pinned";
+  SpaceFrame::Support support{
+      read_joint(table, "joint", frame.joints.size()), pinned, pinned, pinned, all, all, all};
+  set_named(table, "holds", given.holds,
+            {{"x", &support.x},
+             {"y", &support.y},
+             {"z", &support.z},
+             {"rx", &support.rx},
+             {"ry", &support.ry},
+             {"rz", &support.rz}});
+  return support;
+}
+
+void read_space_attachments(const TomlTable& table, SpaceFrame& frame) {
+  for (const TomlTable& one : table.find_tables("supports"))
+    frame.supports.push_back(read_space_support(one, frame));
+  for (const TomlTable& one : table.find_tables("bodies")) {
+    const GivenSpaceBody given = space_body_keys().read(one);
+    frame.bodies.push_back({read_joint(one, "joint", frame.joints.size()), given.mass,
+                            vector_of(one, "inertia_kg_m2", given.inertia),
+                            vector_of(one, "offset_m", given.offset)});
+  }
+  for (const TomlTable& one : table.find_tables("springs")) {
+    const GivenSpaceCoefficients given = space_spring_keys().read(one);
+    frame.springs.push_back({read_joint(one, "joint", frame.joints.size()),
+                             vector_of(one, "translational_n_per_m", given.translational),
+                             vector_of(one, "rotational_n_m_per_rad", given.rotational)});
+  }
+  for (const TomlTable& one : table.find_tables("dashpots")) {
+    const GivenSpaceCoefficients given = space_dashpot_keys().read(one);
+    frame.dashpots.push_back({read_joint(one, "joint", frame.joints.size()),
+                              vector_of(one, "translational_n_s_per_m", given.translational),
+                              vector_of(one, "rotational_n_m_s_per_rad", given.rotational)});
+  }
+}
+
 using fem::SpaceFrame;
 
 /// What the keys of vectors and lists hold.

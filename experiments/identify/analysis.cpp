@@ -1,18 +1,26 @@
 #include "experiments/identify/analysis.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unsupported/Eigen/FFT>
 
 #include "experiments/config/channel_places.hpp"
-#include "experiments/identify/mode_residual.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/recorded_frequency.hpp"
+#include "experiments/identify/noise_near_mode.hpp"
+#include "experiments/modal/dominant_mode.hpp"
+#include "experiments/modal/mode_by_mode.hpp"
+#include "experiments/modal/shape_fit.hpp"
+#include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
+#include "experiments/signal/decimation.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
@@ -21,7 +29,162 @@
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+// Largest line of what the mode leaves of the first channel above twice its frequency, as the deviation of
+// white noise whose mean line is as high. No window: what a decay begins with is what does harm.
+double largest_line(const Record& record, const ModalEstimate& modal) {
+  const Eigen::MatrixXd first = record.samples.row(0);
+  const ShapeFit fit = fit_shapes(first, record.interval(), {modal.rate(), 0.0}, {true, false});
+  const auto count = static_cast<std::size_t>(record.size()), length = std::bit_ceil(count);
+  std::vector<double> left(length, 0.0);
+  Eigen::Map<Eigen::RowVectorXd>(left.data(), record.size()) = first - fit.reconstruction;
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<std::complex<double>> lines;
+  transform.fwd(lines, left);
+  const double from = 2 * modal.frequency_hz * record.interval() * static_cast<double>(length);
+  double largest = 0;
+  for (auto k = static_cast<std::size_t>(from) + 1; k < lines.size(); ++k)
+    largest = std::max(largest, std::norm(lines[k]));
+  return std::sqrt(largest / static_cast<double>(count));
+}
+
+}  // namespace
+
+std::optional<Choice> step_against_higher_modes(const Experiment& experiment, const Record& record) {
+  constexpr double too_large = 6, samples_per_cycle = 8;
+  constexpr Eigen::Index enough = 50;  // samples to be left, as the modal analysis wants them
+  const RecordAnalysis found = analyse(experiment, record);
+  if (!found.modal_refusal.empty()) throw std::invalid_argument(found.modal_refusal);
+  if (!found.modal ||
+      !(largest_line(found.even.record, *found.modal) > too_large * found.near_mode->deviation))
+    return {};
+  const int factor = decimation_factor(
+      1 / (samples_per_cycle * found.modal->frequency_hz * record.interval()), record.size() / enough);
+  constexpr int least = 2, most = 1000;  // of the step
+  if (factor < least || factor > most) return {};
+  filters::Options options;
+  options.set("factor", static_cast<double>(factor));
+  return Choice{"decimate", step_registry().completed("decimate", options)};
+}
+
+RecordedFrequency recorded_frequency(const Eigen::VectorXd& output, const Eigen::MatrixXd& inputs,
+                                     double interval, double expected_hz) {
+  try {
+    if (inputs.rows() > 0) return {forced_mode(output, inputs, interval, expected_hz).frequency_hz, ""};
+    ModalAnalysisSettings settings;
+    settings.expected_frequency_hz = expected_hz;
+    return {dominant_mode(output, interval, settings).frequency_hz, ""};
+  } catch (const std::exception& error) {
+    return {{}, error.what()};
+  }
+}
+
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
+
+// u_i s^k_i of the first mode as described (p); empty: not to be had.
+VectorXcd expected(const Experiment& experiment, const Record& record, const std::vector<Index>& outputs,
+                   Complex rate) {
+  constexpr double node = 0.05;  // of the largest reading of the same kind
+  constexpr Index most_rigid = 6;
+  const Choice one_mode{"modal_truncation",
+                        reduction::reduction_registry().completed("modal_truncation", {})};
+  const fem::StructuralSystem system = model_setting(experiment, record, one_mode).system;
+  const fem::Modes modes = fem::modes(system, std::min<Index>(most_rigid + 1, system.size()));
+  if (modes.rigid >= modes.size()) throw std::invalid_argument("no mode that oscillates");
+  const VectorXd shape = system.outputs * modes.shape.col(modes.rigid);
+  VectorXcd found(shape.size());
+  for (Index i = 0; i < shape.size(); ++i) {
+    const Quantity own =
+        record.channels[static_cast<std::size_t>(outputs[static_cast<std::size_t>(i)])].quantity;
+    double largest = 0.0;
+    for (Index j = 0; j < shape.size(); ++j)
+      if (record.channels[static_cast<std::size_t>(outputs[static_cast<std::size_t>(j)])].quantity == own)
+        largest = std::max(largest, std::abs(shape[j]));
+    found[i] = std::abs(shape[i]) > node * largest ? shape[i] * std::pow(rate, times_differentiated(own))
+                                                   : Complex(0.0);
+  }
+  return found;
+}
+
+// What a reading too large by a factor is taken for.
+std::string usual_unit(double factor, Quantity quantity) {
+  struct Usual {
+    double factor;
+    const char *is, *taken_for;
+    bool acceleration;
+  };
+  constexpr double near = 0.15;  // of a logarithm: a place that is not quite right
+  for (const auto& [usual, is, taken_for, acceleration] :
+       {Usual{1.0 / 9.80665, "g", "m/s2", true}, Usual{9.80665, "m/s2", "g", true},
+        Usual{1000.0, "thousandths of a unit", "whole ones (mm for m)", false},
+        Usual{0.001, "whole units", "thousandths (m for mm)", false}})
+    if (std::abs(std::log(factor / usual)) < near && (!acceleration || quantity == Quantity::acceleration))
+      return fmt::format(", as where {} {} taken for {}", is, acceleration ? "is" : "are", taken_for);
+  return {};
+}
+
+std::string named(const Channel& channel) {
+  return fmt::format("{} '{}'", to_string(channel.quantity), channel.name);
+}
+
+ChannelAmplitudes amplitudes_of(const Record& record, const std::vector<Index>& outputs,
+                                const VectorXcd& found, const VectorXcd& expected,
+                                const VectorXd& deviation) {
+  constexpr double far = 1.5, too_far = 3.0, beyond_noise = 5.0;
+  ChannelAmplitudes result;
+  const auto channel = [&](Index i) -> const Channel& {
+    return record.channels[static_cast<std::size_t>(outputs[static_cast<std::size_t>(i)])];
+  };
+  if (std::abs(found[0]) < beyond_noise * deviation[0]) return result;
+  for (Index i = 1; i < found.size(); ++i) {
+    if (expected[i] == Complex(0.0)) continue;
+    const Complex should_be = found[0] * expected[i] / expected[0], ratio = found[i] / should_be;
+    const double noise = std::hypot(deviation[i], deviation[0] * std::abs(expected[i] / expected[0])),
+                 size = std::abs(ratio), off = std::max(size, 1.0 / size);
+    const bool turned = ratio.real() < -0.5 * size;
+    if (!(std::abs(found[i] - should_be) > beyond_noise * noise) || (!turned && off < far)) continue;
+    result.contradict |= turned || off > too_far;
+    result.text += fmt::format("{}{} has {:.4g} times the amplitude{} that the mode's shape makes of {}{}",
+                               result.text.empty() ? "" : "; ", named(channel(i)), size,
+                               turned ? ", with its sign turned," : "", named(channel(0)),
+                               usual_unit(size, channel(i).quantity));
+  }
+  return result;
+}
+
+}  // namespace
+
+ChannelAmplitudes channel_amplitudes(const Experiment& experiment, const RecordAnalysis& analysis) {
+  if (analysis.forced() || !analysis.modal || analysis.aliased) return {};
+  const Record& record = analysis.even.record;
+  const std::vector<Index> outputs = output_channels(record);
+  if (outputs.size() < 2) return {};
+  try {
+    const Complex rate = analysis.modal->rate();
+    const MatrixXd samples = record.samples(outputs, Eigen::all);
+    const ShapeFit fit = fit_shapes(samples, record.interval(), {rate, 0.0}, {true, false});
+    const double fading = 2.0 * std::max(0.0, -rate.real()) * record.interval(),
+                 count = static_cast<double>(samples.cols()),
+                 whole = fading > 0.0 ? -std::expm1(-fading * count) / fading : count;
+    const VectorXd deviation = fit.residual_standard_deviation * std::sqrt(2.0 / whole);
+    const VectorXcd should_be = expected(experiment, record, outputs, rate);
+    if (should_be[0] == Complex(0.0)) return {};
+    ChannelAmplitudes result = amplitudes_of(record, outputs, fit.shapes.col(0), should_be, deviation);
+    if (!result.text.empty())
+      result.text =
+          "The channels do not agree on the motion: " + result.text +
+          ". A unit, gain, sign or place is likely wrong in [record], and the estimates make up for it: "
+          "correct it, or leave the channel out (--channel).";
+    return result;
+  } catch (const std::exception&) {  // no such shape, or a channel with gaps too long to fill
+    return {};
+  }
+}
+
+namespace {
 
 void refuse_dead_channels(const Record& record) {
   for (const Index i : output_channels(record)) {
@@ -177,6 +340,38 @@ RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
         "first estimate, and runs are not checked against it.",
         found.modal_failure.empty() ? found.modal_refusal : found.modal_failure));
   return found;
+}
+
+namespace {
+
+DecayObjection jump_objection(const DecayJump& jump, double from) {
+  constexpr double much = 0.05;
+  const MotionJump* const motion = jump.motion();
+  const bool contradicts =
+      !motion || std::abs(motion->amplitude_ratio - 1) > much || std::abs(motion->phase) > much;
+  return {fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
+                      "intervals. Expected a --window on one side of it.",
+                      contradicts ? "CONTRADICTED: " : "", jump.sentence(from)),
+          contradicts};
+}
+
+}  // namespace
+
+std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode) {
+  std::vector<DecayObjection> objections;
+  if (analysis.jump) objections.push_back(jump_objection(*analysis.jump, analysis.even.record.time[0]));
+  if (const auto& overtone = analysis.overtone; overtone && !analysis.sections.frequency.varies()) {
+    constexpr double twice = 2;
+    const double half = quantile_95 * mode.damping_ratio_deviation,
+                 error = overtone->damping_error() * std::abs(mode.damping_ratio);
+    if (std::abs(error) > half)
+      objections.push_back(
+          {fmt::format("{} The damping ratio is wrong by about {:.2g} % through it, more than its interval. "
+                       "Expected a later --window, or a sensor of larger range.",
+                       overtone->words(), 100 * std::abs(overtone->damping_error())),
+           std::abs(error) > twice * half});
+  }
+  return objections;
 }
 
 }  // namespace beamid::experiments

@@ -1,20 +1,195 @@
 #include "experiments/identify/model_setting.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "experiments/config/read_reduction.hpp"
-#include "experiments/config/storey_laws.hpp"
-#include "experiments/identify/record_inputs.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/models/structure_points.hpp"
+#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/signal/decimation.hpp"
+#include "experiments/signal/median.hpp"
+#include "experiments/signal/onsets.hpp"
 #include "experiments/text/method_choice.hpp"
-#include "fem/gauge_row.hpp"
 #include "fem/parametric_system.hpp"
+#include "filters/noise_estimation.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::MatrixXd;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double unevenness = 0.01;  // of the mean interval
+
+// Paths of the lower degree, with these inputs from the higher (m (d + 1) x N).
+MatrixXd with_smooth_rows(const MatrixXd& low, const MatrixXd& smooth, Index inputs,
+                          const std::vector<Index>& rows) {
+  MatrixXd paths = MatrixXd::Zero(smooth.rows(), smooth.cols());
+  paths.topRows(low.rows()) = low;
+  for (const Index row : rows)
+    for (Index j = row; j < smooth.rows(); j += inputs) paths.row(j) = smooth.row(j);
+  return paths;
+}
+
+}  // namespace
+
+const char* to_string(InputPath path) {
+  switch (path) {
+    case InputPath::band_limited:
+      return "band_limited";
+    case InputPath::linear:
+      return "linear";
+    case InputPath::held:
+      return "held";
+  }
+  return "";
+}
+
+std::vector<Index> imposed_inputs(const Record& record) {
+  const std::vector<Index> inputs = input_channels(record);
+  std::vector<Index> imposed;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (is_imposed(record.channels[static_cast<std::size_t>(inputs[i])].quantity))
+      imposed.push_back(static_cast<Index>(i));
+  return imposed;
+}
+
+RecordInputs take_inputs(const MatrixXd& samples, std::optional<InputPath> stated, filters::Measurements& to,
+                         const std::vector<Index>& imposed) {
+  if (const Index missing = samples.size() - samples.array().isFinite().count(); missing > 0)
+    throw std::invalid_argument(
+        fmt::format("{} readings of measured inputs are missing or not finite; expected all of them, for the "
+                    "motion depends on every one, or [record] missing_input = \"leave_out\" or \"zero\"",
+                    missing));
+  RecordInputs result{stated.value_or(InputPath::linear), stated.has_value(), to.size() - 1, 0};
+  const bool held = stated == InputPath::held;
+  to.inputs = held ? samples : filters::straight_path(samples).columns;
+  const bool all_stated = stated && stated != InputPath::band_limited;
+  if ((all_stated && imposed.empty()) || result.steps < 1) return result;
+  const filters::InputPaths smooth =
+      filters::band_limited_path(to.time, samples, unevenness * to.interval() + 2.0 * to.time_resolution);
+  if (stated == InputPath::band_limited && smooth.band_limited == 0)
+    throw std::invalid_argument(
+        "input is 'band_limited', and no stamps are even; expected 'linear', or a record that is resampled "
+        "first");
+  if (stated != InputPath::band_limited && 2 * smooth.band_limited < result.steps) return result;
+  if (all_stated) {
+    to.inputs = with_smooth_rows(to.inputs, smooth.columns, samples.rows(), imposed);
+    return result;
+  }
+  to.inputs = smooth.columns;
+  result.path = InputPath::band_limited;
+  result.straight = result.steps - smooth.band_limited;
+  return result;
+}
+
+filters::InputPaths decimated_inputs(const filters::Measurements& from, Index inputs, int factor,
+                                     const Eigen::VectorXd& time) {
+  if (from.inputs.size() == 0 || inputs == 0) return {};
+  const auto degree = static_cast<int>(from.inputs.rows() / inputs) - 1;
+  const double interval = (time[time.size() - 1] - time[0]) / static_cast<double>(time.size() - 1);
+  return filters::input_path(degree, time, decimate_channels(from.inputs.topRows(inputs), factor),
+                             unevenness * interval);
+}
+
+std::optional<RecordInputs> record_inputs(const Record& record) {
+  const std::vector<Index> forces = input_channels(record);
+  if (forces.empty()) return {};
+  filters::Measurements unused;
+  unused.time = record.time;
+  if (record.time_resolution < 0.5 * record.interval()) unused.time_resolution = record.time_resolution;
+  return take_inputs(record.samples(forces, Eigen::all), record.input_path, unused, imposed_inputs(record));
+}
+
+std::string words(const RecordInputs& inputs) {
+  std::string how;
+  switch (inputs.path) {
+    case InputPath::band_limited:
+      how = "band-limited between their samples, as an anti-aliased converter records them";
+      break;
+    case InputPath::linear:
+      how = "straight between their samples";
+      break;
+    case InputPath::held:
+      how = "held, each sample until the next, and so late by half an interval";
+      break;
+  }
+  std::string gaps;
+  if (inputs.straight > 0)
+    gaps = fmt::format("; straight over {} of {} intervals, at uneven stamps", inputs.straight, inputs.steps);
+  return fmt::format("Measured inputs are taken as {}{} (input = \"{}\"{}).", how, gaps,
+                     to_string(inputs.path), inputs.stated ? "" : ", chosen by the stamps");
+}
+
+VectorXd noise_before_event(const Record& record) {
+  const Record whole = analysable(record).record;
+  constexpr Index fewest = 32;
+  constexpr double normal_consistency = 1.4826;  // of the median absolute deviation
+  Index quiet = whole.size();
+  bool any = false;
+  for (Index i = 0; i < whole.samples.rows(); ++i) {
+    const Onsets onsets = find_onsets(whole.samples.row(i).transpose(), whole.interval());
+    if (onsets.samples.empty()) continue;
+    any = true;
+    quiet = std::min(quiet, onsets.quiet);
+  }
+  if (!any || quiet < fewest)
+    throw std::invalid_argument(
+        "noise.method is before_event, but " +
+        (any ? "only " + std::to_string(quiet) + " samples lie before the record's first event"
+             : std::string("the record has no event that begins from rest")) +
+        "; expected 32 at least. residual and likelihood need none");
+  VectorXd noise(static_cast<Index>(output_channels(whole).size()));
+  Index k = 0;
+  for (const Index i : output_channels(whole)) {
+    const VectorXd part = whole.samples.row(i).head(quiet).transpose();
+    noise[k++] = normal_consistency * median((part.array() - median(part)).abs());
+  }
+  return noise;
+}
+
+LikeliestNoise likeliest_noise(const Experiment& experiment, const Record& record, const JointModel& model,
+                               const IdentificationSettings& settings, const filters::Gaussian& last) {
+  const std::vector<Index> channels = output_channels(record);
+  std::map<Quantity, std::vector<Index>> groups;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const Quantity quantity = record.channels[static_cast<std::size_t>(channels[i])].quantity;
+    if (!experiment.noise.contains(quantity)) groups[quantity].push_back(static_cast<Index>(i));
+  }
+  if (groups.empty())
+    throw std::invalid_argument("noise.method is likelihood, but [noise] states the noise of every channel");
+  const Index states = settings.initial.mean.size();
+  filters::NoiseSettings search;
+  search.guess = {Eigen::MatrixXd::Zero(states, states), settings.output_noise};
+  search.output_groups.clear();
+  for (const auto& [quantity, members] : groups) search.output_groups.push_back(members);
+  search.max_iterations = 50;
+  const filters::NoiseEstimate estimate = filters::estimate_noise(
+      [&](const filters::Noise& noise) {
+        return filters::filter_registry().make(
+            settings.filter, settings.filter_options,
+            filters::discretise(model.motion, record.interval(), settings.discretisation, noise));
+      },
+      next_start(model, settings.initial, last), measurements(record), search);
+  if (estimate.status == filters::NoiseStatus::failed)
+    throw std::invalid_argument("noise.method is likelihood, but the search for it failed: " +
+                                estimate.reason);
+  LikeliestNoise found{estimate.noise.output.diagonal().cwiseSqrt(), {}};
+  found.relative_deviation = VectorXd::Zero(found.deviation.size());
+  Index group = 0;
+  for (const auto& [quantity, members] : groups) {
+    for (const Index i : members) found.relative_deviation[i] = estimate.relative_deviations[group];
+    ++group;
+  }
+  return found;
+}
+
+namespace {
 
 std::vector<Index> channels_where(const Record& record, bool input) {
   std::vector<Index> found;

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/measurements.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
@@ -12,8 +12,8 @@ namespace beamid::experiments {
 /// A sentence for everything that suggests wrong units or a description that does not mean what it says: a
 /// height above a fifth of the length, Young's modulus outside 1e8 to 1e12 Pa, a density outside 100 to
 /// 25,000 kg/m3, a first frequency below 0.01 Hz or above 20 kHz, a damping ratio of 1 or more; supports that
-/// are joined, damages that overlap. Modulus and density are those of segments, or of members of a plane frame,
-/// whose outline is known; a member's height is compared with the frame's extent. Of chains the first
+/// are joined, damages that overlap. Modulus and density are those of segments, or of members of a plane
+/// frame, whose outline is known; a member's height is compared with the frame's extent. Of chains the first
 /// frequency and the damping alone, of others nothing.
 std::vector<std::string> implausible(const Experiment& experiment);
 

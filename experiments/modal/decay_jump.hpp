@@ -34,7 +34,7 @@ struct DecayJump {
 };
 
 /// The clearest jump of a decay (N, finite), where there is one: of its frequency (frequency_jump.hpp,
-/// frequency_step.hpp), or else of its amplitude and phase. Over twelve periods before and behind an instant,
+/// decay_jump.cpp), or else of its amplitude and phase. Over twelve periods before and behind an instant,
 /// but for one period to either side, the signal, decimated to eight samples per cycle and freed of what
 /// sways below the mode, is
 ///

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "experiments/modal/damped_sine_fit.hpp"
+#include "experiments/modal/dominant_mode.hpp"
 #include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {

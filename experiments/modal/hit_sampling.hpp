@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/modal/hammer_response.hpp"
+#include "experiments/modal/response_peaks.hpp"
 
 namespace beamid::experiments {
 

@@ -1,18 +1,208 @@
 #include "experiments/modal/mode_by_mode.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
+#include <cmath>
+#include <complex>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
-#include "experiments/modal/spectral_peaks.hpp"
+#include <fmt/format.h>
+#include <Eigen/QR>
+#include <unsupported/Eigen/FFT>
+
+#include "experiments/signal/fast_length.hpp"
+#include "experiments/signal/median.hpp"
+#include "experiments/signal/missing_samples.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Complex = std::complex<double>;
-using Eigen::Index, Eigen::MatrixXd;
+using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
+
+constexpr double fewest_kernels = 1.5;
+constexpr Index fewest_values = 5;
+
+/// How many values come before the first that is smaller than this.
+Index reach(const VectorXcd& values, double least) {
+  Index count = 0;
+  while (count < values.size() && std::abs(values[count]) >= least) ++count;
+  return std::max(count, std::min(fewest_values, values.size()));
+}
+
+/// The mode over the first `count` values.
+void take(const VectorXcd& values, Index count, IsolatedMode& mode) {
+  mode.values = values.head(count);
+  mode.logarithm = unwrapped_logarithm(mode.values);
+  const VectorXd time = mode.interval * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
+  mode.line = line_through(time, mode.logarithm, mode.independent());
+  const Complex mean =
+      Complex(mode.line.log_amplitude,
+              (mode.values.cwiseAbs2().array() *
+               (mode.logarithm.imag().array() - mode.line.slope.imag() * (time.array() - mode.line.time)))
+                      .sum() /
+                  mode.values.squaredNorm());
+  const VectorXcd model = (mean + mode.line.slope * (time.array() - mode.line.time).cast<Complex>()).exp();
+  const double independent = std::max(static_cast<double>(count) * mode.independent(), 2.5);
+  mode.noise = std::sqrt((mode.values - model).squaredNorm() / static_cast<double>(count) * independent /
+                         (independent - 2));
+}
+
+}  // namespace
+
+IsolatedMode isolate(const VectorXd& signal, double interval, double frequency_hz,
+                     const std::vector<Complex>& others) {
+  IsolatedMode mode;
+  Complex rate(0, 2 * std::numbers::pi * frequency_hz);
+  std::vector<Complex> neighbours = others;
+  std::erase_if(neighbours, [&](const Complex& other) { return other.imag() == rate.imag(); });
+  for (int pass = 0; pass < 2; ++pass) {  // the kernel's gain and w are those of the rate found at first
+    const Demodulated found = demodulate(signal, interval, rate, neighbours, fewest_kernels);
+    if (found.values.size() < fewest_values)
+      throw std::invalid_argument(fmt::format("{} values of the mode at {:.4g} Hz; expected {} at least",
+                                              found.values.size(), frequency_hz, fewest_values));
+    mode.turned_back = rate.imag();
+    mode.interval = found.interval;
+    mode.correlation = found.correlation;
+    const double largest = found.values.cwiseAbs().maxCoeff();
+    take(found.values, reach(found.values, 0.2 * largest), mode);
+    take(found.values, reach(found.values, std::max(5 * mode.noise, 0.01 * largest)), mode);
+    if (pass == 0 && std::abs(mode.line.slope.imag()) < 0.1 * rate.imag()) rate = mode.rate();
+  }
+  return mode;
+}
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double lowest_ratio = 0.7, highest_ratio = 1.4;  // of the expected frequency
+constexpr Index powers = 3;                                // of s, in every numerator
+
+/// Lines first .. first + count - 1 of the transform of a signal.
+VectorXcd lines_of(const VectorXd& signal, Index first, Index count) {
+  const std::vector<double> samples(signal.data(), signal.data() + signal.size());
+  std::vector<Complex> lines;
+  Eigen::FFT<double> transform;
+  transform.fwd(lines, samples);
+  return Eigen::Map<const VectorXcd>(lines.data() + first, count);
+}
+
+/// Real rows of complex equations.
+MatrixXd real_rows(const MatrixXcd& rows) {
+  MatrixXd real(2 * rows.rows(), rows.cols());
+  real << rows.real(), rows.imag();
+  return real;
+}
+
+}  // namespace
+
+ForcedMode forced_mode(const VectorXd& output, const MatrixXd& inputs, double interval, double expected_hz) {
+  constexpr int iterations = 20;
+  constexpr double largest_ratio = 0.3, explained = 0.5;
+  const Index length = fast_length_within(output.size());
+  const double line = 1 / (interval * static_cast<double>(length));  // [Hz]
+  const auto first = static_cast<Index>(std::ceil(lowest_ratio * expected_hz / line)),
+             last = std::min(length / 2 - 1, static_cast<Index>(highest_ratio * expected_hz / line));
+  const Index count = last - first + 1, unknowns = 2 + powers * (inputs.rows() + 1);
+  if (first < 1 || count < unknowns)
+    throw std::invalid_argument(fmt::format(
+        "{} lines of the spectrum lie between {:.4g} and {:.4g} Hz; expected at least {} for a forced mode",
+        std::max<Index>(0, count), lowest_ratio * expected_hz, highest_ratio * expected_hz, unknowns));
+  VectorXcd s(count);  // over the expected angular frequency
+  for (Index k = 0; k < count; ++k) s[k] = Complex(0, static_cast<double>(first + k) * line / expected_hz);
+  const VectorXcd y = lines_of(bridged_straight(output).head(length), first, count);
+  MatrixXcd rows(count, unknowns);
+  rows.col(0) = -s.cwiseProduct(y);
+  rows.col(1) = -y;
+  for (Index j = 0; j <= inputs.rows(); ++j) {
+    VectorXcd input = VectorXcd::Ones(count);
+    if (j < inputs.rows())
+      input = lines_of(bridged_straight(inputs.row(j).transpose()).head(length), first, count);
+    input /= std::max(1e-300, input.norm());
+    for (Index power = 0; power < powers; ++power, input = s.cwiseProduct(input).eval())
+      rows.col(2 + powers * j + power) = input * y.norm();
+  }
+  const VectorXcd right = s.array().square() * y.array();
+  VectorXd weight = VectorXd::Ones(count), found = VectorXd::Zero(unknowns);
+  double left = 1;
+  for (int i = 0; i < iterations; ++i) {
+    const MatrixXd a = real_rows(weight.asDiagonal() * rows);
+    const VectorXd b = real_rows(weight.asDiagonal() * right);
+    found = a.colPivHouseholderQr().solve(b);
+    const VectorXcd factor = s.array().square() + found[0] * s.array() + found[1];
+    // what is left of the output, with the left side divided by its factor
+    left = (factor.cwiseProduct(y) - rows.rightCols(unknowns - 2) * found.tail(unknowns - 2))
+               .cwiseQuotient(factor)
+               .norm() /
+           y.norm();
+    weight = factor.cwiseAbs().cwiseInverse();
+  }
+  const double w = std::sqrt(found[1]), ratio = found[0] / (2 * w);
+  if (!(w > lowest_ratio && w < highest_ratio && std::abs(ratio) < largest_ratio && left * left < explained))
+    throw std::invalid_argument(
+        fmt::format("no mode between {:.4g} and {:.4g} Hz explains the response to the measured inputs",
+                    lowest_ratio * expected_hz, highest_ratio * expected_hz));
+  return {w * expected_hz, ratio};
+}
+
+namespace {
+
+/// The largest of the two valleys that part line k from a larger value on either side; an end of the
+/// spectrum is no larger value.
+double valley_beside(const VectorXd& spectrum, Index k) {
+  double deepest_needed = 0;
+  for (const Index direction : {-1, 1}) {
+    double valley = spectrum[k];
+    for (Index j = k + direction; j >= 0 && j < spectrum.size(); j += direction) {
+      valley = std::min(valley, spectrum[j]);
+      if (spectrum[j] <= spectrum[k]) continue;
+      deepest_needed = std::max(deepest_needed, valley);
+      break;
+    }
+  }
+  return deepest_needed;
+}
+
+}  // namespace
+
+std::vector<SpectralLine> spectral_lines(const Eigen::MatrixXd& outputs, double interval,
+                                         const LineSettings& settings) {
+  AmplitudeSpectrum first = amplitude_spectrum(outputs.row(0).transpose(), interval);
+  VectorXd spectrum = first.amplitude.cwiseAbs2();
+  for (Index i = 1; i < outputs.rows(); ++i)
+    spectrum += amplitude_spectrum(outputs.row(i).transpose(), interval).amplitude.cwiseAbs2();
+  spectrum = spectrum.cwiseSqrt();
+  const double line = 1 / (interval * static_cast<double>(outputs.cols()));
+  const double step = first.frequency_hz[1];
+  const auto lobe = static_cast<Index>(2 * line / step);
+  const Index around = std::max<Index>(16 * lobe, spectrum.size() / 8);
+  const double least = settings.least * spectrum.maxCoeff();
+  std::vector<SpectralLine> lines;
+  for (Index k = lobe; k + 1 < spectrum.size(); ++k) {
+    const Index from = std::max<Index>(0, k - lobe), to = std::min(spectrum.size() - 1, k + lobe);
+    if (spectrum[k] < least || spectrum[k] < spectrum.segment(from, to - from + 1).maxCoeff()) continue;
+    const Index left = std::max<Index>(0, k - around), right = std::min(spectrum.size() - 1, k + around);
+    if (spectrum[k] < settings.above_noise * median(VectorXd(spectrum.segment(left, right - left + 1))))
+      continue;
+    if (spectrum[k] < settings.above_valley * valley_beside(spectrum, k)) continue;
+    lines.push_back({first.frequency_hz[k], spectrum[k]});
+  }
+  return lines;
+}
+
+std::vector<double> spectral_peaks(const Eigen::MatrixXd& outputs, double interval) {
+  std::vector<double> peaks;
+  for (const SpectralLine& line : spectral_lines(outputs, interval)) peaks.push_back(line.frequency_hz);
+  return peaks;
+}
+
+namespace {
+
+using Complex = std::complex<double>;
 
 /// In the channel where it is largest.
 IsolatedMode isolated(const MatrixXd& outputs, double interval, double frequency_hz,

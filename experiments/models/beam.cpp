@@ -15,13 +15,12 @@
 #include <stdexcept>
 
 #include "experiments/models/banded/continuum_motion.hpp"
-#include "experiments/models/motion/beam_damping.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/models/motion/following_motion.hpp"
-#include "experiments/models/motion/sensor_options.hpp"
+#include "experiments/models/motion/parametric_motion.hpp"
 #include "experiments/models/motion/supported_motion.hpp"
 #include "experiments/models/storeys.hpp"
-#include "fem/moved_mass.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -4,7 +4,7 @@
 //     h' = x' - |h/l|^(n-1) (beta |x'| h + gamma x' |h|)
 //
 // The spring is that of springs/bouc_wen.cpp, which says what beta, gamma and l are.
-#include "experiments/models/motion/spring_and_dashpot.hpp"
+#include "experiments/models/motion/oscillator_motion.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -4,7 +4,7 @@
 //
 // The spring is that of springs/duffing.cpp. At the amplitude a it moves at omega^2 = (K + 3/4 K3 a^2) / M,
 // to first order in K3.
-#include "experiments/models/motion/spring_and_dashpot.hpp"
+#include "experiments/models/motion/oscillator_motion.hpp"
 
 namespace beamid::experiments {
 namespace {

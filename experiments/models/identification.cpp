@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/models/divergence.hpp"
+#include "experiments/models/estimates.hpp"
 #include "experiments/text/memory_need.hpp"
 #include "filters/noisy_inputs.hpp"
 

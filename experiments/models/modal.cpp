@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "experiments/models/motion/beam_equations.hpp"
-#include "experiments/models/motion/sensor_options.hpp"
+#include "experiments/models/motion/parametric_motion.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 
+#include "fem/assembly.hpp"
+
 namespace beamid::experiments {
 
 /// M x'' + C x' + K x = 0.
@@ -31,5 +33,10 @@ struct Oscillator {
     return {-xi * w, w * std::sqrt(1.0 - xi * xi)};
   }
 };
+
+// An oscillator as a structural system of one coordinate, which is what a reduction would have left.
+
+/// M q'' + C q' + K q = u, y = q, all matrices 1 x 1. @throws std::invalid_argument unless K > 0.
+fem::StructuralSystem one_coordinate(const Oscillator& oscillator);
 
 }  // namespace beamid::experiments

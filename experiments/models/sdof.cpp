@@ -15,7 +15,7 @@
 #include <stdexcept>
 
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/motion/sensor_options.hpp"
+#include "experiments/models/motion/parametric_motion.hpp"
 #include "fem/modes.hpp"
 
 namespace beamid::experiments {

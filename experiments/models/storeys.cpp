@@ -6,9 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "experiments/models/motion/beam_damping.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
-#include "experiments/models/motion/sensor_options.hpp"
+#include "experiments/models/motion/parametric_motion.hpp"
 #include "experiments/models/motion/storey_motion.hpp"
 #include "fem/modes.hpp"
 

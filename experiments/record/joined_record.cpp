@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "experiments/record/read_record.hpp"
-#include "experiments/signal/band_limited.hpp"
+#include "experiments/signal/interpolation.hpp"
 #include "experiments/text/input_error.hpp"
 
 namespace beamid::experiments {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "experiments/results/figure.hpp"
-#include "fem/structural_system.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::experiments {
 

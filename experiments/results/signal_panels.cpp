@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/missing_samples.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "experiments/config/acquisition_settings.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/record/record.hpp"
 
 namespace beamid::experiments {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "experiments/config/settings.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "fem/response/response.hpp"
 
 namespace beamid::experiments {

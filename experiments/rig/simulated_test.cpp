@@ -1,22 +1,207 @@
 #include "experiments/rig/simulated_test.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
-#include "experiments/rig/audible_modes.hpp"
+#include <fmt/format.h>
+#include <Eigen/Core>
+
+#include "experiments/config/channel_places.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/rig/acquisition.hpp"
 #include "experiments/rig/excitation_history.hpp"
-#include "experiments/rig/sample_clock.hpp"
-#include "experiments/rig/storey_response.hpp"
+#include "experiments/signal/interpolation.hpp"
 #include "experiments/signal/random.hpp"
-#include "fem/gauge_row.hpp"
+#include "fem/damping.hpp"
+#include "fem/modes.hpp"
 #include "fem/parametric_system.hpp"
+#include "fem/response/response.hpp"
+#include "filters/discrete_model.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::VectorXd;
+// The motion of a chain whose storeys follow laws.
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// The chain as described, every input of it measured.
+JointModel described_chain(const Experiment& experiment, const fem::StructuralSystem& system,
+                           const std::vector<fem::Point>& points) {
+  ModelSetting setting;
+  setting.system = system;
+  setting.observations.assign(static_cast<std::size_t>(system.outputs.rows()), {Quantity::displacement});
+  setting.forces.resize(static_cast<std::size_t>(system.inputs.cols()));
+  std::iota(setting.forces.begin(), setting.forces.end(), Index{0});
+  setting.parameters = {{"storey_stiffness"}};  // some unknown there must be: it stays as described
+  setting.damping = experiment.damping;
+  setting.storey_springs = experiment.storey_springs;
+  setting.continuum = ModelSetting::Continuum{experiment.structure, experiment.elements, points};
+  return std::move(*model_registry().make("beam", {{"sensor_bias", false}}, setting));
+}
+
+/// As fem::respond(), of the model that an identification uses, by CVODES to 1e-12 a step: inputs run
+/// straight between the grid's instants, slips begin at zero.
+/// @param system of the chain at these points, whose outputs read displacements
+/// @throws std::invalid_argument where the file states a method, or damping that no motion in time has
+fem::Response storey_response(const Experiment& experiment, const fem::StructuralSystem& system,
+                              const std::vector<fem::Point>& points, const fem::Loading& loading,
+                              const fem::TimeGrid& grid) {
+  if (experiment.simulation.method.name != "modal")
+    throw std::invalid_argument(
+        "method '" + experiment.simulation.method.name +
+        "' moves linear storeys; expected no [simulation] method beside [[chain.storeys]], "
+        "which CVODES moves");
+  const JointModel model = described_chain(experiment, system, points);
+  const Index n = system.size(), p = system.outputs.rows();
+  const auto step = filters::discretise(model.motion, grid.interval, "cvode", {{}, MatrixXd::Identity(p, p)});
+  VectorXd state = VectorXd::Zero(static_cast<Index>(model.motion->state_labels().size())), next, rate;
+  if (loading.initial_displacement.size() > 0) state.head(n) = loading.initial_displacement;
+  if (loading.initial_velocity.size() > 0) state.segment(n, n) = loading.initial_velocity;
+  state[model.unknown_places[0]] = model.unknowns[0].guess;
+
+  fem::Response response;
+  response.time =
+      grid.interval * VectorXd::LinSpaced(grid.samples, 0.0, static_cast<double>(grid.samples - 1));
+  for (MatrixXd* rows : {&response.displacement, &response.velocity, &response.acceleration})
+    rows->resize(p, grid.samples);
+  response.frames = grid.frames;
+  const auto frames = static_cast<Index>(grid.frames.size());
+  for (MatrixXd* field :
+       {&response.field_displacement, &response.field_velocity, &response.field_acceleration})
+    field->resize(n, frames);
+  const Index inputs = system.inputs.cols();
+  const auto input_at = [&](Index k) -> VectorXd {
+    return loading.inputs.size() > 0 ? VectorXd(loading.inputs.col(k)) : VectorXd::Zero(inputs);
+  };
+  for (Index k = 0, frame = 0; k < grid.samples; ++k) {
+    const VectorXd input = input_at(k);
+    model.motion->rate(state, input, rate);
+    const VectorXd q = state.head(n), v = state.segment(n, n), a = rate.segment(n, n);
+    response.displacement.col(k) = system.outputs * q;
+    response.velocity.col(k) = system.outputs * v;
+    response.acceleration.col(k) = system.outputs * a;
+    if (frame < frames && grid.frames[static_cast<std::size_t>(frame)] == k) {
+      response.field_displacement.col(frame) = q;
+      response.field_velocity.col(frame) = v;
+      response.field_acceleration.col(frame++) = a;
+    }
+    if (k + 1 == grid.samples) break;
+    VectorXd path(2 * inputs);
+    path << input, input_at(k + 1) - input;
+    try {
+      step->transition(state, path, next);
+    } catch (const std::runtime_error& error) {
+      throw InputError(
+          experiment.storey_springs.front().law.place,
+          fmt::format("the motion of storeys that follow laws cannot be followed beyond {:.4g} s ({}): "
+                      "a spring that softens lets go where the motion is large. Expected a smaller "
+                      "excitation, or a law that pushes back",
+                      response.time[k], error.what()));
+    }
+    state.swap(next);
+  }
+  return response;
+}
+
+// When the logger of a virtual test samples, and what it reads then.
+
+/// When the logger samples: `count` samples during the motion, and those before it.
+struct SampleClock {
+  Eigen::VectorXd time;     ///< (N) [s], from 0
+  double event = 0.0;       ///< the motion's t = 0 on this clock [s]
+  Eigen::Index before = 0;  ///< samples before it
+  bool even = true;
+};
+
+SampleClock clock_of(const Acquisition& acquisition, const Simulation& settings, Eigen::Index count);
+
+/// True readings (N) at the clock's instants from those at the steps of the integration. Before the motion
+/// the beam is held where it starts: only displacements and strains show that.
+Eigen::VectorXd readings_at(const SampleClock& clock, const Eigen::VectorXd& step_time,
+                            const Eigen::VectorXd& values, Eigen::Index steps, Quantity quantity);
+
+SampleClock clock_of(const Acquisition& acquisition, const Simulation& settings, Index count) {
+  SampleClock clock;
+  clock.before = static_cast<Index>(std::llround(acquisition.pretrigger * settings.sampling_rate));
+  clock.event = static_cast<double>(clock.before) / settings.sampling_rate;
+  clock.time = sample_instants(acquisition, clock.before + count, settings.sampling_rate, settings.seed);
+  clock.even = !(acquisition.jitter > 0);
+  return clock;
+}
+
+VectorXd readings_at(const SampleClock& clock, const VectorXd& step_time, const VectorXd& values, Index steps,
+                     Quantity quantity) {
+  const bool held = quantity == Quantity::displacement || quantity == Quantity::strain;
+  VectorXd readings = VectorXd::Constant(clock.time.size(), held ? values[0] : 0.0);
+  if (clock.even) {
+    const Index count = clock.time.size() - clock.before;
+    readings.tail(count) = values(Eigen::seqN(Index{0}, count, steps));
+    return readings;
+  }
+  const CubicSpline spline(step_time, values);
+  const double last = step_time[step_time.size() - 1];
+  for (Index k = 0; k < readings.size(); ++k)
+    if (const double t = clock.time[k] - clock.event; t >= 0) readings[k] = spline(std::min(t, last));
+  return readings;
+}
+
+// The modes of a simulation that its record can show.
+
+// Modes below half the sampling rate: what an instrument's anti-aliasing filter lets through. One above
+// appears in the record at another frequency.
+struct Audible {
+  Index count = 0;       ///< 200 at most
+  double next_hz = 0.0;  ///< frequency of the first above; 0: there is none
+};
+
+Audible audible_modes(const fem::StructuralSystem& system, double limit_hz) {
+  constexpr Index most = 200;
+  for (Index few = std::min<Index>(system.size(), 25);;
+       few = std::min(2 * few, std::min(system.size(), most))) {
+    const VectorXd frequency = fem::modes(system, few).frequency_hz();
+    const Index below = (frequency.array() < limit_hz).count();
+    if (below < few) return {below, frequency[below]};
+    if (few == std::min(system.size(), most)) return {few, 0.0};
+  }
+}
+
+/// The method as set. The modal one gets as many modes as the record can show, those below half the sampling
+/// rate and 200 at most, unless the file says how many; a note says what the others show.
+fem::ResponseMethod audible_method(const Simulation& settings, const fem::StructuralSystem& system,
+                                   std::vector<std::string>& notes) {
+  fem::ResponseMethod method = settings.method;
+  const double limit = 0.5 * settings.sampling_rate;
+  const Audible audible = audible_modes(system, limit);
+  if (audible.count == 0 && audible.next_hz > 0.0)
+    notes.push_back(fmt::format(
+        "ALIASED: no mode lies below half the sampling rate, {:g} Hz. The first, at {:.5g} Hz, appears in "
+        "the record at {:.5g} Hz.",
+        limit, audible.next_hz, std::abs(std::remainder(audible.next_hz, settings.sampling_rate))));
+  if (method.name == "modal" && !method.options.contains("modes") && audible.count > 0) {
+    method.options["modes"] = static_cast<double>(audible.count);
+    notes.push_back(fmt::format("{} of {} modes {} used: {}. simulation.modes sets another number.",
+                                audible.count, system.size(), audible.count == 1 ? "is" : "are",
+                                audible.next_hz > 0.0
+                                    ? fmt::format("{} below {:g} Hz, half the sampling rate",
+                                                  audible.count == 1 ? "the one" : "those", limit)
+                                    : "the lowest"));
+  } else if (method.name == "modal" && !method.options.contains("modes")) {
+    method.options["modes"] = 1.0;
+  } else if (audible.count > 0 && audible.next_hz > 0.0 &&
+             (method.name != "modal" || method.options["modes"] == 0.0 ||
+              method.options["modes"] > static_cast<double>(audible.count))) {
+    notes.push_back(fmt::format(
+        "Half the sampling rate is {:g} Hz, the frequency of mode {} is {:.5g} Hz: this mode and those "
+        "above it appear in the record at other frequencies.",
+        limit, audible.count + 1, audible.next_hz));
+  }
+  return method;
+}
 
 std::vector<Sensor> default_sensors() {
   return {{"", {}, Quantity::displacement, 0.0}, {"", {}, Quantity::acceleration, 0.0}};

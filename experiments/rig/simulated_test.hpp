@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/models/structure_points.hpp"
 #include "experiments/rig/acquisition.hpp"
 #include "experiments/text/progress.hpp"

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "experiments/signal/cascaded_filter.hpp"
+#include "experiments/signal/butterworth.hpp"
 
 namespace beamid::experiments {
 

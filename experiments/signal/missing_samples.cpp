@@ -6,8 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/signal/amplitude_spectrum.hpp"
 #include "experiments/signal/median.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {

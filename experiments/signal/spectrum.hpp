@@ -5,6 +5,17 @@
 
 namespace beamid::experiments {
 
+// What frequencies a signal holds.
+
+struct AmplitudeSpectrum {
+  Eigen::VectorXd frequency_hz;
+  Eigen::VectorXd amplitude;  ///< in the signal's unit
+};
+
+/// Amplitudes at 0 to half the sampling rate of a signal (N) without its mean, under a Hann window, padded
+/// with zeros to at least 2 N: a steady sine of amplitude a peaks at a.
+AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double interval);
+
 /// Frequency [Hz] of the largest magnitude in the spectrum of a signal (N), its mean removed, under a Hann
 /// window and zero-padded to at least 2 N; the peak is refined by a parabola through the logarithms.
 ///

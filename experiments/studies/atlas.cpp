@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/storey_laws.hpp"
+#include "experiments/config/structure_description.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/atlas/input_hold_report.hpp"
 #include "experiments/studies/atlas/report.hpp"

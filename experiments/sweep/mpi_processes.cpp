@@ -12,7 +12,7 @@
 #include <exception>
 #include <stdexcept>
 
-#include "experiments/sweep/processes.hpp"
+#include "experiments/sweep/rows.hpp"
 
 #ifdef BEAMID_MPI
 #include <mpi.h>

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/known_names.hpp"
 #include "experiments/text/method_choice.hpp"
 #include "experiments/text/spelling.hpp"
 #include "experiments/text/words.hpp"

@@ -7,8 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "experiments/sweep/case.hpp"
-#include "experiments/sweep/sweep.hpp"
+#include "experiments/sweep/rows.hpp"
 
 namespace beamid::experiments {
 

@@ -2,9 +2,7 @@
 
 #include <vector>
 
-#include "fem/elements/chord.hpp"
 #include "fem/elements/element.hpp"
-#include "fem/elements/rod_element.hpp"
 
 namespace beamid::fem {
 namespace {

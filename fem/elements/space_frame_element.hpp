@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "fem/mesh.hpp"
+#include "fem/beam.hpp"
 #include "fem/space_frame.hpp"
 
 namespace beamid::fem {
@@ -12,7 +12,7 @@ namespace beamid::fem {
 ///
 /// Coordinates: (d_1, h theta_1, d_2, h theta_2), each a vector along x, y and z, and behind them interior
 /// ones: two (element.hpp) for bending in the plane of the member's x and y where it has shear deformation
-/// there, two for bending in that of x and z, one (rod_element.hpp) for stretching and one for twisting. The
+/// there, two for bending in that of x and z, one (element.hpp) for stretching and one for twisting. The
 /// natural strains are, t being the direction of the element,
 ///
 ///     h theta_2 - h theta_1   and   d_2 - d_1 - h theta_1 x t   [m],

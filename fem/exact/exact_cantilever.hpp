@@ -1,7 +1,7 @@
 // The exact Euler-Bernoulli cantilever with a tip body: the oracle of the finite elements.
 #pragma once
 
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 
 namespace beamid::fem {
 

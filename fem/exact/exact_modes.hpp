@@ -20,7 +20,7 @@ struct ExactModes {
 ///
 /// The state (w, theta, V, M) of a piece is exp(A x) times that at its begin; the frequencies are where the
 /// states that one end admits contain one that the other admits. They are found by bisection on the number of
-/// frequencies below a trial value [wittrick1971], so that none is missed (harmonic_chain.hpp). Forces of
+/// frequencies below a trial value [wittrick1971], so that none is missed (exact_modes.cpp). Forces of
 /// springs and dashpots that are not linear elastic are left out; the mass model, which refers to a mesh, is
 /// ignored.
 ///

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "fem/response/response.hpp"
 
@@ -56,5 +57,12 @@ class ResponseRecorder {
   Response response_;
   std::size_t next_frame_ = 0;
 };
+
+// Damping in methods that integrate the equations as they are.
+
+/// alpha and beta of the law.
+/// @throws std::invalid_argument, naming the method, when the law has no sparse matrix or lets the first
+/// mode, or modes of high frequency, gain energy.
+ProportionalDamping direct_damping(const ResponseProblem& problem, const std::string& method);
 
 }  // namespace beamid::fem

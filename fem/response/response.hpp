@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "fem/damping.hpp"
-#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

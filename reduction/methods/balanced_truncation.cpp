@@ -22,8 +22,7 @@
 #include <algorithm>
 
 #include "fem/modes.hpp"
-#include "reduction/method_options.hpp"
-#include "reduction/places.hpp"
+#include "reduction/constrained_statics.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::reduction {

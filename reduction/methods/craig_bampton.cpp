@@ -7,8 +7,6 @@
 // Exact under static loads on the interface, and in every motion when all fixed-interface modes are kept.
 #include "fem/modes.hpp"
 #include "reduction/constrained_statics.hpp"
-#include "reduction/method_options.hpp"
-#include "reduction/places.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::reduction {

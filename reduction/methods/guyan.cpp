@@ -7,7 +7,6 @@
 // Exact under static forces at the masters; every frequency comes out too high, the sooner the slaves have
 // modes of their own.
 #include "reduction/constrained_statics.hpp"
-#include "reduction/places.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::reduction {

@@ -9,8 +9,6 @@
 #include <Eigen/Cholesky>
 
 #include "reduction/constrained_statics.hpp"
-#include "reduction/method_options.hpp"
-#include "reduction/places.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::reduction {

@@ -10,10 +10,8 @@
 #include <cmath>
 
 #include "fem/modes.hpp"
-#include "reduction/elastic_statics.hpp"
-#include "reduction/method_options.hpp"
+#include "reduction/constrained_statics.hpp"
 #include "reduction/orthonormal_basis.hpp"
-#include "reduction/places.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::reduction {

@@ -11,11 +11,9 @@
 #include "fem/response/response.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "reduction/bdc_svd.hpp"
-#include "reduction/method_options.hpp"
+#include "reduction/constrained_statics.hpp"
 #include "reduction/orthonormal_basis.hpp"
-#include "reduction/places.hpp"
 #include "reduction/reduction.hpp"
-#include "reduction/static_interpolation.hpp"
 
 namespace beamid::reduction {
 namespace {

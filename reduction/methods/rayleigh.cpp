@@ -13,10 +13,7 @@
 #include <stdexcept>
 
 #include "reduction/constrained_statics.hpp"
-#include "reduction/elastic_statics.hpp"
-#include "reduction/places.hpp"
 #include "reduction/reduction.hpp"
-#include "reduction/static_interpolation.hpp"
 
 namespace beamid::reduction {
 namespace {

@@ -9,8 +9,7 @@
 #include <Eigen/QR>
 
 #include "fem/modes.hpp"
-#include "reduction/method_options.hpp"
-#include "reduction/places.hpp"
+#include "reduction/constrained_statics.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::reduction {

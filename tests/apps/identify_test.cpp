@@ -8,7 +8,7 @@
 
 #include "experiments/record/write_record.hpp"
 #include "experiments/rig/virtual_rig.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 #include "tests/apps/run_command.hpp"
 
 namespace beamid::apps::identify_test {

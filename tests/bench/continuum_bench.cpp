@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "experiments/models/banded/banded_step.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 #include "fem/modes.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "filters/filter.hpp"

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/frame_parameter.hpp"
+#include "fem/structure.hpp"
 #include "tests/bench/mesh_problem.hpp"
 
 namespace {

@@ -62,7 +62,7 @@ class Mass {
   const fem::SparseMatrix& mass_;
 };
 
-// The tolerance of fem/solvers/lanczos.cpp, and the subspace that takes Spectra the least time.
+// The tolerance of fem/solvers/rigid_complement.cpp, and the subspace that takes Spectra the least time.
 VectorXd peer(const fem::SparseMatrix& stiffness, const fem::SparseMatrix& mass, Index count) {
   InverseStiffness inverse(stiffness);
   Mass product(mass);

@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "fem/assembly.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 #include "fem/modes.hpp"
 #include "fem/response/response.hpp"
 #include "fem/stiffness_solver.hpp"

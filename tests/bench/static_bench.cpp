@@ -6,7 +6,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "fem/assembly.hpp"
-#include "fem/solvers/mixed_solver.hpp"
+#include "fem/solvers/refined_solver.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "tests/bench/uniform_beam.hpp"
 

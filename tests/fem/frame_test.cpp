@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "fem/assembly.hpp"
-#include "fem/buckling.hpp"
 #include "fem/complex_modes.hpp"
 #include "fem/modes.hpp"
+#include "fem/space_frame.hpp"
 #include "fem/stiffness_solver.hpp"
 #include "tests/fem/exact_frame.hpp"
 

@@ -1,6 +1,6 @@
 // Oracle: the exact cantilever; its curvature at the root, extrapolated from its shape near it, is good to
 // 1e-8.
-#include "fem/gauge_row.hpp"
+#include "fem/parametric_system.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Oracles: the modes of the beam assembled at other values, and what scaling all stiffness does.
-#include "fem/mode_curves.hpp"
+#include "fem/modes.hpp"
 
 #include <gtest/gtest.h>
 

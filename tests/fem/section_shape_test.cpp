@@ -1,5 +1,5 @@
 // Oracles: closed forms, tables of sections, and integrals over the outline.
-#include "fem/section_shape.hpp"
+#include "fem/section.hpp"
 
 #include <gtest/gtest.h>
 

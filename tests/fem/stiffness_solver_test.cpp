@@ -7,7 +7,7 @@
 #include <random>
 
 #include "fem/assembly.hpp"
-#include "fem/solvers/mixed_solver.hpp"
+#include "fem/solvers/refined_solver.hpp"
 #include "tests/fem/five_beams.hpp"
 
 namespace beamid::stiffness_solver_test {

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "fem/modes.hpp"
+#include "fem/parametric_system.hpp"
 #include "fem/shear_building.hpp"
 #include "fem/stiffness_solver.hpp"
-#include "fem/triplets.hpp"
 
 namespace beamid::fem::structure_test {
 namespace {

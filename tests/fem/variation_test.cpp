@@ -1,4 +1,4 @@
-#include "fem/variation.hpp"
+#include "fem/section.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,14 +8,13 @@
 #include <stdexcept>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/stream/sample_line.hpp"
+#include "experiments/identify/stream/sample_source.hpp"
 #include "experiments/identify/stream/streamed_identification.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/record/read_record.hpp"
 #include "experiments/results/file.hpp"
 #include "experiments/results/report_page.hpp"
 #include "experiments/studies/report/joined_report.hpp"
-#include "experiments/sweep/journal.hpp"
 #include "experiments/sweep/manifest.hpp"
 #include "experiments/sweep/read_sweep.hpp"
 #include "experiments/text/input_error.hpp"

@@ -1,5 +1,5 @@
 // Shapes known at some points only.
-#include "reduction/static_interpolation.hpp"
+#include "reduction/reduction.hpp"
 
 #include <gtest/gtest.h>
 

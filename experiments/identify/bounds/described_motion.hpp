@@ -5,12 +5,55 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/experiment.hpp"
-#include "experiments/identify/bounds/channel_information.hpp"
-#include "experiments/identify/record_inputs.hpp"
+#include "experiments/config/channel_places.hpp"
+#include "experiments/identify/bounds/identifiability.hpp"
+#include "experiments/identify/model_setting.hpp"
 #include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
+
+// Tests like the one described, but for one quantity.
+
+/// The longest record looked at, times the one described.
+inline constexpr Eigen::Index longest_record = 4;
+
+/// Fills in lengths and rates, and from the record described the parameters and the report.
+void sweep_in_time(const ObservedMotion& motion, const std::vector<NoisyChannel>& channels,
+                   Identifiability& result);
+
+/// Fills in places and numbers.
+/// @param described the channels of the sensors described; the first is moved, and added again.
+void sweep_in_place(const Experiment& experiment, const std::filesystem::path& folder,
+                    const std::vector<NoisyChannel>& described, Identifiability& result,
+                    const Progress& progress);
+
+/// Lengths of record, in samples, evenly spread on a logarithmic scale from a few periods of the slowest mode
+/// to `most`, the described one among them.
+std::vector<Eigen::Index> record_lengths(double samples_per_period, Eigen::Index described,
+                                         Eigen::Index most);
+
+/// Every how many samples may be left: 1, 2, 5, 10, ... as long as mode 1 stays below half the sampling rate.
+std::vector<Eigen::Index> strides(double samples_per_period, Eigen::Index samples);
+
+/// Bounds over sizes of one set of channels, from several records (k x q).
+Eigen::MatrixXd bounds_percent(const ObservedMotion& motion, const std::vector<ChannelInformation>& records,
+                               const std::vector<NoisyChannel>& channels);
+
+/// Bounds of one channel after another, alone (k x q).
+Eigen::MatrixXd bounds_percent_alone(const ObservedMotion& motion, const ChannelInformation& record,
+                                     const std::vector<NoisyChannel>& channels);
+
+/// A further sensor, chosen from candidates.
+struct AddedChannel {
+  std::size_t candidate = 0;
+  Eigen::VectorXd percent;  ///< bounds with it (q)
+};
+
+/// Adds channels one by one, each time the one that leaves the least uncertainty: more combinations
+/// determined, then the larger determinant of the information (D-optimal [kay1993]).
+std::vector<AddedChannel> add_best(const ObservedMotion& motion, const ChannelInformation& record,
+                                   std::vector<NoisyChannel> channels,
+                                   const std::vector<NoisyChannel>& candidates, int count);
 
 /// How a test is looked at.
 struct TestView {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "experiments/identify/bounds/described_motion.hpp"
-#include "experiments/identify/bounds/sweeps.hpp"
 #include "fem/assembly.hpp"
 
 namespace beamid::experiments {

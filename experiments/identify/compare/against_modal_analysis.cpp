@@ -32,8 +32,8 @@ std::string difference_text(const ModalEstimate& modal, const ComparedRun& run) 
          ". The modal analysis knows no model: trust it, or give the model the modes that it lacks.";
 }
 
-// As K and C of one degree of freedom are judged (judgement.cpp): damping that is not the record's is no
-// estimate.
+// As K and C of one degree of freedom are judged (record_identification.cpp): damping that is not the
+// record's is no estimate.
 bool has_another_damping(const ModalEstimate& modal, const ComparedRun& run) {
   constexpr double twice = 2.0, many = 3.0;
   const FoundMode& mode = *run.mode;

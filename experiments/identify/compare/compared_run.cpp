@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "experiments/identify/compare/passes.hpp"
-#include "experiments/identify/record_inputs.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/models/joint_model.hpp"
 
 namespace beamid::experiments {
 namespace {

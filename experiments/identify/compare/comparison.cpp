@@ -15,7 +15,7 @@
 #include "experiments/identify/compare/started_model.hpp"
 #include "experiments/identify/compare/true_value.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "experiments/models/motion/following_motion.hpp"
 #include "experiments/rig/logged_test.hpp"
 #include "experiments/text/choice_text.hpp"

@@ -7,16 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/identify/analysis.hpp"
 #include "experiments/identify/batch.hpp"
 #include "experiments/identify/clocks/likeliest_clock.hpp"
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/driven/description_faults.hpp"
-#include "experiments/identify/driven/section_scatter.hpp"
+#include "experiments/identify/driven/driven_fit.hpp"
 #include "experiments/identify/noise_in_estimates.hpp"
-#include "experiments/modal/clock_scatter.hpp"
-#include "experiments/models/divergence.hpp"
+#include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/text/progress.hpp"
 #include "filters/diagnostics.hpp"

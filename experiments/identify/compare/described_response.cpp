@@ -7,7 +7,7 @@
 
 #include "experiments/identify/compare/against_description.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "filters/sample_walk.hpp"
 
 namespace beamid::experiments {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "experiments/identify/driven/driven_fit.hpp"
-#include "experiments/identify/record_inputs.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/identify/model_setting.hpp"
 #include "experiments/models/identification.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "experiments/identify/compare/low_mode_fit.hpp"
-#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/filter_run.hpp"

@@ -14,7 +14,7 @@ void judge_inputs(const RunContext& context, ComparedRun& run);
 /// What is said of them, and what to do.
 std::string clock_scatter_text(const Record& record, const ClockScatter& scatter);
 
-/// Contradicted where the channels of a free decay do not ring at one frequency (clock_scatter.hpp).
+/// Contradicted where the channels of a free decay do not ring at one frequency (joint_decay_fit.hpp).
 void judge_clock_scatter(const RunContext& context, ComparedRun& run);
 
 }  // namespace beamid::experiments

@@ -8,9 +8,8 @@
 #include <numbers>
 
 #include "experiments/identify/reproduction.hpp"
-#include "experiments/models/current_modes.hpp"
-#include "experiments/models/finest_discretisation.hpp"
 #include "experiments/models/identification.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "filters/levenberg_marquardt.hpp"
 #include "filters/output_error.hpp"
 

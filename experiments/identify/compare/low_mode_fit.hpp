@@ -1,7 +1,6 @@
 // The nearest motion in the lowest modes of a model, whatever its unknowns are.
 #pragma once
 
-#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "filters/filter_run.hpp"
 

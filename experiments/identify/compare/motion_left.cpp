@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "experiments/identify/compare/run_noise.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/joint_model.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/identify/nonlinear_reproduction.hpp"
+#include "experiments/identify/reproduction.hpp"
 #include "filters/batch_estimator.hpp"
 
 namespace beamid::experiments {

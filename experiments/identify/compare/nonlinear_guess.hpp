@@ -6,7 +6,7 @@
 namespace beamid::experiments {
 
 /// Unknowns and motion after the first 4096 samples have been fitted, K from the frequency of the record, the
-/// phase from all phases of one cycle (nonlinear_reproduction.hpp), then all unknowns and the start together
+/// phase from all phases of one cycle (reproduction.hpp), then all unknowns and the start together
 /// over parts of the record that double in length. A record that is low-passed and decimated, as linear
 /// models hear it first, would be another motion to a nonlinear one.
 ///

@@ -5,10 +5,10 @@
 
 #include "experiments/identify/compare/known_prior.hpp"
 #include "experiments/identify/compare/run_verdict.hpp"
-#include "experiments/identify/noise_source.hpp"
-#include "experiments/identify/nonlinear_reproduction.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/reproduction.hpp"
 #include "experiments/identify/run_diagnostics.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {

@@ -9,7 +9,7 @@
 #include "experiments/identify/compare/run_noise.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/reproduction.hpp"
-#include "experiments/models/initial_estimate.hpp"
+#include "experiments/models/joint_model.hpp"
 
 namespace beamid::experiments {
 

@@ -3,15 +3,15 @@
 
 #include <cmath>
 
+#include "experiments/identify/analysis.hpp"
 #include "experiments/identify/compare/motion_left.hpp"
 #include "experiments/identify/compare/passes.hpp"
 #include "experiments/identify/compare/run_bound.hpp"
 #include "experiments/identify/compare/run_mode.hpp"
 #include "experiments/identify/compare/true_value.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/recorded_frequency.hpp"
 #include "experiments/identify/reproduction.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "filters/smoother.hpp"
 
 namespace beamid::experiments {

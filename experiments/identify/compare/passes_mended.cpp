@@ -11,7 +11,7 @@
 #include "experiments/identify/compare/run_bound.hpp"
 #include "experiments/identify/compare/widened_interval.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "experiments/signal/random.hpp"
 #include "filters/output_error.hpp"
 

@@ -9,8 +9,8 @@
 #include "experiments/identify/compare/noisy_input_fit.hpp"
 #include "experiments/identify/compare/passes.hpp"
 #include "experiments/identify/driven/driven_fit.hpp"
-#include "experiments/models/divergence.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/estimates.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "filters/batch_estimator.hpp"
 
 namespace beamid::experiments {

@@ -1,7 +1,6 @@
 // The Cramer-Rao bound of a run.
 #pragma once
 
-#include "experiments/models/initial_estimate.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/measurements.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "experiments/models/divergence.hpp"
+#include "experiments/models/estimates.hpp"
 #include "experiments/models/joint_model.hpp"
 
 namespace beamid::experiments {

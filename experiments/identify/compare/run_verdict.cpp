@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "experiments/identify/analysis.hpp"
 #include "experiments/identify/compare/against_description.hpp"
 #include "experiments/identify/compare/against_modal_analysis.hpp"
 #include "experiments/identify/compare/described_response.hpp"
@@ -12,7 +13,6 @@
 #include "experiments/identify/compare/reduction_error.hpp"
 #include "experiments/identify/compare/step_error.hpp"
 #include "experiments/identify/compare/widened_interval.hpp"
-#include "experiments/identify/decay_objections.hpp"
 #include "experiments/identify/record_identification.hpp"
 
 namespace beamid::experiments {

@@ -12,7 +12,7 @@ constexpr double settled_move = 1.0;  ///< of an unknown by the last pass, at mo
 /// - Intervals are widened where the noise at the record's mode is denser than white noise of the deviation
 ///   that the filter assumes (noise_near_mode.hpp), or where a free decay varies with its amplitude
 ///   (amplitude_sections.hpp); they are never narrowed.
-/// - K and C of a free decay: judgement.hpp.
+/// - K and C of a free decay: record_identification.hpp.
 /// - Of any other model, a warning where its first mode at the estimate and the modal analysis of the first
 ///   channel differ by more than three of their standard deviations together, in frequency or in damping
 ///   ratio, with how much; one where the reduction moves the mode (reduction_error.hpp); and one where the

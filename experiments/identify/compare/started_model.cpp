@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "experiments/identify/compare/nonlinear_guess.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "experiments/models/motion/following_motion.hpp"
-#include "experiments/models/motion/reduced_motion.hpp"
+#include "experiments/models/motion/second_order_motion.hpp"
 #include "experiments/models/motion/storey_motion.hpp"
 #include "reduction/reduction.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/identify/compare/first_guess.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/models/joint_model.hpp"

@@ -10,8 +10,8 @@
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/models/finest_discretisation.hpp"
-#include "experiments/signal/amplitude_spectrum.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/models/unknown.hpp"
 
 namespace beamid::experiments {

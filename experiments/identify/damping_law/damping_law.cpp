@@ -1,27 +1,94 @@
 #include "experiments/identify/damping_law/damping_law.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
-#include "experiments/identify/damping_law/law_sections.hpp"
-#include "experiments/identify/damping_law/slow_record.hpp"
+#include <fmt/format.h>
+
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/nonlinear_reproduction.hpp"
+#include "experiments/identify/reproduction.hpp"
 #include "experiments/modal/study/decay_part.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/decimation.hpp"
+#include "experiments/signal/median.hpp"
 #include "experiments/text/spelling.hpp"
 #include "fem/modes.hpp"
 #include "filters/batch_estimator.hpp"
 #include "filters/discrete_model.hpp"
 
 namespace beamid::experiments {
-namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+namespace {
+
+constexpr double slow_samples_per_period = 8.0, steps_per_period = 48.0;
+constexpr Index fewest_slow_samples = 64;  // samples that must be left
+
+}  // namespace
+
+MatrixXd SlowRecord::measured(const MatrixXd& fine_columns) const {
+  MatrixXd kept(fine_columns.rows(), samples.cols());
+  for (Index k = 0; k < kept.cols(); ++k) kept.col(k) = fine_columns.col(k * steps);
+  return kept;
+}
+
+SlowRecord slow_record(const filters::Measurements& record, Index inputs, double frequency_hz) {
+  const Index all = record.size();
+  const double dt = record.interval();
+  SlowRecord slow;
+  slow.factor = decimation_factor(1.0 / (slow_samples_per_period * frequency_hz * dt),
+                                  all / (fewest_slow_samples + 10));
+  slow.interval = slow.factor * dt;
+  slow.samples = decimate_channels(record.outputs, slow.factor);
+  const double start = slow.factor == 1 ? 0.0 : 5 * slow.interval;
+  const Index m = slow.samples.cols();
+  slow.time = record.time[0] + start +
+              slow.interval * VectorXd::LinSpaced(m, 0.0, static_cast<double>(m - 1)).array();
+  slow.steps = std::max(1, static_cast<int>(std::ceil(steps_per_period * frequency_hz * slow.interval)));
+  const Index n = (m - 1) * slow.steps + 1;
+  slow.fine.time =
+      slow.interval / slow.steps * VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1)).array();
+  slow.fine.outputs.setConstant(slow.samples.rows(), n, std::numeric_limits<double>::quiet_NaN());
+  for (Index k = 0; k < m; ++k) slow.fine.outputs.col(k * slow.steps) = slow.samples.col(k);
+  if (record.inputs.size() == 0) return slow;
+  slow.fine.inputs =
+      filters::in_parts(decimated_inputs(record, inputs, slow.factor, slow.time), slow.steps).columns;
+  return slow;
+}
+
+VectorXd noise_near(const MatrixXd& left, double interval, double frequency_hz, double fitted) {
+  const Index m = left.cols();
+  const double resolution = 1.0 / (interval * static_cast<double>(m));
+  const auto from = std::max<Index>(1, static_cast<Index>(0.5 * frequency_hz / resolution)),
+             to = std::min<Index>(m / 2 - 1, static_cast<Index>(std::ceil(1.5 * frequency_hz / resolution)));
+  const auto lines = static_cast<double>(to - from + 1);
+  VectorXd noise(left.rows());
+  for (Index i = 0; i < left.rows(); ++i) {
+    double power = 0.0;
+    for (Index line = from; line <= to; ++line) {
+      std::complex<double> sum = 0.0;
+      for (Index k = 0; k < m; ++k)
+        sum += left(i, k) * std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>((line * k) % m) /
+                                                static_cast<double>(m));
+      power += std::norm(sum) / static_cast<double>(m);
+    }
+    // Two numbers a line; a fit makes as many of them vanish as it has unknowns.
+    const double dense = power / std::max(0.25 * lines, lines - 0.5 * fitted);
+    const double whole = left.row(i).squaredNorm() / std::max(1.0, static_cast<double>(m) - fitted);
+    noise[i] = std::sqrt(std::max(dense, whole));
+  }
+  return noise;
+}
+
+namespace {
+
 using std::numbers::pi;
 
 bool rubs(const std::string& law) {
@@ -228,6 +295,73 @@ DampingLawStudy study_damping_law(const Experiment& experiment, const Record& wh
                                             study.laws.begin());
   test_by_sections(record, study);
   return study;
+}
+
+double displacement_per_reading(Quantity quantity, double frequency_hz) {
+  const double omega = 2.0 * std::numbers::pi * frequency_hz;
+  return quantity == Quantity::acceleration ? 1.0 / (omega * omega)
+         : quantity == Quantity::velocity   ? 1.0 / omega
+                                            : 1.0;
+}
+
+DecaySections decay_sections(const Record& record, const ModalEstimate& modal) {
+  const Index row = output_channels(record)[0];
+  std::vector<std::complex<double>> others;
+  for (const CompanionMode& mode : modal.companions)
+    others.push_back(std::polar(2.0 * std::numbers::pi * mode.frequency_hz,
+                                std::acos(std::clamp(-mode.damping_ratio, -1.0, 1.0))));
+  // Sections as short as a mode can be isolated in, a sixteenth of the record at least: more of them tell a
+  // law from its neighbours.
+  AmplitudeSettings settings;
+  const double span = record.time[record.size() - 1] - record.time[0];
+  settings.window = std::max(span / 16.0, 6.0 / modal.frequency_hz);
+  settings.largest_deviation = 0.5;
+  std::vector<AmplitudePoint> points;
+  try {
+    points = amplitude_dependence(record.samples.row(row).transpose(), record.interval(), modal.rate(),
+                                  others, settings);
+  } catch (const std::invalid_argument&) {  // shorter than the mode's isolation asks for
+    return {};
+  }
+  DecaySections found;
+  std::vector<double> frequency, damping;  // deviation times amplitude
+  for (std::size_t i = 0; i < points.size(); i += 2) {
+    AmplitudePoint section = points[i];
+    section.amplitude *= displacement_per_reading(record.channels[row].quantity, section.frequency_hz);
+    frequency.push_back(section.frequency_deviation_hz * section.amplitude);
+    damping.push_back(section.damping_ratio_deviation * section.amplitude);
+    found.sections.push_back(section);
+  }
+  for (AmplitudePoint& section : found.sections) {
+    section.frequency_deviation_hz = median(frequency) / section.amplitude;
+    section.damping_ratio_deviation = median(damping) / section.amplitude;
+  }
+  if (points.empty()) return found;
+  const AmplitudePoint& last = points.back();
+  const double rate = 2.0 * std::numbers::pi * last.frequency_hz * last.damping_ratio;
+  found.last_amplitude = last.amplitude * std::exp(-0.5 * rate * settings.window) *
+                         displacement_per_reading(record.channels[row].quantity, last.frequency_hz);
+  return found;
+}
+
+LawMisfit misfit_of(const FittedLaw& law, const std::vector<AmplitudePoint>& sections, Index fitted) {
+  LawMisfit misfit;
+  misfit.sections = static_cast<Index>(sections.size());
+  misfit.freedom = 2 * misfit.sections - fitted;
+  for (const AmplitudePoint& section : sections) {
+    const double ratio = law.damping_ratio(section.amplitude), off = section.damping_ratio - ratio;
+    misfit.chi_square +=
+        std::pow(off / section.damping_ratio_deviation, 2) +
+        std::pow(
+            (section.frequency_hz - law.frequency_hz(section.amplitude)) / section.frequency_deviation_hz, 2);
+    if (std::abs(off) > std::abs(misfit.largest * ratio)) {
+      misfit.largest = off / ratio;
+      misfit.at_amplitude = section.amplitude;
+    }
+  }
+  misfit.tested = misfit.freedom > 0;
+  misfit.lacks = misfit.tested && misfit.chi_square > chi_square_limit(static_cast<double>(misfit.freedom));
+  return misfit;
 }
 
 }  // namespace beamid::experiments

@@ -5,12 +5,38 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/experiment.hpp"
+#include <Eigen/Core>
+
+#include "experiments/config/channel_places.hpp"
 #include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/models/estimates.hpp"
+#include "filters/measurements.hpp"
 
 namespace beamid::experiments {
+
+// A record in which one slow mode is left, and the noise near it.
+
+/// Low-passed and decimated (signal/decimation.hpp) to about eight samples per period.
+struct SlowRecord {
+  Eigen::VectorXd time;        ///< (M) [s]
+  Eigen::MatrixXd samples;     ///< (p x M)
+  double interval = 0.0;       ///< between them [s]
+  int factor = 1;              ///< of the decimation
+  int steps = 1;               ///< of the motion between two samples
+  filters::Measurements fine;  ///< the same at every step, outputs NaN where there is no sample
+
+  /// Columns of the samples among those of all steps (p x M).
+  Eigen::MatrixXd measured(const Eigen::MatrixXd& fine_columns) const;
+};
+
+/// @param inputs of the record, m; @param frequency_hz of the mode
+SlowRecord slow_record(const filters::Measurements& record, Eigen::Index inputs, double frequency_hz);
+
+/// Deviation of white noise as dense as what is left of a record near a frequency, between half and one and a
+/// half times it, or as all of it where that is more (p).
+/// @param left (p x M); @param fitted numbers of unknowns that took their part of it away
+Eigen::VectorXd noise_near(const Eigen::MatrixXd& left, double interval, double frequency_hz, double fitted);
 
 /// "viscous", "coulomb", "quadratic", "both": C x' and these terms beside it.
 const std::vector<std::string>& damping_laws();
@@ -74,7 +100,7 @@ struct DampingLawStudy {
 /// the richest law leaves, and where that is denser near the mode, white noise as dense as that (between half
 /// and one and a half times the frequency): a law is not preferred because it fits a neighbour's beat. The
 /// best of the laws may be wrong all the same: it is held against frequency and damping ratio in sections of
-/// the decay, found without it (law_sections.hpp).
+/// the decay, found without it (damping_law.hpp).
 ///
 ///     AIC = 2 k - 2 ln L [akaike1974],   BIC = k ln M - 2 ln L [schwarz1978]
 ///
@@ -82,5 +108,26 @@ struct DampingLawStudy {
 /// @throws std::invalid_argument on another law, or where the record shows no mode or no law can be fitted.
 DampingLawStudy study_damping_law(const Experiment& experiment, const Record& record, const std::string& law,
                                   const std::filesystem::path& folder = {});
+
+// A damping law against sections of the decay that it was fitted to.
+
+struct DecaySections {
+  std::vector<AmplitudePoint> sections;
+  double last_amplitude = 0;  ///< at the end of the last one, behind which noise hides the damping [m]
+};
+
+/// Frequency and damping ratio of the first channel's mode in sections that share no sample, along the decay
+/// (amplitude_dependence.hpp), amplitudes as displacement [m]. The noise of the mode's envelope is the same
+/// in all of them: deviations are the median of deviation times amplitude, over the amplitude. A section's
+/// own, from a few values, is uncertain, and larger where the damping changes within it. Empty where the
+/// record is too short for any.
+DecaySections decay_sections(const Record& record, const ModalEstimate& modal);
+
+/// What a law leaves of sections: chi^2 = sum ((xi_i - xi(a_i)) / d_i)^2 + ((f_i - f(a_i)) / e_i)^2.
+/// @param fitted numbers of the law that these sections had a part in
+LawMisfit misfit_of(const FittedLaw& law, const std::vector<AmplitudePoint>& sections, Eigen::Index fitted);
+
+/// Displacement that an acceleration, a velocity or a displacement of 1 has at a frequency [m].
+double displacement_per_reading(Quantity quantity, double frequency_hz);
 
 }  // namespace beamid::experiments

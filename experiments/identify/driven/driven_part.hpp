@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/identify/driven/driven_fit.hpp"
-#include "experiments/models/motion/linear_response.hpp"
+#include "experiments/models/motion/supported_response.hpp"
 
 namespace beamid::experiments {
 

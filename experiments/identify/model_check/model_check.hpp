@@ -1,11 +1,12 @@
 // The finite-element prediction against identified modes, and what would explain the difference.
 #pragma once
 
-#include <Eigen/Core>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "experiments/identify/model_check/candidates.hpp"
 #include "experiments/modal/study/modal_study.hpp"
@@ -118,5 +119,11 @@ struct ModelCheck {
 /// @throws std::invalid_argument when no mode has a counterpart, or a candidate is unknown or none of these
 /// structures'.
 ModelCheck check_model(std::vector<CheckedStructure> structures, const ModelCheckSettings& settings);
+
+// What several records of one beam show, as one.
+
+/// The modes of all records, merged (merged_modes.hpp), each with the records that show it; the larger of the
+/// two deviations counts.
+std::vector<ObservedMode> observed_modes(const std::vector<RecordModes>& records);
 
 }  // namespace beamid::experiments

@@ -1,7 +1,5 @@
 #include "experiments/identify/parts/line_likelihood.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -9,17 +7,85 @@
 #include <stdexcept>
 #include <vector>
 
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include "experiments/signal/fast_length.hpp"
+#include "experiments/signal/spectrum.hpp"
 #include "filters/levenberg_marquardt.hpp"
+#include "filters/linear_gaussian.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
+using Complex = std::complex<double>;
+using std::numbers::pi;
+
+constexpr double usual_band = 0.6;  // of half the sampling rate
+constexpr Index fewest_lined_samples = 64, fewest_used_lines = 8;
+
+Complex sum_of_powers(Complex pole, double omega, const RecordLines& record) {
+  const double dt = record.interval;
+  const Complex whole = std::exp(pole * (dt * static_cast<double>(record.samples)));
+  return (1.0 - whole) / (1.0 - std::exp((pole - Complex(0.0, omega)) * dt));
+}
+
+}  // namespace
+
+RecordLines record_lines(const filters::Measurements& record, const MatrixXd& inputs,
+                         const std::optional<double>& highest_hz) {
+  filters::require_even_stamps(record, record.interval());
+  if (!record.outputs.allFinite() || !inputs.allFinite())
+    throw std::invalid_argument("readings are missing; expected every sample of every channel of the part");
+  if (record.size() < fewest_lined_samples)
+    throw std::invalid_argument(
+        fmt::format("{} samples; expected {} at least", record.size(), fewest_lined_samples));
+  RecordLines found;
+  found.samples = fast_length_within(record.size(), 5);
+  found.interval = record.interval();
+  const double half_rate = 0.5 / found.interval, highest = highest_hz.value_or(usual_band * half_rate),
+               length = static_cast<double>(found.samples) * found.interval;
+  const auto lines = static_cast<Index>(highest * length * (1.0 + 1e-9));
+  if (!(highest < half_rate) || lines < fewest_used_lines)
+    throw std::invalid_argument(fmt::format(
+        "highest_hz is {:g}; expected it between {:.3g}, {} lines, and half the sampling rate, {:g} Hz",
+        highest, static_cast<double>(fewest_used_lines) / length, fewest_used_lines, half_rate));
+  const double first = 2.0 * pi / length;
+  found.omega = first * VectorXd::LinSpaced(lines, 1.0, static_cast<double>(lines));
+  found.outputs = spectrum_lines(record.outputs, found.samples, lines);
+  found.inputs = spectrum_lines(inputs, found.samples, lines);
+  return found;
+}
+
+MatrixXcd free_lines(const SupportedResponse::FreeMotion& motion, const RecordLines& record) {
+  const Index p = motion.shapes.rows(), lines = record.omega.size();
+  std::vector<VectorXcd> columns;
+  for (Index j = 0; j < motion.poles.size(); ++j) {
+    const Complex pole = motion.poles[j];
+    const VectorXcd shape = motion.shapes.col(j);
+    VectorXcd real(p * lines), imaginary(p * lines);
+    for (Index k = 0; k < lines; ++k) {
+      const VectorXcd forth = shape * sum_of_powers(pole, record.omega[k], record),
+                      back = shape.conjugate() * sum_of_powers(std::conj(pole), record.omega[k], record);
+      real.segment(k * p, p) = 0.5 * (forth + back);
+      imaginary.segment(k * p, p) = Complex(0.0, -0.5) * (forth - back);
+    }
+    columns.push_back(real.normalized());
+    if (pole.imag() > 0.0) columns.push_back(imaginary.normalized());
+  }
+  MatrixXcd found(p * lines, static_cast<Index>(columns.size()));
+  for (std::size_t j = 0; j < columns.size(); ++j) found.col(static_cast<Index>(j)) = columns[j];
+  return found;
+}
+
+namespace {
 
 constexpr double no_part = std::numeric_limits<double>::infinity();  // J where there is none
 
 // G_k of all lines, and Z.
-struct PartLines {
+struct CandidateLines {
   std::vector<MatrixXcd> transfer;
   MatrixXcd free;
 };
@@ -34,7 +100,7 @@ MatrixXd line_rows(const MatrixXcd& lines) {
 // J about one theta: what is left whitened, without free motion.
 class LinesAt {
  public:
-  LinesAt(const LineProblem& problem, const PartLines& part) : problem_(problem), part_(part) {
+  LinesAt(const LineProblem& problem, const CandidateLines& part) : problem_(problem), part_(part) {
     const RecordLines& record = problem.record;
     const Index p = record.outputs.rows(), lines = record.omega.size();
     VectorXcd white(p * lines);
@@ -92,7 +158,7 @@ class LinesAt {
 
  private:
   const LineProblem& problem_;
-  const PartLines& part_;
+  const CandidateLines& part_;
   std::vector<Eigen::LLT<MatrixXcd>> roots_;
   Eigen::ColPivHouseholderQR<MatrixXd> without_;
   VectorXd white_, coefficients_;
@@ -114,9 +180,9 @@ class LineLikelihood {
   const MatrixXd& prior() const { return prior_; }
   VectorXd off(const VectorXd& theta) const { return theta - problem_.prior.mean; }
 
-  PartLines part(const VectorXd& theta) const {
+  CandidateLines part(const VectorXd& theta) const {
     const SupportedResponse response = problem_.response(theta);
-    PartLines found{{}, free_lines(response.free_motion(problem_.free_modes), problem_.record)};
+    CandidateLines found{{}, free_lines(response.free_motion(problem_.free_modes), problem_.record)};
     for (const double omega : problem_.record.omega) found.transfer.push_back(response.transfer(omega));
     return found;
   }
@@ -126,7 +192,7 @@ class LineLikelihood {
   // Infinite where there is no such part.
   double cost(const VectorXd& theta) const {
     try {
-      const PartLines there = part(theta);
+      const CandidateLines there = part(theta);
       const double found = cost(LinesAt(problem_, there), theta);
       return std::isfinite(found) ? found : no_part;
     } catch (const std::runtime_error&) {
@@ -141,7 +207,7 @@ class LineLikelihood {
     std::vector<std::vector<MatrixXcd>> changes;
     for (Index j = 0; j < q; ++j) {
       const double step = share * std::sqrt(problem_.prior.covariance(j, j));
-      const PartLines up = part(theta + step * VectorXd::Unit(q, j)),
+      const CandidateLines up = part(theta + step * VectorXd::Unit(q, j)),
                       down = part(theta - step * VectorXd::Unit(q, j));
       turned.col(j) = (up.free - down.free) * at.coefficients() / (2.0 * step);
       changes.emplace_back();
@@ -212,7 +278,7 @@ LineFit fit_lines(const LineProblem& problem, const std::vector<VectorXd>& other
   double least = likelihood.cost(theta);
   for (const VectorXd& other : others)
     if (const double cost = likelihood.cost(other); cost < least) least = cost, theta = other;
-  PartLines part = likelihood.part(theta);
+  CandidateLines part = likelihood.part(theta);
   auto at = std::make_unique<LinesAt>(problem, part);
   LineSlope slope = likelihood.slope(*at, theta);
   bool last = false;

@@ -1,7 +1,7 @@
 // What of a record belongs to a part of the structure.
 #pragma once
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/identify/compare/comparison.hpp"
 
 namespace beamid::experiments {

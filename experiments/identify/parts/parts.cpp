@@ -1,22 +1,138 @@
 #include "experiments/identify/parts/parts.hpp"
 
-#include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
+
 #include "experiments/config/channel_places.hpp"
-#include "experiments/identify/parts/cut_chain.hpp"
+#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/compare/widened_interval.hpp"
 #include "experiments/identify/parts/span.hpp"
-#include "experiments/identify/parts/widened_part.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
 namespace {
+
+// Of the storeys that are kept: foot of the first, top of the last [m].
+struct Heights {
+  double foot = 0.0, top = 0.0, slack = 0.0;
+
+  bool hold(double from, double to) const { return from > foot - slack && to < top + slack; }
+  bool miss(double from, double to) const { return to < foot + slack || from > top - slack; }
+};
+
+Heights kept_heights(const fem::Beam& chain, const PartOfStructure& part) {
+  Heights kept{0.0, part.to.value_or(chain.length()), 1e-9 * chain.length()};
+  double height = 0.0;
+  for (const fem::Segment& storey : chain.segments) {
+    if (part.from && height + storey.length < *part.from + kept.slack) kept.foot = height;
+    height += storey.length;
+  }
+  return kept;
+}
+
+bool can_be_cut(const Experiment& experiment, const Heights& kept) {
+  const fem::Beam& chain = experiment.structure.beam();
+  if (!chain.added_masses.empty() || !chain.springs.empty() || !chain.dashpots.empty() ||
+      !chain.absorbers.empty() || !chain.damages.empty() || chain.axial_load != 0.0)
+    return false;
+  return std::all_of(experiment.parameters.begin(), experiment.parameters.end(),
+                     [&](const ParameterChoice& one) {
+                       if (one.quantity == "stiffness_damping" || one.quantity == "mass_damping") return true;
+                       if (one.quantity == "damping_ratio")
+                         return true;  // which experiment_of_part() refuses
+                       return one.region && (kept.hold(one.region->first, one.region->second) ||
+                                             kept.miss(one.region->first, one.region->second));
+                     });
+}
+
+fem::Beam cut(const fem::Beam& chain, const Heights& kept) {
+  fem::Beam part = chain;
+  part.segments.clear(), part.bodies.clear(), part.supports.clear();
+  double height = 0.0;
+  for (const fem::Segment& storey : chain.segments) {
+    if (kept.hold(height, height + storey.length)) part.segments.push_back(storey);
+    height += storey.length;
+  }
+  part.supports.push_back({0.0});
+  for (fem::Support support : chain.supports) {
+    support.position -= kept.foot;
+    if (support.position > kept.slack && support.position < kept.top - kept.foot + kept.slack)
+      part.supports.push_back(support);
+  }
+  for (fem::Body body : chain.bodies) {
+    body.position -= kept.foot;
+    if (body.position > kept.slack && body.position < kept.top - kept.foot + kept.slack)
+      part.bodies.push_back(body);
+  }
+  return part;
+}
+
+std::optional<double> moved(const std::optional<double>& place, double foot) {
+  return place ? std::optional(*place - foot) : place;
+}
+
+}  // namespace
+
+CutChain cut_chain(const Experiment& experiment, ComparedRecord record, const PartOfStructure& part) {
+  const bool chain = experiment.structure.is_chain();
+  const Heights kept = chain ? kept_heights(experiment.structure.beam(), part) : Heights{};
+  if (!chain || !can_be_cut(experiment, kept) || (record.truth && !record.truth->structure.is_chain()))
+    return {experiment, std::move(record), part};
+  CutChain result;
+  result.part = part;
+  result.part.from = moved(part.from, kept.foot);
+  result.part.to = moved(part.to, kept.foot);
+  result.record = std::move(record);
+  for (Channel& channel : result.record.record.channels)
+    channel.position = moved(channel.position, kept.foot);
+  Experiment& own = result.experiment = experiment;
+  own.structure = cut(experiment.structure.beam(), kept);
+  own.parameters.clear();
+  for (ParameterChoice choice : experiment.parameters) {
+    if (choice.region && !kept.hold(choice.region->first, choice.region->second)) continue;
+    if (choice.region) choice.region->first -= kept.foot, choice.region->second -= kept.foot;
+    own.parameters.push_back(std::move(choice));
+  }
+  if (auto& truth = result.record.truth) truth->structure = cut(truth->structure.beam(), kept);
+  return result;
+}
+
+namespace {
+
+// A part whose noise is larger than stated.
+
+/// Widens the deviations of a run by sqrt(mean of innovation^T S^-1 innovation / p) where that is beyond what
+/// chance allows above 1, unless they are widened as much already, and says so first among its warnings. With
+/// all noise s times what was stated, that of the estimates is s times theirs: the weights stay the same.
+void widen_by_innovations(ComparedRun& run) {
+  if (!run.has_estimate() || !run.diagnostics || !run.diagnostics->consistency) return;
+  const filters::InnovationConsistency& found = *run.diagnostics->consistency;
+  if (!(found.mean_normalised_square > std::max(1.0, found.upper_95))) return;
+  const double factor = std::sqrt(found.mean_normalised_square);
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    const auto place = static_cast<Eigen::Index>(j);
+    const double deviation = factor * std::sqrt(run.unknown_state.covariance(place, place)) *
+                             std::abs(run.unknowns[j].slope(run.unknown_state.mean[place]));
+    if (!(deviation > run.parameters[j].estimate.deviation)) continue;
+    run.parameters[j].estimate.deviation = deviation;
+    set_interval(run, j, factor);
+  }
+  run.interval_factor = std::max(run.interval_factor, factor);
+  constexpr double worth_saying = 1.1;
+  if (factor > worth_saying)
+    run.warnings.insert(
+        run.warnings.begin(),
+        fmt::format(
+            "The innovations are {:.3g} times as large as the stated noise makes them (mean normalised "
+            "square {:.3g}): deviations are widened by as much.",
+            factor, found.mean_normalised_square));
+}
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 

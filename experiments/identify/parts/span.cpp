@@ -178,7 +178,7 @@ void take_fit(const LineProblem& problem, const LineFit& fit, const std::optiona
     if (const double bound = bounds[static_cast<Index>(j)]; std::isfinite(bound)) one.bound = bound;
     run.parameters.push_back(one);
   }
-  // As whole innovations are judged (widened_part.hpp).
+  // As whole innovations are judged (parts.cpp).
   filters::InnovationConsistency consistency;
   consistency.mean_normalised_square = 2.0 * fit.squares.sum() / fit.freedom;
   consistency.upper_95 = 1.0 + quantile_95 * std::sqrt(2.0 / fit.freedom);

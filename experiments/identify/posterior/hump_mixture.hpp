@@ -1,14 +1,34 @@
 // A density to draw from that has all humps of a posterior: Student's t distributions.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
-#include "experiments/identify/posterior/humps.hpp"
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "experiments/identify/posterior/likelihood.hpp"
 #include "filters/random.hpp"
 
 namespace beamid::experiments {
+
+// The separate maxima of a posterior density.
+
+/// A maximum of ln L(u) - u^2 / 2 and the normal density that osculates it (Laplace).
+struct Hump {
+  Eigen::VectorXd top;         ///< u (q)
+  double log_density = 0.0;    ///< there, of L(u) N(u; 0, 1)
+  Eigen::MatrixXd covariance;  ///< (J^T J + 1)^-1 (q x q)
+  double log_mass = 0.0;       ///< Laplace's: log_density + ln sqrt(det 2 pi covariance)
+};
+
+/// ln L(u) + ln N(u; 0, 1).
+double posterior_log(const LikelihoodValue& value, const Eigen::VectorXd& u);
+
+/// Where damped Newton steps from the starts (q x n) end, on all cores: those that differ, are worth at least
+/// a millionth of the best by Laplace, and have a valley between them on the straight line, of half a nat at
+/// least. The heaviest first.
+std::vector<Hump> separate_humps(const Likelihood& likelihood, const Eigen::MatrixXd& starts);
 
 class HumpMixture {
  public:
@@ -41,5 +61,22 @@ class HumpMixture {
   double mixed_log(const Eigen::VectorXd& u, bool even) const;
   double part_log(const Part& part, const Eigen::VectorXd& u) const;
 };
+
+// Evidence and the humps' weights by importance sampling.
+
+struct ImportanceSample {
+  double log_evidence = 0.0, standard_error = 0.0;  ///< [nat]
+  std::vector<double> share;                        ///< of each hump, by their masses
+  double effective_share = 0.0;  ///< effective draws over those made: 1 where the mixture is the posterior
+  std::size_t evaluations = 0;
+  /// Too few draws count for the numbers above to be relied upon.
+  bool poor() const { return effective_share < 0.05; }
+};
+
+/// As many draws from each part of the mixture, weighted by L N / mixture (all parts of it), two rounds of
+/// which move the parts to the humps' means and covariances [cappe2008]. The draws of a last round, which
+/// moves nothing, count.
+ImportanceSample importance_sample(const Likelihood& likelihood, HumpMixture& mixture, std::size_t draws,
+                                   std::uint64_t seed);
 
 }  // namespace beamid::experiments

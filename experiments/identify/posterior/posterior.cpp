@@ -1,17 +1,211 @@
 #include "experiments/identify/posterior/posterior.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
 #include <stdexcept>
+#include <vector>
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <boost/math/special_functions/erf.hpp>
+
+#include "experiments/identify/posterior/no_u_turn.hpp"
+#include "experiments/signal/in_double.hpp"
+#include "experiments/signal/median.hpp"
 #include "filters/random.hpp"
 
 namespace beamid::experiments {
+
+double below_normal(double u) {
+  return 0.5 * std::erfc(-u / std::numbers::sqrt2);
+}
+
+double normal_quantile(double share) {
+  if (!(share > 0.0)) return -std::numeric_limits<double>::infinity();
+  if (!(share < 1.0)) return std::numeric_limits<double>::infinity();
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * share, InDouble{});
+}
+
+double normal_density(double u) {
+  return std::exp(-0.5 * u * u) * 0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2;
+}
+
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double wanted_acceptance = 0.9;
+constexpr double shortest_share = 0.3;  // of the one found: tails may be narrower than where it was found
+
+/// Dual averaging of ln(step) [hoffman2014, section 3.2].
+struct StepSearch {
+  double centre, mean = 0.0, log_step, averaged = 0.0;
+  int count = 0;
+  explicit StepSearch(double first) : centre(std::log(10.0 * first)), log_step(std::log(first)) {}
+  void learn(double acceptance) {
+    const double t = ++count, share = 1.0 / (t + 10.0), weight = std::pow(t, -0.75);
+    mean = (1.0 - share) * mean + share * (wanted_acceptance - acceptance);
+    log_step = centre - std::sqrt(t) / 0.05 * mean;
+    averaged = weight * log_step + (1.0 - weight) * averaged;
+  }
+};
+
+// Covariance within the humps, by their shares.
+MatrixXd common_root(const HumpMixture& mixture) {
+  const Index q = mixture.part(0).centre.size();
+  MatrixXd covariance = MatrixXd::Zero(q, q);
+  double sum = 0.0;
+  for (std::size_t h = 0; h < mixture.size(); ++h) {
+    covariance += mixture.part(h).share * mixture.part(h).root.reconstructedMatrix();
+    sum += mixture.part(h).share;
+  }
+  return (covariance / sum).llt().matrixL();
+}
+
+PosteriorChain one_chain(const Likelihood& likelihood, const HumpMixture& mixture, const VectorXd& start,
+                         const ChainSettings& settings, const MatrixXd& root, filters::RandomStream random) {
+  const ChainDensity density = [&](const VectorXd& y) -> ChainPlace {
+    const VectorXd u = root * y;
+    const LikelihoodValue value = likelihood.at(u, true);
+    if (!value.possible()) return {y, value.log, VectorXd::Zero(y.size())};
+    return {y, posterior_log(value, u), root.transpose() * (value.gradient - u)};
+  };
+  PosteriorChain chain{MatrixXd(start.size(), static_cast<Index>(settings.draws)),
+                       VectorXd(static_cast<Index>(settings.draws))};
+  ChainPlace here = density(root.triangularView<Eigen::Lower>().solve(start));
+  StepSearch search(0.5);
+  double step = 0.5;
+  for (std::size_t i = 0; i < settings.warm_up + settings.draws; ++i) {
+    const bool warm = i >= settings.warm_up;
+    const VectorXd u = root * here.y, other = mixture.draw(random);
+    const double threshold = std::log(random.uniform());
+    const double there = posterior_log(likelihood.at(other, false), other);
+    if (threshold < there - here.log + mixture.log_density(u) - mixture.log_density(other)) {
+      here = density(root.triangularView<Eigen::Lower>().solve(other));
+      chain.jumps += warm ? 1 : 0;
+    }
+    const double taken = warm ? step * (shortest_share + (1.0 - shortest_share) * random.uniform()) : step;
+    Trajectory path = no_u_turn(density, here, taken, random);
+    here = std::move(path.end);
+    chain.leaps += static_cast<std::size_t>(path.leaps);
+    if (!warm) {
+      search.learn(path.acceptance);
+      step = std::clamp(std::exp(search.log_step), 1e-4, 2.0);
+      if (i + 1 == settings.warm_up) step = std::clamp(std::exp(search.averaged), 1e-4, 2.0);
+      continue;
+    }
+    chain.divergences += path.diverged ? 1 : 0;
+    const auto k = static_cast<Index>(i - settings.warm_up);
+    chain.draws.col(k) = root * here.y;
+    chain.log_posterior[k] = here.log;
+  }
+  chain.step = step;
+  return chain;
+}
+
+}  // namespace
+
+std::vector<PosteriorChain> posterior_chains(const Likelihood& likelihood, const HumpMixture& mixture,
+                                             const MatrixXd& starts, const ChainSettings& settings,
+                                             std::uint64_t seed) {
+  const MatrixXd root = common_root(mixture);
+  std::vector<PosteriorChain> chains(settings.chains);
+  tbb::parallel_for(
+      std::size_t{0}, chains.size(),
+      [&](std::size_t c) {
+        const auto start = static_cast<Index>(c) % starts.cols();
+        chains[c] = one_chain(likelihood, mixture, starts.col(start), settings, root,
+                              filters::RandomStream(seed, (std::uint64_t{1} << 48) + c));
+      },
+      tbb::simple_partitioner());
+  return chains;
+}
+
+namespace {
+
+MatrixXd halves_of(const MatrixXd& draws) {
+  const Index half = draws.rows() / 2;
+  MatrixXd halves(half, 2 * draws.cols());
+  halves << draws.topRows(half), draws.bottomRows(half);
+  return halves;
+}
+
+// Normal quantiles of the ranks, ties at their mean rank.
+MatrixXd ranked(const MatrixXd& draws) {
+  std::vector<Index> order(static_cast<std::size_t>(draws.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return draws.data()[a] < draws.data()[b]; });
+  MatrixXd scores(draws.rows(), draws.cols());
+  const auto n = static_cast<double>(draws.size());
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t end = i + 1;
+    while (end < order.size() && draws.data()[order[end]] == draws.data()[order[i]]) ++end;
+    const double rank = 0.5 * static_cast<double>(i + 1 + end);
+    for (; i < end; ++i) scores.data()[order[i]] = normal_quantile((rank - 0.375) / (n + 0.25));
+  }
+  return scores;
+}
+
+// Within the chains, and of all of them.
+struct ChainVariances {
+  double within, whole;
+  explicit ChainVariances(const MatrixXd& draws) {
+    const auto n = static_cast<double>(draws.rows());
+    const Eigen::RowVectorXd means = draws.colwise().mean();
+    within = (draws.rowwise() - means).squaredNorm() / static_cast<double>(draws.cols()) / (n - 1.0);
+    const double between =
+        (means.array() - means.mean()).square().sum() / std::max(1.0, static_cast<double>(draws.cols() - 1));
+    whole = (n - 1.0) / n * within + between;
+  }
+  double r_hat() const { return within > 0.0 ? std::sqrt(whole / within) : 1.0; }
+};
+
+// Geyer's initial monotone sequence of the autocorrelations.
+double effective_draws(const MatrixXd& draws) {
+  const ChainVariances variances(draws);
+  const Index n = draws.rows();
+  const auto total = static_cast<double>(draws.size());
+  if (!(variances.whole > 0.0)) return total;
+  const MatrixXd gap = draws.rowwise() - draws.colwise().mean();
+  const auto correlation = [&](Index lag) {
+    double covariance = 0.0;
+    for (Index c = 0; c < gap.cols(); ++c)
+      covariance += gap.col(c).head(n - lag).dot(gap.col(c).tail(n - lag)) / static_cast<double>(n);
+    covariance /= static_cast<double>(gap.cols());
+    return 1.0 - (variances.within - covariance) / variances.whole;
+  };
+  double sum = -1.0, last = 1e9;
+  for (Index lag = 0; lag + 1 < n; lag += 2) {
+    const double pair = std::min(last, correlation(lag) + correlation(lag + 1));
+    if (pair <= 0.0) break;
+    sum += 2.0 * pair;
+    last = pair;
+  }
+  return std::min(total / std::max(sum, 1.0 / std::log10(total)), total * std::log10(total));
+}
+
+}  // namespace
+
+ChainConvergence chain_convergence(const MatrixXd& draws) {
+  const MatrixXd halves = halves_of(draws);
+  const MatrixXd places = ranked(halves);
+  std::vector<double> all(halves.data(), halves.data() + halves.size());
+  const MatrixXd spreads = ranked((halves.array() - median(all)).abs());
+  double effective = effective_draws(places);
+  for (const double share : {0.05, 0.95}) {
+    const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(all.size() - 1));
+    std::nth_element(all.begin(), all.begin() + place, all.end());
+    const double quantile = all[static_cast<std::size_t>(place)];
+    effective = std::min(effective, effective_draws((halves.array() <= quantile).cast<double>().matrix()));
+  }
+  return {std::max(ChainVariances(places).r_hat(), ChainVariances(spreads).r_hat()), effective};
+}
+
+namespace {
 
 constexpr Index most_climbers = 200;
 // [-], [nat]. A tempering's evidence has the true one as its mean, so that it is most_above larger with a

@@ -5,12 +5,53 @@
 #include <string>
 #include <vector>
 
-#include "experiments/identify/posterior/chain_convergence.hpp"
-#include "experiments/identify/posterior/chains.hpp"
-#include "experiments/identify/posterior/importance.hpp"
+#include <Eigen/Core>
+
+#include "experiments/identify/posterior/hump_mixture.hpp"
 #include "experiments/identify/posterior/tempering.hpp"
 
 namespace beamid::experiments {
+
+// The standard normal distribution: both tails to full relative accuracy.
+
+double below_normal(double u);         ///< Phi(u)
+double normal_quantile(double share);  ///< u of Phi(u); infinite at 0 and 1
+double normal_density(double u);       ///< Phi'(u)
+
+// Markov chains of a posterior that cross from hump to hump.
+
+struct ChainSettings {
+  std::size_t chains = 4, draws = 1000, warm_up = 200;
+};
+
+struct PosteriorChain {
+  Eigen::MatrixXd draws;  ///< (q x draws) of u
+  Eigen::VectorXd log_posterior;
+  std::size_t jumps = 0;  ///< proposals of the mixture that were accepted
+  std::size_t divergences = 0, leaps = 0;
+  double step = 0.0;
+};
+
+/// Each draw is a trajectory of the No-U-Turn sampler, in coordinates whitened by the humps' common
+/// covariance, after a proposal of the mixture, accepted by Metropolis and Hastings [tierney1994], which
+/// crosses valleys. Both leave the posterior as it is. Steps are found in the warm-up (dual averaging
+/// [hoffman2014]). A chain has its own random numbers.
+/// @param starts (q x n) of draws of the posterior, one for each chain
+std::vector<PosteriorChain> posterior_chains(const Likelihood& likelihood, const HumpMixture& mixture,
+                                             const Eigen::MatrixXd& starts, const ChainSettings& settings,
+                                             std::uint64_t seed);
+
+// Whether chains agree, and how many independent draws they are worth.
+
+struct ChainConvergence {
+  double r_hat = 1.0;  ///< the larger of that of the place and that of the spread
+  double effective_draws = 0.0;
+};
+
+/// R-hat of one quantity, of halves of chains, by ranks; the smallest effective number of draws of its place,
+/// its 5 % and its 95 % quantile [vehtari2021].
+/// @param draws (draws x chains)
+ChainConvergence chain_convergence(const Eigen::MatrixXd& draws);
 
 struct PosteriorSettings {
   std::uint64_t seed = 1;

@@ -1,13 +1,17 @@
 #include "experiments/identify/posterior/posterior_study.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
+#include <stdexcept>
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "experiments/identify/posterior/posterior.hpp"
 #include "experiments/identify/update/mode_pairing.hpp"
 #include "experiments/models/estimates.hpp"
 #include "filters/random.hpp"
@@ -15,7 +19,235 @@
 namespace beamid::experiments {
 namespace {
 
+constexpr double far_tail = 8.0;  // standard deviations beyond which a cut changes no digit
+
+}  // namespace
+
+PriorLaw::PriorLaw(const Unknown& unknown, bool positive, bool stated)
+    : lower_(unknown.lower), upper_(unknown.upper) {
+  const bool bounded = unknown.form == Form::bounded;
+  if (stated && unknown.form == Form::logarithmic) {
+    kind_ = Kind::lognormal;
+    centre_ = std::log(unknown.guess);
+    spread_ = unknown.deviation / unknown.guess;
+  } else if (stated) {
+    centre_ = unknown.guess;
+    spread_ = unknown.deviation;
+    if (!bounded && positive) lower_ = 0.0;
+    cut_ = (lower_ - centre_) / spread_ > -far_tail || (upper_ - centre_) / spread_ < far_tail;
+  } else if (bounded) {
+    kind_ = Kind::uniform;
+  } else {
+    assumed_ = true;
+    kind_ = positive && unknown.guess > 0.0 ? Kind::log_uniform : Kind::uniform;
+    const double scale = std::max(std::abs(unknown.guess), unknown.deviation);
+    lower_ = kind_ == Kind::log_uniform ? std::log(unknown.guess / assumed_factor)
+             : positive                 ? 0.0
+                                        : unknown.guess - assumed_factor * scale;
+    upper_ = kind_ == Kind::log_uniform ? std::log(unknown.guess * assumed_factor)
+                                        : unknown.guess + assumed_factor * scale;
+  }
+}
+
+// Phi(z) = Phi(a) + Phi(u) (Phi(b) - Phi(a)), of the upper tails where u is above zero.
+double PriorLaw::standard(double u) const {
+  if (!cut_) return u;
+  const double a = (lower_ - centre_) / spread_, b = (upper_ - centre_) / spread_;
+  if (u > 0.0)
+    return -normal_quantile(below_normal(-b) + below_normal(-u) * (below_normal(-a) - below_normal(-b)));
+  return normal_quantile(below_normal(a) + below_normal(u) * (below_normal(b) - below_normal(a)));
+}
+
+double PriorLaw::value(double u) const {
+  if (kind_ == Kind::normal) return std::clamp(centre_ + spread_ * standard(u), lower_, upper_);
+  if (kind_ == Kind::lognormal) return std::exp(centre_ + spread_ * u);
+  const double place =
+      u > 0.0 ? upper_ - (upper_ - lower_) * below_normal(-u) : lower_ + (upper_ - lower_) * below_normal(u);
+  return kind_ == Kind::log_uniform ? std::exp(place) : place;
+}
+
+double PriorLaw::slope(double u) const {
+  if (kind_ == Kind::normal && !cut_) return spread_;
+  if (kind_ == Kind::normal) {
+    const double a = (lower_ - centre_) / spread_, b = (upper_ - centre_) / spread_;
+    return spread_ * normal_density(u) * (below_normal(b) - below_normal(a)) / normal_density(standard(u));
+  }
+  if (kind_ == Kind::lognormal) return spread_ * value(u);
+  const double slope = (upper_ - lower_) * normal_density(u);
+  return kind_ == Kind::log_uniform ? slope * value(u) : slope;
+}
+
+std::optional<double> PriorLaw::place(double p) const {
+  double u = std::numeric_limits<double>::quiet_NaN();
+  if (kind_ == Kind::lognormal) {
+    u = (std::log(p) - centre_) / spread_;
+  } else if (kind_ == Kind::normal) {
+    const double z = (p - centre_) / spread_;
+    const double a = (lower_ - centre_) / spread_, b = (upper_ - centre_) / spread_;
+    if (!(p > lower_ && p < upper_)) return {};
+    const double whole = below_normal(b) - below_normal(a);
+    u = !cut_     ? z
+        : z > 0.0 ? -normal_quantile((below_normal(-z) - below_normal(-b)) / whole)
+                  : normal_quantile((below_normal(z) - below_normal(a)) / whole);
+  } else {
+    const double share = ((kind_ == Kind::log_uniform ? std::log(p) : p) - lower_) / (upper_ - lower_);
+    if (!(share > 0.0 && share < 1.0)) return {};
+    u = share > 0.5 ? -normal_quantile(1.0 - share) : normal_quantile(share);
+  }
+  if (!(std::abs(u) < far_tail)) return {};
+  return u;
+}
+
+std::string PriorLaw::text() const {
+  std::string text;
+  if (kind_ == Kind::uniform) text = fmt::format("uniform from {:.5g} to {:.5g}", lower_, upper_);
+  if (kind_ == Kind::log_uniform)
+    text = fmt::format("log-uniform from {:.5g} to {:.5g}", std::exp(lower_), std::exp(upper_));
+  if (kind_ == Kind::lognormal)
+    text = fmt::format("lognormal, median {:.5g}, {:.3g} %", std::exp(centre_), 100.0 * spread_);
+  if (kind_ == Kind::normal) text = fmt::format("normal, {:.5g} +- {:.3g}", centre_, spread_);
+  if (kind_ == Kind::normal && std::isfinite(upper_))
+    text += fmt::format(", within {:.5g} and {:.5g}", lower_, upper_);
+  return assumed_ ? text + " (assumed)" : text;
+}
+
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+VectorXd ParameterLikelihood::physical(const VectorXd& u) const {
+  VectorXd values(size());
+  for (Index j = 0; j < size(); ++j) values[j] = priors_[static_cast<std::size_t>(j)].value(u[j]);
+  return values;
+}
+
+VectorXd ParameterLikelihood::slope(const VectorXd& u) const {
+  VectorXd slopes(size());
+  for (Index j = 0; j < size(); ++j) slopes[j] = priors_[static_cast<std::size_t>(j)].slope(u[j]);
+  return slopes;
+}
+
+std::optional<VectorXd> ParameterLikelihood::place(const VectorXd& values) const {
+  VectorXd u(size());
+  for (Index j = 0; j < size(); ++j) {
+    const std::optional<double> one = priors_[static_cast<std::size_t>(j)].place(values[j]);
+    if (!one) return {};
+    u[j] = *one;
+  }
+  return u;
+}
+
+VectorXd ParameterLikelihood::nearest(const VectorXd& values) const {
+  VectorXd u(size());
+  for (Index j = 0; j < size(); ++j) {
+    const PriorLaw& prior = priors_[static_cast<std::size_t>(j)];
+    u[j] = std::clamp(prior.place(values[j]).value_or(values[j] > prior.value(0.0) ? 2.0 : -2.0), -4.0, 4.0);
+  }
+  return u;
+}
+
+namespace {
+
+bool has_stated_prior(const ParameterChoice& choice) {
+  return choice.deviation || choice.relative_deviation;
+}
+
+// Every theta with the shapes of its own modes: with those of the guess a set of parameters far from there is
+// another structure, less likely than it is.
+filters::InnovationProblem exact_problem(const SensingModel& model) {
+  filters::InnovationProblem problem = model.problem(model.record());
+  if (model.turns_shapes())
+    problem.model = [&model](const VectorXd& theta) { return model.with_shapes_at(theta).at(theta); };
+  return problem;
+}
+
+}  // namespace
+
+RecordLikelihood::RecordLikelihood(const SensingModel& model, const Experiment& experiment)
+    : model_(model), problem_(exact_problem(model)) {
+  filters::require_even_stamps(model.record(),
+                               model.interval());  // else no parameters would have a likelihood
+  for (std::size_t j = 0; j < model.constants().size(); ++j) {
+    const SensingConstant& one = model.constants()[j];
+    Unknown unknown;
+    bool stated = true;
+    if (one.kind == SensingConstant::Kind::parameter) {
+      unknown = model.unknown(one.index);
+      stated = has_stated_prior(experiment.parameters.at(one.index));
+    } else {
+      unknown = {one.name, one.unit, model.value(j, 0.0), SensingModel::known_within * model.value(j, 0.0),
+                 Form::logarithmic};
+    }
+    unknowns_.push_back(unknown);
+    priors_.emplace_back(unknown, unknown.quantity != "axial_load", stated);
+  }
+  const MatrixXd read = model.record().outputs.topRows(model.measured());
+  const auto count = static_cast<double>(read.array().isFinite().count());
+  constant_ = -0.5 * count * std::log(2.0 * std::numbers::pi);
+}
+
+LikelihoodValue RecordLikelihood::at(const VectorXd& u, bool slopes) const {
+  LikelihoodValue result;
+  try {
+    const VectorXd p = physical(u);
+    VectorXd theta(p.size()), steepness(p.size());  // d theta / du
+    for (Index j = 0; j < p.size(); ++j) {
+      theta[j] = model_.place(static_cast<std::size_t>(j), p[j]);
+      steepness[j] = priors_[static_cast<std::size_t>(j)].slope(u[j]) /
+                     model_.slope(static_cast<std::size_t>(j), theta[j]);
+    }
+    if (!slopes) {
+      result.log = constant_ + filters::innovation_log_likelihood(problem_, theta);
+    } else {
+      const filters::InnovationSlope found = filters::innovation_slope(problem_, theta);
+      result.log = constant_ + found.log_likelihood;
+      result.gradient = steepness.cwiseProduct(found.gradient);
+      result.information = steepness.asDiagonal() * found.information * steepness.asDiagonal();
+      if (!result.gradient.allFinite() || !result.information.allFinite()) return {};
+    }
+    if (std::isnan(result.log)) return {};
+  } catch (const std::runtime_error&) {  // no such structure, or no finite likelihood
+    return {};
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+  return result;
+}
+
+ModalLikelihood::ModalLikelihood(const ModalResidual& residual) : residual_(residual) {
+  const AskedParameters& asked = residual.model().asked();
+  for (std::size_t j = 0; j < asked.unknowns.size(); ++j)
+    priors_.emplace_back(asked.unknowns[j], asked.unknowns[j].quantity != "axial_load", asked.has_prior[j]);
+  const double half_log = 0.5 * std::log(2.0 * std::numbers::pi);
+  const std::vector<MeasuredMode>& modes = residual.data().modes;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    constant_ -= half_log + std::log(residual.frequency_deviation(i));
+    if (modes[i].shape.size() > 1)
+      constant_ -= static_cast<double>(modes[i].shape.size() - 1) *
+                   (half_log + std::log(residual.shape_deviation(i) / modes[i].shape.norm()));
+  }
+}
+
+LikelihoodValue ModalLikelihood::at(const VectorXd& u, bool slopes) const {
+  LikelihoodValue result;
+  try {
+    const SearchSpace& space = residual_.space();
+    const VectorXd x = space.place(physical(u));
+    const ModalResidual::Value value = residual_.at(x, slopes);
+    const Index rows = residual_.measured();
+    result.log = constant_ - 0.5 * value.residual.head(rows).squaredNorm();
+    if (std::isnan(result.log)) return {};
+    if (!slopes) return result;
+    const MatrixXd jacobian =
+        value.jacobian.topRows(rows) * slope(u).cwiseQuotient(space.slope(x)).asDiagonal();
+    result.gradient = -jacobian.transpose() * value.residual.head(rows);
+    result.information = jacobian.transpose() * jacobian;
+    if (!result.gradient.allFinite() || !result.information.allFinite()) return {};
+  } catch (const std::runtime_error&) {  // no such modes: a structure that has buckled
+    return {};
+  }
+  return result;
+}
+
+namespace {
 
 constexpr Index most_predictions = 1000;
 constexpr double far_in_the_prior = 3.29;  // standard deviations that 0.1 % lie beyond

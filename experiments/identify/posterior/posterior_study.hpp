@@ -6,13 +6,104 @@
 #include <string>
 #include <vector>
 
-#include "experiments/identify/posterior/modal_likelihood.hpp"
+#include "experiments/identify/posterior/likelihood.hpp"
 #include "experiments/identify/posterior/posterior.hpp"
-#include "experiments/identify/posterior/record_likelihood.hpp"
 #include "experiments/identify/sensing/sensing.hpp"
+#include "experiments/identify/sensing/sensing_model.hpp"
+#include "experiments/identify/update/modal_residual.hpp"
 #include "experiments/identify/update/update_study.hpp"
+#include "experiments/models/unknown.hpp"
 
 namespace beamid::experiments {
+
+// A likelihood whose parameters have names, units and priors.
+
+// The prior distribution of one parameter, as a function of a standard normal number.
+
+/// p = F^-1(Phi(u)): a standard normal u gives a parameter distributed by F. The sampler moves in u, where
+/// every prior is N(0, 1) and no bound is reached.
+class PriorLaw {
+ public:
+  enum class Kind { normal, lognormal, uniform, log_uniform };
+
+  /// What [[parameters]] states: `form = "logarithmic"` with a deviation is lognormal; another deviation
+  /// normal, cut off at stated bounds and, of a quantity that is positive by nature, at zero; bounds alone
+  /// are uniform. Of nothing stated log-uniform within assumed_factor of the initial estimate (uniform, where
+  /// that is no positive number, within assumed_factor times its scale) is *assumed*.
+  /// @param positive the quantity has no negative values; @param stated a deviation is
+  PriorLaw(const Unknown& unknown, bool positive, bool stated);
+
+  static constexpr double assumed_factor = 10.0;
+
+  Kind kind() const { return kind_; }
+  bool assumed() const { return assumed_; }
+  std::string text() const;  ///< "uniform from 20000 to 150000"
+
+  double value(double u) const;  ///< p
+  double slope(double u) const;  ///< dp/du
+  /// u of p; absent outside the prior's support, or so far in its tail that it has no probability.
+  std::optional<double> place(double p) const;
+
+ private:
+  Kind kind_ = Kind::normal;
+  bool assumed_ = false, cut_ = false;
+  double centre_ = 0.0, spread_ = 1.0;  // of p or ln p: normal, lognormal
+  double lower_, upper_;                // of p, or of ln p where log_uniform
+
+  double standard(double u) const;  // z of a normal that is cut off
+};
+
+class ParameterLikelihood : public Likelihood {
+ public:
+  Eigen::Index size() const override { return static_cast<Eigen::Index>(priors_.size()); }
+  const std::vector<PriorLaw>& priors() const { return priors_; }
+  Eigen::VectorXd physical(const Eigen::VectorXd& u) const;  ///< p (q)
+  Eigen::VectorXd slope(const Eigen::VectorXd& u) const;     ///< dp/du (q)
+  /// Absent outside the prior.
+  std::optional<Eigen::VectorXd> place(const Eigen::VectorXd& values) const;
+  /// The same; what lies outside, two standard deviations from the prior's median.
+  Eigen::VectorXd nearest(const Eigen::VectorXd& values) const;
+
+ protected:
+  std::vector<PriorLaw> priors_;  // filled by who inherits
+};
+
+// The likelihood of a record: that of a Kalman filter's innovations.
+
+/// ln p(record | p), the motion integrated out exactly (filters/innovation_likelihood.hpp): of the parameters
+/// of a structure and of what else is not known, the sizes of unknown forces and of the sensors' noise, whose
+/// priors are lognormal about the guess with a deviation of SensingModel::known_within.
+class RecordLikelihood final : public ParameterLikelihood {
+ public:
+  /// @param model outlives it
+  RecordLikelihood(const SensingModel& model, const Experiment& experiment);
+
+  LikelihoodValue at(const Eigen::VectorXd& u, bool slopes) const override;
+
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }  ///< (q)
+
+ private:
+  const SensingModel& model_;
+  filters::InnovationProblem problem_;
+  std::vector<Unknown> unknowns_;
+  double constant_ = 0.0;
+};
+
+// The likelihood of measured modes.
+
+/// ln L = -1/2 sum r^2 - sum ln(sqrt(2 pi) s) over the rows of ModalResidual that are measurements. A shape
+/// of p components counts as p - 1 numbers, the density of its direction: its scale says nothing.
+class ModalLikelihood final : public ParameterLikelihood {
+ public:
+  /// @param residual outlives it
+  explicit ModalLikelihood(const ModalResidual& residual);
+
+  LikelihoodValue at(const Eigen::VectorXd& u, bool slopes) const override;
+
+ private:
+  const ModalResidual& residual_;
+  double constant_ = 0.0;
+};
 
 /// Numbers that describe draws.
 struct DrawSummary {

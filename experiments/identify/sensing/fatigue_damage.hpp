@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "experiments/config/sensing_settings.hpp"
+#include "experiments/config/channel_places.hpp"
 
 namespace beamid::experiments {
 

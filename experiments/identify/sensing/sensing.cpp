@@ -1,28 +1,178 @@
 #include "experiments/identify/sensing/sensing.hpp"
 
-#include <fmt/format.h>
-
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/identify/compare/run_noise.hpp"
-#include "experiments/identify/sensing/filtered_rows.hpp"
 #include "experiments/identify/sensing/sensing_constants.hpp"
-#include "experiments/identify/sensing/sensing_draws.hpp"
+#include "experiments/identify/sensing/sensing_model.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/missing_samples.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/countdown.hpp"
 #include "experiments/text/memory_need.hpp"
 #include "fem/modes.hpp"
+#include "filters/random.hpp"
+#include "filters/running_filter.hpp"
+#include "filters/unknown_inputs.hpp"
 
 namespace beamid::experiments {
-namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// The smoother is linear in the readings, and its gains do not depend on them: what it makes of a constant
+// beside nothing is what a zero that is off adds.
+std::vector<SoleZero> sole_zeros(const SensingModel& model, const VectorXd& theta,
+                                 const filters::LinearGaussian& form, const filters::KalmanPass& pass,
+                                 const std::vector<Channel>& channels, const MatrixXd& rows,
+                                 const MatrixXd& feed) {
+  std::vector<SoleZero> found;
+  filters::LinearGaussian still = form;
+  still.start.mean.setZero();
+  for (const Index i : model.sole_zeros(theta)) {
+    const Channel& channel = channels[static_cast<std::size_t>(i)];
+    const double read = root_mean_squares(model.record().outputs.row(i))[0];
+    if (!(read > 0.0)) continue;
+    SoleZero zero{channel.name, si_unit(channel.quantity), std::pow(10.0, std::floor(std::log10(read))), {}};
+    filters::Measurements shifted = model.record();
+    shifted.inputs.setZero();
+    for (auto& reading : shifted.outputs.reshaped())
+      if (std::isfinite(reading)) reading = 0.0;
+    shifted.outputs.row(i).array() += zero.off;
+    const filters::KalmanPass of_shifted = filters::kalman_pass(still, shifted, pass);
+    const VectorXd means = filters::smoothed_means(still, shifted, of_shifted, rows, feed).rowwise().mean();
+    zero.shifts.assign(means.begin(), means.end());
+    found.push_back(std::move(zero));
+  }
+  return found;
+}
+
+namespace {
+
+// Histories as they may have been, and the damage that they do.
+
+/// One history of the rows C x_k + D u_k given the record (c x N): a record drawn from the model, what the
+/// smoother makes of the difference from it, and its own motion [durbin2002].
+/// @param pass of the record through the filter
+Eigen::MatrixXd drawn_rows(const SensingModel& model, const filters::LinearGaussian& form,
+                           const filters::KalmanPass& pass, const Eigen::MatrixXd& rows,
+                           const Eigen::MatrixXd& feed, filters::RandomStream& random);
+
+/// Of every virtual strain: damage of the drawn histories, their mean and where 95 % of them lie. The
+/// smoothed history itself varies less than the motion did, and damages less.
+void add_damages(const Experiment& experiment, const SensingModel& model, const filters::LinearGaussian& form,
+                 const filters::KalmanPass& pass, const Eigen::MatrixXd& rows, const Eigen::MatrixXd& feed,
+                 SensingStudy& study);
+
+// B with B B^T = P, which may be singular.
+MatrixXd symmetric_root(const MatrixXd& p) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(p);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+MatrixXd drawn_rows(const SensingModel& model, const filters::LinearGaussian& form,
+                    const filters::KalmanPass& pass, const MatrixXd& rows, const MatrixXd& feed,
+                    filters::RandomStream& random) {
+  filters::Measurements record = model.record();
+  const Index n = form.a.rows(), samples = record.size();
+  const MatrixXd moved = symmetric_root(form.q), noise = symmetric_root(form.r);
+  VectorXd x = symmetric_root(form.start.covariance) * random.normal(n, 1);
+  MatrixXd own(rows.rows(), samples);
+  for (Index k = 0; k < samples; ++k) {
+    own.col(k) = rows * x;
+    record.outputs.col(k) -= form.h * x + noise * random.normal(form.h.rows(), 1);
+    x = (form.a * x + moved * random.normal(n, 1)).eval();
+  }
+  return filters::smoothed_means(form, record, filters::kalman_pass(form, record, pass), rows, feed) + own;
+}
+
+void add_damages(const Experiment& experiment, const SensingModel& model, const filters::LinearGaussian& form,
+                 const filters::KalmanPass& pass, const MatrixXd& rows, const MatrixXd& feed,
+                 SensingStudy& study) {
+  constexpr int draws = 40;
+  const std::vector<VirtualSensor>& sensors = experiment.virtual_sensors;
+  const auto fails = [](const VirtualSensor& one) {
+    return one.quantity == Quantity::strain && !one.bending_moment;
+  };
+  if (std::none_of(sensors.begin(), sensors.end(), fails)) return;
+  std::vector<std::vector<FatigueDamage>> found(sensors.size());
+  for (int draw = 0; draw < draws; ++draw) {
+    filters::RandomStream random(1, static_cast<std::uint64_t>(draw));
+    const MatrixXd histories = drawn_rows(model, form, pass, rows, feed.topRows(rows.rows()), random);
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+      if (fails(sensors[i]))
+        found[i].push_back(
+            fatigue_damage(histories.row(static_cast<Index>(i)).transpose(), *experiment.fatigue));
+  }
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (found[i].empty()) continue;
+    SensingStudy::SensorDamage one{sensors[i].name, {}};
+    double logs = 0.0, squares = 0.0;
+    for (const FatigueDamage& drawn : found[i]) {
+      one.damage.damage += drawn.damage / draws;
+      one.damage.cycles += drawn.cycles / draws;
+      one.damage.narrow_band += drawn.narrow_band / draws;
+      logs += std::log(drawn.damage) / draws;
+    }
+    for (const FatigueDamage& drawn : found[i])
+      squares += std::pow(std::log(drawn.damage) - logs, 2) / (draws - 1);
+    const double half = quantile_95 * std::sqrt(squares);
+    one.lower_95 = std::exp(logs - half), one.upper_95 = std::exp(logs + half);
+    const FatigueLaw& law = *experiment.fatigue;
+    one.damage.equivalent_range =
+        law.strain_range * std::pow(one.damage.damage * law.cycles / one.damage.cycles, 1.0 / law.exponent);
+    study.damages.push_back(std::move(one));
+  }
+}
+
+// Histories by a registered filter, sample after sample.
+
+struct FilteredRows {
+  filters::SmoothedRows rows;        ///< C x_k + D u_k given the readings up to sample k
+  std::vector<std::string> remarks;  ///< of the filter
+};
+
+/// @param rows C (c x n) of the form's motion; @param feed D (c x m)
+/// @throws std::invalid_argument where the filter refuses the model; std::runtime_error where it fails, with
+/// the sample's time.
+FilteredRows filtered_rows(SensingForm form, const Choice& filter, const filters::Measurements& record,
+                           const Eigen::MatrixXd& rows, const Eigen::MatrixXd& feed);
+
+/// Whether a filter takes nothing for known of the forces, and needs SensingModel::form_of_walks.
+bool estimates_unknown_inputs(const std::string& filter) {
+  return filters::filter_registry().find(filter).contracts.contains(filters::contract::unknown_inputs);
+}
+
+FilteredRows filtered_rows(SensingForm form, const Choice& filter, const filters::Measurements& record,
+                           const MatrixXd& rows, const MatrixXd& feed) {
+  const auto made = filters::filter_registry().make(filter.name, filter.options, std::move(form.model));
+  filters::RunningFilter run(*made);
+  run.start(form.start);
+  const Index n = record.size();
+  FilteredRows result{{MatrixXd(rows.rows(), n), MatrixXd(rows.rows(), n)}, {}};
+  for (Index k = 0; k < n; ++k) {
+    const VectorXd input = record.inputs.size() > 0 ? VectorXd(record.inputs.col(k)) : VectorXd();
+    if (!run.take_in({record.time[k], record.outputs.col(k), input}))
+      throw std::runtime_error(
+          fmt::format("{} failed at {:.6g} s: {}", filter.name, run.failure()->time, run.failure()->reason));
+    const filters::Gaussian estimate = made->marginal(form.moving);
+    result.rows.means.col(k) = rows * estimate.mean;
+    if (input.size() > 0) result.rows.means.col(k) += feed * input;
+    result.rows.deviations.col(k) =
+        (rows * estimate.covariance * rows.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+  }
+  result.remarks = made->remarks();
+  return result;
+}
 
 double rms(const VectorXd& values) {
   return root_mean_squares(values.transpose())[0];

@@ -3,17 +3,39 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "experiments/identify/sensing/sensing_record.hpp"
-#include "experiments/models/initial_estimate.hpp"
+#include <Eigen/Core>
+
+#include "experiments/config/channel_places.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "experiments/text/progress.hpp"
 #include "filters/innovation_likelihood.hpp"
 #include "filters/latent_inputs.hpp"
 
 namespace beamid::experiments {
+
+// What of a record is read, and what of it serves as a check, where forces are taken for unknown.
+
+struct SensingRecord {
+  /// Measured outputs first, then the virtual sensors as channels that were never read (NaN), then measured
+  /// inputs, then the unknown forces (zeros).
+  Record record;
+  Eigen::Index measured = 0;  ///< outputs that were read
+  /// What the virtual sensors would have read, and the forces were, where that is known: of a simulated
+  /// record, or a force that was measured and is taken for unknown. Empty: not known.
+  std::vector<Eigen::VectorXd> sensors, forces;
+};
+
+/// @throws InputError where no output is left.
+SensingRecord sensing_record(const Experiment& experiment, const Record& record, const Place& place);
+
+/// The experiment's own test, simulated, with what the virtual sensors would read without noise.
+SensingRecord simulated_sensing(const Experiment& experiment, const std::filesystem::path& folder,
+                                const Place& place, const Progress& progress);
 
 /// One entry of theta: a parameter of the structure, or ln of a number of the forces or of the sensors.
 struct SensingConstant {

@@ -5,7 +5,17 @@
 #include <memory>
 #include <string>
 
+#include "experiments/text/input_error.hpp"
+#include "filters/running_filter.hpp"
+
 namespace beamid::experiments {
+
+// One sample in one line.
+
+/// "time,output[,output...]" [s, SI]; an output that is empty or "nan" was not measured.
+/// @param place of the line; the column is told by this.
+/// @throws InputError naming line and column, what was found and what was expected.
+filters::Sample read_sample(const std::string& line, Eigen::Index outputs, const Place& place);
 
 /// The lines of a file descriptor as they arrive, until they end or until SIGINT, SIGTERM or SIGHUP asks the
 /// process to end: then there is time to save what is known. A signal that was ignored stays ignored. While

@@ -6,7 +6,7 @@
 
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/models/initial_estimate.hpp"
+#include "experiments/models/joint_model.hpp"
 
 namespace beamid::experiments {
 namespace {

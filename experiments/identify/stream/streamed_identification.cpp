@@ -1,20 +1,198 @@
 #include "experiments/identify/stream/streamed_identification.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <boost/math/distributions/chi_squared.hpp>
 
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/run_diagnostics.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/text/fields.hpp"
+#include "experiments/text/json_file.hpp"
 #include "experiments/text/method_choice.hpp"
 
 namespace beamid::experiments {
-namespace {
 
 using Eigen::Index, Eigen::VectorXd;
+
+// A mean m of variance P is predicted with P + R and moves by P / (P + R) of what it misses. An output's
+// first reading is its mean's, and says nothing for either side: then neither counts.
+void MotionEvidence::take_in(const VectorXd& output, const VectorXd& deviations,
+                             const filters::Correction& correction, double mean_square) {
+  if (seen_) return;
+  if (mean_.size() == 0) mean_ = variance_ = VectorXd::Zero(output.size());
+  // Of larger noise squares are divided by mean_square; what that does to determinants is the same for both.
+  const double taken_back = mean_square > 1.0 ? 0.5 - 0.5 / mean_square : 0.0;
+  double gain = correction.log_likelihood + taken_back * correction.normalised_square;
+  bool known = correction.innovation.size() > 0;
+  for (Index i = 0; i < output.size(); ++i) {
+    if (!std::isfinite(output[i])) continue;
+    const double noise = deviations[i] * deviations[i], error = output[i] - mean_[i];
+    if (variance_[i] == 0.0) {
+      known = false;
+      mean_[i] = output[i], variance_[i] = noise;
+      continue;
+    }
+    const double predicted = variance_[i] + noise, square = error * error / predicted;
+    gain += 0.5 * (square + std::log(2.0 * std::numbers::pi * predicted)) - taken_back * square;
+    mean_[i] += variance_[i] / predicted * error;
+    variance_[i] *= noise / predicted;
+  }
+  if (known && std::isfinite(gain)) evidence_ += gain;
+  seen_ = evidence_ > -std::log(unlikely);
+}
+
+nlohmann::ordered_json MotionEvidence::save() const {
+  return {{"seen", seen_},
+          {"evidence", evidence_},
+          {"mean", std::vector<double>(mean_.begin(), mean_.end())},
+          {"variance", std::vector<double>(variance_.begin(), variance_.end())}};
+}
+
+void MotionEvidence::resume(const nlohmann::json& saved, Index outputs) {
+  MotionEvidence read;
+  read.seen_ = saved.at("seen").get<bool>();
+  read.evidence_ = saved.at("evidence").get<double>();
+  const auto vector = [&](const char* key) {
+    const auto values = saved.at(key).get<std::vector<double>>();
+    if (!values.empty() && static_cast<Index>(values.size()) != outputs)
+      throw std::invalid_argument(std::string("motion.") + key + " is not one number for every output");
+    return VectorXd(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
+  };
+  read.mean_ = vector("mean");
+  read.variance_ = vector("variance");
+  if (read.mean_.size() != read.variance_.size() || (read.variance_.array() < 0.0).any())
+    throw std::invalid_argument("motion.variance is none of motion.mean");
+  *this = read;
+}
+
+namespace {
+
+constexpr double largest_square = 1e300;  // square: a sum of a window stays a number
+
+// What chi-square of so many degrees exceeds with this probability.
+double limit(std::map<Index, double>& known, Index degrees, double probability) {
+  double& value = known[degrees];
+  if (value == 0.0)
+    value = quantile(complement(boost::math::chi_squared(static_cast<double>(degrees)), probability));
+  return value;
+}
+
+}  // namespace
+
+InnovationWatch::Verdict InnovationWatch::judge(double normalised_square, Index outputs) {
+  if (outputs == 0) return Verdict::keep;
+  const double square =
+      normalised_square < largest_square ? normalised_square : largest_square;  // also of a NaN
+  if (settled_ && square > limit(gates_, outputs, outlying)) {
+    ++left_out_;
+    return ++in_a_row_ < several ? Verdict::leave_out : begin_anew(Verdict::jumped);
+  }
+  in_a_row_ = 0;
+  squares_.emplace_back(square, outputs);
+  degrees_ += outputs;
+  for (; degrees_ - squares_.front().second >= window; squares_.pop_front())
+    degrees_ -= squares_.front().second;
+  sum_ = std::min(sum_ + square, largest_square);
+  since_ += outputs;
+  if (!settled_) unsettled_ += outputs;
+  if (degrees_ < window) return Verdict::keep;
+
+  if (!in_bounds()) {
+    if (settled_) return begin_anew(Verdict::left);
+    was_out_ = true;
+    in_bounds_ = 0;
+    if (since_ < allowed_) return Verdict::keep;
+    allowed_ = std::min(2 * allowed_, most_patience);
+    return begin_anew(Verdict::gave_up);
+  }
+  if (was_out_) return begin_anew(Verdict::returned);
+  in_bounds_ += outputs;
+  if (!settled_ && in_bounds_ + window >= settling) {
+    settled_ = true;
+    allowed_ = patience;
+    unsettled_ = 0;
+  }
+  return Verdict::keep;
+}
+
+InnovationWatch::Verdict InnovationWatch::begin_anew(Verdict why) {
+  at_verdict_ = mean_square();
+  squares_.clear();
+  degrees_ = since_ = in_bounds_ = in_a_row_ = 0;
+  sum_ = 0.0;
+  settled_ = was_out_ = false;
+  ++starts_;
+  return why;
+}
+
+bool InnovationWatch::begin_anew_after_failure() {
+  if (settled_ || degrees_ < window || in_bounds()) return false;
+  begin_anew(Verdict::gave_up);
+  return true;
+}
+
+bool InnovationWatch::in_bounds() const {
+  return mean_square() * static_cast<double>(degrees_) <= limit(bounds_, degrees_, unlikely);
+}
+
+double InnovationWatch::mean_square() const {
+  if (degrees_ == 0) return std::numeric_limits<double>::quiet_NaN();
+  const double sum = std::accumulate(squares_.begin(), squares_.end(), 0.0,
+                                     [](double all, const auto& one) { return all + one.first; });
+  return std::min(sum, largest_square) / static_cast<double>(degrees_);
+}
+
+double InnovationWatch::largest_mean_square() const {
+  if (degrees_ == 0) return std::numeric_limits<double>::quiet_NaN();
+  return std::max(mean_square(), sum_ / static_cast<double>(since_));
+}
+
+nlohmann::ordered_json InnovationWatch::save() const {
+  auto window_squares = nlohmann::ordered_json::array();
+  for (const auto& [square, outputs] : squares_) window_squares.push_back({square, outputs});
+  return {{"settled", settled_}, {"window", window_squares}, {"sum", sum_},
+          {"outputs", since_},   {"in_bounds", in_bounds_},  {"unsettled", unsettled_},
+          {"allowed", allowed_}, {"in_a_row", in_a_row_},    {"left_out", left_out_},
+          {"starts", starts_},   {"was_out", was_out_}};
+}
+
+void InnovationWatch::resume(const nlohmann::json& saved) {
+  constexpr Index most_in_window = 1'000'000;
+  const auto count = [&](const char* key) -> Index {
+    return whole_number(saved.at(key), std::string("health.") + key, 0, most_outputs);
+  };
+  InnovationWatch read;
+  read.settled_ = saved.at("settled").get<bool>();
+  read.was_out_ = saved.at("was_out").get<bool>();
+  read.sum_ = saved.at("sum").get<double>();
+  read.since_ = count("outputs");
+  read.in_bounds_ = count("in_bounds");
+  read.unsettled_ = count("unsettled");
+  read.allowed_ = std::clamp(count("allowed"), patience, most_patience);
+  read.in_a_row_ = count("in_a_row");
+  read.left_out_ = count("left_out");
+  read.starts_ = count("starts");
+  for (const auto& one : saved.at("window")) {
+    read.squares_.emplace_back(one.at(0).get<double>(),
+                               whole_number(one.at(1), "outputs of health.window", 1, most_in_window));
+    const auto& [square, outputs] = read.squares_.back();
+    if (!(square >= 0.0)) throw std::invalid_argument("health.window holds what is no square");
+    read.degrees_ += outputs;
+  }
+  if (read.degrees_ > read.since_ || !(read.sum_ >= 0.0))
+    throw std::invalid_argument("health.window has more outputs than the filter has seen");
+  *this = read;
+}
+
+namespace {
 
 constexpr Index outliers_reported = 5;  // one by one
 

@@ -11,7 +11,7 @@
 #include "experiments/identify/reproduction.hpp"
 #include "experiments/identify/twins/twins.hpp"
 #include "experiments/identify/update/update_study.hpp"
-#include "experiments/models/finest_discretisation.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "filters/batch_estimator.hpp"
 
 namespace beamid::experiments {

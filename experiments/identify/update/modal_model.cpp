@@ -1,12 +1,113 @@
 #include "experiments/identify/update/modal_model.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+
+#include "fem/modes.hpp"
+#include "fem/stiffness_solver.hpp"
 
 namespace beamid::experiments {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double close_modes = 0.01;  // relative distance of frequencies
+
+// First mode and number of those that follow each other closely, for each mode.
+std::vector<std::pair<Index, Index>> clusters_of(const VectorXd& frequency) {
+  std::vector<std::pair<Index, Index>> clusters(static_cast<std::size_t>(frequency.size()));
+  for (Index first = 0; first < frequency.size();) {
+    Index end = first + 1;
+    while (end < frequency.size() && frequency[end] < (1.0 + close_modes) * frequency[end - 1]) ++end;
+    for (Index i = first; i < end; ++i) clusters[static_cast<std::size_t>(i)] = {first, end - first};
+    first = end;
+  }
+  return clusters;
+}
+
+// First row and number of rows in which two symmetric matrices have entries.
+std::pair<Index, Index> touched_by(const fem::SparseMatrix& a, const fem::SparseMatrix& b) {
+  Index first = a.rows(), end = 0;
+  for (const fem::SparseMatrix* matrix : {&a, &b})
+    for (Index column = 0; column < matrix->outerSize(); ++column)
+      if (fem::SparseMatrix::InnerIterator(*matrix, column)) {
+        first = std::min(first, column);
+        end = std::max(end, column + 1);
+      }
+  return {std::min(first, end), std::max<Index>(0, end - first)};
+}
+
+}  // namespace
+
+FoundModes lowest_found_modes(const fem::StructuralSystem& system, Index count, bool slopes) {
+  const bool shaped = slopes && system.outputs.rows() > 1;
+  const fem::Modes modes = fem::modes(system, std::min(system.size(), shaped ? 2 * count + 6 : count));
+  FoundModes result{modes.angular_frequency.cwiseAbs2(), modes.shape, {}};
+  if (shaped && modes.rigid == 0)
+    result.compliance =
+        fem::StiffnessSolver(system.stiffness).solve(MatrixXd(system.outputs.transpose())).transpose();
+  return result;
+}
+
+PredictedModes seen_modes(const FoundModes& found, const fem::SparseMatrix& outputs, Index count) {
+  if (!(found.eigenvalues[0] > -1e-9 * std::abs(found.eigenvalues[count - 1])))
+    throw std::runtime_error("a mode has a negative stiffness");
+  PredictedModes modes;
+  modes.frequency_hz = found.eigenvalues.head(count).cwiseMax(0.0).cwiseSqrt() / (2.0 * std::numbers::pi);
+  modes.shapes = outputs * found.shapes.leftCols(count);
+  modes.cluster = clusters_of(modes.frequency_hz);
+  return modes;
+}
+
+// With F = (K_j - lambda M_j - lambda' M) phi, which no mode near phi sees but phi itself:
+//
+//     S phi' = -sum_m s_m (phi_m^T F) / (lambda_m - lambda) - s (phi^T M_j phi) / 2
+//
+// over all modes outside the cluster. Of a large system, whose modes are the lowest only, the rest answers
+// statically: S K^-1 F less what these modes do of it.
+void add_slopes(const FoundModes& all, const fem::SparseMatrix& outputs,
+                const std::vector<MatrixSlope>& slopes, PredictedModes& modes) {
+  const Index k = modes.frequency_hz.size(), q = static_cast<Index>(slopes.size()), m = all.shapes.cols();
+  const MatrixXd seen = outputs * all.shapes;  // (p x m)
+  modes.frequency_slopes.resize(k, q);
+  if (seen.rows() > 1) modes.shape_slopes.assign(static_cast<std::size_t>(k), MatrixXd(seen.rows(), q));
+  for (Index j = 0; j < q; ++j) {
+    const MatrixSlope& slope = slopes[static_cast<std::size_t>(j)];
+    const bool heavy = slope.mass.nonZeros() > 0;
+    const auto [from, rows] = touched_by(slope.stiffness, slope.mass);
+    const MatrixXd lowest = all.shapes.leftCols(k);
+    MatrixXd loads = slope.stiffness * lowest;  // F but for lambda' M phi
+    const MatrixXd momenta = heavy ? MatrixXd(slope.mass * lowest) : MatrixXd();
+    if (heavy) loads -= momenta * all.eigenvalues.head(k).asDiagonal();
+    const MatrixXd work = all.shapes.middleRows(from, rows).transpose() * loads.middleRows(from, rows);
+    MatrixXd statics;
+    if (all.compliance.size() > 0)
+      statics = all.compliance.middleCols(from, rows) * loads.middleRows(from, rows);
+    for (Index i = 0; i < k; ++i) {
+      const double lambda = all.eigenvalues[i], f = modes.frequency_hz[i];
+      modes.frequency_slopes(i, j) =
+          f > 0.0 ? work(i, i) / (8.0 * std::numbers::pi * std::numbers::pi * f) : 0.0;
+      if (seen.rows() < 2) continue;  // no shape to compare
+      const auto [first, number] = modes.cluster[static_cast<std::size_t>(i)];
+      VectorXd change = VectorXd::Zero(seen.rows());
+      for (Index a = 0; a < m; ++a) {
+        const double mu = all.eigenvalues[a];
+        const bool near = a >= first && a < first + number;
+        double share = near ? 0.0 : 1.0 / (mu - lambda);
+        if (all.compliance.size() > 0) share -= 1.0 / mu;
+        change -= share * work(a, i) * seen.col(a);
+      }
+      if (all.compliance.size() > 0) change -= statics.col(i);
+      if (heavy) change -= 0.5 * lowest.col(i).dot(momenta.col(i)) * seen.col(i);
+      modes.shape_slopes[static_cast<std::size_t>(i)].col(j) = change;
+    }
+  }
+}
+
+namespace {
 
 constexpr Index most_dense_unknowns = 64;
 

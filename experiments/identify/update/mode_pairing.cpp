@@ -1,9 +1,10 @@
 #include "experiments/identify/update/mode_pairing.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <Eigen/QR>
 
 namespace beamid::experiments {
 namespace {

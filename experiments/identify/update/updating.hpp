@@ -6,11 +6,28 @@
 #include <string>
 #include <vector>
 
-#include "experiments/identify/update/least_squares.hpp"
 #include "experiments/identify/update/modal_residual.hpp"
 #include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
+
+// Least squares of a residual within a box.
+
+/// Where a search ended.
+struct Fit {
+  Eigen::VectorXd x;
+  FitResidual::Value value;    ///< with its Jacobian
+  std::vector<bool> on_bound;  ///< held there against the residual's slope
+  bool converged = false;
+
+  double chi_square() const { return value.chi_square(); }
+};
+
+/// Levenberg-Marquardt [marquardt1963] on the coordinates that are free: one on a bound that the residual
+/// would push beyond it stays there. A step is at most SearchSpace::longest_step(). Points without modes
+/// count as infinitely far.
+/// @return nothing when there are no modes at the start.
+std::optional<Fit> least_squares(const FitResidual& residual, const Eigen::VectorXd& start);
 
 struct UpdateSettings {
   ModelTrust trust;
@@ -64,7 +81,7 @@ inline constexpr double open_deviation = 0.5;
 /// Several hundred where a start takes milliseconds, fewer of large systems: the same on any machine.
 int default_starts(const ModesOfParameters& model);
 
-/// Least squares from many starts (search_space.hpp) and from the sets in `known`, on all cores; what they
+/// Least squares from many starts (modal_residual.hpp) and from the sets in `known`, on all cores; what they
 /// end at, told apart. Deviations are those of the linearised residual at the first set, over the directions
 /// that it determines; where even the best set is too far from what was measured, intervals are widened by
 /// sqrt(chi^2 / freedom) and the report says so.

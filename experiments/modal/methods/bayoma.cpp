@@ -10,7 +10,7 @@
 
 #include "experiments/modal/ambient_mode.hpp"
 #include "experiments/modal/modal_method.hpp"
-#include "experiments/modal/spectral_peaks.hpp"
+#include "experiments/modal/mode_by_mode.hpp"
 #include "experiments/signal/median.hpp"
 
 namespace beamid::experiments {

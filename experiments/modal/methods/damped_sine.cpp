@@ -3,10 +3,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/modal/isolated_mode.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/modal/modal_method.hpp"
-#include "experiments/modal/spectral_peaks.hpp"
+#include "experiments/modal/mode_by_mode.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "experiments/modal/response_peaks.hpp"
 #include "experiments/modal/study/decay_part.hpp"
-#include "experiments/modal/study/signal_band.hpp"
+#include "experiments/modal/study/record_kind.hpp"
 #include "experiments/signal/chi_square_limit.hpp"
 #include "experiments/signal/spectrum.hpp"
 

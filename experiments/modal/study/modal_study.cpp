@@ -1,26 +1,170 @@
 #include "experiments/modal/study/modal_study.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <map>
+#include <numbers>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include <fmt/format.h>
+
+#include "experiments/modal/decay_jump.hpp"
 #include "experiments/modal/shape_fit.hpp"
 #include "experiments/modal/steady_lines.hpp"
 #include "experiments/modal/study/decay_part.hpp"
 #include "experiments/modal/study/decay_polish.hpp"
-#include "experiments/modal/study/decay_warnings.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
-#include "experiments/modal/study/persistent_motion.hpp"
-#include "experiments/modal/study/pole_levels.hpp"
-#include "experiments/modal/study/signal_band.hpp"
+#include "experiments/modal/study/record_kind.hpp"
+#include "experiments/modal/third_overtone.hpp"
+#include "experiments/signal/median.hpp"
 
 namespace beamid::experiments {
 namespace {
 
+// Whether what a decay's modes leave is the same motion going on.
+
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr int resolutions_beside = 3;  // resolutions
+
+/// Power of all channels at a frequency under a Hann window.
+double windowed_power(const MatrixXd& samples, double interval, double frequency_hz) {
+  const Index count = samples.cols();
+  Eigen::VectorXcd wave(count);
+  for (Index k = 0; k < count; ++k) {
+    const double t = static_cast<double>(k), turn = 2.0 * std::numbers::pi;
+    wave[k] = std::polar(0.5 - 0.5 * std::cos(turn * (t + 0.5) / static_cast<double>(count)),
+                         -turn * frequency_hz * interval * t);
+  }
+  return (samples.cast<std::complex<double>>() * wave).squaredNorm();
+}
+
+/// Mean power about a frequency.
+double power_about(const MatrixXd& samples, double interval, double frequency_hz) {
+  const double step = 1.0 / (interval * static_cast<double>(samples.cols()));
+  double sum = 0.0;
+  for (int k = -resolutions_beside; k <= resolutions_beside; ++k)
+    sum += windowed_power(samples, interval, frequency_hz + k * step);
+  return sum / (2 * resolutions_beside + 1);
+}
+
+double median_power(const MatrixXd& samples, double interval, std::pair<double, double> band_hz) {
+  constexpr int fewest = 20, most = 200;
+  const double resolutions =
+      (band_hz.second - band_hz.first) * interval * static_cast<double>(samples.cols());
+  const int count = std::clamp(static_cast<int>(resolutions), fewest, most);
+  std::vector<double> powers;
+  for (int k = 0; k < count; ++k)
+    powers.push_back(windowed_power(samples, interval,
+                                    band_hz.first + (k + 0.5) / count * (band_hz.second - band_hz.first)));
+  return median(powers);
+}
+
+double motion_size_of(const MatrixXd& samples) {
+  return (samples.colwise() - samples.rowwise().mean()).norm();
+}
+
+/// Whether the motion of some periods is larger than that of some before.
+bool motion_rises(const MatrixXd& motion, Index part) {
+  constexpr double larger = 1.2;
+  if (part < 4) return true;
+  double least = motion_size_of(motion.leftCols(std::min(part, motion.cols())));
+  for (Index at = part; at + part <= motion.cols(); at += part) {
+    const double size = motion_size_of(motion.middleCols(at, part));
+    if (size > larger * least) return true;
+    least = std::min(least, size);
+  }
+  return false;
+}
+
+Index samples_in_periods(double periods, const ModeEstimate& mode, double interval) {
+  return static_cast<Index>(periods / (mode.pole.frequency_hz() * interval));
+}
+
+/// Modes of a free decay leave noise, or, where frequency and damping follow the amplitude, motion that dies
+/// out with them. Under loads that go on they leave motion at their own frequencies to the end, and it rises
+/// at times. So: they leave more than 15 % of the motion; some four periods of it are 1.2 times as large as
+/// four before; and at one of them, in the second half of `target` - `reproduced`, the power within three
+/// resolutions to either side is 10 times the band's median, and a quarter of the first half's or more. (Of
+/// white noise the mean of 7 powers reaches 10 medians with probability 1e-13.)
+bool motion_goes_on(const RecordModes& found) {
+  constexpr double least_left = 0.15, above_median = 10.0, as_early = 0.25;
+  if (found.reproduced.size() == 0 || found.modes.empty()) return false;
+  const MatrixXd left = found.target - found.reproduced;
+  const MatrixXd motion = found.target.colwise() - found.target.rowwise().mean();
+  if (left.norm() < least_left * motion.norm() ||
+      !motion_rises(motion, samples_in_periods(4.0, found.strongest(), found.interval)))
+    return false;
+  const MatrixXd early = left.leftCols(left.cols() / 2), late = left.rightCols(left.cols() / 2);
+  const double usual = median_power(late, found.interval, found.band_hz);
+  return std::any_of(found.modes.begin(), found.modes.end(), [&](const ModeEstimate& mode) {
+    const double f = mode.pole.frequency_hz(), power = power_about(late, found.interval, f);
+    return power > above_median * usual && power > as_early * power_about(early, found.interval, f);
+  });
+}
+
+/// Whether a record whose largest reading stands in its second half, from where on it was taken for a decay,
+/// moves nearly as much in two periods of the strongest mode before as in two after: a hit or a release
+/// begins at once, random vibration comes to its largest and goes.
+bool moved_before(const Record& whole, const RecordModes& found) {
+  constexpr double as_much = 0.7;
+  if (found.modes.empty()) return false;
+  const Index before = whole.size() - found.record.size();
+  if (before <= found.record.size()) return false;
+  const Index part =
+      std::min(found.record.size(), samples_in_periods(2.0, found.strongest(), whole.interval()));
+  if (part < 2 || part > before) return false;
+  return motion_size_of(whole.samples.middleCols(before - part, part)) >
+         as_much * motion_size_of(whole.samples.middleCols(before, part));
+}
+
+// What in a free decay makes its modes wrong by more than their deviations.
+
+/// The strongest mode as the reference analysis has one, with the others between half and twice its
+/// frequency.
+ModalEstimate strongest_of(const std::vector<ModeEstimate>& modes, const ModeEstimate& strongest,
+                           Eigen::Index channel) {
+  const double frequency = strongest.pole.frequency_hz();
+  ModalEstimate mode;
+  mode.frequency_hz = frequency;
+  mode.damping_ratio = strongest.pole.damping_ratio();
+  mode.amplitude = strongest.amplitude(channel);
+  for (const ModeEstimate& other : modes)
+    if (const double hz = other.pole.frequency_hz();
+        &other != &strongest && hz > 0.5 * frequency && hz < 2 * frequency)
+      mode.companions.push_back({hz, other.pole.damping_ratio(), other.amplitude(channel)});
+  return mode;
+}
+
+/// Sentences about the strongest mode in the channel that shows it best: a jump of the motion on the way
+/// (decay_jump.hpp), and the overtone of a sensor that saturates softly (third_overtone.hpp), where the
+/// damping ratio is wrong by more than two of its deviations through it.
+std::vector<std::string> decay_warnings(const RecordModes& found) {
+  if (found.modes.empty()) return {};
+  const ModeEstimate& strongest = found.strongest();
+  const Record& record = found.record;
+  Eigen::Index channel = 0;
+  (strongest.pole.shape.cwiseAbs().array() / record.samples.rowwise().norm().array()).maxCoeff(&channel);
+  const Eigen::VectorXd signal = record.samples.row(channel).transpose();
+  const ModalEstimate mode = strongest_of(found.modes, strongest, channel);
+  std::vector<std::string> warnings;
+  if (const auto jump = decay_jump(signal, record.interval(), mode))
+    warnings.push_back(jump->sentence(record.time[0]) +
+                       " Modes across it are wrong by more than their deviations. Expected a --window on one "
+                       "side of it.");
+  constexpr double many = 2;
+  const auto overtone = third_overtone(signal, record.interval(), mode);
+  if (overtone && std::abs(overtone->damping_error()) * mode.damping_ratio >
+                      many * strongest.pole.damping_ratio_deviation)
+    warnings.push_back(
+        fmt::format("{} The damping ratio of the mode at {:.4g} Hz is wrong by about {:.2g} % through it, "
+                    "more than its deviation. Expected a later --window, or a sensor of larger range.",
+                    overtone->words(), mode.frequency_hz, 100 * std::abs(overtone->damping_error())));
+  return warnings;
+}
 
 /// Rows over the root mean square of all channels of their quantity.
 VectorXd scales_of(const Record& record) {

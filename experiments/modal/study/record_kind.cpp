@@ -1,9 +1,15 @@
 #include "experiments/modal/study/record_kind.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
-#include "experiments/modal/hammer_response.hpp"
+#include <fmt/format.h>
+
+#include "experiments/modal/mode_by_mode.hpp"
+#include "experiments/modal/response_peaks.hpp"
 #include "experiments/signal/median.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -48,6 +54,152 @@ bool is_driven(const Record& record) {
     if (signal.allFinite() && active_share(signal) > least_active) return true;
   }
   return false;
+}
+
+std::vector<RecordLine> record_lines(const Eigen::MatrixXd& samples, double interval) {
+  constexpr Index fewest = 128;
+  constexpr LineSettings line{.above_noise = 6, .above_valley = 2, .least = 0.02};
+  std::vector<RecordLine> found;
+  for (Index count = samples.cols(); count >= std::min(fewest, samples.cols()); count /= 4) {
+    const double resolution = 2 / (interval * static_cast<double>(count));
+    const std::vector<SpectralLine> lines = spectral_lines(samples.leftCols(count), interval, line);
+    double strongest = 0;
+    for (const SpectralLine& one : lines) strongest = std::max(strongest, one.amplitude);
+    for (const SpectralLine& one : lines) {
+      const auto known = std::find_if(found.begin(), found.end(), [&](const RecordLine& other) {
+        return std::abs(other.frequency_hz - one.frequency_hz) < resolution;
+      });
+      const double share = one.amplitude / strongest;
+      if (known == found.end())
+        found.push_back({one.frequency_hz, resolution, share});
+      else
+        known->share = std::max(known->share, share);
+    }
+    if (count < 4) break;
+  }
+  std::sort(found.begin(), found.end(),
+            [](const RecordLine& a, const RecordLine& b) { return a.frequency_hz < b.frequency_hz; });
+  return found;
+}
+
+std::string frequencies_text(const std::vector<double>& frequencies_hz) {
+  constexpr std::size_t most = 6;
+  const std::size_t shown = std::min(most, frequencies_hz.size());
+  std::string text;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == frequencies_hz.size();
+    text += fmt::format("{}{:.4g}", i == 0 ? "" : last ? " and " : ", ", frequencies_hz[i]);
+  }
+  text += " Hz";
+  if (shown < frequencies_hz.size()) text += fmt::format(" and {} more", frequencies_hz.size() - shown);
+  return text;
+}
+
+namespace {
+
+constexpr double margin = 1.3, highest = 0.45;
+
+}  // namespace
+
+std::pair<double, double> signal_band(const Eigen::MatrixXd& samples, double interval) {
+  constexpr double least = 0.05;
+  const double lowest = 2 / (interval * static_cast<double>(samples.cols()));
+  double top = 2 * lowest;
+  for (Eigen::Index i = 0; i < samples.rows(); ++i) {
+    const AmplitudeSpectrum spectrum = amplitude_spectrum(samples.row(i).transpose(), interval);
+    double peak = 0;
+    for (Eigen::Index k = 0; k < spectrum.amplitude.size(); ++k)
+      if (spectrum.frequency_hz[k] >= lowest) peak = std::max(peak, spectrum.amplitude[k]);
+    for (Eigen::Index k = spectrum.amplitude.size() - 1; k >= 0; --k)
+      if (spectrum.amplitude[k] >= least * peak) {
+        top = std::max(top, margin * spectrum.frequency_hz[k]);
+        break;
+      }
+  }
+  return {lowest, std::min(top, highest / interval)};
+}
+
+std::pair<double, double> decay_band(const Eigen::MatrixXd& samples, double interval,
+                                     const std::vector<RecordLine>& lines) {
+  std::pair<double, double> band = signal_band(samples, interval);
+  for (const RecordLine& line : lines) band.second = std::max(band.second, margin * line.frequency_hz);
+  band.second = std::min(band.second, highest / interval);
+  return band;
+}
+
+void check_band(std::pair<double, double> band_hz, double interval, Eigen::Index count) {
+  const auto [from, to] = band_hz;
+  if (from >= 0 && from < to && to < 0.5 / interval && to * interval * static_cast<double>(count) > 2) return;
+  throw std::invalid_argument(fmt::format(
+      "band {:g} to {:g} Hz; expected 0 <= from < to, and to between {:.4g} Hz, two cycles in the "
+      "record, and {:.6g} Hz, half its sampling rate",
+      from, to, 2 / (interval * static_cast<double>(count)), 0.5 / interval));
+}
+
+namespace {
+
+int factor_for(const Record& record, double highest_hz) {
+  constexpr double passed = 0.3;  // of the new sampling rate, untouched by the decimation
+  return decimation_factor(passed / (record.interval() * highest_hz), record.size() / 100);
+}
+
+/// Where a level that reaches up to `top` ends: at an eighth of it, away from any line, or at the band's own
+/// beginning.
+double bottom_of(double top, const std::vector<RecordLine>& lines, const RecordModes& found) {
+  constexpr double span = 8, margin = 1.15;
+  double bottom = top / span;
+  const auto beside = [&](const RecordLine& line) {
+    return line.frequency_hz < margin * bottom && line.frequency_hz > bottom / margin;
+  };
+  while (std::any_of(lines.begin(), lines.end(), beside)) bottom /= margin;
+  const bool needed = std::any_of(lines.begin(), lines.end(), [&](const RecordLine& line) {
+    return line.frequency_hz >= found.band_hz.first && line.frequency_hz < bottom;
+  });
+  return needed && factor_for(found.record, bottom) > factor_for(found.record, top) ? bottom
+                                                                                    : found.band_hz.first;
+}
+
+void choose(StabilisationSettings settings, const std::vector<OrderPoles>& orders, RecordModes& found) {
+  const Stabilisation level = stabilise(orders, settings);
+  const auto append = [](auto& to, const auto& from) { to.insert(to.begin(), from.begin(), from.end()); };
+  append(found.stabilisation.poles, level.poles);
+  append(found.stabilisation.modes, level.modes);
+  append(found.stabilisation.rejected, level.rejected);
+}
+
+}  // namespace
+
+CoarseRecord coarse_record(const Record& record, double highest_hz) {
+  CoarseRecord coarse;
+  const int factor = factor_for(record, highest_hz);
+  for (Index i = 0; i < record.samples.rows(); ++i) {
+    coarse.last = decimate(record.samples.row(i).transpose(), record.interval(), factor);
+    if (i == 0) coarse.samples.resize(record.samples.rows(), coarse.last.samples.size());
+    coarse.samples.row(i) = coarse.last.samples.transpose();
+  }
+  return coarse;
+}
+
+void search_levels(const ModalMethod& method, const ModalStudySettings& settings, const VectorXd& scales,
+                   const std::vector<RecordLine>& lines, const CoarseRecord& finest, RecordModes& found) {
+  CoarseRecord level = finest;
+  double top = found.band_hz.second;
+  for (bool first = true;; first = false) {
+    PoleSearch search = method.search(scales.cwiseInverse().asDiagonal() * level.samples, level.last.interval,
+                                      settings.largest_order);
+    const double bottom = found.free_decay ? bottom_of(top, lines, found) : found.band_hz.first;
+    StabilisationSettings stable = settings.stabilisation;
+    stable.band_hz = {bottom, top};
+    if (found.free_decay)
+      stable.resolution_hz = 1 / (level.last.interval * static_cast<double>(level.samples.cols()));
+    choose(stable, search.orders, found);
+    if (first) found.search = std::move(search);
+    if (bottom <= found.band_hz.first) break;
+    level = coarse_record(found.record, bottom);
+    top = bottom;
+  }
+  for (const PoleCluster& cluster : found.stabilisation.modes)
+    found.modes.push_back({cluster.pole, cluster.orders});
 }
 
 }  // namespace beamid::experiments

@@ -1,16 +1,134 @@
 // The equations of motion of the whole mesh, sparse, at given values of the unknowns.
 #pragma once
 
-#include <Eigen/Core>
+#include <utility>
 #include <vector>
 
-#include "experiments/models/banded/banded_mass.hpp"
-#include "experiments/models/banded/banded_stiffness.hpp"
-#include "experiments/models/banded/parametric_rows.hpp"
+#include <Eigen/Core>
+
+#include "experiments/models/banded/banded_lanes.hpp"
+#include "experiments/models/banded/strain_product.hpp"
 #include "experiments/models/banded/symmetric_pattern.hpp"
 #include "experiments/models/motion/parametric_motion.hpp"
+#include "fem/parametric_system.hpp"
 
 namespace beamid::experiments::banded {
+
+// A(p) = A_0 + sum_j (p_j - p_0j) A_j by rows.
+
+class ParametricRows {
+ public:
+  ParametricRows() = default;  ///< of nothing
+  /// @param slopes A_j (a); an empty one is zero
+  ParametricRows(const fem::SparseMatrix& reference, const std::vector<const fem::SparseMatrix*>& slopes);
+
+  /// @param change p - p_0 (a)
+  void set(const Eigen::VectorXd& change);
+
+  const SparseRows& now() const { return now_; }
+  const SparseRows& slope(Eigen::Index j) const { return slopes_[j]; }
+  /// Coordinates [first, second) that A_j touches.
+  std::pair<Eigen::Index, Eigen::Index> reach(Eigen::Index j) const { return reaches_[j]; }
+
+ private:
+  SparseRows reference_, now_;
+  std::vector<SparseRows> slopes_;
+  std::vector<EntryList> entries_;  // of the slopes in now_
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> reaches_;
+};
+
+// K(p) x without the assembled matrix, where strains are to be had.
+
+/// K(p) = K_0 + sum_j change_j K_j through the strains of the elements, which keeps its digits. Matrices that
+/// come without elements ([system]) have no strains: theirs are as good as the digits of K itself, which
+/// multiplies row by row then.
+class BandedStiffness {
+ public:
+  explicit BandedStiffness(const fem::ParametricSystem& equations);
+
+  /// @param change p - p_0 (a)
+  void set(const Eigen::VectorXd& change);
+
+  /// y += K x; entries are double, Complex or Lanes.
+  template <class Entry>
+  void add_product(const Entry* x, Entry* y) const {
+    if (form_ == Form::rows) rows_.now().add_product(x, y);
+    for (const StrainProduct& product : current_) product(x, y);
+  }
+  /// y += K_j x
+  template <class Entry>
+  void add_slope_product(Eigen::Index j, const Entry* x, Entry* y) const {
+    if (form_ == Form::rows)
+      rows_.slope(j).add_product(x, y);
+    else
+      slopes_[j](x, y);
+  }
+  /// total += x^T K_j y for four x at a time, through the strains of all.
+  void add_slope_form(Eigen::Index j, const Lanes* x, const double* y, Lanes& total) const {
+    if (form_ == Form::rows)
+      rows_.slope(j).add_form(x, y, total);
+    else
+      slopes_[j].add_form(x, y, total);
+  }
+
+  /// Coordinates [first, second) that K_j touches.
+  std::pair<Eigen::Index, Eigen::Index> reach(Eigen::Index j) const {
+    return form_ == Form::rows ? rows_.reach(j) : slopes_[j].reach();
+  }
+
+ private:
+  void take_strains(const fem::ParametricSystem& equations, const std::vector<int>& own_starts,
+                    const std::vector<int>& starts);
+  void take_rows(const fem::ParametricSystem& equations);
+
+  enum class Form {
+    one_set_of_strains,  ///< D(p) = D_0 + sum_j change_j D_j between the same B
+    two_sets,            ///< K_0 and the K_j apart: the D_j are about strains that K_0 does without
+    rows                 ///< assembled
+  };
+  Form form_ = Form::one_set_of_strains;
+  StrainProduct reference_;
+  std::vector<StrainProduct> slopes_, current_;  // K_j; K is the sum of the latter
+  ParametricRows rows_;
+};
+
+// M(p) = M_0 + sum_j (p_j - p_0j) M_j as a band, or row by row.
+
+class BandedMass {
+ public:
+  explicit BandedMass(const fem::ParametricSystem& equations);
+
+  /// @param change p - p_0 of the properties (a)
+  void set(const Eigen::VectorXd& change);
+
+  /// y = M x; entries are double or Lanes.
+  void multiply(const double* x, double* y) const;
+  void multiply(const Lanes* x, Lanes* y) const;
+  /// y -= M x
+  void take_off(const Complex* x, Complex* y) const;
+  /// Entries of M_j, of both triangles.
+  struct Entry {
+    Eigen::Index row, column;
+    double value;
+  };
+  const std::vector<Entry>& slope(Eigen::Index j) const { return slopes_[j]; }
+  bool is_constant() const { return support_.empty(); }
+  /// Coordinates that any M_j touches, ascending (s).
+  const std::vector<Eigen::Index>& support() const { return support_; }
+
+ private:
+  bool is_band() const { return width_ <= narrow_band; }
+  std::size_t place(Eigen::Index row, Eigen::Index column) const {
+    return static_cast<std::size_t>(row * (2 * width_ + 1) + width_ + column - row);
+  }
+
+  Eigen::Index size_;
+  int width_ = 0;  // entries beside the diagonal
+  std::vector<double> reference_, band_;
+  ParametricRows rows_;  // where it is no band
+  std::vector<std::vector<Entry>> slopes_;
+  std::vector<Eigen::Index> support_;
+};
 
 /// M(p), C(p), K(p), E(p) f and their derivatives, each applied in O(n),
 ///

@@ -1,14 +1,45 @@
 // Products with B^T D B, element by element.
 #pragma once
 
-#include <Eigen/Core>
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "experiments/models/banded/banded_lanes.hpp"
-#include "fem/structural_system.hpp"
+#include "experiments/models/banded/symmetric_pattern.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::experiments::banded {
+
+// A sparse matrix by rows, for products with what moves.
+
+class SparseRows {
+ public:
+  SparseRows() = default;
+  explicit SparseRows(const fem::SparseMatrix& matrix);
+
+  bool is_empty() const { return value_.empty(); }
+
+  /// y = A x and y += factor A x; entries are double, Complex or Lanes.
+  template <class Entry>
+  void multiply(const Entry* x, Entry* y) const;
+  template <class Entry>
+  void add_product(const Entry* x, Entry* y, double factor = 1.0) const;
+
+  /// total += x^T A y for four x at a time.
+  void add_form(const Lanes* x, const double* y, Lanes& total) const;
+
+  /// The values, row after row, columns ascending, to be changed.
+  std::vector<double>& values() { return value_; }
+  const std::vector<double>& values() const { return value_; }
+  /// The entries of a matrix that has no others, among the values.
+  EntryList entries_of(const fem::SparseMatrix& matrix) const;
+
+ private:
+  std::vector<int> start_, column_;
+  std::vector<double> value_;
+};
 
 /// y += B^T D B x through the strains of each element. It costs what a product with the assembled matrix
 /// costs, but keeps its digits: the strains of a fine mesh are small differences, which an assembled matrix

@@ -1,13 +1,27 @@
 // Where symmetric matrices that are added up have entries.
 #pragma once
 
-#include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
-#include "experiments/models/banded/entry_list.hpp"
-#include "fem/structural_system.hpp"
+#include <Eigen/Core>
+
+#include "fem/damping.hpp"
 
 namespace beamid::experiments::banded {
+
+// A few numbers of an array, and where they stand in it.
+
+/// The entries of one matrix among those of a sum.
+struct EntryList {
+  std::vector<int> place;
+  std::vector<double> value;
+
+  /// sum += factor times this
+  void add(double factor, std::vector<double>& sum) const {
+    for (std::size_t k = 0; k < place.size(); ++k) sum[place[k]] += factor * value[k];
+  }
+};
 
 /// Entries beside the diagonal up to which a band is kept as one: its loops, without indices, take less time
 /// per entry than those of a sparse matrix, and a wider one is mostly zeros.

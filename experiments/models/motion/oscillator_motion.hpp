@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "experiments/models/joint_model.hpp"
+#include "experiments/models/springs/spring_law.hpp"
 
 namespace beamid::experiments {
 
@@ -59,5 +60,10 @@ ExpectedOscillator expected_oscillator(const std::string& model, const ModelSett
 std::unique_ptr<JointModel> make_oscillator(const std::string& name, const ModelSetting& setting,
                                             std::shared_ptr<const OscillatorLaw> law,
                                             const std::vector<OscillatorTerm>& law_terms, bool sensor_bias);
+
+// A law of springs as that of an oscillator.
+
+/// A spring by its law, and a dashpot beside it: F = r + C x', p = [K, C, ...].
+std::shared_ptr<const OscillatorLaw> spring_and_dashpot(std::shared_ptr<const SpringLaw> spring);
 
 }  // namespace beamid::experiments

@@ -7,11 +7,14 @@
 // (fem/parametric_system.hpp) go with the same description.
 #pragma once
 
-#include <Eigen/Core>
+#include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/unknown.hpp"
+#include "filters/options.hpp"
 
 namespace beamid::experiments {
 
@@ -110,5 +113,19 @@ PhysicalValues physical_values(const MotionDescription& description, const State
 /// Whether observation i reads the coordinates, their rates or their accelerations.
 enum class Reads { coordinates, rates, accelerations };
 Reads reads(Quantity quantity);
+
+// What models of several observations have in common: which sensors there are and what is unknown of them.
+
+/// sensor_bias and sensor_drift.
+std::vector<filters::OptionSpec> sensor_options();
+
+/// Share of the base's acceleration that each output shows (p).
+Eigen::VectorXd base_shares(const fem::StructuralSystem& system);
+
+/// Observations, forces and sensors' offsets.
+/// @throws std::invalid_argument when nothing is observed, a force is, an input does not exist, or there is a
+/// drift without a bias.
+MotionDescription describe_sensors(const std::string& model, const ModelSetting& setting,
+                                   const filters::Options& options);
 
 }  // namespace beamid::experiments

@@ -1,8 +1,10 @@
 #include "experiments/models/motion/second_order_step.hpp"
 
 #include <optional>
+#include <vector>
 
-#include "experiments/models/motion/held_step.hpp"
+#include <Eigen/Core>
+
 #include "experiments/models/motion/rational_step.hpp"
 #include "filters/nonzeros.hpp"
 #include "filters/schemes/forced_oscillator.hpp"
@@ -12,7 +14,79 @@
 namespace beamid::experiments {
 namespace {
 
+// The step of second-order motion, and its derivatives, where the unknowns stay from sample to sample.
+
+/// Linear in the motion x = [z, z'] and in the chain of the inputs (RationalStep::chain_of):
+///
+///     x+ = F [x; vec chain],   d x+ / d eta_j = F_j [x; vec chain]
+///
+/// Made of one step of each unit vector: output error, which walks a whole record at the same unknowns, takes
+/// a product with F and F_j for every sample instead of the sums of rational_step.hpp.
+class HeldStep {
+ public:
+  /// Steps of unit vectors that F and F_j take (columns).
+  static Eigen::Index columns(const SecondOrderForm& form, Eigen::Index powers) {
+    return 2 * form.stiffness.rows() + form.inputs.cols() * powers;
+  }
+
+  /// @param step which is set to other inputs afterwards
+  /// @param powers d + 1 of the inputs; 0 without any
+  HeldStep(RationalStep& step, const SecondOrderForm& form, const std::vector<SecondOrderForm>& slopes,
+           Eigen::Index powers);
+
+  bool takes(const Eigen::MatrixXd& chain) const { return chain.cols() == powers_; }
+  /// @param state begins with x, as `next` does @param tangent d x+ / d x (2r x 2r)
+  /// @param by_unknowns d x+ / d eta (2r x q)
+  void step(const Eigen::VectorXd& state, const Eigen::MatrixXd& chain, Eigen::VectorXd& next,
+            Eigen::Ref<Eigen::MatrixXd> tangent, Eigen::Ref<Eigen::MatrixXd> by_unknowns);
+
+ private:
+  Eigen::Index moving_, powers_;
+  Eigen::MatrixXd value_, slope_;  // F (2r x columns), F_j one below the other
+  Eigen::VectorXd joined_, sloped_;
+};
+
 using Eigen::Index, Eigen::Matrix2d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
+
+HeldStep::HeldStep(RationalStep& step, const SecondOrderForm& form,
+                   const std::vector<SecondOrderForm>& slopes, Index powers)
+    : moving_(2 * form.stiffness.rows()), powers_(powers) {
+  const Index all = columns(form, powers), q = static_cast<Index>(slopes.size());
+  value_.resize(moving_, all);
+  slope_.resize(moving_ * q, all);
+  joined_.resize(all);
+  MatrixXd along(moving_, q);
+  VectorXd state = VectorXd::Zero(moving_), next(moving_);
+  const auto keep = [&](Index column) {
+    step.apply(state, next);
+    value_.col(column) = next;
+    step.tangent_by_unknowns(state, slopes, along);
+    slope_.col(column) = along.reshaped();
+  };
+  step.set(form, {});
+  for (Index i = 0; i < moving_; ++i) {
+    state[i] = 1.0;
+    keep(i);
+    state[i] = 0.0;
+  }
+  MatrixXd chain = MatrixXd::Zero(form.inputs.cols(), powers);
+  for (Index i = 0; i < chain.size(); ++i) {
+    chain.reshaped()[i] = 1.0;
+    step.set(form, chain);
+    keep(moving_ + i);
+    chain.reshaped()[i] = 0.0;
+  }
+}
+
+void HeldStep::step(const VectorXd& state, const MatrixXd& chain, VectorXd& next,
+                    Eigen::Ref<MatrixXd> tangent, Eigen::Ref<MatrixXd> by_unknowns) {
+  joined_.head(moving_) = state.head(moving_);
+  joined_.tail(chain.size()) = chain.reshaped();
+  next.head(moving_).noalias() = value_ * joined_;
+  tangent = value_.leftCols(moving_);
+  sloped_.noalias() = slope_ * joined_;
+  by_unknowns = sloped_.reshaped(moving_, by_unknowns.cols());
+}
 
 class SecondOrderStep final : public filters::TimedModel {
  public:

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/models/motion/reduced_motion.hpp"
+#include "experiments/models/motion/second_order_motion.hpp"
 #include "experiments/models/springs/spring_law.hpp"
 
 namespace beamid::experiments {
@@ -66,7 +66,7 @@ class StoreyMotion final : public filters::ContinuousModel {
               Eigen::VectorXd& output) const override;
   void output_jacobian(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
                        Eigen::MatrixXd& jacobian) const override;
-  /// `runge_kutta_4` in parts of the step that the fastest mode asks for (storey_step.hpp).
+  /// `runge_kutta_4` in parts of the step that the fastest mode asks for (storey_motion.cpp).
   std::unique_ptr<filters::DiscreteModel> structured(double dt, const std::string& scheme,
                                                      const filters::Noise& noise) const override;
 

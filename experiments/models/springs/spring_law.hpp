@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/models/parameter_choice.hpp"
+#include "experiments/models/unknown.hpp"
 #include "filters/registry.hpp"
 
 namespace beamid::experiments {

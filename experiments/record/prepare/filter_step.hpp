@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/record/prepare/channel_step.hpp"
-#include "experiments/signal/cascaded_filter.hpp"
+#include "experiments/signal/butterworth.hpp"
 
 namespace beamid::experiments {
 

@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "experiments/record/prepare/preparation_step.hpp"
-#include "experiments/signal/amplitude_spectrum.hpp"
-#include "experiments/signal/band_limited.hpp"
-#include "experiments/signal/cubic_spline.hpp"
+#include "experiments/signal/interpolation.hpp"
 #include "experiments/signal/median.hpp"
 #include "experiments/signal/missing_samples.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {

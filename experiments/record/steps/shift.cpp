@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "experiments/record/prepare/channel_step.hpp"
-#include "experiments/signal/shifted.hpp"
+#include "experiments/signal/interpolation.hpp"
 
 namespace beamid::experiments {
 namespace {

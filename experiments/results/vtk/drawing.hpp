@@ -19,7 +19,8 @@ class NotDrawn : public std::runtime_error {
   bool hopeless_;
 };
 
-/// Writes NAME.csv and NAME.gp. @throws std::invalid_argument, std::runtime_error as write() of figure.hpp.
+/// Writes NAME.csv and NAME.gp. @throws std::invalid_argument, std::runtime_error as write() of
+/// compared_laws.cpp.
 void write_data(const Figure& figure, const std::filesystem::path& folder);
 
 /// Draws NAME.svg and NAME.png from them; gnuplot has two minutes for it.

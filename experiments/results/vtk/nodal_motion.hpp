@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "fem/structural_system.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::experiments {
 

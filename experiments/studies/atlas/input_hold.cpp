@@ -8,7 +8,7 @@
 
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/one_coordinate.hpp"
+#include "experiments/models/oscillator.hpp"
 #include "filters/filter_run.hpp"
 #include "filters/input_path.hpp"
 

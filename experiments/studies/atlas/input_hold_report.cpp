@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "experiments/identify/record_inputs.hpp"
+#include "experiments/identify/model_setting.hpp"
 #include "experiments/results/file.hpp"
 
 namespace beamid::experiments {

@@ -1,10 +1,11 @@
 #include "experiments/studies/compare/comparison_figures.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "experiments/identify/compare/run_verdict.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/record/axis_label.hpp"
 #include "experiments/results/forest_plot.hpp"
@@ -134,6 +135,224 @@ std::vector<Figure> figures(const Comparison& comparison) {
   if (!alike.empty() && !alike.front()->parameters.empty())
     all.push_back(parameter_figure(comparison, alike));
   return all;
+}
+
+namespace {
+
+// Whether a run says anything of its model.
+bool is_sound(const ComparedRun& run) {
+  return run.answers() && run.step_cause.empty();
+}
+
+// An error many times its own deviation is not noise: the model is at fault.
+std::string bias_text(const Comparison& comparison) {
+  constexpr double surely = 4.0;
+  std::string biased;
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters)
+      if (is_sound(run) && p.truth && std::abs(p.estimate.value - *p.truth) > surely * p.estimate.deviation)
+        biased += fmt::format("{}{} of {} ({:.0f} standard deviations)", biased.empty() ? "" : ", ",
+                              p.estimate.name, name_of(comparison, run),
+                              std::abs(p.estimate.value - *p.truth) / p.estimate.deviation);
+  if (biased.empty()) return {};
+  return "Outside their own intervals: " + biased +
+         ": an error of the model or of its discretisation, which no interval of a filter shows.";
+}
+
+// "modal_truncation" of "modal_truncation:modes=3".
+std::string method_of(const ComparedRun& run) {
+  return run.reduction.substr(0, run.reduction.find(':'));
+}
+
+// Whether a smaller model, otherwise identified alike, leaves less of the record: impossible on the right
+// branch where the larger one can move in all the shapes of the smaller, as of the same method, or as the
+// mesh.
+bool worse_than_smaller(const Comparison& comparison, const ComparedRun& run) {
+  constexpr double clearly = 1.25;
+  return std::any_of(comparison.runs.begin(), comparison.runs.end(), [&](const ComparedRun& smaller) {
+    const bool nested = run.reduction == "none" || method_of(smaller) == method_of(run);
+    return nested && smaller.answers() && smaller.coordinates < run.coordinates &&
+           smaller.filter == run.filter && smaller.discretisation == run.discretisation &&
+           clearly * smaller.response_error_percent < run.response_error_percent;
+  });
+}
+
+// A model that leaves much of the record is blind to some of its modes, or the filter has settled on a wrong
+// branch: both are told from each other by what a larger model leaves.
+std::string misfit_text(const Comparison& comparison) {
+  constexpr double much = 20.0;
+  std::string poor, wrong;
+  for (const ComparedRun& run : comparison.runs) {
+    if (!is_sound(run)) continue;
+    const bool worse = worse_than_smaller(comparison, run);
+    if (!worse && (run.misfit_percent <= much || run.status == ComparedRun::Status::approximate)) continue;
+    std::string& list = worse ? wrong : poor;
+    list += fmt::format("{}{} ({:.3g} %)", list.empty() ? "" : ", ", name_of(comparison, run),
+                        run.response_error_percent);
+  }
+  std::string text;
+  if (!poor.empty())
+    text = "Large residual: much of the record is left by " + poor +
+           ". The model lacks modes that the record has, or the filter has settled on a wrong answer. If a "
+           "larger model leaves as much, start from nearer initial estimates or smaller deviations.";
+  if (!wrong.empty())
+    text += (text.empty() ? "" : " ") + std::string("More of the record than a smaller model is left by ") +
+            wrong +
+            ": the filter has settled on a wrong answer. Start from nearer initial estimates or smaller "
+            "deviations.";
+  return text;
+}
+
+// Why a deviation is smaller than the record allows.
+std::string why_surer(const Comparison& comparison, const ComparedRun& run) {
+  constexpr double clearly = 0.8;
+  if (run.filter.starts_with("particle"))
+    return "its particles have collapsed onto a few values, so that neither estimate nor deviation counts: "
+           "use a filter of the Kalman family";
+  if (run.last_move > settled_move) return "its estimate has not settled";
+  if (comparison.compared.sensor_noise.size() > 0)
+    for (Eigen::Index i = 0; i < run.noise.size(); ++i)
+      if (run.noise[i] < clearly * run.noise_left[i])
+        return fmt::format("[noise] assumes {:.2g} of what the motion leaves of the record",
+                           run.noise[i] / run.noise_left[i]);
+  return "the filter was linearised too far from its estimate: filter more often ([compare] passes), or "
+         "start from nearer initial estimates";
+}
+
+// Deviations below the bound, by more than what was known beforehand explains.
+std::string surer_text(const Comparison& comparison) {
+  std::string text;
+  for (const ComparedRun& run : comparison.runs) {
+    std::string surer;
+    for (const ComparedParameter& p : run.parameters)
+      if (p.overconfidence < 1.0)
+        surer += fmt::format("{}{} {:.2g}", surer.empty() ? "" : ", ", p.estimate.name, p.overconfidence);
+    if (!surer.empty())
+      text += fmt::format(
+          "{}Overconfident: the filter's standard deviations of {} were, as parts of the Cramer-Rao bound: "
+          "{}; {}. They are widened to the bound.",
+          text.empty() ? "" : " ", name_of(comparison, run), surer, why_surer(comparison, run));
+  }
+  return text;
+}
+
+// What a discretisation does by itself explains all else that is seen of its run, and what runs say of
+// themselves beyond the remarks of their filters.
+std::vector<std::string> own_remarks(const ComparedRun& run) {
+  std::vector<std::string> texts;
+  if (!run.step_cause.empty() && run.status != ComparedRun::Status::contradicted)  // which gives it as reason
+    texts.push_back(run.step_cause);
+  for (std::size_t i = run.run.remarks.size(); i < run.remarks.size(); ++i) texts.push_back(run.remarks[i]);
+  return texts;
+}
+
+// By the work of a step: linearised once, several times, or many points moved.
+int cost_rank(const ComparedRun& run) {
+  const std::string name = run.filter.substr(0, run.filter.find(':'));
+  int rank = 6;
+  for (const char* const kind : {"particle", "enkf", "ukf", "ckf", "iekf", "ekf"}) {
+    if (name.find(kind) != std::string::npos) return rank;
+    --rank;
+  }
+  return rank;
+}
+
+/// Largest difference of a parameter, in the deviations of the first run.
+double apart(const ComparedRun& one, const ComparedRun& other) {
+  double largest = 0.0;
+  for (std::size_t j = 0; j < one.parameters.size(); ++j)
+    largest =
+        std::max(largest, std::abs(one.parameters[j].estimate.value - other.parameters[j].estimate.value) /
+                              one.parameters[j].estimate.deviation);
+  return largest;
+}
+
+// Filters that answer alike on the same model need not all be run.
+std::vector<std::string> agreement(const Comparison& comparison, const ComparedRun& run) {
+  constexpr double alike = 0.2;
+  std::string others;
+  double largest = 0.01;
+  for (const ComparedRun& other : comparison.runs)
+    if (is_sound(run) && is_sound(other) && other.reduction == run.reduction &&
+        other.discretisation == run.discretisation && other.parameters.size() == run.parameters.size() &&
+        cost_rank(other) > cost_rank(run) && apart(run, other) < alike) {
+      others += (others.empty() ? "" : ", ") + other.filter;
+      largest = std::max(largest, apart(run, other));
+    }
+  if (others.empty()) return {};
+  return {fmt::format(
+      "{} agrees with {} within {:.1g} standard deviations and is the cheaper one: it is enough here.",
+      run.filter, others, largest)};
+}
+
+// How far the best model is from a sensor's own noise, where that is known.
+std::string excess_text(const Comparison& comparison, const ComparedRun& reference) {
+  constexpr double far = 2.0;
+  const Eigen::VectorXd& sensors = comparison.compared.sensor_noise;
+  double excess = 0.0;
+  const std::vector<Eigen::Index> channels = output_channels(comparison.compared.record);
+  for (std::size_t i = 0; i < channels.size() && sensors.size() > 0; ++i)
+    if (const double own = sensors[channels[i]]; own > 0.0)
+      excess = std::max(excess, reference.noise[static_cast<Eigen::Index>(i)] / own);
+  if (excess < far) return {};
+  return fmt::format(
+      "Even the reference leaves {:.3g} times the noise of a sensor: there is motion in the record "
+      "that no model of this comparison has, or the reference is wrong.",
+      excess);
+}
+
+}  // namespace
+
+const ComparedRun* reference_run(const Comparison& comparison) {
+  const ComparedRun* best = nullptr;
+  for (const ComparedRun& run : comparison.runs) {
+    if (!run.answers()) continue;
+    const bool whole = run.reduction == "none";
+    if (!best || (whole && best->reduction != "none") ||
+        (whole == (best->reduction == "none") && run.coordinates > best->coordinates))
+      best = &run;
+  }
+  return best;
+}
+
+std::vector<std::string> said_once(
+    const Comparison& comparison,
+    const std::function<std::vector<std::string>(const ComparedRun&)>& texts_of) {
+  std::vector<std::pair<std::string, std::string>> said;  // a text, and who says it
+  for (const ComparedRun& run : comparison.runs)
+    for (const std::string& text : texts_of(run)) {
+      const auto same =
+          std::find_if(said.begin(), said.end(), [&](const auto& one) { return one.first == text; });
+      if (same == said.end())
+        said.emplace_back(text, name_of(comparison, run));
+      else
+        same->second += "; " + name_of(comparison, run);
+    }
+  std::vector<std::string> paragraphs;
+  for (const auto& [text, names] : said)
+    paragraphs.push_back(comparison.runs.size() == 1 ? text : names + ": " + text);
+  return paragraphs;
+}
+
+std::vector<std::string> words(const Comparison& comparison) {
+  const ComparedRun* reference = reference_run(comparison);
+  const bool alone = comparison.runs.size() == 1;
+  std::vector<std::string> paragraphs;
+  if (!alone && reference) paragraphs.push_back("The reference: " + name_of(comparison, *reference) + ".");
+  for (const ComparedRun& run : comparison.runs)
+    if (!alone && !run.answers() && run.warnings.empty())  // which say why
+      paragraphs.push_back(fmt::format("{}: {}{}{}.", name_of(comparison, run), to_string(run.status),
+                                       run.reason.empty() ? "" : ", ", run.reason));
+  const auto add = [&](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts)
+      if (!text.empty()) paragraphs.push_back(text);
+  };
+  if (reference) add({bias_text(comparison), misfit_text(comparison), surer_text(comparison)});
+  add(said_once(comparison, own_remarks));
+  if (!reference) return paragraphs;
+  add({excess_text(comparison, *reference)});
+  add(said_once(comparison, [&](const ComparedRun& run) { return agreement(comparison, run); }));
+  return paragraphs;
 }
 
 }  // namespace beamid::experiments

@@ -1,6 +1,8 @@
 // Pictures of a comparison.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "experiments/identify/compare/comparison.hpp"
@@ -14,5 +16,20 @@ std::vector<Figure> figures(const Comparison& comparison);
 
 /// "modal_truncation:modes=3, ukf, forward_euler"; what all runs share is left out.
 std::string name_of(const Comparison& comparison, const ComparedRun& run);
+
+// What a comparison says, in words.
+
+/// A paragraph each: what every reduction cost in accuracy and saved in time against the largest model, and
+/// what the discretisations did.
+std::vector<std::string> words(const Comparison& comparison);
+
+/// The run that the others are measured against: no reduction where there is one, else the most coordinates.
+/// Null when nothing converged.
+const ComparedRun* reference_run(const Comparison& comparison);
+
+/// What runs say, each text once, behind the names of the runs that say it where there are several.
+std::vector<std::string> said_once(
+    const Comparison& comparison,
+    const std::function<std::vector<std::string>(const ComparedRun&)>& texts_of);
 
 }  // namespace beamid::experiments

@@ -1,17 +1,304 @@
 #include "experiments/studies/compare/comparison_report.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "experiments/config/channel_places.hpp"
-#include "experiments/identify/record_inputs.hpp"
-#include "experiments/studies/compare/clock_report.hpp"
+#include "experiments/config/description.hpp"
+#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/measured_force.hpp"
+#include "experiments/identify/model_setting.hpp"
+#include "experiments/record/column_name.hpp"
+#include "experiments/results/results.hpp"
+#include "experiments/results/table.hpp"
 #include "experiments/studies/compare/comparison_figures.hpp"
-#include "experiments/studies/compare/comparison_tables.hpp"
-#include "experiments/studies/compare/comparison_values.hpp"
-#include "experiments/studies/compare/comparison_words.hpp"
+#include "experiments/studies/identify/diagnostics_report.hpp"
 
 namespace beamid::experiments {
+
+void add_clocks(Results& results, const Comparison& comparison) {
+  const std::vector<OwnClock>& clocks = comparison.compared.clocks;
+  if (clocks.empty()) return;
+  Table table{"clocks", "Channels with a clock of their own"};
+  table.column({"channel", "channel"})
+      .column({"lag [ms]", "lag_ms", "{:.4f}"})
+      .column({"deviation [ms]", "deviation_ms", "{:.2g}"})
+      .column({"intervals", "intervals", "{:.2f}"});
+  results.values["clocks"] = nlohmann::ordered_json::array();
+  const double interval = comparison.analysis.record.interval();
+  for (const OwnClock& clock : clocks) {
+    const std::string& name =
+        comparison.compared.record.channels[static_cast<std::size_t>(clock.channel)].name;
+    table.row({name, 1e3 * clock.lag, 1e3 * clock.deviation, clock.lag / interval});
+    results.values["clocks"].push_back(
+        {{"channel", name}, {"lag_s", clock.lag}, {"standard_deviation_s", clock.deviation}});
+  }
+  table.note =
+      "Behind the other channels; below 0 ahead of them. Found with the parameters, whose deviations allow "
+      "for them. The record is used and drawn on one clock.";
+  results.table(table);
+}
+
 namespace {
+
+// What results.json has of a comparison.
+
+/// "configuration": the experiment, how its record was identified, and the beam it was simulated from.
+nlohmann::ordered_json comparison_configuration(const Experiment& experiment, const Comparison& comparison);
+
+/// The record, the status of all runs together, converged where any is, and every run.
+nlohmann::ordered_json comparison_values(const Comparison& comparison);
+
+using Eigen::Index;
+using Json = nlohmann::ordered_json;
+
+Json optional_number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+// What would leave less of a driven record, whether or not it is said; empty where nothing was tried.
+Json input_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
+  Json json = Json::object();
+  const auto clock = [&](const LikeliestClock& found) -> Json {
+    return {{"output", found.output ? Json(outputs[static_cast<std::size_t>(*found.output)]) : Json("all")},
+            {"lag_s", found.lag()},
+            {"lag_standard_deviation_s", run.interval_factor * found.lag_deviation()},
+            {"residual_share", found.step.left_share}};
+  };
+  if (const auto& late = run.likeliest_clocks.late) json["likeliest_late_clock"] = clock(*late);
+  if (const auto& drifting = run.likeliest_clocks.drifting) {
+    json["likeliest_drifting_clock"] = clock(*drifting);
+    json["likeliest_drifting_clock"].update(
+        {{"growth", drifting->growth()},
+         {"growth_standard_deviation", run.interval_factor * drifting->growth_deviation()}});
+  }
+  if (const auto& noise = run.likeliest_input_noise)
+    json["likeliest_input_noise"] = {
+        {"standard_deviation_si", std::vector<double>(noise->deviation.begin(), noise->deviation.end())},
+        {"log_likelihood_gain", noise->gain}};
+  return json;
+}
+
+Json run_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
+  Json json{{"reduction", run.reduction},
+            {"filter", run.filter},
+            {"discretisation", run.discretisation},
+            {"status", to_string(run.status)}};
+  if (!run.reason.empty()) json["reason"] = run.reason;
+  if (!run.step_cause.empty()) json["step_cause"] = run.step_cause;
+  json["events"] = experiments::values(run.run.events);
+  if (run.diagnostics) json["diagnostics"] = experiments::values(*run.diagnostics, outputs);
+  json["coordinates"] = run.coordinates;
+  json["observed_per_freedom"] = run.observed_per_freedom;
+  json["parameters"] = Json::object();
+  for (const ComparedParameter& p : run.parameters)
+    json["parameters"][p.estimate.name] = {{"unit", p.estimate.unit},
+                                           {"estimate", p.estimate.value},
+                                           {"standard_deviation", p.estimate.deviation},
+                                           {"lower_95", p.estimate.lower_95},
+                                           {"upper_95", p.estimate.upper_95},
+                                           {"true_value", optional_number(p.truth)},
+                                           {"error_percent", optional_number(p.error_percent())},
+                                           {"bound", optional_number(p.bound)},
+                                           {"bound_ratio", optional_number(p.bound_ratio())}};
+  if (run.has_estimate()) json["covariance"] = json_rows(covariance_of_parameters(run));
+  if (run.reproduced.size() == 0) return json;
+  json["response_error_percent"] = run.response_error_percent;
+  json["frequency_hz"] = optional_number(run.frequency_hz);
+  json["noise"] = std::vector<double>(run.noise.begin(), run.noise.end());
+  json["log_likelihood"] = run.run.log_likelihood;
+  json["mean_normalised_square"] = run.run.normalised_squares.mean();
+  json.update(input_values(run, outputs));
+  for (const std::string& remark : run.remarks)
+    json["messages"].push_back({{"severity", to_string(Severity::note)}, {"text", remark}});
+  return json;
+}
+
+// Of all runs together: converged where any is.
+ComparedRun::Status status_of(const Comparison& comparison) {
+  const ComparedRun* const reference = reference_run(comparison);
+  return (reference ? *reference : comparison.runs.front()).status;
+}
+
+// How the record was identified: a name, or several.
+Json methods_of(const Experiment& experiment, const Comparison& comparison) {
+  const auto names = [&](std::string ComparedRun::*name) {
+    std::vector<std::string> all;
+    for (const ComparedRun& run : comparison.runs)
+      if (std::find(all.begin(), all.end(), run.*name) == all.end()) all.push_back(run.*name);
+    return all.size() == 1 ? Json(all[0]) : Json(all);
+  };
+  Json json{
+      {"reduction", {{"method", names(&ComparedRun::reduction)}}},
+      {"filter",
+       {{"method", names(&ComparedRun::filter)}, {"discretisation", names(&ComparedRun::discretisation)}}},
+      {"passes", experiment.passes},
+      {"noise", {{"method", experiment.noise_method.name}}}};
+  for (const auto& [quantity, deviation] : experiment.noise)
+    json["noise"][quantity_key(quantity)] = deviation;
+  for (const Unknown& unknown : comparison.runs[0].unknowns) {
+    Json& asked = json["initial"][unknown.name] = {{"unit", unknown.unit}};
+    asked["mean"] = optional_number(unknown.guess);
+    asked["standard_deviation"] = optional_number(unknown.deviation);
+  }
+  return json;
+}
+
+Json comparison_configuration(const Experiment& experiment, const Comparison& comparison) {
+  Json json = describe(experiment, {"filter", "model", "reduction"});
+  json.update(methods_of(experiment, comparison));
+  if (comparison.compared.truth) json["truth"] = describe(*comparison.compared.truth);
+  return json;
+}
+
+Json comparison_values(const Comparison& comparison) {
+  const Record& record = comparison.compared.record;
+  Json json{{"record", comparison.compared.name},          {"samples", record.size()},
+            {"sampling_rate_hz", 1.0 / record.interval()}, {"channels", channel_values(record)},
+            {"status", to_string(status_of(comparison))},  {"runs", Json::array()}};
+  if (const auto inputs = record_inputs(record)) json["inputs_between_samples"] = to_string(inputs->path);
+  std::vector<std::string> outputs;
+  for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
+  for (const ComparedRun& run : comparison.runs) json["runs"].push_back(run_values(run, outputs));
+  return json;
+}
+
+// The tables of a comparison.
+
+/// One run, a row for each parameter. @param record that it is of
+Table parameter_table(const ComparedRun& run, const Record& record);
+
+double or_nan(const std::optional<double>& value) {
+  return value.value_or(std::nan(""));
+}
+
+// Of a parameter, what the reference run found.
+std::optional<double> reference_value(const Comparison& comparison, const std::string& name) {
+  if (const ComparedRun* const reference = reference_run(comparison))
+    for (const ComparedParameter& p : reference->parameters)
+      if (p.estimate.name == name) return p.estimate.value;
+  return {};
+}
+
+// Of motion without a measured force: it shows the ratio of stiffness to mass alone.
+std::string mass_note(const ComparedRun& run, const Record& record) {
+  const auto any_in = [&](const char* unit) {
+    return std::any_of(run.unknowns.begin(), run.unknowns.end(),
+                       [&](const Unknown& unknown) { return unknown.unit.starts_with(unit); });
+  };
+  const bool factors = std::any_of(run.unknowns.begin(), run.unknowns.end(),
+                                   [](const Unknown& unknown) { return unknown.quantity == "factor"; });
+  if (measures_force(record) || any_in("kg") || !(any_in("N") || factors)) return {};
+  return std::string(" No force was measured: ") + of_unweighed_masses;
+}
+
+/// A row for each run.
+Table run_table(const Comparison& comparison) {
+  Table table{"runs", ""};
+  table.column({"reduction", "reduction"})
+      .column({"filter", "filter"})
+      .column({"discretisation", "discretisation"})
+      .column({"r", "coordinates", "{:.0f}"})
+      .column({"O/F", "observed_per_freedom", "{:.3g}"})
+      .column({"f1 [Hz]", "frequency_hz", "{:.4f}"})
+      .column({"response error [%]", "response_error_percent", "{:.3g}"})
+      .column({"status", "status"});
+  for (const ComparedRun& run : comparison.runs) {
+    table.row({run.reduction, run.filter, run.discretisation, static_cast<double>(run.coordinates),
+               run.observed_per_freedom, or_nan(run.frequency_hz),
+               run.reproduced.size() > 0 ? run.response_error_percent : std::nan(""), to_string(run.status)});
+  }
+  table.note =
+      "r: coordinates of the model. O/F: observed histories per degree of freedom. Response error: "
+      "what the best motion of the model with these parameters leaves of the record.";
+  return table;
+}
+
+// One parameter over all runs.
+/// One parameter, a row for each run.
+Table parameter_table(const Comparison& comparison, const std::string& name) {
+  Table table{"parameter_" + name, ""};
+  std::string unit;
+  std::optional<double> truth;
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters)
+      if (p.estimate.name == name) {
+        unit = p.estimate.unit;
+        truth = p.truth;
+      }
+  table.title = fmt::format("{}{}{}", name, unit.empty() ? "" : " [" + unit + "]",
+                            truth && std::isfinite(*truth) ? fmt::format(", true value {:.6g}", *truth) : "");
+  table.column({"run", "run"})
+      .column({"estimate", "estimate", "{:.6g}"})
+      .column({"95 % from", "lower_95", "{:.6g}"})
+      .column({"to", "upper_95", "{:.6g}"});
+  const std::optional<double> reference = reference_value(comparison, name);
+  if (truth)
+    table.column({"error [%]", "error_percent", "{:+.4g}"});
+  else
+    table.column({"from reference [%]", "from_reference_percent", "{:+.3g}"});
+  table.column({"deviation [%]", "deviation_percent", "{:.2g}"})
+      .column({"deviation / bound", "bound_ratio", "{:.3f}"});
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters)
+      if (p.estimate.name == name && run.has_estimate()) {
+        std::vector<Cell> row{name_of(comparison, run), p.estimate.value, p.estimate.lower_95,
+                              p.estimate.upper_95};
+        if (truth)
+          row.emplace_back(or_nan(p.error_percent()));
+        else
+          row.emplace_back(100.0 * (p.estimate.value / or_nan(reference) - 1.0));
+        row.insert(row.end(),
+                   {100.0 * p.estimate.deviation / std::abs(p.estimate.value), or_nan(p.bound_ratio())});
+        table.row(row);
+      }
+  return table;
+}
+
+// Of a single run, all parameters.
+Table parameter_table(const ComparedRun& run, const Record& record) {
+  Table table{"estimates", ""};
+  table.column({"parameter", "parameter"})
+      .column({"unit", "unit"})
+      .column({"estimate", "estimate", "{:.6g}"})
+      .column({"95 % from", "lower_95", "{:.6g}"})
+      .column({"to", "upper_95", "{:.6g}"});
+  const bool truth = std::any_of(run.parameters.begin(), run.parameters.end(),
+                                 [](const ComparedParameter& p) { return p.truth.has_value(); });
+  if (truth)
+    table.column({"true value", "true_value", "{:.6g}"}).column({"error [%]", "error_percent", "{:+.4g}"});
+  table.column({"deviation [%]", "deviation_percent", "{:.2g}"})
+      .column({"deviation / bound", "bound_ratio", "{:.3f}"});
+  for (const ComparedParameter& p : run.parameters) {
+    std::vector<Cell> row{p.estimate.name, p.estimate.unit, p.estimate.value, p.estimate.lower_95,
+                          p.estimate.upper_95};
+    if (truth) row.insert(row.end(), {or_nan(p.truth), or_nan(p.error_percent())});
+    row.insert(row.end(),
+               {100.0 * p.estimate.deviation / std::abs(p.estimate.value), or_nan(p.bound_ratio())});
+    table.row(row);
+  }
+  table.note =
+      "Deviation: standard deviation of the estimate. Bound: the least that the record and what was known "
+      "before allow (Cramer-Rao)." +
+      mass_note(run, record);
+  return table;
+}
+
+/// Of all runs, each once.
+std::vector<std::string> parameter_names(const Comparison& comparison) {
+  std::vector<std::string> names;
+  for (const ComparedRun& run : comparison.runs)
+    for (const ComparedParameter& p : run.parameters)
+      if (std::find(names.begin(), names.end(), p.estimate.name) == names.end())
+        names.push_back(p.estimate.name);
+  return names;
+}
 
 void add_arrays(const Comparison& comparison, Results& results) {
   const bool alone = comparison.runs.size() == 1;

@@ -6,6 +6,11 @@
 
 namespace beamid::experiments {
 
+// Lags of channels with clocks of their own, for a report.
+
+/// The lags as a table and as "clocks" in the values; nothing where all channels keep one clock.
+void add_clocks(Results& results, const Comparison& comparison);
+
 /// Tables, figures, words and results.json keys.
 Results report(const Experiment& experiment, const Comparison& comparison);
 

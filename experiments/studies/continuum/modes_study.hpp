@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/progress.hpp"
 

@@ -5,9 +5,15 @@
 #include <vector>
 
 #include "experiments/identify/damping_law/damping_law.hpp"
-#include "experiments/studies/damping/report.hpp"
+#include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
+
+// The law of damping of one record as text, tables, figures and JSON.
+
+/// Tables, figures, words and results.json keys of `beamid identify --damping-law`.
+Results report(const Experiment& experiment, const Record& record, const std::string& record_name,
+               const DampingLawStudy& study);
 
 struct StudiedRecord {
   std::string name;

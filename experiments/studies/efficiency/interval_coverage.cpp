@@ -8,7 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/identify/higher_modes.hpp"
+#include "experiments/identify/analysis.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"

@@ -1,20 +1,19 @@
 #include "experiments/studies/efficiency/laboratory_records.hpp"
 
-#include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cctype>
 #include <cmath>
 #include <stdexcept>
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/identification_request.hpp"
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/record/write_record.hpp"
-#include "experiments/studies/efficiency/laboratory_identification.hpp"
 #include "experiments/studies/identify/record_report.hpp"
 #include "experiments/text/countdown.hpp"
 

@@ -68,4 +68,14 @@ Results report(const LaboratoryRecords& all);
 /// @throws std::invalid_argument when the number is not one of the study's.
 Results examine(const LaboratorySettings& settings, int number);
 
+// One laboratory record identified, with the report that a user gets.
+
+struct LaboratoryIdentification {
+  IdentifiedTest found;
+  LaboratoryRecord record;
+  Results results;  ///< of `identify`; empty where it refused
+};
+
+LaboratoryIdentification identify_laboratory_test(const LaboratoryTest& test);
+
 }  // namespace beamid::experiments

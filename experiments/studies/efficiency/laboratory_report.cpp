@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "experiments/record/write_record.hpp"
-#include "experiments/studies/efficiency/laboratory_identification.hpp"
+#include "experiments/studies/efficiency/laboratory_records.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/config/read_acquisition.hpp"
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/read_simulation.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
@@ -95,13 +95,13 @@ CantileverMode first_mode(const std::string& beam, int elements) {
 }
 
 /// The lines of one [[sensors]] or [acquisition] table.
-struct RecordLines {
+struct FileLines {
   std::string text;
 
   void add(const char* key, double value) { text += fmt::format("{} = {:.4g}\n", key, value); }
 };
 
-void spoil_sensor(const std::vector<RecordKind>& kinds, Draw& draw, RecordLines& sensor) {
+void spoil_sensor(const std::vector<RecordKind>& kinds, Draw& draw, FileLines& sensor) {
   const auto has = [&](RecordKind kind) {
     return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
   };
@@ -125,7 +125,7 @@ std::string logger(const std::vector<RecordKind>& kinds, double pretrigger, Draw
   const auto has = [&](RecordKind kind) {
     return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
   };
-  RecordLines lines{"[acquisition]\nforce = false\n"};
+  FileLines lines{"[acquisition]\nforce = false\n"};
   if (pretrigger > 0) lines.add("pretrigger_s", pretrigger);
   if (has(RecordKind::jitter)) {
     lines.add("jitter", 0.3);
@@ -233,7 +233,7 @@ LaboratoryTest laboratory_test(std::uint64_t seed, int number) {
   rig += start.toml;
   const std::string place = "[[sensors]]\nname = \"tip\"\nquantity = \"acceleration\"\n" +
                             fmt::format("position_m = {:.4g}\n", beam.length);
-  RecordLines sensor{place};
+  FileLines sensor{place};
   sensor.add("noise_m_per_s2", noise_share * start.amplitude * w * w);
   spoil_sensor(test.kinds, draw, sensor);
   std::string sensors = sensor.text;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/rig/acquisition.hpp"
 
 namespace beamid::experiments {

@@ -1,14 +1,52 @@
 // What a filter shows about itself, as numbers, words and pictures.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/identified_parameters.hpp"
+#include "experiments/models/joint_model.hpp"
 #include "experiments/results/figure.hpp"
+#include "experiments/results/results.hpp"
 #include "filters/diagnostics.hpp"
+#include "filters/gaussian.hpp"
 
 namespace beamid::experiments {
+
+// The numbers of an identification, as they stand in results.json.
+
+/// The keys of results.json.
+nlohmann::ordered_json values(const RecordIdentification& found, const Record& record);
+
+/// All that was set, given or worked out.
+nlohmann::ordered_json configuration(const Experiment& experiment, const Record& record,
+                                     const RecordIdentification& found, const std::string& record_name);
+
+// What the whole record says of every instant, as a file and a picture.
+
+/// What a filter and a smoother made of a record.
+struct SmoothedRecord {
+  const Eigen::VectorXd& time;  ///< of the samples (N) [s]
+  const JointModel& model;
+  const std::vector<filters::Gaussian>& filtered;  ///< (N)
+  const std::vector<filters::Gaussian>& smoothed;  ///< (N)
+};
+
+/// smoothed.csv: time_s, then mean and standard deviation of every state at every sample.
+Attachment smoothed_history(const SmoothedRecord& record);
+
+/// The first coordinate over six cycles of the frequency, up to three unknowns over the record: the filter's
+/// and the smoother's, with bands of 95 %.
+Figure smoothed_figure(const SmoothedRecord& record, double frequency_hz);
+
+// The report of one record identified with any model but K and C of a free decay.
+
+/// That of a comparison of one run, its status, what the filter's innovations say, and what was asked for
+/// beside it: a smoother's history, the batch estimate.
+Results identification_report(const Experiment& experiment, const Comparison& found);
 
 /// Keys log_likelihood, whiteness (of each output), innovation_histogram, information.
 /// @param outputs names of the measured channels (p)

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "experiments/results/signal_panels.hpp"
-#include "experiments/signal/amplitude_spectrum.hpp"
-#include "experiments/studies/inspect/inspection_words.hpp"
+#include "experiments/signal/spectrum.hpp"
+#include "experiments/studies/inspect/inspection_report.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/studies/inspect/inspection_words.hpp"
+#include "experiments/studies/inspect/inspection_report.hpp"
 
 namespace beamid::experiments {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "experiments/results/signal_panels.hpp"
-#include "experiments/signal/amplitude_spectrum.hpp"
+#include "experiments/signal/spectrum.hpp"
 #include "experiments/studies/modal/report.hpp"
 
 namespace beamid::experiments {

@@ -3,7 +3,6 @@
 #include <limits>
 #include <numbers>
 
-#include "experiments/studies/paper/errors.hpp"
 #include "experiments/studies/paper/report.hpp"
 
 namespace beamid::experiments::paper {

@@ -1,5 +1,4 @@
 // Tables of what goes wrong besides the discretisation.
-#include "experiments/studies/paper/errors.hpp"
 #include "experiments/studies/paper/report.hpp"
 
 namespace beamid::experiments::paper {

@@ -5,7 +5,6 @@
 
 #include "experiments/results/signal_panels.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
-#include "experiments/studies/paper/errors.hpp"
 #include "experiments/studies/paper/report.hpp"
 #include "fem/assembly.hpp"
 

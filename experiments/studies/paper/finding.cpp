@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/studies/paper/errors.hpp"
 #include "experiments/studies/paper/report.hpp"
 
 namespace beamid::experiments::paper {

@@ -1,7 +1,6 @@
 // Tables of the simulated oscillator.
 #include <limits>
 
-#include "experiments/studies/paper/errors.hpp"
 #include "experiments/studies/paper/report.hpp"
 
 namespace beamid::experiments::paper {

@@ -1,13 +1,137 @@
 // The study's outcome as tables, figures, words and numbers.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <array>
+#include <cstdint>
+#include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "experiments/models/discretisation_bias.hpp"
+#include "experiments/models/oscillator.hpp"
+#include "experiments/results/figure.hpp"
 #include "experiments/results/results.hpp"
-#include "experiments/studies/paper/outcome.hpp"
+#include "experiments/results/table.hpp"
+#include "experiments/studies/paper/monte_carlo.hpp"
+#include "experiments/studies/paper/numerical_validation.hpp"
+#include "experiments/studies/paper/predictions.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::experiments::paper {
+
+// Errors as the study reports them: in per cent of a reference oscillator.
+
+inline double stiffness_error(const Oscillator& found, const Oscillator& reference) {
+  return percent(found.stiffness, reference.stiffness);
+}
+
+inline double damping_error(const Oscillator& found, const Oscillator& reference) {
+  return percent(found.damping, reference.damping);
+}
+
+// Everything the paper's study finds, before it is put into words, tables and figures.
+
+// The bias of forward Euler on the paper's oscillator against the covariances of its filter.
+//
+// On one channel and without process noise the filter ends where its innovations vanish, on g^-1 (e^(lambda
+// dt)). On two channels it weighs two histories that one wrong model cannot both follow. With process noise
+// on the motion it forgets the past and fits every single step instead, v+ = Phi_21 x + Phi_22 v, so that
+//
+//     K_f = -Phi_21 M / dt,   C_f = (1 - Phi_22) M / dt,   C_f - C = K dt (1 - 4 xi^2) / 2 + ...
+//
+// where Phi = e^(A dt) is the exact step: half of K dt.
+
+/// What forward Euler finds that is fitted to single steps of an exact motion.
+Oscillator seen_step_by_step(const Oscillator& truth, double interval);
+
+/// The filter of table 2 with one covariance changed, after a release of 12 mm.
+struct CovarianceCase {
+  std::string varied;  ///< which one, with its unit
+  double value = 0.0;
+  double stiffness_error_percent = 0.0, damping_error_percent = 0.0;
+};
+
+struct CovarianceOutcome {
+  std::vector<CovarianceCase> cases;      ///< R, Q and P0, a value each
+  std::vector<CovarianceCase> curve;      ///< Q alone, closely spaced
+  Oscillator truth, whole, step_by_step;  ///< truth, and both closed forms
+};
+CovarianceOutcome vary_covariances();
+
+Table covariance_table(const CovarianceOutcome& outcome);
+Figure covariance_figure(const CovarianceOutcome& outcome);
+
+// Other causes that could have made C wrong, one at a time, before an exact filter.
+
+/// What the exact filter makes of the five beams when one thing is done wrong to a clean first mode.
+struct AlternativeCase {
+  std::string name;
+  Eigen::VectorXd damping_error_percent;        ///< without process noise (5)
+  Eigen::VectorXd noisy_damping_error_percent;  ///< Q of the motion 1e-8 per step (5)
+  Eigen::VectorXd stiffness_error_percent;      ///< without process noise (5)
+};
+
+inline constexpr double alternative_process_variance = 1e-8;
+
+/// @param beams the five
+std::vector<AlternativeCase> examine_alternatives(const std::vector<const BeamCase*>& beams);
+
+Table alternative_table(const std::vector<AlternativeCase>& cases);
+
+/// A filter and how it moves: the paper's own first, then what cures it.
+struct Variant {
+  const char* filter;
+  const char* scheme;
+  const char* label;
+};
+inline constexpr std::array<Variant, 4> variants{{{"ekf", "forward_euler", "EKF, forward Euler"},
+                                                  {"ekf", "exponential", "EKF, exact"},
+                                                  {"ukf", "forward_euler", "UKF, forward Euler"},
+                                                  {"ukf", "exponential", "UKF, exact"}}};
+
+/// One discretisation on the simulated oscillator.
+struct SchemeOutcome {
+  std::string scheme;
+  Oscillator predicted;              ///< closed form
+  Identification ekf, ukf;           ///< with the paper's own settings (table 2)
+  Identification displacement_only;  ///< EKF, with noise so small that only the discretisation is left
+};
+
+/// One beam, measured, processed and identified.
+struct BeamOutcome {
+  BeamCase beam;
+  BeamSettings settings;
+  ReferenceAnalysis analysis;
+  filters::Measurements motion;              ///< processed displacement and velocity
+  std::array<Identification, 4> identified;  ///< by the variants
+  std::array<Oscillator, 4> predicted;       ///< what the variants' schemes see of the reference
+  /// Exact EKF with the paper's wide prior: on the true motion, after its own processing, after a zero-phase
+  /// high-pass.
+  Identification wide_true, wide_processed, wide_zero_phase;
+  Identification wide_euler;  ///< forward Euler after the paper's own processing: the chain of 2009
+  Identification zero_phase;  ///< exact EKF, tuned processing made zero-phase, both ends left out
+  TrialStatistics trials;
+};
+
+struct Outcome {
+  std::uint64_t seed = 0;
+  Oscillator truth;  ///< of the simulated oscillator
+  std::vector<SchemeOutcome> schemes;
+  /// Forward Euler with the variance of K and C as printed, 10^-5, after a release of 12 mm and of 1 m.
+  Identification literal_variance, literal_variance_large;
+  std::vector<BeamOutcome> beams;
+  std::vector<DigitCase> digits;        ///< how specific the published digits are
+  CovarianceOutcome covariances;        ///< the bias against R, Q and P0
+  std::vector<ChannelCase> channels;    ///< what the innovations show
+  std::vector<Prediction> predictions;  ///< of the measured beams, nothing assumed
+  std::vector<AlternativeCase> alternatives;
+  StartOutcome start;  ///< S(0.65), the settings of 2009 and where the record starts
+  StepOutcome step;    ///< S(11.8), the same record at longer steps
+};
+
+/// Runs it all. @param trials seeded repetitions per beam. @param progress is told what is being done.
+Outcome investigate(std::uint64_t seed, int trials, const Progress& progress);
 
 /// Modal analysis: tip mass, first frequency, damping ratio (its table 1).
 Table table_1(const Outcome& outcome);

@@ -1,4 +1,3 @@
-#include "experiments/studies/paper/errors.hpp"
 #include "experiments/studies/paper/report.hpp"
 
 namespace beamid::experiments::paper {

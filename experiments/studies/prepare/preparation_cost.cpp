@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/modal/damped_sine_fit.hpp"
+#include "experiments/modal/dominant_mode.hpp"
 #include "experiments/modal/logarithmic_decrement.hpp"
 #include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 
 namespace beamid::experiments {
 

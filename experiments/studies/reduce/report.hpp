@@ -1,16 +1,136 @@
 // What `beamid reduce` prints and writes.
 #pragma once
 
+#include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
 #include "experiments/results/results.hpp"
-#include "experiments/studies/reduce/reduction_comparison.hpp"
+#include "experiments/studies/reduce/release_decay.hpp"
+#include "experiments/text/progress.hpp"
+#include "fem/damping.hpp"
+#include "fem/modes.hpp"
+#include "reduction/reduction.hpp"
 
 namespace beamid::experiments {
+
+// Frequency responses of two models, sampled so that no resonance of either is missed.
+
+/// Frequencies from `from` to `to` [Hz], even on a logarithmic scale, and about each resonance closer
+/// together the nearer to it: a step at the peak is a fortieth of its half-power width.
+/// @param angular_frequency of the modes of every model [rad/s], zeros left aside.
+Eigen::VectorXd response_grid(double from, double to, const std::vector<Eigen::VectorXd>& angular_frequency,
+                              const fem::DampingLaw& damping);
+
+struct ResponseDifference {
+  double relative = 0.0;  ///< sqrt(integral (|H_r| - |H|)^2 df / integral |H|^2 df)
+  double worst_db = 0.0;  ///< 20 log10 |H_r / H|, where its magnitude is largest
+  double worst_hz = 0.0;  ///< NaN where nothing differs
+};
+
+/// @param full, reduced magnitudes at the frequencies, ascending (N).
+ResponseDifference compare_magnitudes(const Eigen::VectorXd& frequency_hz, const Eigen::VectorXd& full,
+                                      const Eigen::VectorXd& reduced);
+
+// Reductions of one beam against its mesh: what each of them keeps.
+
+// What a model of a beam does, full or reduced: the numbers in which models are compared.
+
+/// Its modes, and those on the mesh.
+struct ModelModes {
+  fem::Modes modes;        ///< the lowest k of the model
+  Eigen::MatrixXd shapes;  ///< psi = Phi z (n x k), psi^T M psi = 1
+
+  Eigen::Index elastic() const { return modes.size() - modes.rigid; }  ///< modes with strain
+};
+
+/// The lowest modes, at least so many and all below a frequency, as far as the model has them; 200 at most.
+fem::Modes lowest_modes(const fem::StructuralSystem& system, Eigen::Index at_least, double below_hz);
+
+/// The same, lifted to the mesh.
+ModelModes lowest_modes(const reduction::ReducedModel& model, Eigen::Index at_least, double below_hz);
+
+/// Seen at output 0; NaN where the model can move without strain, or its mode does not move the point.
+struct ModelBehaviour {
+  double static_stiffness = 0.0;  ///< K, a force at input 0 per deflection there [N/m]
+  double modal_mass = 0.0;        ///< M of its first mode with strain, scaled to 1 there [kg]
+  Eigen::VectorXd receptance;     ///< magnitude at the frequencies asked for [m/N]
+  fem::Motion decay;              ///< after the release
+  double decay_seconds = 0.0;     ///< that it took, by the clock [s]
+};
+
+/// @param frequency_hz of the receptance, from input 0 to output 0.
+/// @param damping of the receptance; that of the decay is the test's.
+ModelBehaviour behaviour_of(const fem::StructuralSystem& system, const ModelModes& modes,
+                            const fem::SparseMatrix& mass, const fem::DampingLaw& damping,
+                            const Eigen::VectorXd& frequency_hz, const ReleaseTest& test);
+
+struct ReductionComparisonSettings {
+  int modes = 5;       ///< compared, the lowest with strain
+  double band = 20.0;  ///< frequency responses are compared from a fifth of the first frequency to this many
+};
+
+/// One reduction against the mesh. Errors are relative: 0.01 is a per cent, positive where the reduced model
+/// has more. NaN: there is no such number.
+struct ComparedReduction {
+  Choice choice;
+  std::string label;      ///< its name, and what tells it from others of that name
+  Eigen::Index size = 0;  ///< r
+  bool identity = false;  ///< nothing was reduced: there are no shapes to store
+
+  std::vector<Eigen::Index> partner;  ///< of each mode compared: number of the model's mode; -1: none
+  Eigen::VectorXd frequency_hz;       ///< of that (K)
+  Eigen::VectorXd frequency_error;    ///< (K)
+  Eigen::VectorXd mac;  ///< weighted with the mass (K); the best there is where there is no partner
+  Eigen::VectorXd deflection_mac;  ///< plain, of deflections at the nodes (K)
+  Eigen::VectorXd comac;           ///< of the modes that have a partner, at the nodes
+
+  ModelBehaviour behaviour;
+  double static_stiffness_error = 0.0;
+  double modal_mass_error = 0.0;
+  double response_error = 0.0;      ///< || |H_r| - |H| || / || |H| || over the band, L2
+  double worst_response = 0.0;      ///< largest | log10 |H_r / H| |, in decibels
+  double worst_response_hz = 0.0;   ///< where
+  double displacement_error = 0.0;  ///< ||x_r - x|| / ||x|| over the record
+  double acceleration_error = 0.0;
+
+  Eigen::VectorXd significance;  ///< Bases::significance
+  std::string significance_name;
+  ModelModes modes;             ///< for pictures, not more than were compared
+  double reduce_seconds = 0.0;  ///< that it took to reduce, by the clock [s]
+};
+
+struct ReductionComparison {
+  ReductionComparisonSettings settings;
+  fem::StructuralSystem system;  ///< of the mesh
+  fem::Point observed;           ///< output 0 and input 0
+  fem::DampingLaw damping;
+  bool damping_assumed = false;  ///< the experiment describes none
+  ModelModes modes;              ///< of the mesh: those compared begin after the rigid ones
+  ModelBehaviour behaviour;
+  ReleaseTest release;
+  Eigen::VectorXd frequency_hz;  ///< of the frequency responses
+  std::vector<ComparedReduction> reductions;
+  std::vector<std::string> notes;
+
+  Eigen::Index compared() const;  ///< K
+  /// Frequency of compared mode i, from 0 [Hz].
+  double mode_hz(Eigen::Index i) const { return modes.modes.frequency_hz()[modes.modes.rigid + i]; }
+};
+
+/// @param choices in their order. Those without a place were not asked for: one that cannot reduce the beam
+/// is left out with a note.
+/// @param folder in which shape files are looked for.
+/// @throws InputError at the place of a choice that cannot reduce the beam, and as read_shape();
+/// std::invalid_argument when the beam or its damping is impossible.
+ReductionComparison compare_reductions(const Experiment& experiment, const std::vector<Choice>& choices,
+                                       const ReductionComparisonSettings& settings,
+                                       const std::filesystem::path& folder, const Progress& progress);
 
 /// Tables reductions, equivalents, frequency_errors, mac, and significance where a method has one; comac.csv;
 /// results.json with reductions[]; figures; a mesh for ParaView of the modes of each model.

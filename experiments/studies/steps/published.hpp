@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "experiments/models/divergence.hpp"
+#include "experiments/models/estimates.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::experiments {

@@ -1,7 +1,7 @@
 // What one record at several steps shows, for a person and for programs.
 #pragma once
 
-#include "experiments/config/experiment.hpp"
+#include "experiments/config/channel_places.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/studies/steps/steps.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/identify/compare/comparison.hpp"
-#include "experiments/models/divergence.hpp"
+#include "experiments/models/estimates.hpp"
 
 namespace beamid::experiments {
 

@@ -1,25 +1,63 @@
 #include "experiments/studies/sweep/perform.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/studies/sweep/report.hpp"
-#include "experiments/sweep/job.hpp"
-#include "experiments/sweep/journal.hpp"
+#include "experiments/sweep/manifest.hpp"
 #include "experiments/sweep/repeats.hpp"
-#include "experiments/sweep/sweep.hpp"
+#include "experiments/sweep/rows.hpp"
 #include "experiments/text/countdown.hpp"
 #include "experiments/text/memory_need.hpp"
 
 namespace beamid::experiments {
 namespace {
 
+// What another process has to know to run cases of a sweep.
+
+struct SweepJob {
+  SweepSource source;
+  SweepPlan plan;
+};
+
+/// The manifest, and where the files are.
+std::string job_text(const SweepSource& source, const nlohmann::ordered_json& manifest);
+
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string job_text(const SweepSource& source, const Json& manifest) {
+  const auto place = [](const fs::path& file) { return fs::absolute(file).string(); };
+  Json job{{"manifest", manifest}, {"config", place(source.config.file)}};
+  if (source.truth) job["truth"] = place(source.truth->file);
+  if (source.record) job["record"] = place(*source.record);
+  return job.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// @throws std::runtime_error when the same job has another hash here: this process is of another version, or
+/// finds other contents in the files that the experiment names.
+SweepJob read_job(const std::string& text) {
+  const Json given = Json::parse(text), &manifest = given.at("manifest");
+  SweepJob job;
+  job.source.config = {given.at("config").get<std::string>(), manifest.at("experiment").get<std::string>()};
+  if (given.contains("truth"))
+    job.source.truth = {given.at("truth").get<std::string>(), manifest.at("truth").get<std::string>()};
+  if (given.contains("record")) job.source.record = given.at("record").get<std::string>();
+  job.plan = plan_of(manifest, "manifest.json");
+  const std::string here = manifest_of(job.source, job.plan, {})["hash"], there = manifest.at("hash");
+  if (here != there)
+    throw std::runtime_error(
+        fmt::format("the sweep has the hash {} here; expected {}, with the same version of beamid and the "
+                    "same contents of the files that the experiment names",
+                    here, there));
+  return job;
+}
 
 /// What is wrong with the files themselves is better said once than in every case.
 void read_once(const SweepSource& source) {

@@ -7,7 +7,7 @@
 
 #include "experiments/results/results.hpp"
 #include "experiments/sweep/manifest.hpp"
-#include "experiments/sweep/processes.hpp"
+#include "experiments/sweep/rows.hpp"
 #include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
@@ -15,7 +15,7 @@ namespace beamid::experiments {
 struct SweepSettings {
   Shard shard;
   int threads = 1;
-  std::optional<std::filesystem::path> journal;  ///< folder for finished cases (journal.hpp); absent: memory
+  std::optional<std::filesystem::path> journal;  ///< folder for finished cases (manifest.hpp); absent: memory
   std::optional<std::filesystem::path> done;  ///< cases.csv of the same sweep, whose cases are not repeated
   bool resume = false;                        ///< the journal
   Processes* processes = nullptr;             ///< that share the work; absent: threads of this one

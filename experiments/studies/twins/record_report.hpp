@@ -3,8 +3,14 @@
 
 #include "experiments/identify/twins/record_twins.hpp"
 #include "experiments/results/results.hpp"
+#include "experiments/studies/update/report.hpp"
 
 namespace beamid::experiments {
+
+// Sets of parameters with the same modes, as a user sees them.
+
+/// The sets first, then how complete they are and what would decide.
+Results twins_report(const Experiment& experiment, const UpdateStudy& study);
 
 /// The first of the run's warnings where other sets explain the record as well; else nothing.
 void warn_of_twins(Comparison& found, const RecordTwins& twins);

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "experiments/config/key_page.hpp"
+#include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 

@@ -1,5 +1,5 @@
 // Oracles: the files themselves; what is kept of one, written as a file and read again, keeps the same.
-#include "experiments/config/effective_keys.hpp"
+#include "experiments/config/description.hpp"
 
 #include <gmock/gmock.h>
 

@@ -6,7 +6,6 @@
 
 #include <set>
 
-#include "experiments/config/key_page.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 

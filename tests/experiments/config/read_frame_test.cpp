@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include "experiments/config/frame_description.hpp"
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/structure_description.hpp"
 
 #include "tests/experiments/config/temporary_file.hpp"
 

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <random>
 
-#include "experiments/identify/amplitude_law.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/studies/identify/record_report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"

@@ -1,6 +1,6 @@
 // Several records of one beam. Oracles: one least-squares fit of all of them, and the truth they were
 // simulated with.
-#include "experiments/identify/joint_identification.hpp"
+#include "experiments/identify/joint_comparison.hpp"
 #include "experiments/studies/identify/joint_report.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The first lines of a result: what contradicts it, and why. Oracles: the closed form of a scheme, the other
 // mode that was put in, the prior that was stated wrongly.
-#include "experiments/identify/judgement.hpp"
+#include "experiments/identify/record_identification.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,9 +8,8 @@
 
 #include "experiments/identify/compare/chosen_channels.hpp"
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/record_inputs.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/one_coordinate.hpp"
+#include "experiments/models/oscillator.hpp"
 #include "filters/batch_estimator.hpp"
 
 namespace beamid::experiments::measured_force_test {

@@ -8,7 +8,7 @@
 #include "experiments/identify/record_identification.hpp"
 #include "experiments/record/read_record.hpp"
 #include "experiments/studies/identify/record_report.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 
 namespace beamid::experiments::measured_record_test {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "fem/assembly.hpp"
-#include "fem/gauge_row.hpp"
 #include "fem/parametric_system.hpp"
 
 namespace beamid::experiments::model_setting_test {

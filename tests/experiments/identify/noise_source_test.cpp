@@ -1,13 +1,13 @@
 // Noise from the record, and the batch estimate beside the filter. Oracle: what the records were simulated
 // with.
-#include "experiments/identify/noise_source.hpp"
+#include "experiments/identify/model_setting.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "experiments/identify/higher_modes.hpp"
+#include "experiments/identify/analysis.hpp"
 #include "experiments/studies/identify/record_report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 

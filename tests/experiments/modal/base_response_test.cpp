@@ -1,5 +1,5 @@
 // Oracle: the oscillators that made the motion, integrated in closed form here.
-#include "experiments/modal/base_response.hpp"
+#include "experiments/modal/channel_fault.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "experiments/modal/damped_sine_fit.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 
 namespace beamid::experiments::dominant_mode_test {

@@ -1,11 +1,11 @@
 // Oracle: the oscillator that the force was put on, exactly.
-#include "experiments/modal/forced_mode.hpp"
+#include "experiments/modal/mode_by_mode.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "experiments/identify/recorded_frequency.hpp"
+#include "experiments/identify/analysis.hpp"
 #include "tests/experiments/forced_oscillator.hpp"
 
 namespace beamid::experiments::forced_mode_test {

@@ -49,7 +49,7 @@ std::optional<DecayJump> decay_jump_of(const VectorXd& signal) {
   return decay_jump(signal, interval, dominant_mode(signal, interval, settings));
 }
 
-// By a fifth at least (frequency_jump.hpp), or else by a few per cent (frequency_step.hpp).
+// By a fifth at least (frequency_jump.hpp), or else by a few per cent (decay_jump.cpp).
 std::optional<FrequencyJump> jump_of(const VectorXd& signal) {
   const auto found = decay_jump_of(signal);
   return found && found->frequency() ? std::optional(*found->frequency()) : std::nullopt;

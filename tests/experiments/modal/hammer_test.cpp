@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "experiments/modal/response_peaks.hpp"
-#include "experiments/modal/study/hammer_mass.hpp"
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/signal/random.hpp"
 

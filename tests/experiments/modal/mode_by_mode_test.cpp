@@ -7,7 +7,7 @@
 
 #include "experiments/modal/half_power.hpp"
 #include "experiments/modal/modal_method.hpp"
-#include "experiments/modal/spectral_peaks.hpp"
+#include "experiments/modal/mode_by_mode.hpp"
 #include "experiments/signal/random.hpp"
 
 namespace beamid::experiments::mode_by_mode_test {

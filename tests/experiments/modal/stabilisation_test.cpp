@@ -1,15 +1,15 @@
 // Reading stabilisation diagrams, and all modes of a decay by least squares.
-#include "experiments/modal/stabilisation.hpp"
+#include "experiments/modal/pole.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "experiments/modal/damped_sine_fit.hpp"
-#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/modal/dominant_mode.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/modal/modal_method.hpp"
+#include "experiments/modal/shape_fit.hpp"
 #include "experiments/signal/random.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 #include "tests/experiments/modal/shaken_chain.hpp"

@@ -1,6 +1,6 @@
 // Oracles: the conditions by hand; of a step's length the closed form g^-1(e^(lambda dt)) / dt of forward
 // Euler and of the classical Runge-Kutta scheme.
-#include "experiments/models/divergence.hpp"
+#include "experiments/models/estimates.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

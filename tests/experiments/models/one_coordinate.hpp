@@ -1,7 +1,7 @@
 // What a reduction to one coordinate leaves.
 #pragma once
 
-#include "fem/structural_system.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::test {
 

@@ -9,7 +9,7 @@
 
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/one_coordinate.hpp"
+#include "experiments/models/oscillator.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
 #include "filters/batch_estimator.hpp"
 #include "filters/filter_run.hpp"

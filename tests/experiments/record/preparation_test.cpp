@@ -13,11 +13,11 @@
 #include "experiments/record/write_record.hpp"
 #include "experiments/rig/virtual_rig.hpp"
 #include "experiments/signal/butterworth.hpp"
-#include "experiments/signal/cubic_spline.hpp"
 #include "experiments/signal/frequency_calculus.hpp"
 #include "experiments/signal/integration.hpp"
+#include "experiments/signal/interpolation.hpp"
 #include "experiments/signal/random.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 

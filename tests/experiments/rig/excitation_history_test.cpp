@@ -8,7 +8,7 @@
 
 #include "experiments/text/input_error.hpp"
 #include "fem/assembly.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 
 namespace beamid::experiments::excitation_history_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "experiments/signal/band_limited.hpp"
+#include "experiments/signal/interpolation.hpp"
 
 #include <gtest/gtest.h>
 

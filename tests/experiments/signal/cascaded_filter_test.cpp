@@ -1,11 +1,10 @@
-#include "experiments/signal/cascaded_filter.hpp"
+#include "experiments/signal/butterworth.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/signal/butterworth.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 
 namespace beamid::experiments::cascaded_filter_test {

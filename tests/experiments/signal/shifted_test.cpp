@@ -1,5 +1,5 @@
 // Oracle: the sine itself, earlier.
-#include "experiments/signal/shifted.hpp"
+#include "experiments/signal/interpolation.hpp"
 
 #include <gtest/gtest.h>
 

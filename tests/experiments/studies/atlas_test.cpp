@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "experiments/identify/record_inputs.hpp"
+#include "experiments/identify/model_setting.hpp"
 #include "experiments/studies/atlas/input_hold.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
 

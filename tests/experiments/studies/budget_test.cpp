@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "experiments/studies/paper/monte_carlo.hpp"
-#include "experiments/studies/paper/test_beams.hpp"
 
 namespace beamid::experiments::budget_test {
 namespace {

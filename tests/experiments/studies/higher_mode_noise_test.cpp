@@ -11,8 +11,8 @@
 #include <sstream>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "experiments/studies/noise/oscillator_bank.hpp"
-#include "experiments/studies/paper/test_beams.hpp"
+#include "experiments/studies/noise/treatment.hpp"
+#include "experiments/studies/paper/monte_carlo.hpp"
 
 namespace beamid::experiments::higher_mode_noise_test {
 namespace {

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "experiments/sweep/journal.hpp"
 #include "experiments/sweep/manifest.hpp"
 #include "experiments/text/input_error.hpp"
 #include "tests/experiments/config/temporary_file.hpp"

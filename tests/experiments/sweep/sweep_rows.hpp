@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/sweep/sweep.hpp"
+#include "experiments/sweep/rows.hpp"
 
 namespace beamid::experiments {
 

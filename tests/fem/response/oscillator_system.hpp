@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/structural_system.hpp"
+#include "fem/damping.hpp"
 
 namespace beamid::test {
 

@@ -6,8 +6,6 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "fem/response/diagonal_product.hpp"
-
 namespace beamid::symmetric_factor_test {
 namespace {
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "fem/modes.hpp"
-#include "fem/solvers/mixed_solver.hpp"
 #include "fem/space_frame.hpp"
 #include "fem/stiffness_solver.hpp"
 

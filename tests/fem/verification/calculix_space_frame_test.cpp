@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/modes.hpp"
-#include "fem/section_shape.hpp"
+#include "fem/section.hpp"
 #include "fem/space_frame.hpp"
 
 namespace beamid::fem::calculix_space_frame_test {

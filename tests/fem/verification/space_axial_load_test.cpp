@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem/buckling.hpp"
 #include "fem/modes.hpp"
 #include "fem/space_frame.hpp"
 #include "fem/stiffness_solver.hpp"

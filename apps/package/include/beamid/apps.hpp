@@ -1,4 +1,4 @@
 // The whole command, with the methods that the program registers. Component apps.
 #pragma once
 
-#include "apps/command_line.hpp"
+#include "apps/command.hpp"

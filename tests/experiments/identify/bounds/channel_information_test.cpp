@@ -1,5 +1,5 @@
 // Oracle: the information about the whole state, the dense matrix of filters::fisher_information(), inverted.
-#include "experiments/identify/bounds/channel_information.hpp"
+#include "experiments/identify/bounds/identifiability.hpp"
 
 #include <gtest/gtest.h>
 

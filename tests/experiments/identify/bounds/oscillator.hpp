@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "experiments/identify/bounds/parameter_bounds.hpp"
+#include "experiments/identify/bounds/identifiability.hpp"
 
 namespace beamid::test {
 

@@ -1,6 +1,6 @@
 // Two channels of one free decay by clocks of their own. Oracle: the same motion, simulated at two sampling
 // rates, of which each channel takes one, so that nothing is interpolated.
-#include "experiments/modal/clock_scatter.hpp"
+#include "experiments/modal/joint_decay_fit.hpp"
 
 #include <gmock/gmock.h>
 

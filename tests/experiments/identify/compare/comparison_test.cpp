@@ -13,7 +13,7 @@
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/models/discretisation_bias.hpp"
-#include "experiments/studies/compare/comparison_words.hpp"
+#include "experiments/studies/compare/comparison_figures.hpp"
 #include "fem/response/response.hpp"
 
 namespace beamid::experiments::comparison_test {

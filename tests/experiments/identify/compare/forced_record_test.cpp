@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "experiments/identify/compare/comparison.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 #include "fem/exact/exact_cantilever.hpp"
 #include "tests/experiments/forced_oscillator.hpp"
 #include "tests/fem/five_beams.hpp"

@@ -10,7 +10,7 @@
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/joint_comparison.hpp"
 #include "experiments/signal/random.hpp"
-#include "experiments/studies/identify/joint_comparison_report.hpp"
+#include "experiments/studies/identify/joint_report.hpp"
 
 namespace beamid::experiments::readings_test {
 namespace {

@@ -8,7 +8,7 @@
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/read_reduction.hpp"
 #include "experiments/identify/compare/comparison.hpp"
-#include "experiments/studies/compare/comparison_words.hpp"
+#include "experiments/studies/compare/comparison_figures.hpp"
 
 namespace beamid::experiments::verdict_test {
 namespace {

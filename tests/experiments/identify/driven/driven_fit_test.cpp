@@ -11,7 +11,6 @@
 #include "experiments/identify/compare/comparison.hpp"
 #include "experiments/identify/compare/first_guess.hpp"
 #include "experiments/identify/driven/driven_fit.hpp"
-#include "experiments/identify/driven/section_scatter.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "tests/experiments/shaken_building.hpp"
 

@@ -1,5 +1,5 @@
 // Oracle: least squares over all measurements at once.
-#include "experiments/identify/family/shared_estimate.hpp"
+#include "experiments/identify/family/beam_family.hpp"
 
 #include <gtest/gtest.h>
 

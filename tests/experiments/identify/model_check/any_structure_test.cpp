@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/model_check/cause_model.hpp"
 #include "experiments/identify/model_check/model_check.hpp"
+#include "experiments/identify/model_check/shared_residual.hpp"
 #include "experiments/studies/check/report.hpp"
 #include "fem/modes.hpp"
 #include "tests/experiments/identify/update/update_cases.hpp"

@@ -1,5 +1,5 @@
 // A record as lines of its spectrum.
-#include "experiments/identify/parts/record_lines.hpp"
+#include "experiments/identify/parts/line_likelihood.hpp"
 
 #include <gtest/gtest.h>
 

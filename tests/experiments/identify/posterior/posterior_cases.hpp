@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/identify/posterior/modal_likelihood.hpp"
 #include "experiments/identify/posterior/posterior.hpp"
+#include "experiments/identify/posterior/posterior_study.hpp"
 #include "experiments/identify/update/modal_model.hpp"
 #include "tests/experiments/identify/update/update_cases.hpp"
 

@@ -1,5 +1,5 @@
 // Priors as functions of a standard normal number. Oracles: their closed forms, Simpson's rule, differences.
-#include "experiments/identify/posterior/prior_law.hpp"
+#include "experiments/identify/posterior/posterior_study.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/stream/sample_line.hpp"
+#include "experiments/identify/stream/sample_source.hpp"
 #include "experiments/identify/stream/streamed_identification.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 

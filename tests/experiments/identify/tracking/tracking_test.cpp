@@ -8,7 +8,6 @@
 #include <complex>
 #include <numbers>
 
-#include "experiments/identify/tracking/segments.hpp"
 #include "experiments/signal/random.hpp"
 #include "experiments/studies/track/report.hpp"
 

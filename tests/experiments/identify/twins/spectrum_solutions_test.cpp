@@ -1,6 +1,6 @@
 // All diagonal matrices with a wanted spectrum, against what searches find. Oracles: the two published
 // buildings, the closed form of the uniform one, Friedland's count n!, exhaustive multi-start.
-#include "experiments/identify/twins/spectrum_solutions.hpp"
+#include "experiments/identify/twins/twins.hpp"
 
 #include <gtest/gtest.h>
 

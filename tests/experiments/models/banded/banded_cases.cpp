@@ -4,10 +4,10 @@
 #include <random>
 
 #include "experiments/models/banded/continuum_motion.hpp"
-#include "fem/cantilever.hpp"
-#include "fem/frame_parameter.hpp"
+#include "fem/beam.hpp"
 #include "fem/matrix_system.hpp"
-#include "fem/triplets.hpp"
+#include "fem/parametric_system.hpp"
+#include "fem/structure.hpp"
 #include "tests/experiments/models/banded/dense_continuum.hpp"
 
 namespace beamid::experiments {

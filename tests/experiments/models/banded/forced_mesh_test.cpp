@@ -7,7 +7,7 @@
 
 #include "beamid/testing/oscillator.hpp"
 #include "experiments/models/banded/continuum_motion.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 #include "filters/batch_estimator.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/input_path.hpp"

@@ -7,8 +7,8 @@
 
 #include "experiments/models/banded/banded_step.hpp"
 #include "experiments/models/banded/continuum_motion.hpp"
-#include "fem/frame_parameter.hpp"
 #include "fem/modes.hpp"
+#include "fem/structure.hpp"
 #include "tests/experiments/models/banded/banded_cases.hpp"
 
 namespace beamid::experiments::frame_mesh_test {

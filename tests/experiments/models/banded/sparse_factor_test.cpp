@@ -1,4 +1,4 @@
-#include "experiments/models/banded/sparse_factor.hpp"
+#include "experiments/models/banded/step_factor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/assembly.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 #include "fem/frame.hpp"
 #include "tests/experiments/results/read_vtu.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "experiments/results/vtk/beam_grid.hpp"
-#include "fem/section_shape.hpp"
+#include "fem/section.hpp"
 
 namespace beamid::experiments::space_frame_picture_test {
 namespace {

@@ -1,5 +1,5 @@
 // Oracle: the amplitude a sine is made with.
-#include "experiments/signal/amplitude_spectrum.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 
 namespace beamid::experiments::modal_summary_test {
 namespace {

@@ -1,12 +1,10 @@
 // Oracle: the Cramer-Rao bound, which the rms error of an efficient estimator equals.
-#include "experiments/studies/efficiency/efficiency.hpp"
+#include "experiments/studies/efficiency/report.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
-
-#include "experiments/studies/efficiency/lengthening_passes.hpp"
 
 namespace beamid::experiments::efficiency_test {
 namespace {

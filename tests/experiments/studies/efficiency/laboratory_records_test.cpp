@@ -8,8 +8,8 @@
 #include <numbers>
 #include <set>
 
-#include "experiments/config/read_acquisition.hpp"
 #include "experiments/config/read_experiment.hpp"
+#include "experiments/config/read_simulation.hpp"
 #include "fem/exact/exact_cantilever.hpp"
 
 namespace beamid::experiments::laboratory_records_test {

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "experiments/models/discretisation_bias.hpp"
-#include "experiments/studies/paper/data_generator.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
 #include "tests/experiments/studies/paper/shared_outcome.hpp"
 

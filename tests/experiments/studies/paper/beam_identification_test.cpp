@@ -1,6 +1,6 @@
 // The five beams. Oracles: the exact continuum, the closed form of the discretisation's bias, and numbers of
 // an independent program, each named where it is used.
-#include "experiments/studies/paper/beam_identification.hpp"
+#include "experiments/studies/paper/monte_carlo.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The study, run once for all tests of a process.
 #pragma once
 
-#include "experiments/studies/paper/outcome.hpp"
+#include "experiments/studies/paper/report.hpp"
 
 namespace beamid::test {
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "experiments/config/read_reduction.hpp"
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"
 

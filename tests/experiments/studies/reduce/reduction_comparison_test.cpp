@@ -1,6 +1,6 @@
 // Oracles: the table of the five test beams (frequency errors of Rayleigh's shapes, equivalent masses, modal
 // amplitudes after a release), computed outside this project; models that equal the mesh by construction.
-#include "experiments/studies/reduce/reduction_comparison.hpp"
+#include "experiments/studies/reduce/report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Oracles: one oscillator, whose receptance and half-power width have closed forms; decibels by hand.
-#include "experiments/studies/reduce/response_comparison.hpp"
+#include "experiments/studies/reduce/report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The steel cantilever that contracts are tested on: 1.10 m, 60 x 6 mm, 3.055 kg.
 #pragma once
 
-#include "fem/cantilever.hpp"
+#include "fem/beam.hpp"
 
 namespace beamid::test {
 
