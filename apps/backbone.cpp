@@ -1,9 +1,9 @@
 // beamid backbone: the force law of an oscillator out of windows of changing amplitude.
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/modal/study/decay_part.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/backbone/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/input_error.hpp"

@@ -6,9 +6,9 @@
 #include <iterator>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_beam.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/plausibility.hpp"
+#include "experiments/config/readers.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "apps/command.hpp"
 #include "apps/values.hpp"
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/toml_table.hpp"
 

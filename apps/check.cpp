@@ -5,16 +5,16 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
-#include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_modal_data.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/identify/model_check/model_check.hpp"
-#include "experiments/identify/plausibility.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/check/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/choice_text.hpp"

@@ -10,7 +10,7 @@
 #include "apps/values.hpp"
 #include "experiments/config/key_tables.hpp"
 #include "experiments/results/text.hpp"
-#include "experiments/text/clean_text.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/spelling.hpp"
 

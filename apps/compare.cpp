@@ -2,17 +2,16 @@
 #include <filesystem>
 
 #include "apps/beam_options.hpp"
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_reduction.hpp"
-#include "experiments/identify/compare/chosen_channels.hpp"
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/identification_request.hpp"
-#include "experiments/studies/compare/comparison_report.hpp"
+#include "experiments/config/readers.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/identification_request.hpp"
+#include "experiments/studies/compare/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/choice_text.hpp"
-#include "experiments/text/method_choice.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
 

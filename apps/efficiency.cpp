@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "experiments/studies/efficiency/interval_coverage.hpp"
 #include "experiments/studies/efficiency/laboratory_records.hpp"
 #include "experiments/studies/efficiency/report.hpp"

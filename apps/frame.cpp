@@ -3,9 +3,9 @@
 
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/studies/continuum/modes_study.hpp"
+#include "experiments/studies/continuum/report.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -1,8 +1,8 @@
 // beamid frf: frequency responses from point to point.
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
-#include "experiments/studies/continuum/frequency_response_report.hpp"
+#include "apps/command_parts.hpp"
+#include "experiments/studies/continuum/report.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -1,8 +1,8 @@
 // beamid identifiability: what a test can tell about a beam, before it is made.
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
-#include "experiments/config/read_reduction.hpp"
+#include "apps/command_parts.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/studies/bounds/report.hpp"
 
 namespace beamid::apps {

@@ -2,23 +2,20 @@
 #include <filesystem>
 
 #include "apps/command.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/identify_request.hpp"
-#include "apps/method_options.hpp"
 #include "apps/record_options.hpp"
-#include "apps/sensed_record.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/joint_comparison.hpp"
-#include "experiments/identify/plausibility.hpp"
-#include "experiments/identify/record_identification.hpp"
-#include "experiments/studies/compare/comparison_report.hpp"
-#include "experiments/studies/damping/compared_laws.hpp"
-#include "experiments/studies/identify/diagnostics_report.hpp"
-#include "experiments/studies/identify/joint_report.hpp"
-#include "experiments/studies/identify/record_report.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/joint_comparison.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
+#include "experiments/studies/compare/report.hpp"
+#include "experiments/studies/damping/report.hpp"
+#include "experiments/studies/identify/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/twins/record_report.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -56,15 +53,17 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
   if (!law.empty()) {
     results = report(experiment, record, name, study_damping_law(experiment, record, law, folder));
   } else {
-    Comparison found = identified(one, folder, progress);
     if (one.is_free_oscillator()) {
+      const Comparison found = identified(one, folder, progress);
       results = report(experiment, found.compared.record, name, oscillator_in(found));
       add_clocks(results, found);
     } else {
-      const RecordTwins twins = record_twins(experiment, found, folder);
-      warn_of_twins(found, twins);
-      results = identification_report(experiment, found);
-      add_twins(results, found.runs.at(0), twins);
+      const LikeliestSet answer = likeliest_set(experiment, folder, [&](const Experiment& started) {
+        return identify_with_model(started, one.compared(), folder, progress);
+      });
+      results = identification_report(experiment, answer.found);
+      if (!answer.exchanged.empty()) results.paragraph(answer.exchanged);
+      add_twins(results, answer.found.runs.at(0), answer.twins);
     }
   }
   for (const std::string& text : one.decisions()) results.paragraph(text);

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "apps/values.hpp"
 #include "experiments/config/failure_response.hpp"
@@ -16,11 +16,11 @@
 #include "experiments/config/structure_description.hpp"
 #include "experiments/identify/damping_law/damping_law.hpp"
 #include "experiments/identify/family/beam_family.hpp"
-#include "experiments/identify/plausibility.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/modal/study/modal_study.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
-#include "experiments/studies/identify/joint_report.hpp"
+#include "experiments/studies/identify/report.hpp"
 #include "experiments/text/spelling.hpp"
 #include "filters/smoother.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "apps/command.hpp"
 #include "apps/values.hpp"
-#include "experiments/identify/identification_request.hpp"
+#include "experiments/identify/engine/identification_request.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::apps {

@@ -2,7 +2,7 @@
 #include "experiments/record/inspect/inspection.hpp"
 #include "experiments/studies/inspect/inspection_report.hpp"
 
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 
 namespace beamid::apps {

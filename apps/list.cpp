@@ -6,15 +6,15 @@
 #include <string>
 
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/values.hpp"
 #include "experiments/config/key_tables.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/springs/spring_law.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
-#include "experiments/record/record_reader.hpp"
-#include "experiments/results/print.hpp"
+#include "experiments/record/record_table.hpp"
+#include "experiments/results/results.hpp"
 #include "experiments/results/table.hpp"
 #include "experiments/results/text.hpp"
 #include "experiments/studies/study.hpp"

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "apps/command.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -6,15 +6,12 @@
 #include <optional>
 #include <utility>
 
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/modal/study/driven_study.hpp"
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/modal/study/record_kind.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
-#include "experiments/studies/modal/driven_report.hpp"
-#include "experiments/studies/modal/event_report.hpp"
-#include "experiments/studies/modal/hammer_report.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/modal/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/choice_text.hpp"

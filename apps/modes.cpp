@@ -1,8 +1,8 @@
 // beamid modes: natural frequencies and mode shapes, each with what tells how far to trust it.
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
-#include "experiments/studies/continuum/modes_study.hpp"
+#include "apps/command_parts.hpp"
+#include "experiments/studies/continuum/report.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "apps/command.hpp"
 #include "experiments/config/key_tables.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/spelling.hpp"
 

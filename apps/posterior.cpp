@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_modal_data.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/identify/plausibility.hpp"
 #include "experiments/identify/sensing/sensing_model.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/studies/posterior/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/input_error.hpp"

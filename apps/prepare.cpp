@@ -1,5 +1,5 @@
 // beamid prepare: a record filtered, integrated, cut; and what that does to its frequency and damping.
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"

@@ -1,23 +1,44 @@
 #include "apps/record_options.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 
-#include "experiments/config/read_place.hpp"
-#include "experiments/record/record_reader.hpp"
+#include <fmt/format.h>
+
+#include "experiments/config/readers.hpp"
+#include "experiments/record/record_table.hpp"
 #include "experiments/record/units.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
+#include "experiments/studies/sensing/report.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::apps {
+
+using namespace experiments;
+
+Results sensed_record(const Experiment& experiment, const PreparedRecord& prepared,
+                      const std::filesystem::path& file, const std::filesystem::path& config,
+                      const Progress& progress, const std::optional<Choice>& filter) {
+  constexpr Eigen::Index fewest = 100;  // of innovations, for their test
+  if (prepared.record.size() < fewest)
+    throw InputError({file.string()}, std::to_string(prepared.record.size()) +
+                                          " samples; expected at least " + std::to_string(fewest));
+  const SensingRecord record = sensing_record(experiment, prepared.record, {config.string()});
+  const Choice reduction = sensing_reduction(experiment, record.record.interval());
+  Results results = sensing_report(
+      experiment, study_sensing(experiment, record, reduction, config.parent_path(), progress, filter),
+      file.filename().string());
+  add_preparation(results, prepared, experiment.format);
+  return results;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
-using namespace experiments;
 
 /// "3" is a column's number, anything else its name.
 ColumnDescription column(const std::string& word) {
@@ -40,8 +61,20 @@ std::string word_for(const Words& words, std::size_t k) {
   return words.size() == 1 ? words.front() : words[k];
 }
 
+const std::vector<std::pair<std::string, char>> delimiters{
+    {"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"space", ' '}};
+
+double metres(const std::string& word) {
+  double value = 0.0;
+  const char* const end = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(word.data(), end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value))
+    throw UsageError(fmt::format("--position {}: expected a number of metres", word));
+  return value;
+}
+
 std::vector<ColumnDescription> channels(const Words& columns, const Words& quantities,
-                                        const Words& units_given) {
+                                        const Words& units_given, const Words& positions) {
   const auto check = [&](const Words& words, const char* option) {
     if (words.size() > 1 && words.size() != columns.size())
       throw UsageError(fmt::format("{} times {} for {} times --column; expected as many, or one for all",
@@ -49,6 +82,7 @@ std::vector<ColumnDescription> channels(const Words& columns, const Words& quant
   };
   check(quantities, "--quantity");
   check(units_given, "--unit");
+  check(positions, "--position");
   if (quantities.empty() != units_given.empty())
     throw UsageError("--quantity and --unit need each other: units are stated, never guessed");
   std::vector<ColumnDescription> described;
@@ -56,6 +90,7 @@ std::vector<ColumnDescription> channels(const Words& columns, const Words& quant
     described.push_back(column(columns[k]));
     ColumnDescription& channel = described.back();
     channel.stated = !quantities.empty();
+    if (!positions.empty()) channel.position = metres(word_for(positions, k));
     if (!channel.stated) continue;
     channel.quantity = *find_quantity(word_for(quantities, k));
     channel.factor = factor(word_for(units_given, k), units(channel.quantity), to_string(channel.quantity));
@@ -71,18 +106,28 @@ ColumnDescription time_column(const std::string& word) {
   return described;
 }
 
-void take_words(const Values& values, RecordFormat& format) {
+}  // namespace
+
+void take_columns(const Values& values, RecordFormat& format) {
   const auto given = [&](const char* name) { return values.has(name) ? values.texts(name) : Words{}; };
-  const Words columns = given("column"), quantities = given("quantity"), units_given = given("unit");
-  if (columns.empty() && (!quantities.empty() || !units_given.empty()))
-    throw UsageError("--quantity and --unit of which column? Add --column");
-  if (!columns.empty()) format.channels = channels(columns, quantities, units_given);
+  const Words columns = given("column"), quantities = given("quantity"), units_given = given("unit"),
+              positions = given("position");
+  if (columns.empty() && (!quantities.empty() || !units_given.empty() || !positions.empty()))
+    throw UsageError("--quantity, --unit and --position of which column? Add --column");
+  if (!columns.empty()) format.channels = channels(columns, quantities, units_given, positions);
+  if (values.has("delimiter"))
+    format.separator = std::ranges::find(delimiters, values.text("delimiter"), [](const auto& one) {
+                         return one.first;
+                       })->second;
+  if (values.has("decimal")) format.decimal = values.text("decimal") == "comma" ? ',' : '.';
   if (values.has("time")) format.time = time_column(values.text("time"));
   if (values.has("rate")) format.sampling_rate = values.number("rate");
   if (values.has("reader")) format.reader = values.text("reader");
   if (values.has("skip-malformed")) format.malformed = MalformedRows::skip;
   if (values.has("stamps")) format.irregular = values.text("stamps") == "as_they_are";
 }
+
+namespace {
 
 /// Standard input in a file of its own: readers look at the beginning of a file first, and a pipe is read
 /// once.
@@ -135,6 +180,8 @@ OptionGroup column_options() {
                .one_of(quantity_names()),
            text("unit", "UNIT", "of its numbers: g, m/s2, mm, N, um/m, ...; one for each column or for all")
                .repeated(),
+           text("position", "M", "where along the structure it sits [m]; one for each column or for all")
+               .repeated(),
            text("time", "N|NAME[:UNIT]", "column of time, in s unless the unit is given: 1, t:ms"),
            number("rate", "HZ", "exact sampling rate, in place of rounded times or where there are none [Hz]")
                .greater_than(0)
@@ -142,6 +189,10 @@ OptionGroup column_options() {
            text("stamps", "HOW", "as_they_are: times may be at unequal intervals; even: they must not")
                .by_default("as_they_are")
                .one_of({"even", "as_they_are"}),
+           text("delimiter", "SIGN", "between the columns of a text file, where its rows do not show it")
+               .one_of({"comma", "semicolon", "tab", "space"}),
+           text("decimal", "SIGN", "between whole and fraction, where the rows do not show it")
+               .one_of({"point", "comma"}),
            flag("skip-malformed", "leave malformed lines out, counted and located"),
            text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
                .one_of(names_in(record_reader_registry()))}};
@@ -158,7 +209,7 @@ OptionGroup record_options() {
 
 std::vector<fs::path> record_files(const Values& values, const fs::path& config,
                                    const std::optional<std::string>& named, RecordFormat& format) {
-  take_words(values, format);
+  take_columns(values, format);
   std::vector<fs::path> files;
   for (const std::string& word : values.texts("record")) files.push_back(record_file(word));
   std::size_t parts = format.files.size();

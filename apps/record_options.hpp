@@ -2,22 +2,43 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/command.hpp"
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
+#include "experiments/results/results.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::apps {
+
+// A measured record under forces that nobody measured.
+
+/// What `beamid sense` and, of such a record, `beamid identify` find.
+/// @param config the experiment's file, for messages and files beside it; @param filter of the histories;
+/// absent: the smoother
+/// @throws InputError of a record of fewer than 100 samples; std::invalid_argument as study_sensing()
+experiments::Results sensed_record(const experiments::Experiment& experiment,
+                                   const experiments::PreparedRecord& prepared,
+                                   const std::filesystem::path& file, const std::filesystem::path& config,
+                                   const experiments::Progress& progress,
+                                   const std::optional<experiments::Choice>& filter = {});
 
 /// The word RECORD, "-" for standard input; or several.
 Argument record_argument(bool several = false);
 
-/// --column, --quantity, --unit, --time, --rate, --window, --reader, --skip-malformed, --stamps, --config.
+/// --column, --quantity, --unit, --position, --time, --rate, --window, --stamps, --delimiter, --decimal,
+/// --skip-malformed,
+/// --reader, --config.
 OptionGroup record_options();
 
 /// The same without --window and --config, for commands that have their own.
 OptionGroup column_options();
+
+/// Takes what column_options() say over into `format`. @throws UsageError on words that make no sense.
+void take_columns(const Values& values, experiments::RecordFormat& format);
 
 /// The RECORDs of the command line, or else the `file` under [record] of the experiment file, if it names
 /// one. Standard input, "-", is copied to a file that is removed when the program ends. Where channels come

@@ -3,10 +3,9 @@
 
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
-#include "experiments/config/read_reduction.hpp"
+#include "apps/command_parts.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/studies/reduce/chosen_reductions.hpp"
 #include "experiments/studies/reduce/report.hpp"
 
 namespace beamid::apps {

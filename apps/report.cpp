@@ -6,9 +6,9 @@
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "experiments/results/report_pdf.hpp"
-#include "experiments/studies/report/joined_report.hpp"
-#include "experiments/text/clean_text.hpp"
+#include "experiments/results/report_page.hpp"
+#include "experiments/studies/report/report.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -2,17 +2,16 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
-#include "apps/sensed_record.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_simulation.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 #include "experiments/models/structure_points.hpp"
 #include "experiments/studies/sensing/report.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/choice_text.hpp"
-#include "experiments/text/method_choice.hpp"
 #include "filters/filter.hpp"
 
 namespace beamid::apps {

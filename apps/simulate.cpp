@@ -1,8 +1,8 @@
 // beamid simulate: the virtual test rig.
 #include "apps/beam_options.hpp"
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
-#include "experiments/studies/continuum/simulation_report.hpp"
+#include "apps/command_parts.hpp"
+#include "experiments/studies/continuum/report.hpp"
 #include "fem/response/response.hpp"
 
 namespace beamid::apps {

@@ -5,15 +5,14 @@
 #include <filesystem>
 
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/identify/plausibility.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
-#include "experiments/studies/steps/published.hpp"
 #include "experiments/studies/steps/report.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
 #include "filters/scheme.hpp"
 
 namespace beamid::apps {

@@ -7,19 +7,20 @@
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
+#include "apps/record_options.hpp"
 #include "experiments/config/failure_response.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/plausibility.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/stream/sample_source.hpp"
 #include "experiments/identify/stream/streamed_identification.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
-#include "experiments/results/file.hpp"
-#include "experiments/text/json_file.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/results/result_directory.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/spelling.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::apps {
 namespace {
@@ -127,6 +128,7 @@ int run_stream(const Values& values) {
   Experiment experiment = read_experiment(config);
   require_linear_storeys(experiment, "stream");
   choose_failure_response(values, experiment);
+  take_columns(values, experiment.format);
   const Record earlier = earlier_record(values, experiment, config);
   StreamedIdentification stream =
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
@@ -171,7 +173,7 @@ Command stream_command() {
       "--config FILE [--like RECORD] [--resume STATE] [--save-state STATE] < SAMPLES",
       "stiffness, damping and other unknowns while samples arrive on standard input",
       {},
-      {stream_options()},
+      {stream_options(), column_options()},
       "  beamid stream --config cantilever.toml < tip_acceleration.csv\n"
       "  logger | beamid stream --config cantilever.toml --save-state now.json\n"
       "  logger | beamid stream --config cantilever.toml --resume now.json\n",
@@ -184,7 +186,7 @@ Command stream_command() {
       "settling, settled, undetermined (no motion stands out of the noise: the unknowns are as at first), "
       "left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
       "first example the higher modes of the release keep the filter from it until 2.4 s.\n"
-      "[[record.prepare]] prepares the earlier record; samples are expected to arrive as it leaves them.\n",
+      "[[record.prepare]] prepares the earlier record; samples are expected in the form it has then.\n",
       "1  the filter failed as well\n3  the earlier record, identified with this experiment, has no estimate "
       "to rely on: nor has the stream; or no motion stood out of the noise\n"};
 }

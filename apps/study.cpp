@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "apps/beam_options.hpp"
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/structure_description.hpp"

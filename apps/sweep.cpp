@@ -5,16 +5,15 @@
 #include <thread>
 
 #include "apps/command.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/interruption.hpp"
-#include "apps/method_options.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/plausibility.hpp"
-#include "experiments/studies/sweep/perform.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/manifest.hpp"
 #include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/repeats.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
 
 namespace beamid::apps {
 namespace {

@@ -1,8 +1,8 @@
 // beamid track: a stiffness that changes in time, followed through a record; no beam is needed.
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/track/report.hpp"
 #include "experiments/text/input_error.hpp"

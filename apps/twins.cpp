@@ -1,9 +1,9 @@
 // beamid twins: every set of parameters that explains the modes as well.
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_modal_data.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/identify/plausibility.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/studies/twins/record_report.hpp"
 
 namespace beamid::apps {

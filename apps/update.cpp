@@ -1,9 +1,9 @@
 // beamid update: parameters of a structure from measured frequencies and shapes.
-#include "apps/method_options.hpp"
+#include "apps/command_parts.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_modal_data.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/identify/plausibility.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/studies/update/report.hpp"
 
 namespace beamid::apps {

@@ -13,9 +13,9 @@
 #include <boost/program_options.hpp>
 
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
-#include "experiments/text/clean_text.hpp"
-#include "experiments/text/words.hpp"
+#include "apps/command_parts.hpp"
+#include "experiments/text/choice_text.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::apps {
 namespace {

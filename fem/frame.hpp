@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/beam.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fem/damping.hpp"
 #include "fem/parametric_system.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

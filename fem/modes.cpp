@@ -15,9 +15,9 @@
 #include <Eigen/QR>
 #include <Eigen/SparseLU>
 
-#include "fem/damping.hpp"
 #include "fem/solvers/rigid_complement.hpp"
 #include "fem/stiffness_solver.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 namespace {

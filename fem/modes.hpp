@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "fem/damping.hpp"
 #include "fem/parametric_system.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

@@ -8,7 +8,7 @@
 
 #include "fem/assembly.hpp"
 #include "fem/beam.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

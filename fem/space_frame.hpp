@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 
 #include "fem/beam.hpp"
-#include "fem/damping.hpp"
 #include "fem/frame.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

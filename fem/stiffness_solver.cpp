@@ -9,9 +9,9 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "fem/damping.hpp"
 #include "fem/solvers/refined_solver.hpp"
 #include "fem/solvers/strain_sweeps.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

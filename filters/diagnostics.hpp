@@ -1,14 +1,58 @@
-// What a run shows about itself.
+// Diagnostics of a run: whether its innovations are as the filter assumes, and what the record adds.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "filters/filter_run.hpp"
-#include "filters/innovation_consistency.hpp"
-#include "filters/whiteness.hpp"
 
 namespace beamid::filters {
+
+// Is a series white?
+
+/// How far a series is from white noise.
+struct Whiteness {
+  Eigen::VectorXd autocorrelation;  ///< at lags 1 to L (L); 0 when white
+  double p_value = 0.0;             ///< Ljung-Box test over these lags [ljung1978]; below 0.05: not white
+};
+
+/// Of a series (N) whose NaN entries are missing. With r_k the correlation at lag k, of the n_k pairs that
+/// are there, and n entries that are there,
+///
+///     Q = n (n + 2) sum_k r_k^2 / n_k
+///
+/// is chi-square of as many degrees as lags have pairs; n_k = n - k where nothing is missing. A series that
+/// is constant, or beyond all bounds, has correlations of one.
+Whiteness whiteness_of(const Eigen::VectorXd& series, Eigen::Index lags = 20);
+
+/// Tests of a run's innovations, all of which a consistent filter passes most of the time. Outputs that were
+/// not measured do not count.
+struct InnovationConsistency {
+  double mean_normalised_square = 0;  ///< over the outputs: 1 when S has the right size
+  double lower_95 = 0,
+         upper_95 = 0;      ///< where 95 % of consistent runs of this length lie [barshalom2001, sec. 5.4]
+  Eigen::VectorXd windows;  ///< the same mean over ten successive parts of the record
+  double window_lower_95 = 0,
+         window_upper_95 = 0;  ///< where all ten lie in 95 % of consistent runs (Bonferroni)
+  /// Of successive whitened innovations of the first output; 0 when white.
+  double lag_one_correlation = 0;
+  double whiteness_p_value = 0;  ///< Ljung-Box test over 20 lags [ljung1978]; below 0.05: not white
+
+  bool size_is_right() const {
+    return mean_normalised_square >= lower_95 && mean_normalised_square <= upper_95;
+  }
+  bool size_is_steady() const {
+    return windows.minCoeff() >= window_lower_95 && windows.maxCoeff() <= window_upper_95;
+  }
+  bool white() const { return whiteness_p_value >= 0.05; }
+};
+
+/// @throws std::invalid_argument when fewer than 100 samples were reached and told something.
+InnovationConsistency innovation_consistency(const FilterRun& run);
+
+// What a run shows about itself.
 
 /// Whitened innovations, which are N(0, 1) when the filter is consistent, counted.
 struct InnovationHistogram {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "filters/central_differences.hpp"
-#include "filters/timed_model.hpp"
+#include "filters/observed_model.hpp"
 
 namespace beamid::filters {
 

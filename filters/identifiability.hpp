@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "filters/information_factor.hpp"
+#include "filters/fisher_information.hpp"
 
 namespace beamid::filters {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "filters/covariance_factor.hpp"
-#include "filters/noise_levels.hpp"
+#include "filters/noise_estimation.hpp"
 #include "filters/smoother.hpp"
 
 namespace beamid::filters {

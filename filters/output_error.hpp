@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "filters/discrete_model.hpp"
-#include "filters/information_factor.hpp"
+#include "filters/fisher_information.hpp"
 #include "filters/measurements.hpp"
 
 namespace beamid::filters {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "filters/covariance_factor.hpp"
-#include "filters/exact_draws.hpp"
+#include "filters/random.hpp"
 
 namespace beamid::filters {
 

@@ -3,7 +3,21 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/QR>
+
+#include "filters/normal_avx2.hpp"
+
 namespace beamid::filters {
+
+Eigen::VectorXd normal_noise(Eigen::Index count, std::uint64_t seed, std::uint64_t stream) {
+  static const bool avx2 = algorithms::normal_compiled_for_avx2() && __builtin_cpu_supports("avx2") &&
+                           __builtin_cpu_supports("fma");
+  if (!avx2) return RandomStream(seed, stream).normal(count, 1);
+  Eigen::VectorXd numbers(count + count % 2);
+  algorithms::normal_avx2(numbers.data(), numbers.size(), seed, stream);
+  return numbers.head(count);
+}
+
 namespace {
 
 double fraction(std::uint32_t high, std::uint32_t low) {
@@ -47,6 +61,32 @@ Eigen::MatrixXd RandomStream::normal(Eigen::Index rows, Eigen::Index columns) {
     if (i + 1 < numbers.size()) numbers.data()[i + 1] = radius * std::sin(angle);
   }
   return numbers;
+}
+
+using Eigen::Index, Eigen::MatrixXd;
+
+Draws exact_draws(RandomStream& random, Index rows, Index count, const MatrixXd& others) {
+  Draws draws{random.normal(rows, count), false};
+  if (count < rows + others.rows() + 1) {
+    const Eigen::VectorXd mean = draws.values.rowwise().mean();
+    draws.values.colwise() -= mean;
+    return draws;
+  }
+  // Columns 1, others^T, draws^T: the last of an orthonormal basis are the draws, freed of all before them.
+  MatrixXd all(count, 1 + others.rows() + rows);
+  all << Eigen::VectorXd::Ones(count), others.transpose(), draws.values.transpose();
+  for (Index j = 0; j < all.cols(); ++j)
+    if (const double norm = all.col(j).norm(); norm > 0.0) all.col(j) /= norm;
+  const Eigen::HouseholderQR<MatrixXd> qr(all);
+  MatrixXd basis = MatrixXd::Zero(count, rows);
+  basis.bottomRows(count - all.cols() + rows).topRows(rows).setIdentity();
+  basis.applyOnTheLeft(qr.householderQ());
+  // The sign of each is that of the draw, so that nothing but its length and correlations changes.
+  for (Index j = 0; j < rows; ++j)
+    if (basis.col(j).dot(draws.values.row(j)) < 0.0) basis.col(j) = -basis.col(j);
+  draws.values = std::sqrt(static_cast<double>(count - 1)) * basis.transpose();
+  draws.exact = true;
+  return draws;
 }
 
 }  // namespace beamid::filters

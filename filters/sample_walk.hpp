@@ -3,10 +3,26 @@
 
 #include "filters/discrete_model.hpp"
 #include "filters/filter_run.hpp"
-#include "filters/interval_kept.hpp"
 #include "filters/sample_clock.hpp"
 
 namespace beamid::filters {
+
+// A model's interval, given back.
+
+/// While it lives, a model's interval may be changed; then it is what it was.
+class IntervalKept {
+ public:
+  explicit IntervalKept(DiscreteModel& model) : model_(model), interval_(model.interval()) {}
+  ~IntervalKept() {
+    if (model_.interval() != interval_) model_.set_interval(interval_);
+  }
+  IntervalKept(const IntervalKept&) = delete;
+  IntervalKept& operator=(const IntervalKept&) = delete;
+
+ private:
+  DiscreteModel& model_;
+  double interval_;
+};
 
 /// Moves a state from stamp to stamp of a record's first samples, and calls `visit(k, state, input)` at each.
 /// @param directions moved along as tangents of the state (n x r); none where it has no column

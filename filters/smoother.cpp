@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "filters/covariance_factor.hpp"
-#include "filters/interval_kept.hpp"
 #include "filters/sample_clock.hpp"
+#include "filters/sample_walk.hpp"
 
 namespace beamid::filters {
 

@@ -10,10 +10,10 @@
 
 #include <Eigen/Core>
 
-#include "fem/damping.hpp"
 #include "fem/solvers/rigid_complement.hpp"
 #include "fem/stiffness_solver.hpp"
-#include "filters/options.hpp"
+#include "fem/structural_system.hpp"
+#include "filters/registry.hpp"
 
 namespace beamid::reduction {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::reduction {
 

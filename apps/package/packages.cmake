@@ -32,7 +32,7 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME beamid)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, fonts-dejavu-core")
-set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "beamid-paraview")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "beamid-paraview, libsndfile1")
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${about}This package holds the command, beamid.")
 
 set(CPACK_DEBIAN_PARAVIEW_PACKAGE_NAME beamid-paraview)

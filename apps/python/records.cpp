@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_place.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/text/toml_table.hpp"
 

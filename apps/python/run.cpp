@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "apps/command.hpp"
-#include "apps/method_options.hpp"
-#include "experiments/results/print.hpp"
+#include "apps/command_parts.hpp"
+#include "experiments/results/results.hpp"
 #include "filters/stop_request.hpp"
 
 namespace beamid::python {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "experiments/text/choice_text.hpp"
 #include "experiments/text/spelling.hpp"
-#include "experiments/text/words.hpp"
 
 namespace beamid::experiments {
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/text/words.hpp"
+#include "experiments/text/choice_text.hpp"
 
 namespace beamid::experiments {
 namespace {

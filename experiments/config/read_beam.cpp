@@ -1,4 +1,5 @@
-#include "experiments/config/read_beam.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <algorithm>
 
@@ -6,10 +7,9 @@
 
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_segment.hpp"
 #include "experiments/config/useless_keys.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/memory_need.hpp"
-#include "experiments/text/method_choice.hpp"
 #include "experiments/text/toml_table.hpp"
 #include "fem/beam.hpp"
 #include "fem/space_frame.hpp"

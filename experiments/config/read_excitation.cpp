@@ -1,6 +1,5 @@
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_place.hpp"
-#include "experiments/config/read_simulation.hpp"
+#include "experiments/config/readers.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -6,24 +6,17 @@
 
 #include <fmt/format.h>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_beam.hpp"
-#include "experiments/config/read_frame.hpp"
-#include "experiments/config/read_parameters.hpp"
-#include "experiments/config/read_place.hpp"
-#include "experiments/config/read_reduction.hpp"
-#include "experiments/config/read_simulation.hpp"
-#include "experiments/config/read_space_frame.hpp"
-#include "experiments/config/read_system.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/models/springs/spring_law.hpp"
 #include "experiments/models/springs/storey_spring.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/toml_table.hpp"
 #include "fem/beam.hpp"
-#include "fem/damping.hpp"
 #include "fem/shear_building.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {

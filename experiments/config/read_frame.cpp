@@ -1,11 +1,11 @@
-#include "experiments/config/read_frame.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_segment.hpp"
 #include "experiments/config/section_keys.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/config/useless_keys.hpp"

@@ -1,4 +1,5 @@
-#include "experiments/config/read_modal_data.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/schema.hpp"
 #include "experiments/modal/modal_data.hpp"
 #include "experiments/modal/nearest_real.hpp"
 #include "experiments/results/results.hpp"
-#include "experiments/text/json_file.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,4 +1,5 @@
-#include "experiments/config/read_parameters.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,5 @@
-#include "experiments/config/read_place.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -6,15 +7,13 @@
 
 #include <fmt/format.h>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_beam.hpp"
-#include "experiments/config/read_simulation.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
-#include "experiments/record/record_reader.hpp"
+#include "experiments/record/record_table.hpp"
 #include "experiments/record/units.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/spelling.hpp"
 #include "experiments/text/toml_table.hpp"
 

@@ -1,4 +1,5 @@
-#include "experiments/config/read_reduction.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <algorithm>
 
@@ -7,8 +8,8 @@
 #include "experiments/config/structure_description.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/choice_text.hpp"
-#include "experiments/text/method_choice.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
 #include "filters/smoother.hpp"

@@ -1,4 +1,5 @@
-#include "experiments/config/read_segment.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <numbers>
 #include <optional>

@@ -1,8 +1,7 @@
 #include <iterator>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_place.hpp"
-#include "experiments/config/read_simulation.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/record/units.hpp"
 

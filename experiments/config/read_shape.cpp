@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "experiments/config/read_reduction.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/record/delimited_text.hpp"
 #include "experiments/record/record_table.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 

@@ -1,17 +1,17 @@
-#include "experiments/config/read_simulation.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/config/read_place.hpp"
 #include "experiments/config/schema.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/models/structure_points.hpp"
 #include "experiments/record/units.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/memory_need.hpp"
-#include "experiments/text/method_choice.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {

@@ -1,4 +1,5 @@
-#include "experiments/config/read_space_frame.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <algorithm>
 #include <numbers>

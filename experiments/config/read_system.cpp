@@ -1,4 +1,5 @@
-#include "experiments/config/read_system.hpp"
+
+#include "experiments/config/readers.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,8 +8,8 @@
 
 #include "experiments/config/key_tables.hpp"
 #include "experiments/record/files/mat_matrix.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/matrix_market.hpp"
-#include "experiments/text/method_choice.hpp"
 
 namespace beamid::experiments {
 namespace {

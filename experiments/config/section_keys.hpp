@@ -11,7 +11,7 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/schema.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/toml_table.hpp"
 #include "fem/frame.hpp"
 #include "fem/space_frame.hpp"

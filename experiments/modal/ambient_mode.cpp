@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
 
-#include "experiments/signal/fast_length.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {

@@ -13,12 +13,12 @@
 #include <Eigen/Dense>
 
 #include "experiments/modal/dominant_mode.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/frequency_jump.hpp"
-#include "experiments/modal/shape_fit.hpp"
 #include "experiments/signal/decimation.hpp"
-#include "experiments/signal/median.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/sway.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "experiments/modal/shape_fit.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
 
 namespace beamid::experiments {
 

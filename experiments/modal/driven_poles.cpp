@@ -9,8 +9,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/signal/fast_length.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {

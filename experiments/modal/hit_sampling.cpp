@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-#include "experiments/signal/median.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

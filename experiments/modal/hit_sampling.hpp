@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/modal/response_peaks.hpp"
+#include "experiments/modal/hammer_response.hpp"
 
 namespace beamid::experiments {
 

@@ -12,7 +12,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {

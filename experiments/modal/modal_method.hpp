@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/modal/pole.hpp"
+#include "experiments/modal/poles.hpp"
 #include "filters/registry.hpp"
 
 namespace beamid::experiments {

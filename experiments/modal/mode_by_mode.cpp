@@ -12,10 +12,9 @@
 #include <Eigen/QR>
 #include <unsupported/Eigen/FFT>
 
-#include "experiments/signal/fast_length.hpp"
-#include "experiments/signal/median.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

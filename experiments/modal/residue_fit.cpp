@@ -10,8 +10,7 @@
 
 #include <unsupported/Eigen/FFT>
 
-#include "experiments/signal/fast_length.hpp"
-#include "experiments/signal/least_squares.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
-#include "experiments/signal/fast_length.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -10,7 +10,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include "experiments/modal/pole.hpp"
+#include "experiments/modal/poles.hpp"
 #include "reduction/bdc_svd.hpp"
 
 namespace beamid::experiments {

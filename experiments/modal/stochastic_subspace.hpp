@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "experiments/modal/pole.hpp"
+#include "experiments/modal/poles.hpp"
 
 namespace beamid::experiments {
 

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "experiments/modal/shape_fit.hpp"
-#include "experiments/signal/median.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

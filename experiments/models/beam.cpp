@@ -20,7 +20,7 @@
 #include "experiments/models/motion/parametric_motion.hpp"
 #include "experiments/models/motion/supported_motion.hpp"
 #include "experiments/models/storeys.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "experiments/models/estimates.hpp"
 #include "experiments/text/memory_need.hpp"
-#include "filters/noisy_inputs.hpp"
+#include "filters/latent_inputs.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -23,7 +23,7 @@ struct IdentificationSettings {
   int passes = 1;
   filters::OnFailure on_failure = filters::OnFailure::stop;
   Eigen::MatrixXd process_noise = {};  ///< Q of the state per step; empty: none
-  /// Standard deviations of the inputs' white noise (m); empty: they are exact (noisy_inputs.hpp).
+  /// Standard deviations of the inputs' white noise (m); empty: they are exact (latent_inputs.hpp).
   Eigen::VectorXd input_noise = {};
 };
 

@@ -10,7 +10,7 @@
 #include "experiments/models/springs/storey_spring.hpp"
 #include "experiments/models/unknown.hpp"
 #include "experiments/record/record.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 #include "fem/structure.hpp"
 #include "filters/continuous_model.hpp"
 #include "filters/gaussian.hpp"
@@ -86,7 +86,8 @@ struct JointModel {
   Eigen::VectorXd mode_frequencies;  ///< omega (k) [rad/s]
 
   double equivalent_mass = 0.0;  ///< at the first output, of a model of one coordinate [kg]; else 0
-  double moved_share = 1.0;      ///< of the mass that a measured motion of the base moves (fem/damping.hpp)
+  double moved_share =
+      1.0;  ///< of the mass that a measured motion of the base moves (fem/structural_system.hpp)
 
   Eigen::Index motion_size() const { return mode_shapes.rows(); }  ///< r
 };

@@ -1,27 +1,252 @@
 #include "experiments/record/read_apart.hpp"
 
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <new>
+#include <string>
+
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): more of POSIX than <csignal> promises
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <cmath>
-#include <cstring>
-#include <fstream>
-#include <new>
-
-#include "experiments/record/apart_pipe.hpp"
-#include "experiments/text/clean_text.hpp"
+#include "experiments/record/record.hpp"
+#include "experiments/record/units.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/memory_need.hpp"
 
 namespace beamid::experiments {
 namespace {
+
+/// "data.time" -> "time".
+std::string last_part(const std::string& name) {
+  const std::size_t at = name.find_last_of("./");
+  return at == std::string::npos ? name : name.substr(at + 1);
+}
+
+/// What a name says of times: "t" and "time" nothing, "time_ms" the unit.
+struct TimeName {
+  bool time = false;
+  std::string unit;
+};
+
+TimeName time_name(const std::string& name) {
+  const std::string last = last_part(name);
+  if (last == "t" || last == "time" || last == "Time") return {true, ""};
+  for (const Unit& unit : time_units())
+    if (last == "time_" + unit.suffix || last == "t_" + unit.suffix) return {true, unit.symbol};
+  return {};
+}
+
+}  // namespace
+
+void CollectedSignals::announce(const std::string& name, const std::vector<std::size_t>& extent) {
+  double count = 1.0;
+  for (const std::size_t size : extent) count *= static_cast<double>(size);
+  announced_ += count;
+  if (announced_ > static_cast<double>(most_numbers_))
+    throw InputError(
+        {file_}, fmt::format("'{}' claims {} numbers, {:.3g} with those before it; expected at most "
+                             "{:.3g} in all, which a file of this size can hold",
+                             name, fmt::join(extent, " x "), announced_, static_cast<double>(most_numbers_)));
+}
+
+void CollectedSignals::add(std::string name, std::string unit, std::vector<double> values, int digits) {
+  for (double& value : values)
+    if (!std::isfinite(value)) value = std::nan("");
+  if (values.size() > 1) signals_.push_back({std::move(name), std::move(unit), std::move(values), digits});
+}
+
+void CollectedSignals::add_matrix(const std::function<std::string(std::size_t, bool)>& name_of,
+                                  const std::string& unit, const std::vector<double>& values,
+                                  std::size_t rows, std::size_t columns, int digits) {
+  constexpr std::size_t most_signals = 4096;
+  const bool by_rows = rows < columns;
+  const std::size_t count = std::min(rows, columns), length = std::max(rows, columns);
+  if (count > most_signals)
+    throw InputError({file_}, fmt::format("{} is {} x {}; expected at most {} channels", name_of(1, by_rows),
+                                          rows, columns, most_signals));
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<double> signal(length);
+    for (std::size_t i = 0; i < length; ++i)
+      signal[i] = by_rows ? values[k + i * rows] : values[i + k * rows];
+    add(name_of(k + 1, by_rows), unit, std::move(signal), digits);
+  }
+}
+
+bool CollectedSignals::set(const std::string& name, double value) {
+  const std::string last = last_part(name);
+  const bool rate = last == "fs" || last == "Fs" || last == "sampling_rate_hz" || last == "sample_rate";
+  const bool interval = last == "dt" || last == "Ts" || last == "Delta_X" || last == "sampling_interval_s";
+  if (!rate && !interval) return false;
+  if (!(value > 0 && std::isfinite(value)))
+    throw InputError({file_}, fmt::format("{} is {}; expected a positive number", name, value));
+  const double stated = rate ? 1 / value : value;
+  if (interval_ > 0 && std::abs(stated - interval_) > 1e-9 * interval_)
+    throw InputError({file_}, fmt::format("{} means an interval of {} s beside one of {} s; expected one",
+                                          name, stated, interval_));
+  set_interval(name, stated);
+  return true;
+}
+
+void CollectedSignals::find_time(RecordTable& table, const RecordFormat& format) const {
+  const auto at = std::find_if(table.names.begin(), table.names.end(),
+                               [](const std::string& name) { return time_name(name).time; });
+  if (at == table.names.end()) {
+    if (interval_ > 0) table.clock = {0.0, interval_};
+    return;
+  }
+  const auto column = static_cast<std::size_t>(at - table.names.begin());
+  const std::string named = time_name(*at).unit;
+  std::string& unit = table.units[column];
+  if (unit.empty()) unit = named;
+  if (unit.empty() && !format.time)
+    table.remarks.push_back(fmt::format("'{}' states no unit: its times are taken as seconds.", *at));
+  const auto factor = seconds_per(unit, "'" + *at + "'", file_, format);
+  if (!factor) return;
+  if (!named.empty() && *factor != *seconds_per(named, *at, file_, format))
+    throw InputError({file_}, fmt::format("'{}' is in '{}'; expected the unit of its name", *at, unit));
+  if (*factor == 1.0) table.time = column;  // else found by its unit
+  const std::vector<double>& times = table.columns[column];
+  const double mean = *factor * (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  constexpr double tolerated = 0.02;
+  if (interval_ > 0 && !format.time && !format.sampling_rate &&
+      std::abs(mean - interval_) > tolerated * interval_)
+    throw InputError(
+        {file_},
+        fmt::format("{} means an interval of {:.6g} s, and '{}' has one of {:.6g} s; expected them to "
+                    "agree, or record.time or record.sampling_rate_hz in the configuration",
+                    interval_name_, interval_, *at, mean));
+}
+
+RecordTable CollectedSignals::table(const RecordFormat& format) const {
+  std::map<std::size_t, std::size_t> numbers;  // of each length
+  for (const Signal& signal : signals_) numbers[signal.values.size()] += signal.values.size();
+  if (numbers.empty())
+    throw InputError({file_},
+                     "no signal of at least two numbers; expected vectors or matrices of real numbers");
+  const std::size_t length =
+      std::max_element(numbers.begin(), numbers.end(), [](const auto& a, const auto& b) {
+        return a.second < b.second;
+      })->first;
+  RecordTable table;
+  table.file = file_;
+  std::string others;
+  for (const Signal& signal : signals_) {
+    if (signal.values.size() != length) {
+      others += fmt::format("{}{} ({})", others.empty() ? "" : ", ", signal.name, signal.values.size());
+      continue;
+    }
+    table.names.push_back(signal.name);
+    table.units.push_back(signal.unit);
+    table.columns.push_back(signal.values);
+    table.precision.push_back(PrintedPrecision::of_digits(signal.digits));
+  }
+  find_time(table, format);
+  const auto stated = [&](std::size_t i) { return table.time != i && !table.units[i].empty(); };
+  bool units = false;
+  for (std::size_t i = 0; i < table.width(); ++i) units = units || stated(i);
+  if (!units) table.units.clear();
+  if (!others.empty())
+    table.remarks.push_back(fmt::format("Left out, as not of {} samples: {}.", length, others));
+  return table;
+}
+
+namespace {
+
+// The pipe between a process and the child that reads a file for it.
+
+/// The child's end: numbers and texts as they lie in memory. The child ends where nobody listens.
+class PipeSender {
+ public:
+  explicit PipeSender(int descriptor) : descriptor_(descriptor) {}
+
+  void bytes(const void* from, std::size_t count) const;
+  void text(const std::string& text) const;
+  template <class Number>
+  void number(Number value) const {
+    bytes(&value, sizeof value);
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// The parent's end, which it closes. Each of its functions is false where nothing more comes.
+class PipeReceiver {
+ public:
+  PipeReceiver(int descriptor, std::chrono::steady_clock::time_point deadline)
+      : descriptor_(descriptor), deadline_(deadline) {}
+  ~PipeReceiver();
+  PipeReceiver(const PipeReceiver&) = delete;
+  PipeReceiver& operator=(const PipeReceiver&) = delete;
+
+  bool bytes(void* to, std::size_t count);
+  bool text(std::string& text);  ///< of at most 1 MiB
+  template <class Number>
+  bool number(Number& value) {
+    return bytes(&value, sizeof value);
+  }
+  bool late() const { return late_; }  ///< the deadline has passed
+
+ private:
+  int descriptor_;
+  std::chrono::steady_clock::time_point deadline_;
+  bool late_ = false;
+};
+
+void PipeSender::bytes(const void* from, std::size_t count) const {
+  for (const char* at = static_cast<const char*>(from); count > 0;) {
+    const ssize_t written = ::write(descriptor_, at, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) _exit(1);
+    at += written, count -= static_cast<std::size_t>(written);
+  }
+}
+
+void PipeSender::text(const std::string& text) const {
+  number(text.size());
+  bytes(text.data(), text.size());
+}
+
+PipeReceiver::~PipeReceiver() {
+  close(descriptor_);
+}
+
+bool PipeReceiver::bytes(void* to, std::size_t count) {
+  using std::chrono::milliseconds, std::chrono::steady_clock;
+  constexpr long long longest = 3'600'000;  // [ms] that are waited at once
+  for (char* at = static_cast<char*>(to); count > 0;) {
+    const long long left = std::chrono::ceil<milliseconds>(deadline_ - steady_clock::now()).count();
+    late_ = left <= 0;
+    if (late_) return false;
+    pollfd watched{descriptor_, POLLIN, 0};
+    if (poll(&watched, 1, static_cast<int>(std::min(left, longest))) <= 0) continue;
+    const ssize_t got = ::read(descriptor_, at, count);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    at += got, count -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+bool PipeReceiver::text(std::string& text) {
+  constexpr std::size_t longest = std::size_t{1} << 20;
+  std::size_t size = 0;
+  if (!number(size) || size > longest) return false;
+  text.resize(size);
+  return bytes(text.data(), size);
+}
 
 using SteadyClock = std::chrono::steady_clock;
 

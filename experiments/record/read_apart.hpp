@@ -4,10 +4,73 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
-#include "experiments/record/collected_signals.hpp"
+#include "experiments/record/record.hpp"
+#include "experiments/record/record_table.hpp"
 
 namespace beamid::experiments {
+
+// Signals found under names in a binary file, made one table.
+
+/// Takes whatever numbers a file holds and makes a table of those that belong together: the signals as long
+/// as most of the file's numbers are. The others are named in a remark.
+class CollectedSignals {
+ public:
+  struct Signal {
+    std::string name, unit;
+    std::vector<double> values;
+    int digits = 15;
+  };
+
+  /// @param most_numbers that the file may hold in all (read_apart.hpp).
+  CollectedSignals(std::string file, std::size_t most_numbers)
+      : file_(std::move(file)), most_numbers_(most_numbers) {}
+
+  /// To be called before memory is taken for them. @throws InputError when the sum of all that were announced
+  /// is above what the file may hold.
+  void announce(const std::string& name, const std::vector<std::size_t>& extent);
+
+  /// @param digits significant ones: 7 in single precision, 15 in double.
+  void add(std::string name, std::string unit, std::vector<double> values, int digits);
+
+  /// A matrix (rows x columns, stored column by column): a signal for each column, or for each row where
+  /// there are fewer of these. @param name_of of the k-th signal, from 1, column or row.
+  void add_matrix(const std::function<std::string(std::size_t, bool is_row)>& name_of,
+                  const std::string& unit, const std::vector<double>& values, std::size_t rows,
+                  std::size_t columns, int digits);
+
+  /// A single number: an interval where it is called dt, Ts or sampling_interval_s, a rate where fs, Fs or
+  /// sampling_rate_hz; else of no use. A name with a path counts by its last part.
+  /// @returns whether it is one of them.
+  bool set(const std::string& name, double value);
+
+  /// What set() made of a number. @param interval [s]
+  void set_interval(std::string name, double interval) {
+    interval_name_ = std::move(name), interval_ = interval;
+  }
+
+  /// Times are in the unit that their signal states, by its name or beside it, and in seconds where it states
+  /// none, which a remark then says.
+  /// @throws InputError when there is no signal of at least two samples, or when times and a stated interval
+  /// contradict each other or times are in another unit, unless the format states them itself.
+  RecordTable table(const RecordFormat& format) const;
+
+  const std::string& file() const { return file_; }
+  const std::vector<Signal>& signals() const { return signals_; }
+  double interval() const { return interval_; }                        ///< [s]; 0: none stated
+  const std::string& interval_name() const { return interval_name_; }  ///< of the number that stated it
+
+ private:
+  void find_time(RecordTable& table, const RecordFormat& format) const;
+
+  std::string file_;
+  std::size_t most_numbers_;
+  double announced_ = 0.0;
+  std::vector<Signal> signals_;
+  double interval_ = 0.0;
+  std::string interval_name_;
+};
 
 /// What reading a file may take.
 struct ReadingLimits {

@@ -3,12 +3,12 @@
 
 #include <filesystem>
 
-#include "experiments/record/record_format.hpp"
+#include "experiments/record/record.hpp"
 
 namespace beamid::experiments {
 
 /// Reads the columns that `format` names, in SI units, and cuts its window. The file is of the kind that the
-/// format names or that it shows to be (record_reader.hpp).
+/// format names or that it shows to be (record_table.hpp).
 ///
 /// Without channels in the format, the file must say itself what its columns are: by names with a quantity
 /// and a unit (time_s, acceleration_m_per_s2, displacement_root_mm) or by units of its own. Without a time

@@ -1,8 +1,18 @@
 #include "experiments/record/record.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "experiments/record/units.hpp"
+#include "experiments/text/fields.hpp"
+#include "experiments/text/input_error.hpp"
+#include "experiments/text/spelling.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 
@@ -84,6 +94,130 @@ Record Record::window(double from, double to) const {
   part.time = time.segment(begin, count);
   part.samples = samples.middleCols(begin, count);
   return part;
+}
+
+std::optional<double> seconds_per(const std::string& unit, const std::string& what, const std::string& file,
+                                  const RecordFormat& format) {
+  if (unit.empty()) return 1.0;
+  std::string small = unit;  // old programs write "SEC"
+  for (char& letter : small)
+    letter = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;
+  for (const std::string& spelling : {unit, small})
+    if (const auto stated = stated_unit(spelling); stated && !stated->quantity) return stated->factor;
+  if (format.time || format.sampling_rate) return std::nullopt;
+  throw InputError({file}, fmt::format("{} is in '{}'; expected times in {}, or record.time or "
+                                       "record.sampling_rate_hz in the configuration",
+                                       what, unit, joined(symbols(time_units()))));
+}
+
+namespace {
+
+void append(std::string& text, double value, int digits) {
+  char buffer[40];
+  char* const end = buffer + sizeof(buffer);
+  const auto result = digits > 0 ? std::to_chars(buffer, end, value, std::chars_format::general, digits)
+                                 : std::to_chars(buffer, end, value);
+  text.append(buffer, result.ptr);
+}
+
+}  // namespace
+
+std::string to_csv(const Record& record, int digits) {
+  constexpr int most = 17;  // more say nothing about a double
+  if (digits < 0 || digits > most)
+    throw std::invalid_argument(fmt::format("digits is {}; expected 0 to {}", digits, most));
+  const auto channels = static_cast<Eigen::Index>(record.channels.size());
+  if (record.samples.rows() != channels || record.samples.cols() != record.size())
+    throw std::invalid_argument(fmt::format("samples are {} x {}; expected {} channels x {} instants",
+                                            record.samples.rows(), record.samples.cols(), channels,
+                                            record.size()));
+  if (!record.samples.allFinite() || !record.time.allFinite())
+    throw std::invalid_argument("a record with NaN or infinity; expected finite numbers");
+  std::string text;
+  for (const std::string& name : column_names(record)) text += (text.empty() ? "" : ",") + csv_field(name);
+  text += '\n';
+  for (Eigen::Index instant = 0; instant < record.size(); ++instant) {
+    append(text, record.time[instant], digits);
+    for (Eigen::Index channel = 0; channel < channels; ++channel) {
+      text += ',';
+      append(text, record.samples(channel, instant), digits);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+void write_record(const Record& record, const std::filesystem::path& file, int digits) {
+  const std::string text = to_csv(record, digits);
+  std::filesystem::path part = file;
+  part += ".part";
+  std::ofstream stream(part, std::ios::binary);
+  stream << text;
+  stream.close();
+  std::error_code failure;
+  if (stream) std::filesystem::rename(part, file, failure);
+  if (stream && !failure) return;
+  std::error_code ignored;
+  std::filesystem::remove(part, ignored);
+  throw std::runtime_error(file.string() + ": cannot be written" + (failure ? ": " + failure.message() : ""));
+}
+
+namespace {
+
+constexpr const char* path_names[] = {"band_limited", "linear", "held"};
+
+}  // namespace
+
+std::filesystem::path places_file(const std::filesystem::path& record) {
+  std::filesystem::path file = record;
+  return file.replace_extension(".toml");
+}
+
+void take_places(const std::filesystem::path& file, const std::vector<std::string>& columns, Record& record) {
+  const std::filesystem::path beside = places_file(file);
+  std::error_code ignored;
+  if (beside == file || !std::filesystem::is_regular_file(beside, ignored)) return;
+  const TomlTable root = TomlTable::read(beside);
+  const auto section = root.find_table("record");
+  if (!section || section->find_text("file") != file.filename().string()) return;
+  for (const TomlTable& one : section->find_tables("channels")) {
+    const auto value = one.find_value("column");
+    const auto* const name = value ? std::get_if<std::string>(&*value) : nullptr;
+    for (std::size_t i = 0; name && i < record.channels.size(); ++i) {
+      Channel& channel = record.channels[i];
+      if (columns[i] != *name || channel.position) continue;
+      channel.position = one.find_number("position_m", Sign::not_negative);
+      channel.place = one.find_text("at").value_or("");
+      channel.distance = one.find_number("distance_m").value_or(channel.distance);
+      channel.noise = one.find_number("noise").value_or(channel.noise);
+    }
+  }
+  if (record.input_path) return;
+  if (const auto word = section->find_text("input", {path_names[0], path_names[1], path_names[2]}))
+    record.input_path = *word == path_names[0]   ? InputPath::band_limited
+                        : *word == path_names[1] ? InputPath::linear
+                                                 : InputPath::held;
+}
+
+std::string places_text(const Record& record, const std::string& file_name) {
+  std::string text =
+      "# What the header of the record does not say: where its channels were measured. Commands that read "
+      "the\n"
+      "# record read this file with it; it may also stand in an experiment file.\n\n[record]\nfile = \"" +
+      file_name + "\"\n";
+  if (record.input_path)
+    text += fmt::format("input = \"{}\"\n", path_names[static_cast<int>(*record.input_path)]);
+  const std::vector<std::string> columns = column_names(record);
+  for (std::size_t i = 0; i < record.channels.size(); ++i) {
+    const Channel& channel = record.channels[i];
+    text += fmt::format("\n[[record.channels]]\ncolumn = \"{}\"\nquantity = \"{}\"\nunit = \"{}\"\n",
+                        columns[i + 1], to_string(channel.quantity), units(channel.quantity).front().symbol);
+    if (channel.position) text += fmt::format("position_m = {}\n", *channel.position);
+    if (!channel.place.empty()) text += fmt::format("at = \"{}\"\n", channel.place);
+    if (channel.noise > 0.0) text += fmt::format("noise = {}\n", channel.noise);
+    if (channel.quantity == Quantity::strain) text += fmt::format("distance_m = {}\n", channel.distance);
+  }
+  return text;
 }
 
 }  // namespace beamid::experiments

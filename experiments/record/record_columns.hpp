@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "experiments/record/column_name.hpp"
-#include "experiments/record/record_format.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/record/record_table.hpp"
+#include "experiments/record/units.hpp"
 
 namespace beamid::experiments {
 

@@ -1,12 +1,88 @@
 #include "experiments/record/record_table.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/text/fields.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
+namespace {
+
+constexpr const char* too_coarse = " (times printed this coarsely need record.sampling_rate_hz)";
+
+}  // namespace
+
+void PrintedPrecision::add(std::string_view token) {
+  int decimals = 0, digits = 0, exponent = 0;
+  bool point = false;
+  for (std::size_t i = 0; i < token.size(); ++i) {
+    if (token[i] == '.') {
+      point = true;
+    } else if (token[i] == 'e' || token[i] == 'E') {
+      const std::size_t start = i + (token.substr(i + 1).starts_with('+') ? 2 : 1);
+      std::from_chars(token.data() + start, token.data() + token.size(), exponent);
+      break;
+    } else if (token[i] >= '0' && token[i] <= '9') {
+      decimals += point ? 1 : 0;
+      digits += digits > 0 || token[i] != '0' ? 1 : 0;
+    }
+  }
+  decimals_ = std::max(decimals_, decimals - exponent);
+  digits_ = std::max(digits_, digits);
+}
+
+PrintedPrecision PrintedPrecision::of_digits(int digits) {
+  PrintedPrecision precision;
+  precision.decimals_ = 400;
+  precision.digits_ = digits;
+  return precision;
+}
+
+double PrintedPrecision::resolution(double value) const {
+  const double fixed = std::pow(10.0, -decimals_);
+  if (value == 0) return fixed;
+  return std::max(fixed, std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - digits_));
+}
+
+std::optional<SamplingFault> find_order_fault(const std::vector<double>& times) {
+  const auto later = [&](std::size_t i) { return times[i] > times[i - 1]; };
+  std::size_t i = 1;
+  while (i < times.size() && later(i)) ++i;
+  if (i >= times.size()) return std::nullopt;
+  std::size_t equal = 0;
+  for (std::size_t j = 1; j < times.size(); ++j) equal += times[j] == times[j - 1] ? 1 : 0;
+  const bool coarse = 2 * equal > times.size();  // the seconds of a clock, printed without their decimals
+  return SamplingFault{i, fmt::format("time {} after {}; expected increasing times{}", times[i], times[i - 1],
+                                      coarse ? too_coarse : "")};
+}
+
+std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,
+                                                 const PrintedPrecision& precision) {
+  if (auto fault = find_order_fault(times)) return fault;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
+  if (intervals.empty()) return std::nullopt;
+  const double usual = median(intervals);
+  constexpr double tolerated = 0.05, slack = 1 + 1e-6;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double deviation = std::abs(intervals[i - 1] - usual);
+    if (deviation <= tolerated * usual) continue;
+    const double rounding = std::max(precision.resolution(times[i]), precision.resolution(times[i - 1]));
+    const bool coarse = rounding > 0.5 * usual * slack;  // a missing sample would look the same
+    if (coarse || deviation > (tolerated * usual + rounding) * slack)
+      return SamplingFault{
+          i, fmt::format(
+                 "time {} after {}, an interval of {:.6g}; expected the median interval {:.6g} within 5 %{}",
+                 times[i], times[i - 1], intervals[i - 1], usual, coarse ? too_coarse : "")};
+  }
+  return std::nullopt;
+}
 
 std::string count_of_columns(std::size_t count) {
   return fmt::format("{} column{}", count, count == 1 ? "" : "s");
@@ -65,6 +141,36 @@ std::string skipped_text(const std::vector<std::size_t>& lines, const std::strin
   return lines.size() == 1
              ? fmt::format("1 line is left out, as it {}: line {}.", why, places)
              : fmt::format("{} lines are left out, as each {}: lines {}.", lines.size(), why, places);
+}
+
+namespace {
+
+constexpr const char* fallback = "delimited_text";
+
+}  // namespace
+
+RecordReaderRegistry& record_reader_registry() {
+  static RecordReaderRegistry registry("reader");
+  return registry;
+}
+
+std::string reader_of(const std::filesystem::path& file, const RecordFormat& format) {
+  if (!format.reader.empty()) return record_reader_registry().find(format.reader).name;
+  if (format.header_lines > 0 || format.separator != '\0') return fallback;
+  std::ifstream stream = open_input(file, "a record of numbers in columns");
+  std::string beginning(1024, '\0');
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  for (const auto& [name, entry] : record_reader_registry().entries())
+    if (name != fallback && record_reader_registry().make(name, {})->recognises(beginning)) return name;
+  return fallback;
+}
+
+RecordTable read_table(const std::filesystem::path& file, const RecordFormat& format) {
+  RecordTable table = record_reader_registry().make(reader_of(file, format), {})->read(file, format);
+  for (auto* texts : {&table.names, &table.units, &table.remarks, &table.warnings})
+    for (std::string& text : *texts) text = clean_text(text);
+  return table;
 }
 
 }  // namespace beamid::experiments

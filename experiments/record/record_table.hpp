@@ -2,15 +2,53 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "experiments/record/sampling.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/text/input_error.hpp"
+#include "filters/registry.hpp"
 
 namespace beamid::experiments {
+
+// Are printed times those of a regularly sampled record?
+
+/// How finely a column of numbers was printed: by its decimals or by its significant digits, whichever is
+/// coarser.
+class PrintedPrecision {
+ public:
+  void add(std::string_view token);
+
+  /// That of numbers of so many significant digits: 7 in single precision, 15 in double.
+  static PrintedPrecision of_digits(int digits);
+
+  /// Distance between neighbouring printable numbers near `value`, in the column's unit.
+  double resolution(double value) const;
+
+ private:
+  int decimals_ = -400, digits_ = 1;
+};
+
+/// A time that does not fit a regularly sampled record.
+struct SamplingFault {
+  std::size_t sample;   ///< whose time is at fault
+  std::string message;  ///< what was found and what was expected
+};
+
+/// The first time that does not follow its predecessor, or does at an interval more than 5 % from the median
+/// interval that the rounding of printed times does not explain. Rounding coarser than half an interval
+/// explains nothing, as it would hide a missing sample. The filters take one sampling interval.
+///
+/// @param times as printed, in the file's unit, in which the message speaks too.
+std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,
+                                                 const PrintedPrecision& precision);
+
+/// The first time that is not after its predecessor: all that is asked of stamps at unequal intervals.
+std::optional<SamplingFault> find_order_fault(const std::vector<double>& times);
 
 /// Equal intervals that a file states instead of stamps.
 struct Clock {
@@ -65,5 +103,32 @@ std::string count_of_columns(std::size_t count);
 /// "1 line is left out, as ...: 9." or "12 lines are left out, as ...: 4, 7, 9, ...": nothing when there are
 /// none. @param why "they hold no numbers".
 std::string skipped_text(const std::vector<std::size_t>& lines, const std::string& why);
+
+// Readers of record files, found by name or by what a file begins with.
+
+/// One kind of file; each is one file under record_files/ that registers itself.
+class RecordReader {
+ public:
+  virtual ~RecordReader() = default;
+
+  /// @param beginning of the file, at most 1024 bytes.
+  virtual bool recognises(std::string_view beginning) const = 0;
+
+  /// All columns of numbers.
+  /// @param format where it speaks of separators, header lines and the like.
+  /// @throws InputError naming the place as finely as the kind of file allows.
+  virtual RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const = 0;
+};
+
+using RecordReaderRegistry = filters::Registry<RecordReader>;
+RecordReaderRegistry& record_reader_registry();
+
+/// The reader that `format` names, else the one that recognises the file, else delimited text, which is also
+/// meant wherever the format states header lines or a separator.
+/// @throws InputError when there is no such file, std::invalid_argument when there is no such reader.
+std::string reader_of(const std::filesystem::path& file, const RecordFormat& format);
+
+/// The file's columns, by reader_of(), with names and units cleaned (fields.hpp). @throws InputError.
+RecordTable read_table(const std::filesystem::path& file, const RecordFormat& format);
 
 }  // namespace beamid::experiments

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/signal/median.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 

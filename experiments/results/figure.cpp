@@ -1,21 +1,60 @@
 #include "experiments/results/figure.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numeric>
 #include <stdexcept>
 
-#include "experiments/results/envelope.hpp"
-#include "experiments/results/file.hpp"
+#include <fmt/format.h>
+
 #include "experiments/results/gnuplot.hpp"
 #include "experiments/results/process.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/results/vtk/drawing.hpp"
-#include "experiments/text/clean_text.hpp"
+#include "experiments/signal/missing_samples.hpp"
+#include "experiments/signal/spectrum.hpp"
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
+
+std::vector<Eigen::Index> envelope(const Eigen::VectorXd& x, const Eigen::VectorXd& y, bool logarithmic,
+                                   Eigen::Index limit) {
+  const Eigen::Index size = x.size();
+  std::vector<Eigen::Index> kept(static_cast<std::size_t>(size));
+  std::iota(kept.begin(), kept.end(), Eigen::Index{0});
+  if (size <= limit) return kept;
+
+  const Eigen::Index intervals = std::max<Eigen::Index>(1, limit / 2);
+  const auto drawn = [&](Eigen::Index i) { return logarithmic ? std::log(x[i]) : x[i]; };
+  Eigen::Index first = 0;
+  while (first < size - 1 && !std::isfinite(drawn(first))) ++first;
+  const double start = drawn(first), width = drawn(size - 1) - start;
+  const bool ascending = x.allFinite() && std::is_sorted(x.begin(), x.end()) && width > 0;
+  const auto interval = [&](Eigen::Index i) {
+    const double place =
+        ascending ? (drawn(i) - start) / width : static_cast<double>(i) / static_cast<double>(size - 1);
+    return std::clamp(static_cast<Eigen::Index>(std::max(place, 0.0) * static_cast<double>(intervals)),
+                      Eigen::Index{0}, intervals - 1);
+  };
+
+  kept = {0};
+  for (Eigen::Index begin = 0, end; begin < size; begin = end) {
+    Eigen::Index low = begin, high = begin, gap = -1;
+    for (end = begin; end < size && interval(end) == interval(begin); ++end) {
+      if (!std::isfinite(y[end])) gap = end;
+      if (!(y[low] <= y[end])) low = std::isfinite(y[end]) ? end : low;
+      if (!(y[high] >= y[end])) high = std::isfinite(y[end]) ? end : high;
+    }
+    Eigen::Index chosen[] = {low, high, gap};
+    std::sort(std::begin(chosen), std::end(chosen));
+    for (const Eigen::Index i : chosen)
+      if (i > kept.back()) kept.push_back(i);
+  }
+  if (kept.back() != size - 1) kept.push_back(size - 1);
+  return kept;
+}
+
 namespace {
 
 using Fields = std::vector<std::string>;  // of a column: header, then values
@@ -176,6 +215,61 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
       throw std::runtime_error("figure '" + figure.name + "': gnuplot left no whole " +
                                picture.filename().string() + "; is the disk full? " + gnuplot.output);
   }
+}
+
+std::optional<Panel> spectrum_panel(const std::vector<DrawnSignal>& signals, double interval,
+                                    const std::string& label, double decades) {
+  Panel panel{"", {"frequency [Hz]"}, {"amplitude of " + label, true}};
+  double highest = 0, last = 0;
+  for (const DrawnSignal& signal : signals) {
+    const AmplitudeSpectrum spectrum = amplitude_spectrum(bridged_straight(signal.samples), interval);
+    const Eigen::Index lines = spectrum.frequency_hz.size() - 1;  // without 0: the mean is taken off
+    if (lines < 1) continue;
+    highest = std::max(highest, spectrum.amplitude.tail(lines).maxCoeff());
+    last = std::max(last, spectrum.frequency_hz[lines]);
+    panel.line(signal.label, spectrum.frequency_hz.tail(lines), spectrum.amplitude.tail(lines),
+               signal.colour);
+  }
+  if (!(highest > 0)) return std::nullopt;
+  if (signals.size() == 1) panel.legend = Legend::none;
+  return panel.across(0, last).up(std::pow(10.0, -decades) * highest, 2 * highest);
+}
+
+Panel reproduction_panel(const std::string& title, const Eigen::VectorXd& time,
+                         const Eigen::VectorXd& measured, const std::vector<DrawnSignal>& reproduced,
+                         const std::string& label) {
+  Panel panel{title, {"time [s]"}, {label}};
+  for (const DrawnSignal& one : reproduced) panel.line(one.label, time, one.samples, one.colour);
+  return panel.thin("measured", time, measured, Colour::black).across(time[0], time[time.size() - 1]);
+}
+
+namespace {
+
+double size_of(const Eigen::VectorXd& values) {
+  return values.size() > 0 ? values.array().isFinite().select(values.array().abs(), 0.0).maxCoeff() : 0.0;
+}
+
+/// The next of ..., 1, 2, 5, 10, ... that is not below a size; 1 of zero.
+double round_size(double most) {
+  if (!(most > 0)) return 1;
+  const double decade = std::pow(10.0, std::floor(std::log10(most)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (most <= step * decade) return step * decade;
+  return 10 * decade;
+}
+
+}  // namespace
+
+Panel residual_panel(const std::string& title, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
+                     const std::string& label, double largest) {
+  const double most = round_size(largest > 0.0 ? largest : size_of(residual));
+  Panel panel = Panel{title, {"time [s]"}, {"residual, " + label}}
+                    .thin("", time, residual, Colour::black)
+                    .across(time[0], time[time.size() - 1])
+                    .up(-most, most)
+                    .key(Legend::none);
+  panel.y_axis.tick = most;
+  return panel;
 }
 
 }  // namespace beamid::experiments

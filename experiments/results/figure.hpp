@@ -1,14 +1,27 @@
 // A figure: its data, a gnuplot script to restyle, and the pictures drawn by it.
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace beamid::experiments {
+
+// A long curve thinned so that its picture stays the same.
+
+/// Indices of the points to keep, ascending, at most about `limit`: the first and the last, and the lowest
+/// and the highest of every interval, the intervals being equally wide on the axis. Points that are not
+/// finite leave a gap and keep it.
+///
+/// @param x (N) abscissae. Where they do not ascend, the intervals hold equally many points instead.
+/// @param y (N) ordinates.
+/// @param logarithmic whether x is drawn on a logarithmic axis.
+std::vector<Eigen::Index> envelope(const Eigen::VectorXd& x, const Eigen::VectorXd& y, bool logarithmic,
+                                   Eigen::Index limit = 4000);
 
 /// How a curve is drawn. A band is a shaded area between `lower` and `upper`; points with `lower` and `upper`
 /// carry error bars; intervals are points with bars along x from `lower` to `upper`; arrows point along x
@@ -85,7 +98,7 @@ struct Figure {
 
 /// Writes NAME.csv, NAME.gp, NAME.svg and NAME.png; the same figure gives the same bytes.
 ///
-/// NAME.csv holds the curves side by side, thinned to about 4000 points each (envelope.hpp), shorter ones
+/// NAME.csv holds the curves side by side, thinned to about 4000 points each (figure.hpp), shorter ones
 /// padded with empty fields; `gnuplot NAME.gp` in the same folder draws the pictures again.
 /// @throws std::invalid_argument when the figure is impossible: sizes of x and y, its name, no place for a
 /// panel.
@@ -95,5 +108,32 @@ void write(const Figure& figure, const std::filesystem::path& folder);
 
 /// Names of the files write() makes: "NAME.csv", "NAME.gp", "NAME.svg", "NAME.png".
 std::vector<std::string> files_of(const Figure& figure);
+
+// Panels that several commands draw of a signal.
+
+struct DrawnSignal {
+  std::string label;  ///< in the legend; empty where there is one signal
+  Eigen::VectorXd samples;
+  Colour colour = Colour::black;
+};
+
+/// Amplitude spectra (signal/amplitude_spectrum.hpp) over frequency, from the first line above 0 on. The axis
+/// ends `decades` below the highest peak; the curves go on below it, so that the data beside the figure are
+/// the true ones. Missing samples are drawn straight across.
+/// @param label of the vertical axis, "acceleration [m/s2]"
+/// @return nothing where no signal moves.
+std::optional<Panel> spectrum_panel(const std::vector<DrawnSignal>& signals, double interval,
+                                    const std::string& label, double decades = 6);
+
+/// The record, thin and black, in front of what reproduces it.
+Panel reproduction_panel(const std::string& title, const Eigen::VectorXd& time,
+                         const Eigen::VectorXd& measured, const std::vector<DrawnSignal>& reproduced,
+                         const std::string& label);
+
+/// Measured minus reproduced, up to the round number above it.
+/// @param label of the record's axis; "residual, " comes before it
+/// @param largest of panels on one scale, in place of the residual's own; 0: its own
+Panel residual_panel(const std::string& title, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
+                     const std::string& label, double largest = 0.0);
 
 }  // namespace beamid::experiments

@@ -1,19 +1,18 @@
 #include "experiments/results/results.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "experiments/results/library_versions.hpp"
-#include "experiments/results/print.hpp"
 #include "experiments/results/report_page.hpp"
 #include "experiments/results/text.hpp"
 #include "experiments/results/vtk/drawing.hpp"
-#include "experiments/text/clean_text.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {

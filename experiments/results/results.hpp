@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -12,9 +11,12 @@
 #include <variant>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "experiments/results/figure.hpp"
 #include "experiments/results/result_directory.hpp"
 #include "experiments/results/table.hpp"
+#include "experiments/results/text.hpp"
 
 namespace beamid::experiments {
 
@@ -105,5 +107,13 @@ void print(std::ostream& terminal, const Results& results);
 
 /// results.json as it would be written.
 void print_json(std::ostream& stream, const Results& results);
+
+// Results and tables for a terminal of any width.
+
+/// Headings, paragraphs and tables in their order, at most as wide as the page.
+void print(std::ostream& terminal, const Results& results, const Page& page);
+
+/// A table as in table.hpp, on a page of any width.
+void print(std::ostream& stream, const Table& table, const Page& paper);
 
 }  // namespace beamid::experiments

@@ -6,8 +6,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "experiments/results/cell_text.hpp"
-#include "experiments/results/print.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
+#include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <sstream>
+
+#include <fmt/format.h>
+
+#include "experiments/results/gnuplot.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -32,8 +37,9 @@ void wrap_line(const std::string& line, std::size_t width, std::vector<std::stri
 
 /// Words of verdicts. They stand in capitals; what stands in capitals before them, as in THE RECORDS
 /// DISAGREE, belongs to them.
-constexpr std::array verdicts{"DIVERGED", "CONTRADICTED", "DISAGREE", "ALIASED",  "WRONG",       "WARNING",
-                              "SETTLED",  "DETERMINED",   "RELY",     "diverged", "contradicted"};
+constexpr std::array verdicts{"DIVERGED", "CONTRADICTED", "DISAGREE",   "ALIASED", "WRONG",
+                              "WARNING",  "SETTLED",      "DETERMINED", "UNIQUE",  "RELY",
+                              "diverged", "contradicted", "not_unique"};
 
 bool in_capitals(const std::string& line, std::size_t from, std::size_t to) {
   return from < to &&
@@ -74,6 +80,122 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
   std::istringstream stream{std::string(text)};
   for (std::string line; std::getline(stream, line);) wrap_line(line, width, lines);
   return lines;
+}
+
+namespace {
+
+constexpr double tick_height = 34;  // [px] from label to label above each other
+
+int step_decimals(double step) {
+  return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+}
+
+// Whether numbers with this step are written out; if not, as "1.5e+06".
+bool written_out(const AxisRange& range, double step) {
+  return std::max(std::abs(range.first), std::abs(range.second)) < 1e6 && step_decimals(step) <= 6;
+}
+
+double label_width(const AxisRange& range, double step) {
+  if (!written_out(range, step)) return 8 * tick_letter;
+  const int decimals = step_decimals(step);
+  std::size_t widest = 0;
+  for (const double value : {range.first, range.second}) {
+    const double tick = std::round(value / step) * step;
+    widest = std::max(widest, fmt::format("{:.{}f}", tick, decimals).size());
+  }
+  return tick_letter * static_cast<double>(widest);
+}
+
+// Whether the labels stand clear of each other.
+bool has_room(char name, const std::vector<double>& ticks, const AxisRange& range, double length) {
+  const double decades = std::log10(range.second / range.first);
+  for (std::size_t i = 0; i + 1 < ticks.size(); ++i) {
+    const double distance = length * std::log10(ticks[i + 1] / ticks[i]) / decades;
+    const auto width = [](double tick) {
+      return tick_letter * static_cast<double>(fmt::format("{:g}", tick).size());
+    };
+    if (distance < (name == 'x' ? 0.5 * (width(ticks[i]) + width(ticks[i + 1])) + 10 : 0.6 * tick_height))
+      return false;
+  }
+  return true;
+}
+
+Ticks listed(char name, const std::vector<double>& ticks) {
+  Ticks found;
+  std::string list;
+  for (const double tick : ticks) {
+    const std::string text = fmt::format("{:.6g}", tick);
+    list += (list.empty() ? "" : ", ") + text;
+    found.widest = std::max(found.widest, tick_letter * static_cast<double>(text.size()));
+  }
+  found.commands = fmt::format("  set format {0} '%g'; set {0}tics ({1})\n", name, list);
+  return found;
+}
+
+}  // namespace
+
+double rounded_up_step(double size) {
+  const double power = std::pow(10.0, std::floor(std::log10(size)));
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (size <= factor * power * (1 + 1e-9)) return factor * power;
+  return 10 * power;
+}
+
+double step_for(const AxisRange& range, double length, bool upright) {
+  const double span = range.second - range.first;
+  double step = rounded_up_step(span / 2);
+  for (int count = 10; count > 1; --count) {
+    const double finer = rounded_up_step(span / count);
+    const double needed = upright ? tick_height : label_width(range, finer) + 16;
+    if (needed * (span / finer) > length) continue;
+    step = finer;
+    break;
+  }
+  const auto ticks = [&] { return std::floor(range.second / step) - std::ceil(range.first / step) + 1; };
+  while (ticks() < 2) step = rounded_up_step(0.35 * step);  // one number alone is no scale
+  return step;
+}
+
+Ticks linear_ticks(char name, const AxisRange& range, double step) {
+  const std::string format = written_out(range, step) ? fmt::format("%.{}f", step_decimals(step)) : "%g";
+  return {fmt::format("  unset logscale {0}; set format {0} '{1}'; set {0}tics {2:g}; set m{0}tics default\n",
+                      name, format, step),
+          label_width(range, step)};
+}
+
+Ticks logarithmic_ticks(char name, const AxisRange& range, double length) {
+  const double decades = std::log10(range.second / range.first);
+  if (decades > 2.5)
+    return {fmt::format("  set format {0} '10^{{%T}}'; set {0}tics autofreq; set m{0}tics 10\n", name),
+            4.5 * tick_letter};
+  const std::vector<double> sets[] = {
+      {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9}, {1, 1.5, 2, 3, 4, 5, 7}, {1, 2, 5}, {1, 3}, {1}};
+  const int first = static_cast<int>(std::floor(std::log10(range.first)));
+  for (const auto& factors : sets) {
+    std::vector<double> ticks;
+    for (int power = first; power <= first + 3; ++power)
+      for (const double factor : factors)
+        if (const double tick = factor * std::pow(10.0, power); tick >= range.first && tick <= range.second)
+          ticks.push_back(tick);
+    if (ticks.size() >= 2 && has_room(name, ticks, range, length)) return listed(name, ticks);
+  }
+  std::vector<double> ticks;  // so short that it is all but linear
+  const double step = step_for(range, length, name == 'y');
+  for (double tick = std::ceil(range.first / step) * step; tick <= range.second; tick += step)
+    ticks.push_back(tick);
+  return listed(name, ticks);
+}
+
+Ticks named_ticks(const std::string& name, const std::vector<std::string>& names) {
+  constexpr double letter = 7.6;  // [px], of words
+  Ticks found;
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    list += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_text(names[i]), i + 1);
+    found.widest = std::max(found.widest, letter * static_cast<double>(width_of(names[i])));
+  }
+  found.commands = fmt::format("  unset logscale {0}; set {0}tics ({1})\n", name, list);
+  return found;
 }
 
 }  // namespace beamid::experiments

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/record/prepare/record_defects.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -10,16 +10,15 @@
 #include <fmt/format.h>
 #include <Eigen/Core>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/rig/acquisition.hpp"
-#include "experiments/rig/excitation_history.hpp"
+#include "experiments/rig/virtual_rig.hpp"
 #include "experiments/signal/interpolation.hpp"
-#include "experiments/signal/random.hpp"
-#include "fem/damping.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "fem/modes.hpp"
 #include "fem/parametric_system.hpp"
 #include "fem/response/response.hpp"
+#include "fem/structural_system.hpp"
 #include "filters/discrete_model.hpp"
 
 namespace beamid::experiments {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/models/structure_points.hpp"
-#include "experiments/rig/acquisition.hpp"
+#include "experiments/rig/virtual_rig.hpp"
 #include "experiments/text/progress.hpp"
 #include "fem/response/response.hpp"
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/signal/median.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

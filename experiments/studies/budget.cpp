@@ -8,12 +8,12 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/identify/plausibility.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/studies/budget/budget.hpp"
 #include "experiments/studies/paper/monte_carlo.hpp"
 #include "experiments/studies/study.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "experiments/text/words.hpp"
+#include "experiments/text/choice_text.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -15,11 +15,10 @@
 #include <unistd.h>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
+#include "experiments/text/choice_text.hpp"
 #include "experiments/text/input_error.hpp"
-#include "experiments/text/json_file.hpp"
-#include "experiments/text/text_file.hpp"
-#include "experiments/text/words.hpp"
+#include "experiments/text/toml_table.hpp"
 #include "filters/batch.hpp"
 
 namespace beamid::experiments {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
+#include "experiments/text/choice_text.hpp"
 #include "experiments/text/spelling.hpp"
-#include "experiments/text/words.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -10,12 +10,12 @@
 
 #include <fmt/format.h>
 
-#include "experiments/config/read_reduction.hpp"
-#include "experiments/identify/analysis.hpp"
-#include "experiments/identify/compare/first_guess.hpp"
-#include "experiments/identify/compare/true_value.hpp"
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/reproduction.hpp"
+#include "experiments/config/readers.hpp"
+#include "experiments/identify/engine/analysis.hpp"
+#include "experiments/identify/engine/first_guess.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/engine/true_value.hpp"
+#include "experiments/identify/verdict/reproduction.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/identification.hpp"
 #include "experiments/models/joint_model.hpp"
@@ -24,7 +24,7 @@
 #include "filters/batch.hpp"
 #include "filters/fisher_information.hpp"
 #include "filters/identifiability.hpp"
-#include "filters/normal_noise.hpp"
+#include "filters/random.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -13,9 +13,9 @@
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/sweep/read_sweep.hpp"
+#include "experiments/text/choice_text.hpp"
 #include "experiments/text/fields.hpp"
-#include "experiments/text/text_file.hpp"
-#include "experiments/text/words.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 #include "experiments/sweep/sweep_plan.hpp"
 #include "experiments/text/progress.hpp"
 

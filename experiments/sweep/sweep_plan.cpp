@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "experiments/text/words.hpp"
+#include "experiments/text/choice_text.hpp"
 #include "filters/random.hpp"
 
 namespace beamid::experiments {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/options.hpp"
+#include "filters/registry.hpp"
 
 namespace beamid::experiments {
 

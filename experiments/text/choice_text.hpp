@@ -2,13 +2,27 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
+#include "filters/registry.hpp"
 
 namespace beamid::experiments {
+
+// Words of the command line and of short texts, taken apart.
+
+/// The parts between separators, empty ones included; at least one.
+std::vector<std::string> split(const std::string& text, char separator);
+
+/// A word that is a finite number as a whole; nothing else, not even a blank.
+std::optional<double> number(const std::string& word);
+
+/// A value as the user would write it; a number as the shortest that reads back the same, those of a list
+/// parted by "/".
+std::string word_of(const filters::OptionValue& value);
 
 /// "guyan:masters_m=0.4/0.8" taken apart: name, then option and value in their order.
 struct ChoiceWords {

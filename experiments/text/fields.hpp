@@ -1,11 +1,26 @@
 // The fields of one line of delimited text, read and written: RFC 4180's quotes [rfc4180], any separator.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace beamid::experiments {
+
+// Texts from outside, fit to be shown anywhere.
+
+/// The text in UTF-8 and on one line, without anything that a terminal, a page, a table or a plot takes for a
+/// command: control characters (U+0000 to U+001F, U+007F to U+009F) and those that XML forbids are dropped;
+/// tabs and line breaks become blanks. A byte that is not UTF-8 is taken for ISO 8859-1, in which loggers
+/// write "m/s²".
+std::string clean_text(std::string_view text);
+
+/// The same with its line breaks: for what is printed as a whole.
+std::string clean_lines(std::string_view text);
+
+/// Where the first control character, a tab or a line break too, begins; npos: nowhere.
+std::size_t find_control(std::string_view text);
 
 /// Without blanks and tabs around it.
 std::string_view trimmed(std::string_view text);
@@ -27,7 +42,7 @@ char separator_of(std::string_view line);
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
                   bool empty_ends = false);
 
-/// A text, cleaned (clean_text.hpp), as a field that split_fields() and field_text() give back: quoted where
+/// A text, cleaned (fields.hpp), as a field that split_fields() and field_text() give back: quoted where
 /// it holds a comma, a quote or a line break, or begins or ends with a blank.
 std::string csv_field(std::string_view text);
 

@@ -1,17 +1,57 @@
 // A TOML file's tables, read key by key with checks that name file, line and column.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "experiments/text/input_error.hpp"
-#include "filters/options.hpp"
+#include "filters/registry.hpp"
 
 namespace beamid::experiments {
+
+// A whole text file in memory.
+
+// JSON that a beamid command wrote, read back.
+
+/// @param expected what the file should hold, for messages: "the results of a beamid command".
+/// @throws InputError when it cannot be read, is no JSON (at its place), no object, or nests more than 64
+/// levels deep, which those who walk through it do not expect.
+nlohmann::ordered_json read_json(const std::filesystem::path& file, const std::string& expected);
+
+/// A value that is a whole number from least to most; nlohmann's get() would convert 1e92 to whatever it
+/// likes.
+/// @param key its name, for messages.
+/// @throws std::invalid_argument when it is anything else.
+std::int64_t whole_number(const nlohmann::json& value, const std::string& key, std::int64_t least,
+                          std::int64_t most);
+
+/// The file, ready to be read as it is.
+///
+/// @param expected what the file should hold, for messages: "a TOML file".
+/// @throws InputError when it is missing, a directory or may not be read.
+std::ifstream open_input(const std::filesystem::path& file, const std::string& expected);
+
+/// All its bytes. @throws InputError likewise, and when there are none.
+std::string read_bytes(const std::filesystem::path& file, const std::string& expected);
+
+/// How many bytes it has, without reading them: for libraries that read it themselves. @throws likewise.
+std::size_t count_bytes(const std::filesystem::path& file, const std::string& expected);
+
+/// The file's bytes, without the byte-order mark some editors put in front.
+///
+/// @param expected what the file should hold, for messages: "a TOML file".
+/// @throws InputError when the file is missing, a directory, unreadable, empty or not text (holds a control
+/// byte
+///         that no text has, as compressed, binary and UTF-16 files do).
+std::string read_text(const std::filesystem::path& file, const std::string& expected);
 
 /// What a number must satisfy beyond being finite.
 enum class Sign { any, not_negative, positive };

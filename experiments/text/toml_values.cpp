@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/text/clean_text.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/spelling.hpp"
 #include "experiments/text/toml_node.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "fem/damping.hpp"
 #include "fem/modes.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

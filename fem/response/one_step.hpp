@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "fem/damping.hpp"
 #include "fem/response/method.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

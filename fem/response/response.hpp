@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
 
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

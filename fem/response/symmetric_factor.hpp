@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

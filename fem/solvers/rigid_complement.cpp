@@ -15,8 +15,8 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include "fem/damping.hpp"
 #include "fem/stiffness_solver.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "fem/damping.hpp"
 #include "fem/stiffness_solver.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::fem {
 

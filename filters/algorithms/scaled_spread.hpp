@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "filters/algorithms/sigma_points.hpp"
-#include "filters/options.hpp"
+#include "filters/registry.hpp"
 
 namespace beamid::filters::algorithms {
 

@@ -1,9 +1,8 @@
 // As many trials as there are lanes, run side by side.
 #pragma once
 
-#include "filters/algorithms/euler_oscillator.hpp"
 #include "filters/algorithms/extended_kalman.hpp"
-#include "filters/algorithms/log_product.hpp"
+#include "filters/algorithms/innovation_group.hpp"
 #include "filters/algorithms/oscillator.hpp"
 #include "filters/algorithms/some_outputs.hpp"
 

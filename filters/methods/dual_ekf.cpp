@@ -15,8 +15,8 @@
 #include <algorithm>
 
 #include "filters/innovation.hpp"
+#include "filters/latent_inputs.hpp"
 #include "filters/linearised_step.hpp"
-#include "filters/state_entries.hpp"
 
 namespace beamid::filters {
 namespace {

@@ -10,8 +10,8 @@
 // That the errors of both are correlated counts in neither, so the covariances are not those of the errors;
 // and what the sensors do not read of d directly (displacements, velocities) corrects x alone.
 #include "filters/innovation.hpp"
+#include "filters/latent_inputs.hpp"
 #include "filters/linearised_step.hpp"
-#include "filters/unknown_inputs.hpp"
 
 namespace beamid::filters {
 namespace {

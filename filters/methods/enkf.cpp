@@ -15,8 +15,8 @@
 #include <limits>
 
 #include "filters/covariance_factor.hpp"
-#include "filters/exact_draws.hpp"
 #include "filters/innovation.hpp"
+#include "filters/random.hpp"
 #include "filters/whole_number.hpp"
 
 namespace beamid::filters {

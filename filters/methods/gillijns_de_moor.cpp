@@ -16,8 +16,8 @@
 #include <Eigen/QR>
 
 #include "filters/innovation.hpp"
+#include "filters/latent_inputs.hpp"
 #include "filters/linearised_step.hpp"
-#include "filters/unknown_inputs.hpp"
 
 namespace beamid::filters {
 namespace {

@@ -7,25 +7,104 @@
 //
 //     innovation covariance   Z Z^T + R
 //     mean                    m += S (T Z^T (Z Z^T + R)^-1 (y - h(m)))
-//     factor                  T := T M, output after output of L^-1 y     [carlson1973], triangular_root.hpp
+//     factor                  T := T M, output after output of L^-1 y     [carlson1973], low_rank_ekf.cpp
 //
 // S T itself is formed only when the estimate is asked for, or when the directions have become so much alike
 // that what T makes of them cancels (docs/theory/low_rank.md).
 //
 // Process noise Q adds a square root of Q as further columns; RankLimit cuts them back.
-#include <Eigen/Cholesky>
+#include <cmath>
 #include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include "filters/covariance_factor.hpp"
 #include "filters/filter.hpp"
 #include "filters/innovation.hpp"
 #include "filters/rank_limit.hpp"
-#include "filters/triangular_root.hpp"
 
 namespace beamid::filters {
 namespace {
 
+// The square root of a covariance as measurements turn it.
+
+/// T (r x r) upper triangular, T T^T the covariance of r coefficients, the identity at first.
+///
+/// An output of noise d that sees them as z^T = y^T T turns it into T M, M upper triangular [carlson1973]:
+///
+///     M M^T = I - z z^T / (d + z^T z),   b_j = d + z_1^2 + ... + z_j^2
+///     M_jj = sqrt(b_j-1 / b_j),   M_ij = -z_i z_j / sqrt(b_j-1 b_j)
+///
+/// The diagonal is a product of ratios below one: the covariance cannot lose its positivity.
+class TriangularRoot {
+ public:
+  void restart(Eigen::Index size);  ///< T = I
+  const Eigen::MatrixXd& matrix() const { return root_; }
+
+  /// @param seen how outputs of independent noises see the coefficients, a row y^T each (p x r).
+  /// @param variances d of each (p); zero: without noise.
+  void take_in(const Eigen::MatrixXd& seen, const Eigen::VectorXd& variances);
+
+  /// Asked after every `interval` calls of take_in(): whether what the outputs saw of a column of T was a
+  /// small difference of larger numbers, or T is about to leave the range of numbers. Over an interval, since
+  /// an output may pass through zero.
+  bool cancels();
+  static constexpr Eigen::Index interval = 64;
+
+ private:
+  void take_in(const Eigen::MatrixXd& seen, Eigen::Index output, double variance);
+
+  Eigen::MatrixXd root_;
+  Eigen::VectorXd partial_, terms_, sums_;  // sum z_j T_j; squares of sum |y_i T_ij| and of z_j (r)
+};
+
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+void TriangularRoot::restart(Index size) {
+  root_.setIdentity(size, size);
+  terms_.setZero(size);
+  sums_.setZero(size);
+}
+
+void TriangularRoot::take_in(const MatrixXd& seen, const VectorXd& variances) {
+  for (Index i = 0; i < seen.rows(); ++i) take_in(seen, i, variances[i]);
+}
+
+void TriangularRoot::take_in(const MatrixXd& seen, Index output, double variance) {
+  const Index r = root_.cols();
+  const double weight = variance > 0.0 ? 1.0 / variance : 1.0;
+  partial_.setZero(r);
+  double below = variance;
+  for (Index j = 0; j < r; ++j) {
+    double* column = &root_(0, j);
+    double z = 0.0, without_signs = 0.0;
+    for (Index i = 0; i <= j; ++i) {
+      const double term = seen(output, i) * column[i];
+      z += term;
+      without_signs += std::abs(term);
+    }
+    terms_[j] += weight * without_signs * without_signs;
+    sums_[j] += weight * z * z;
+    const double above = below + z * z;
+    if (z == 0.0 || !(above > 0.0)) continue;
+    const double kept = std::sqrt(below / above), share = below > 0.0 ? z / std::sqrt(below * above) : 0.0;
+    for (Index i = 0; i <= j; ++i) {
+      const double before = column[i];
+      column[i] = kept * before - share * partial_[i];
+      partial_[i] += z * before;
+    }
+    below = above;
+  }
+}
+
+bool TriangularRoot::cancels() {
+  constexpr double digits_lost = 1e4, smallest = 1e-100;
+  const bool cancelling = (terms_.array() > digits_lost * digits_lost * sums_.array()).any();
+  terms_.setZero();
+  sums_.setZero();
+  return cancelling || root_.diagonal().minCoeff() < smallest;
+}
 
 class LowRankExtendedKalmanFilter final : public Filter {
  public:
@@ -157,4 +236,5 @@ const bool low_rank_ekf_registered = filter_registry().add(
      }});
 
 }  // namespace
+
 }  // namespace beamid::filters

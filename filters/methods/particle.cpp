@@ -9,23 +9,65 @@
 // mean and covariance as they are [liu2001]. A reading far sharper than the cloud is worked in by powers of
 // its likelihood, p^d1 p^d2 ..., d1 + d2 + ... = 1, each just strong enough to bring about a resampling:
 // progressive correction [musso2001].
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
 #include "filters/covariance_factor.hpp"
-#include "filters/exact_draws.hpp"
 #include "filters/innovation.hpp"
 #include "filters/particle_cloud.hpp"
-#include "filters/progressive_correction.hpp"
+#include "filters/random.hpp"
 #include "filters/whole_number.hpp"
 
 namespace beamid::filters {
 namespace {
 
+// A likelihood worked in by powers of itself [musso2001].
+
+/// Weights w_i exp(-share c_i / 2), scaled to sum to one, and the logarithm of their sum before.
+struct Reweighted {
+  Eigen::VectorXd weights;
+  double log_sum = 0.0;
+};
+
+/// @param squares c_i = -2 log of the likelihood of each of N samples, without its constant (N).
+Reweighted reweighted(const Eigen::VectorXd& weights, const Eigen::VectorXd& squares, double share);
+
+/// The largest share of the likelihood, up to `left`, after which the effective sample size 1 / sum w_i^2 is
+/// still `enough`; to 1 %.
+double affordable_share(const Eigen::VectorXd& weights, const Eigen::VectorXd& squares, double left,
+                        double enough);
+
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+Reweighted reweighted(const VectorXd& weights, const VectorXd& squares, double share) {
+  const double least = squares.minCoeff();
+  Reweighted result{weights.array() * (-0.5 * share * (squares.array() - least)).exp(), 0.0};
+  const double sum = result.weights.sum();
+  result.weights /= sum;
+  result.log_sum = std::log(sum) - 0.5 * share * least;
+  return result;
+}
+
+double affordable_share(const VectorXd& weights, const VectorXd& squares, double left, double enough) {
+  const auto size = [&](double share) {
+    return 1.0 / reweighted(weights, squares, share).weights.squaredNorm();
+  };
+  if (size(left) >= enough) return left;
+  double low = 0.0, high = left;
+  for (int i = 0; i < 60 && high - low > 1e-2 * high; ++i) {
+    const double middle = low > 0.0 ? std::sqrt(low * high) : 1e-2 * high;
+    if (size(middle) >= enough)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low > 0.0 ? low : high;
+}
 
 class ParticleFilter final : public Filter {
  public:
@@ -211,4 +253,5 @@ const bool particle_registered = filter_registry().add(
      }});
 
 }  // namespace
+
 }  // namespace beamid::filters

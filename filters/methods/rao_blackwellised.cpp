@@ -8,14 +8,19 @@
 // them are effective, they are drawn again and moved by Metropolis and Hastings over the whole record so far,
 // which leaves the posterior as it is: in contrast to a kernel, nothing is widened. Where the last readings
 // say more than that share allows, they are let in by powers of their likelihood.
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
 
-#include "filters/exact_draws.hpp"
+#include <Eigen/Cholesky>
+
 #include "filters/filter.hpp"
+#include "filters/gaussian.hpp"
 #include "filters/innovation.hpp"
-#include "filters/methods/conditional_motion.hpp"
+#include "filters/observed_model.hpp"
 #include "filters/particle_cloud.hpp"
 #include "filters/random.hpp"
 #include "filters/whole_number.hpp"
@@ -23,7 +28,205 @@
 namespace beamid::filters {
 namespace {
 
+// The Gaussian motion of a linear model whose constants are given, exact.
+
+/// One step of the record so far, as it was met.
+struct RecordStep {
+  bool reading = false;
+  Eigen::VectorXd output, input;
+  std::vector<Eigen::Index> observed;
+  Eigen::MatrixXd noise;  ///< R of a reading, Q of a step
+  double interval = 0.0;
+};
+
+/// Constants theta with the motion that they imply.
+struct ConstantParticle {
+  Eigen::VectorXd theta, mean;  ///< (q), (l)
+  Eigen::MatrixXd covariance;   ///< (l x l)
+  // Motion and readings given theta, as long as interval and outputs stay: x+ = A x + c, y = H x + d.
+  double interval = -1.0;
+  Eigen::MatrixXd a, h;
+  Eigen::VectorXd c, d;
+  std::vector<Eigen::Index> seen;
+  double settled = 0.0;  ///< ln likelihood of the readings before the last move
+  double fresh = 0.0;    ///< and since
+};
+
+/// Kalman filter of p(x | theta, y_0..k): theta are the constants that the motion of the other entries
+/// depends on, x those others.
+class ConditionalMotion {
+ public:
+  explicit ConditionalMotion(ObservedModel& model) : model_(model) {}
+
+  /// Sorts the entries of the state into theta and x.
+  /// @throws std::invalid_argument where the motion given theta is not linear.
+  void reset(const Gaussian& start);
+
+  const Gaussian& start() const { return start_; }
+  const std::vector<Eigen::Index>& held() const { return held_; }  ///< places of theta (q)
+  const std::vector<Eigen::Index>& free() const { return free_; }  ///< of x (l)
+
+  /// x at the start, given theta.
+  void begin(ConstantParticle& one) const;
+  void move(ConstantParticle& one, const RecordStep& step);
+  /// @returns ln p(y | theta, what was read before)
+  /// @param expected y at the prediction (p)
+  /// @param s covariance of what is new in y (p x p)
+  double correct(ConstantParticle& one, const RecordStep& step, Eigen::VectorXd& expected,
+                 Eigen::MatrixXd& s);
+  /// The record once more, from its start; readings before `settled_steps` count as settled.
+  void replay(ConstantParticle& one, const std::vector<RecordStep>& record, std::size_t settled_steps);
+
+  /// theta and x in their places (n).
+  Eigen::VectorXd state(const ConstantParticle& one) const;
+
+ private:
+  ObservedModel& model_;
+  Gaussian start_;
+  std::vector<Eigen::Index> held_, free_;
+  Eigen::VectorXd next_;
+  Eigen::MatrixXd tangent_, work_;
+};
+
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+bool differ(const MatrixXd& a, const MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() > 1e-9 * (a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
+}
+
+// Constants are entries that stay as they are, without noise. Those that the motion of the others depends
+// on are held by particles.
+void ConditionalMotion::reset(const Gaussian& start) {
+  start_ = start;
+  const Index n = start.mean.size();
+  const VectorXd none, deviation = start.deviations();
+  VectorXd next;
+  MatrixXd moved, shown, other;
+  model_.linearised_transition(start.mean, none, next, moved);
+  model_.output_jacobian(start.mean, none, shown);
+  const MatrixXd& q = model_.process_noise();
+  std::vector<Index> constants, moving;
+  for (Index i = 0; i < n; ++i) {
+    VectorXd row = moved.row(i);
+    row[i] -= 1.0;
+    const bool stays = row.cwiseAbs().maxCoeff() < 1e-12 && (q.size() == 0 || q(i, i) == 0.0);
+    (stays ? constants : moving).push_back(i);
+  }
+  held_.clear();
+  free_ = moving;
+  for (const Index i : constants) {
+    VectorXd there = start.mean;
+    there[i] += deviation[i] > 0.0 ? deviation[i] : 1e-3 * std::max(1.0, std::abs(there[i]));
+    model_.linearised_transition(there, none, next, other);
+    bool changes = differ(moved(moving, moving), other(moving, moving));
+    model_.output_jacobian(there, none, other);
+    changes = changes || differ(shown(Eigen::all, moving), other(Eigen::all, moving));
+    (changes ? held_ : free_).push_back(i);
+  }
+  std::sort(free_.begin(), free_.end());
+  VectorXd there = start.mean;
+  there(free_) += deviation(free_);
+  model_.linearised_transition(there, none, next, other);
+  bool linear = !differ(moved(free_, free_), other(free_, free_));
+  model_.output_jacobian(there, none, other);
+  linear = linear && !differ(shown(Eigen::all, free_), other(Eigen::all, free_));
+  if (!linear)
+    throw std::invalid_argument(
+        "rao_blackwellised: the motion is not linear where its constants are held; expected a linear one "
+        "(particle, ukf or ekf take the others)");
+}
+
+void ConditionalMotion::begin(ConstantParticle& one) const {
+  one.mean = start_.mean(free_);
+  one.covariance = start_.covariance(free_, free_);
+  one.settled = one.fresh = 0.0;
+  one.interval = -1.0;
+  one.h.resize(0, 0);
+  if (held_.empty()) return;
+  const MatrixXd across = start_.covariance(free_, held_);
+  if (across.isZero(0.0)) return;
+  const Eigen::LDLT<MatrixXd> known(start_.covariance(held_, held_));
+  one.mean += across * known.solve(one.theta - start_.mean(held_));
+  one.covariance -= across * known.solve(across.transpose());
+}
+
+VectorXd ConditionalMotion::state(const ConstantParticle& one) const {
+  VectorXd result(start_.mean.size());
+  result(free_) = one.mean;
+  result(held_) = one.theta;
+  return result;
+}
+
+void ConditionalMotion::move(ConstantParticle& one, const RecordStep& step) {
+  if (one.interval != step.interval) {
+    const VectorXd none = VectorXd::Zero(step.input.size());
+    model_.linearised_transition(state(one), none, next_, tangent_);
+    one.interval = step.interval;
+    one.a = tangent_(free_, free_);
+    one.c = next_(free_) - one.a * one.mean;
+  }
+  if (step.input.size() > 0) {
+    model_.transition(state(one), step.input, next_);
+    one.mean = next_(free_);
+  } else {
+    one.mean = (one.a * one.mean + one.c).eval();
+  }
+  work_.noalias() = one.a * one.covariance;
+  one.covariance.noalias() = work_ * one.a.transpose();
+  if (step.noise.size() > 0) one.covariance += step.noise(free_, free_);
+  symmetrise(one.covariance);
+}
+
+double ConditionalMotion::correct(ConstantParticle& one, const RecordStep& step, VectorXd& expected,
+                                  MatrixXd& s) {
+  if (one.h.size() == 0 || one.seen != step.observed) {
+    const VectorXd none = VectorXd::Zero(step.input.size()), at = state(one);
+    model_.output(at, none, expected);
+    model_.output_jacobian(at, none, tangent_);
+    one.seen = step.observed;
+    one.h = tangent_(Eigen::all, free_);
+    one.d = expected - one.h * one.mean;
+  }
+  const MatrixXd& h = one.h;
+  if (step.input.size() > 0)
+    model_.output(state(one), step.input, expected);
+  else
+    expected = h * one.mean + one.d;
+  const MatrixXd across = one.covariance * h.transpose();
+  s = h * across + step.noise;
+  const Eigen::LLT<MatrixXd> factor(s);
+  if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
+  const VectorXd rest = step.output - expected;
+  const MatrixXd gain = factor.solve(across.transpose()).transpose();
+  one.mean += gain * rest;
+  MatrixXd kept = -gain * h;
+  kept.diagonal().array() += 1.0;
+  one.covariance = (kept * one.covariance * kept.transpose() + gain * step.noise * gain.transpose()).eval();
+  return -0.5 * (rest.dot(factor.solve(rest)) +
+                 std::log(2.0 * std::numbers::pi) * static_cast<double>(rest.size())) -
+         factor.matrixLLT().diagonal().array().log().sum();
+}
+
+void ConditionalMotion::replay(ConstantParticle& one, const std::vector<RecordStep>& record,
+                               std::size_t settled_steps) {
+  const double interval = model_.interval();
+  const std::vector<Index> observed = model_.observed();
+  begin(one);
+  VectorXd expected;
+  MatrixXd s;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    const RecordStep& step = record[k];
+    if (step.interval != model_.interval()) model_.set_interval(step.interval);
+    if (step.reading) {
+      if (step.observed != model_.observed()) model_.observe(step.observed);
+      (k < settled_steps ? one.settled : one.fresh) += correct(one, step, expected, s);
+    } else {
+      move(one, step);
+    }
+  }
+  if (interval != model_.interval()) model_.set_interval(interval);
+  if (observed != model_.observed()) model_.observe(observed);
+}
 
 class RaoBlackwellised final : public Filter {
  public:
@@ -217,4 +420,5 @@ const bool rao_blackwellised_registered = filter_registry().add(
      }});
 
 }  // namespace
+
 }  // namespace beamid::filters

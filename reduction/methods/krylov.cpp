@@ -17,8 +17,8 @@
 
 #include <Eigen/Core>
 
-#include "fem/damping.hpp"
 #include "fem/response/dynamic_stiffness.hpp"
+#include "fem/structural_system.hpp"
 #include "reduction/constrained_statics.hpp"
 #include "reduction/orthonormal_basis.hpp"
 #include "reduction/reduction.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "experiments/record/write_record.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/rig/virtual_rig.hpp"
 #include "fem/beam.hpp"
 #include "tests/apps/run_command.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/apps/run_command.hpp"
 
 namespace beamid::apps::modal_test {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "filters/innovation_passes.hpp"
+#include "filters/innovation_likelihood.hpp"
 
 namespace beamid::bench {
 namespace {

@@ -1,5 +1,5 @@
 // Oracle: the numbers counted; of the rate only that it is there, as it depends on the clock.
-#include "experiments/text/countdown.hpp"
+#include "experiments/text/progress.hpp"
 
 #include <gmock/gmock.h>
 

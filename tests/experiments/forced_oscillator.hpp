@@ -5,7 +5,7 @@
 
 #include "experiments/models/oscillator.hpp"
 #include "experiments/record/record.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::test {
 

@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::test {
 namespace {

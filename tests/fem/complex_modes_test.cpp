@@ -6,9 +6,9 @@
 #include <complex>
 
 #include "fem/assembly.hpp"
-#include "fem/damping.hpp"
 #include "fem/exact/exact_cantilever.hpp"
 #include "fem/modes.hpp"
+#include "fem/structural_system.hpp"
 #include "tests/fem/five_beams.hpp"
 #include "tests/fem/response/oscillator_system.hpp"
 

@@ -1,4 +1,4 @@
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The mass that a motion of the base moves. Oracles: the floors of a shear building; of a uniform cantilever
 // the first mode's share of all mass, 4 sigma^2 / (beta L)^2 with beta L = 1.8751, sigma = 0.7341: 0.6131.
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 
 #include "beamid/testing/known_oscillator.hpp"
 #include "beamid/testing/linear_model.hpp"
+#include "filters/diagnostics.hpp"
 #include "filters/filter_run.hpp"
-#include "filters/innovation_consistency.hpp"
 
 namespace beamid::test::adaptive_ekf_test {
 namespace {

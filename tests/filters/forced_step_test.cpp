@@ -5,8 +5,8 @@
 
 #include "beamid/testing/oscillator.hpp"
 #include "filters/central_differences.hpp"
-#include "filters/input_path.hpp"
 #include "filters/scheme.hpp"
+#include "filters/step_input.hpp"
 
 namespace beamid::forced_step_test {
 namespace {

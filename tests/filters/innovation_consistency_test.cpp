@@ -1,6 +1,6 @@
 // Oracles: innovations drawn as a consistent filter's must be, tables of chi-square, and the Ljung-Box
 // statistic worked out with 25 digits (mpmath 1.2).
-#include "filters/innovation_consistency.hpp"
+#include "filters/diagnostics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,10 @@
 // How sampled inputs run between their samples. Oracle: the sinusoids that were sampled.
-#include "filters/input_path.hpp"
+#include "filters/step_input.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
-
-#include "filters/step_input.hpp"
 
 namespace beamid::input_path_test {
 namespace {

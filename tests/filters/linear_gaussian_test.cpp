@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "filters/innovation_passes.hpp"
+#include "filters/innovation_likelihood.hpp"
 
 namespace beamid::linear_gaussian_test {
 namespace {

@@ -1,5 +1,5 @@
 // Inputs that were measured with noise, as part of the state.
-#include "filters/noisy_inputs.hpp"
+#include "filters/latent_inputs.hpp"
 
 #include <gtest/gtest.h>
 

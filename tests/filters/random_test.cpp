@@ -5,9 +5,6 @@
 
 #include <cmath>
 
-#include "filters/exact_draws.hpp"
-#include "filters/normal_noise.hpp"
-
 namespace beamid::filters::random_test {
 namespace {
 

@@ -12,15 +12,14 @@
 #include "experiments/identify/stream/streamed_identification.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/record/read_record.hpp"
-#include "experiments/results/file.hpp"
 #include "experiments/results/report_page.hpp"
-#include "experiments/studies/report/joined_report.hpp"
+#include "experiments/results/result_directory.hpp"
+#include "experiments/studies/report/report.hpp"
 #include "experiments/sweep/manifest.hpp"
 #include "experiments/sweep/read_sweep.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/input_error.hpp"
-#include "experiments/text/json_file.hpp"
-#include "experiments/text/method_choice.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::fuzz {
 namespace {

@@ -56,9 +56,9 @@ TEST(IncludeRules, RefuseLibrariesOutsideTheirPlaces) {
 }
 
 TEST(IncludeRules, RefuseARoomThatLooksUp) {
-  EXPECT_THAT(objections("experiments/modal/pole.hpp", "#include \"experiments/record/record.hpp\"\n"),
+  EXPECT_THAT(objections("experiments/modal/poles.hpp", "#include \"experiments/record/record.hpp\"\n"),
               IsEmpty());
-  EXPECT_THAT(objections("experiments/modal/pole.hpp", "#include \"experiments/studies/study.hpp\"\n"),
+  EXPECT_THAT(objections("experiments/modal/poles.hpp", "#include \"experiments/studies/study.hpp\"\n"),
               ElementsAre(HasSubstr("room modal includes")));
   EXPECT_THAT(objections("experiments/attic/box.hpp", "#include \"experiments/record/record.hpp\"\n"),
               ElementsAre(HasSubstr("no room 'attic'")));

@@ -9,7 +9,7 @@
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/springs/spring_law.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
-#include "experiments/record/record_reader.hpp"
+#include "experiments/record/record_table.hpp"
 #include "experiments/studies/study.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"

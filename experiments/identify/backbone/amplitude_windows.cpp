@@ -11,13 +11,13 @@
 
 #include <fmt/format.h>
 
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/models/identification.hpp"
 #include "experiments/models/oscillator.hpp"
 #include "experiments/signal/decimation.hpp"
-#include "experiments/signal/median.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/estimates.hpp"
 
 namespace beamid::experiments {

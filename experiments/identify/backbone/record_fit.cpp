@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/oscillator.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "filters/discrete_model.hpp"

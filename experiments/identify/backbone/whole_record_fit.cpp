@@ -14,7 +14,7 @@
 
 #include "experiments/identify/backbone/loop_motion.hpp"
 #include "experiments/identify/backbone/record_fit.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/signal/decimation.hpp"
 
 namespace beamid::experiments {

@@ -10,14 +10,14 @@
 #include <fmt/format.h>
 
 #include "experiments/identify/bounds/identifiability.hpp"
-#include "experiments/identify/compare/true_value.hpp"
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/reproduction.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/engine/true_value.hpp"
+#include "experiments/identify/verdict/reproduction.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/structure_points.hpp"
-#include "experiments/rig/excitation_history.hpp"
 #include "experiments/rig/simulated_test.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/rig/virtual_rig.hpp"
+#include "experiments/text/choice.hpp"
 #include "filters/discrete_model.hpp"
 
 namespace beamid::experiments {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/identify/bounds/identifiability.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {

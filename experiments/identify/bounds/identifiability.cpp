@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
-#include "experiments/config/read_reduction.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/identify/bounds/described_motion.hpp"
 #include "experiments/models/estimates.hpp"
 #include "fem/assembly.hpp"

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/text/progress.hpp"
+#include "filters/fisher_information.hpp"
 #include "filters/identifiability.hpp"
-#include "filters/information_factor.hpp"
 
 namespace beamid::experiments {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/identify/compare/chosen_channels.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 
 namespace beamid::experiments {
 namespace {

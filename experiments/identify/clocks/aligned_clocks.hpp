@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 
 namespace beamid::experiments {
 

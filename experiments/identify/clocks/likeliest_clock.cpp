@@ -10,10 +10,10 @@
 #include <Eigen/Cholesky>
 #include <unsupported/Eigen/FFT>
 
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/signal/interpolation.hpp"
-#include "filters/information_factor.hpp"
+#include "filters/fisher_information.hpp"
 
 namespace beamid::experiments {
 namespace {

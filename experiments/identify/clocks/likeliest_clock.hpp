@@ -61,7 +61,7 @@ struct ClockStep {
 /// About the motion y(t) of the model that starts at `initial_state`: a channel of lag tau shows y(t - tau),
 /// so that what is left of it falls along -y'(t); an input of lag tau makes all motion so much earlier to
 /// others, +y'(t). With the sensitivities S of the start and the unknowns, by orthogonal factors
-/// (information_factor.hpp),
+/// (fisher_information.hpp),
 ///
 ///     min | L^-1 (y_read - y - S c + sum_g s_g y'_g tau_g) |^2 + |c_unknowns|^2,   R = L L^T, s = 1, inputs
 ///     -1

@@ -10,13 +10,12 @@
 
 #include <fmt/format.h>
 
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/reproduction.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/verdict/reproduction.hpp"
 #include "experiments/modal/study/decay_part.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/signal/decimation.hpp"
-#include "experiments/signal/median.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/text/spelling.hpp"
 #include "fem/modes.hpp"
 #include "filters/batch_estimator.hpp"

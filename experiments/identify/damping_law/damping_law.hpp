@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/models/estimates.hpp"

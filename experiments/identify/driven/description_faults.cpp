@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "experiments/identify/driven/driven_part.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/model_check/candidates.hpp"
-#include "experiments/identify/model_setting.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/spectrum.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
 
-constexpr double worth_following = 0.1, mostly = 0.5, surely = 5.0;  // of what is left; deviations
+constexpr double worth_following = 0.1, mostly = 0.5, sure_score = 5.0;  // of what is left; deviations
 constexpr double hopeless = 2.5;                                     // times what is left, after a few steps
 
 /// What is left at the unknowns, its slopes, and what they leave of other directions.
@@ -222,7 +222,7 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
                  std::max(score->score, std::abs(end.change) / end.deviation), 1.0 - end.left / whole,
                  end.theta - theta};
       }
-      if (fault.score > surely) faults.push_back(std::move(fault));
+      if (fault.score > sure_score) faults.push_back(std::move(fault));
     } catch (const std::exception&) {  // there is no such structure, or it does not move so
     }
   }
@@ -233,7 +233,7 @@ void add_gains(const Record& record, const LeftOver& left, std::vector<Descripti
     constexpr double least = 0.02;  // a gain is next to the masses and stiffnesses that are asked
     const auto score = left.score(direction, least);
     constexpr double largest = 0.6, turned = 0.2;  // a sign is a gain of -1
-    if (!score || !(score->score > surely)) return;
+    if (!score || !(score->score > sure_score)) return;
     if (std::abs(score->change) > largest && std::abs(score->change + 2.0) > turned) return;
     faults.push_back({fmt::format("gain of {} {:.4g} +- {:.2g} by the record", name, 1.0 + score->change,
                                   quantile_95 * score->deviation),

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/record/record.hpp"
 #include "filters/gaussian.hpp"

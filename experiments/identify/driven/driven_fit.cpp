@@ -9,12 +9,12 @@
 
 #include <Eigen/Cholesky>
 
-#include "experiments/identify/compare/low_mode_fit.hpp"
 #include "experiments/identify/driven/driven_part.hpp"
-#include "experiments/identify/noise_near_mode.hpp"
+#include "experiments/identify/engine/low_mode_fit.hpp"
+#include "experiments/identify/verdict/noise_near_mode.hpp"
 #include "experiments/models/joint_model.hpp"
-#include "experiments/signal/random.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {

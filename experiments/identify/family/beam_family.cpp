@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "experiments/identify/joint_comparison.hpp"
+#include "experiments/identify/engine/joint_comparison.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/joint_comparison.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/joint_comparison.hpp"
 
 namespace beamid::experiments {
 

@@ -13,7 +13,7 @@
 #include "experiments/identify/model_check/shared_residual.hpp"
 #include "experiments/identify/update/mode_pairing.hpp"
 #include "experiments/modal/study/merged_modes.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
@@ -130,7 +130,7 @@ std::optional<Outlier> outlier_of(const ModelCheck& check) {
 
 // Which identified mode belongs to which predicted one.
 
-inline constexpr double most_apart = 0.3;  ///< of identified and predicted frequency, |ln|
+inline constexpr double modes_apart = 0.3;  ///< of identified and predicted frequency, |ln|
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
@@ -152,7 +152,7 @@ Index first_vibrating(const VectorXd& frequency) {
 /// Taken for the lowest mode although it is beyond 30 %.
 bool is_far_match(const ObservedMode& mode, const VectorXd& predicted, Index k) {
   const double apart = ln_apart(mode.frequency_hz, predicted[k]);
-  return k == first_vibrating(predicted) && apart >= most_apart && apart < farthest &&
+  return k == first_vibrating(predicted) && apart >= modes_apart && apart < farthest &&
          (k + 1 >= predicted.size() || ln_apart(mode.frequency_hz, predicted[k + 1]) > 2 * apart);
 }
 
@@ -160,19 +160,19 @@ bool is_far_match(const ObservedMode& mode, const VectorXd& predicted, Index k) 
 MatrixXd matching_scores(const CheckedStructure& structure, const PredictedModes& predicted,
                          const ModalData& data, const MatrixXd& assurances) {
   const auto count = static_cast<Index>(structure.modes.size()), known = predicted.frequency_hz.size();
-  MatrixXd scores = MatrixXd::Constant(count, known + count, -most_apart);
+  MatrixXd scores = MatrixXd::Constant(count, known + count, -modes_apart);
   scores.leftCols(known) = pairing_scores(data, predicted, assurances);
   for (Index i = 0; i < count; ++i)
     for (Index k = 0; k < known; ++k) {
       const ObservedMode& mode = structure.modes[static_cast<std::size_t>(i)];
-      const bool near = ln_apart(mode.frequency_hz, predicted.frequency_hz[k]) < most_apart,
+      const bool near = ln_apart(mode.frequency_hz, predicted.frequency_hz[k]) < modes_apart,
                  far = is_far_match(mode, predicted.frequency_hz, k);
       if (mode.number)
         scores(i, k) = *mode.number == k + 1 ? certainly : impossible;
       else if (predicted.frequency_hz[k] == 0.0 || !(near || far) || assurances(i, k) < least_alike)
         scores(i, k) = impossible;
       else if (far)
-        scores(i, k) = -0.99 * most_apart;
+        scores(i, k) = -0.99 * modes_apart;
     }
   return scores;
 }
@@ -318,7 +318,7 @@ ModelCheck check_model(std::vector<CheckedStructure> structures, const ModelChec
     throw std::invalid_argument(fmt::format(
         "none of the {} identified modes lies within {:.0f} % of a predicted one, or within a factor of 2 of "
         "the lowest; expected one at least",
-        check.strays.size(), 100 * most_apart));
+        check.strays.size(), 100 * modes_apart));
   set_far_structures_aside(check);
   check.candidates = chosen(settings.candidates, candidates_of(described));
   std::tie(check.chi_square, check.numbers) = described_fit(check);

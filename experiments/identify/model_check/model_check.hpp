@@ -11,7 +11,7 @@
 #include "experiments/identify/model_check/candidates.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 #include "experiments/record/record.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::experiments {
 

@@ -11,8 +11,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include "experiments/signal/fast_length.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
 #include "filters/linear_gaussian.hpp"
 
@@ -208,7 +208,7 @@ class LineLikelihood {
     for (Index j = 0; j < q; ++j) {
       const double step = share * std::sqrt(problem_.prior.covariance(j, j));
       const CandidateLines up = part(theta + step * VectorXd::Unit(q, j)),
-                      down = part(theta - step * VectorXd::Unit(q, j));
+                           down = part(theta - step * VectorXd::Unit(q, j));
       turned.col(j) = (up.free - down.free) * at.coefficients() / (2.0 * step);
       changes.emplace_back();
       for (std::size_t k = 0; k < up.transfer.size(); ++k)

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/identify/compare/run_noise.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/compared_run.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/models/motion/supported_motion.hpp"
 #include "experiments/models/structure_points.hpp"

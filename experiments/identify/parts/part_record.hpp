@@ -1,15 +1,15 @@
 // What of a record belongs to a part of the structure.
 #pragma once
 
-#include "experiments/config/channel_places.hpp"
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 
 namespace beamid::experiments {
 
 /// Whether the noise of the motion at the sections counts.
 enum class Sections {
   exact,  ///< as if what was measured there were the motion itself [koh1991]
-  noisy   ///< its noise is part of the state (filters/noisy_inputs.hpp)
+  noisy   ///< its noise is part of the state (filters/latent_inputs.hpp)
 };
 
 /// Whether parts are spans of a beam, which bends: a section passes on a deflection and a rotation.

@@ -9,9 +9,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 
-#include "experiments/config/channel_places.hpp"
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/compare/widened_interval.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/run_bound.hpp"
 #include "experiments/identify/parts/span.hpp"
 #include "reduction/reduction.hpp"
 

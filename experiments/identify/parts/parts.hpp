@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/parts/part_record.hpp"
 
 namespace beamid::experiments {

@@ -8,13 +8,13 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "experiments/identify/compare/low_mode_fit.hpp"
-#include "experiments/identify/compare/noisy_input_fit.hpp"
-#include "experiments/identify/compare/run_noise.hpp"
-#include "experiments/identify/compare/run_verdict.hpp"
-#include "experiments/identify/compare/true_value.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/compared_run.hpp"
+#include "experiments/identify/engine/low_mode_fit.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/engine/noisy_input_fit.hpp"
+#include "experiments/identify/engine/true_value.hpp"
 #include "experiments/identify/parts/line_likelihood.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
 #include "experiments/models/motion/supported_motion.hpp"
 
 namespace beamid::experiments {

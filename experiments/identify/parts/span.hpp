@@ -1,7 +1,7 @@
 // A span of a beam between measured sections.
 #pragma once
 
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 
 namespace beamid::experiments {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 
 namespace beamid::experiments {
 

@@ -11,19 +11,19 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "experiments/config/read_reduction.hpp"
-#include "experiments/identify/compare/run_noise.hpp"
+#include "experiments/config/readers.hpp"
+#include "experiments/identify/engine/compared_run.hpp"
 #include "experiments/identify/sensing/sensing_constants.hpp"
 #include "experiments/identify/sensing/sensing_model.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "experiments/text/choice.hpp"
-#include "experiments/text/countdown.hpp"
 #include "experiments/text/memory_need.hpp"
+#include "experiments/text/progress.hpp"
 #include "fem/modes.hpp"
+#include "filters/latent_inputs.hpp"
 #include "filters/random.hpp"
 #include "filters/running_filter.hpp"
-#include "filters/unknown_inputs.hpp"
 
 namespace beamid::experiments {
 

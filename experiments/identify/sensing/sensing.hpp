@@ -8,7 +8,7 @@
 
 #include "experiments/identify/sensing/fatigue_damage.hpp"
 #include "experiments/identify/sensing/sensing_model.hpp"
-#include "filters/innovation_consistency.hpp"
+#include "filters/diagnostics.hpp"
 
 namespace beamid::experiments {
 

@@ -4,13 +4,13 @@
 #include <limits>
 #include <stdexcept>
 
-#include "experiments/identify/compare/run_noise.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/compared_run.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/sensing/sensing_model.hpp"
 #include "experiments/models/banded/continuum_motion.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
-#include "experiments/signal/median.hpp"
 #include "experiments/signal/missing_samples.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

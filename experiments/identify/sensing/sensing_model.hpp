@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/text/progress.hpp"
 #include "filters/innovation_likelihood.hpp"

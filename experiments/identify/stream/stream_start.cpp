@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/joint_model.hpp"
 
 namespace beamid::experiments {

@@ -1,7 +1,7 @@
 // What a stream of samples takes from an earlier record of the same rig.
 #pragma once
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/models/identification.hpp"
 
 namespace beamid::experiments {

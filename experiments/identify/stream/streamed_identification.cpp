@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/run_diagnostics.hpp"
+#include "experiments/identify/engine/identified_parameters.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/fields.hpp"
-#include "experiments/text/json_file.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 

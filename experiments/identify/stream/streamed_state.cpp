@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "experiments/identify/stream/streamed_identification.hpp"
-#include "experiments/text/json_file.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,17 +1,20 @@
 #include "experiments/identify/tracking/ringing_model.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
+#include <Eigen/Dense>
+
 #include "filters/schemes/matrix_exponential.hpp"
 
 namespace beamid::experiments {
+
+using namespace ringing;
+
 namespace {
 
 using Eigen::Matrix2d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
-using namespace ringing;
 
 class RingingModel final : public filters::DiscreteModel {
  public:

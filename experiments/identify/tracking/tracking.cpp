@@ -11,11 +11,10 @@
 
 #include "experiments/identify/tracking/ringing_model.hpp"
 #include "experiments/modal/dominant_mode.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
 #include "experiments/signal/decimation.hpp"
-#include "experiments/signal/median.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/sway.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "filters/filter.hpp"
 #include "filters/smoother.hpp"
 

@@ -5,12 +5,13 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/identify/compare/first_guess.hpp"
-#include "experiments/identify/compare/started_model.hpp"
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/identify/reproduction.hpp"
+#include <fmt/format.h>
+
+#include "experiments/identify/engine/first_guess.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/twins/twins.hpp"
 #include "experiments/identify/update/update_study.hpp"
+#include "experiments/identify/verdict/reproduction.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "filters/batch_estimator.hpp"
 
@@ -135,7 +136,44 @@ std::vector<VectorXd> same_frequencies(const UpdateStudy& study, const FoundStru
   return others;
 }
 
+// The experiment with its stiffnesses guessed where a twin has them, as uncertain as before.
+Experiment started_from(Experiment experiment, const ComparedRun& run, const RecordTwin& twin) {
+  for (std::size_t j = 0; j < std::min(experiment.parameters.size(), run.unknowns.size()); ++j) {
+    ParameterChoice& choice = experiment.parameters[j];
+    const Unknown& unknown = run.unknowns[j];
+    if (choice.quantity != unknown.quantity || !is_stiffness(unknown.quantity) || unknown.mode) continue;
+    choice.guess = twin.values[static_cast<Index>(j)];
+    choice.deviation = unknown.deviation;
+    choice.relative_deviation.reset();
+  }
+  return experiment;
+}
+
+std::string not_unique_text(const RecordTwins& twins) {
+  const std::size_t others = twins.undecided();
+  double least = deciding_chi_square;
+  for (const RecordTwin& twin : twins.sets)
+    if (std::abs(twin.more()) < deciding_chi_square) least = std::min(least, twin.more());
+  return fmt::format(
+      "NOT UNIQUE: at least {} other set{} of parameters explain{} this record as well (chi^2 {:+.2g}, with "
+      "what was "
+      "known beforehand; 6 would decide). The intervals are those of one of {} answers.",
+      others, others == 1 ? "" : "s", others == 1 ? "s" : "", least, others + 1);
+}
+
 }  // namespace
+
+const RecordTwin* RecordTwins::better() const {
+  const auto least = std::min_element(
+      sets.begin(), sets.end(), [](const RecordTwin& a, const RecordTwin& b) { return a.more() < b.more(); });
+  return least != sets.end() && least->more() < -deciding_chi_square ? &*least : nullptr;
+}
+
+std::size_t RecordTwins::undecided() const {
+  return static_cast<std::size_t>(std::count_if(sets.begin(), sets.end(), [](const RecordTwin& twin) {
+    return std::abs(twin.more()) < deciding_chi_square;
+  }));
+}
 
 RecordTwins record_twins(const Experiment& experiment, const Comparison& comparison,
                          const std::filesystem::path& folder) {
@@ -174,6 +212,34 @@ RecordTwins record_twins(const Experiment& experiment, const Comparison& compari
   std::vector<VectorXd> sets{here(found.places)};
   for (const RecordTwin& twin : result.sets) sets.emplace_back(twin.values(found.places));
   result.deciding = deciding_measurements(*study.model, study.data(), sets, exactly);
+  return result;
+}
+
+LikeliestSet likeliest_set(const Experiment& experiment, const std::filesystem::path& folder,
+                           const std::function<Comparison(const Experiment&)>& identify) {
+  LikeliestSet result{identify(experiment), {}, {}};
+  result.twins = record_twins(experiment, result.found, folder);
+  if (const RecordTwin* const better = result.twins.better()) {
+    const double less = -better->more();
+    const Experiment from_there = started_from(experiment, result.found.runs.front(), *better);
+    Comparison again = identify(from_there);
+    const ComparedRun &before = result.found.runs.front(), &after = again.runs.front();
+    if (after.has_estimate() && (after.answers() || !before.answers())) {
+      result.twins = record_twins(from_there, again, folder);
+      result.found = std::move(again);
+      result.exchanged = fmt::format(
+          "The search from the initial estimates ended in a set of parameters with the same frequencies "
+          "whose chi^2 is "
+          "{:.3g} higher. The estimate is the likelier set.",
+          less);
+    }
+  }
+  ComparedRun& run = result.found.runs.front();
+  if (result.twins.undecided() > 0) {
+    run.warnings.insert(run.warnings.begin(), not_unique_text(result.twins));
+    if (run.answers())
+      run.status = ComparedRun::Status::not_unique, run.reason = "other sets explain the record as well";
+  }
   return result;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/twins/deciding_measurement.hpp"
 
 namespace beamid::experiments {
@@ -15,12 +17,23 @@ struct RecordTwin {
   /// chi^2 of the record beyond that of the set found, over the square of what intervals are widened by.
   double chi_square = 0.0;
   double prior_chi_square = 0.0;  ///< likewise, of what [[parameters]] says beforehand
+
+  /// -2 ln of its posterior density over that of the set found.
+  double more() const { return chi_square + prior_chi_square; }
 };
+
+/// Two sets are told apart where one is twenty times likelier than the other: -2 ln of the ratio.
+inline constexpr double deciding_chi_square = 6.0;
 
 struct RecordTwins {
   std::vector<RecordTwin> sets;               ///< the most likely beforehand first
   std::vector<DecidingMeasurement> deciding;  ///< between all of these and the set found
   std::size_t tried = 0;                      ///< sets of the same frequencies that were held to the record
+
+  /// The set of the highest posterior where that is decidedly higher than that of the set found; else null.
+  const RecordTwin* better() const;
+  /// How many sets are neither decidedly less nor decidedly more likely than the set found.
+  std::size_t undecided() const;
 };
 
 /// The sets with the frequencies of the structure that was found (twins.hpp), each moved to where it is
@@ -34,5 +47,19 @@ struct RecordTwins {
 /// @param folder as of compare()
 RecordTwins record_twins(const Experiment& experiment, const Comparison& comparison,
                          const std::filesystem::path& folder);
+
+/// What is reported of a record whose structure has several sets of parameters with the same frequencies.
+struct LikeliestSet {
+  Comparison found;
+  RecordTwins twins;  ///< of the set that is reported
+  std::string
+      exchanged;  ///< a sentence where the search from the initial estimates ended in another set; else empty
+};
+
+/// Identifies, looks for twins, and where one of them has a decidedly higher posterior identifies again from
+/// there, with prior deviations as stated. The status becomes `not_unique` where a set is left that nothing
+/// decides against.
+LikeliestSet likeliest_set(const Experiment& experiment, const std::filesystem::path& folder,
+                           const std::function<Comparison(const Experiment&)>& identify);
 
 }  // namespace beamid::experiments

@@ -17,7 +17,7 @@
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
 
-#include "experiments/text/countdown.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/identify/update/mode_pairing.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 #include "fem/structure.hpp"
 
 namespace beamid::experiments {

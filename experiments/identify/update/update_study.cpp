@@ -13,7 +13,7 @@
 
 #include "experiments/identify/update/mode_pairing.hpp"
 #include "experiments/identify/update/updating.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -12,8 +12,8 @@
 #include <Eigen/SVD>
 
 #include "experiments/models/estimates.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
-#include "experiments/text/countdown.hpp"
+#include "experiments/signal/toolbox.hpp"
+#include "experiments/text/progress.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {

@@ -1,7 +1,8 @@
-// Bayes' fast Fourier method, mode by mode, for random vibration [au2011].
+// Bayes' fast Fourier method, a mode or a close pair in each band, for random vibration [au2011].
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/gamma.hpp>
 #include <cmath>
 #include <numbers>
@@ -9,9 +10,10 @@
 #include <stdexcept>
 
 #include "experiments/modal/ambient_mode.hpp"
+#include "experiments/modal/ambient_pair.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/modal/mode_by_mode.hpp"
-#include "experiments/signal/median.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -47,6 +49,8 @@ std::string lines_sentence(const AmbientMode& mode, Index in_band, std::vector<d
       text, mode.frequency_hz, static_cast<Index>(3 * lines.size()), in_band);
 }
 
+constexpr double no_chance = 1e-6;  // of a band that is that of its mode
+
 class BayesMethod final : public ModalMethod {
  public:
   BayesMethod(ResponseKind kind, double kappa, double first_ratio)
@@ -61,10 +65,14 @@ class BayesMethod final : public ModalMethod {
     found.decays = autocorrelations(outputs, std::clamp<Index>(outputs.cols() / 50, 50, 4000));
     const BandCoefficients all = fourier_coefficients(outputs, interval);
     const std::vector<double> peaks = spectral_peaks(found.decays, interval);
+    const auto middle = [&](std::size_t i) {  // between peak i - 1 and peak i
+      return i == 0 ? 0.0 : i < peaks.size() ? 0.5 * (peaks[i - 1] + peaks[i]) : 1e300;
+    };
     for (std::size_t i = 0; i < peaks.size(); ++i) {
-      const double below = i > 0 ? 0.5 * (peaks[i - 1] + peaks[i]) : 0.0,
-                   above = i + 1 < peaks.size() ? 0.5 * (peaks[i] + peaks[i + 1]) : 1e300;
-      add_mode(all, peaks[i], {below, above}, found);
+      if (i + 1 < peaks.size() && add_pair(all, {peaks[i], peaks[i + 1]}, {middle(i), middle(i + 2)}, found))
+        ++i;
+      else if (!add_pair(all, {peaks[i], peaks[i]}, {middle(i), middle(i + 1)}, found))
+        add_mode(all, peaks[i], {middle(i), middle(i + 1)}, found);
     }
     return found;
   }
@@ -86,6 +94,69 @@ class BayesMethod final : public ModalMethod {
     return band;
   }
 
+  /// Two modes of the band about two neighbouring peaks, or about one, where they explain it better than one
+  /// does by more than chance makes of one in a hundred thousand, and each is determined.
+  bool add_pair(const BandCoefficients& all, const std::pair<double, double>& peaks,
+                const std::pair<double, double>& room, PoleSearch& found) const {
+    constexpr double by_chance = 1e-5, determined = 0.5;
+    const bool two_peaks = peaks.second > peaks.first;
+    try {
+      AmbientMode one;
+      one.frequency_hz = 0.5 * (peaks.first + peaks.second);
+      one.damping_ratio = std::max(first_ratio_, (peaks.second - peaks.first) / one.frequency_hz);
+      if (one.damping_ratio > 0.1 ||
+          (two_peaks && (peaks.second - peaks.first) > kappa_ * first_ratio_ * peaks.first))
+        return false;
+      BandCoefficients band;
+      for (int pass = 0; pass < 2; ++pass) {
+        const double half = two_peaks ? kappa_ * first_ratio_ * one.frequency_hz
+                                      : kappa_ * one.damping_ratio * one.frequency_hz;
+        band = within(all, {std::max(room.first, (two_peaks ? peaks.first : one.frequency_hz) - half),
+                            std::min(room.second, (two_peaks ? peaks.second : one.frequency_hz) + half)});
+        one = ambient_mode(band, one.frequency_hz, one.damping_ratio, kind_);
+        if (!(one.damping_ratio < 0.2) || one.frequency_hz < one.band_hz.first ||
+            one.frequency_hz > one.band_hz.second)
+          return false;
+        if (two_peaks) break;
+      }
+      std::vector<std::pair<double, double>> starts;
+      if (two_peaks) starts.push_back(peaks);
+      const AmbientPair pair = ambient_pair(band, one, starts, kind_);
+      const boost::math::chi_squared law(pair.more_parameters);
+      if (!pair.converged || !separate(pair) || !(pair.gain > quantile(complement(law, by_chance))))
+        return false;
+      for (const AmbientMode& mode : pair.modes)
+        if (!(mode.damping_ratio_deviation < determined * mode.damping_ratio) ||
+            mode.damping_ratio * mode.frequency_hz < all.frequency_hz[0] ||
+            mode.frequency_hz < one.band_hz.first || mode.frequency_hz > one.band_hz.second)
+          return false;
+      for (const AmbientMode& mode : pair.modes) found.orders.back().poles.push_back(pole_of(mode));
+      return true;
+    } catch (const std::invalid_argument&) {
+      return false;  // of one mode, add_mode() gives the reason
+    }
+  }
+
+  /// Two modes at one frequency and of one shape, one a hundred times weaker, or moved by one force are a way
+  /// to write a spectrum that is not quite that of one mode.
+  static bool separate(const AmbientPair& pair) {
+    constexpr double alike = 0.95, weak = 1e-3;
+    const auto& [a, b] = pair.modes;
+    const double apart = std::abs(b.frequency_hz - a.frequency_hz),
+                 width = 0.5 * (a.damping_ratio * a.frequency_hz + b.damping_ratio * b.frequency_hz),
+                 ratio = a.force_density / b.force_density;
+    return pair.coherence < alike && ratio > weak && ratio < 1.0 / weak &&
+           (apart > width || std::pow(a.shape.dot(b.shape), 2) < alike);
+  }
+
+  static Pole pole_of(const AmbientMode& mode) {
+    const double w = 2.0 * std::numbers::pi * mode.frequency_hz, zeta = mode.damping_ratio;
+    Pole pole{Complex(-zeta * w, w * std::sqrt(1.0 - zeta * zeta)), mode.shape.cast<Complex>()};
+    pole.frequency_deviation_hz = mode.frequency_deviation_hz;
+    pole.damping_ratio_deviation = mode.damping_ratio_deviation;
+    return pole;
+  }
+
   void add_mode(const BandCoefficients& all, double peak, const std::pair<double, double>& room,
                 PoleSearch& found) const {
     Pole pole{Complex(0.0, 2.0 * std::numbers::pi * peak), Eigen::VectorXcd::Ones(all.coefficients.rows())};
@@ -101,17 +172,19 @@ class BayesMethod final : public ModalMethod {
         if (static_cast<Index>(3 * lines.size()) > band.frequency_hz.size() / 3)
           throw std::invalid_argument("its band is not that of one mode: a machine, or other modes");
       }
-      const double w = 2.0 * std::numbers::pi * mode.frequency_hz, zeta = mode.damping_ratio;
-      pole.rate = {-zeta * w, w * std::sqrt(1.0 - zeta * zeta)};
-      pole.shape = mode.shape.cast<Complex>();
-      pole.frequency_deviation_hz = mode.frequency_deviation_hz;
-      pole.damping_ratio_deviation = mode.damping_ratio_deviation;
+      const double zeta = mode.damping_ratio;
+      pole = pole_of(mode);
       if (!(mode.damping_ratio_deviation < mode.damping_ratio))
         throw std::invalid_argument(fmt::format("too uncertain, damping ratio {:.2g} %", 100.0 * zeta));
       const double step = all.frequency_hz[0];
       if (zeta * mode.frequency_hz < step)
         throw std::invalid_argument(
             "as narrow as so long a record shows: a machine, or a mode that needs a longer one");
+      const auto peak_lines = static_cast<Index>(2.0 * zeta * mode.frequency_hz / step);
+      if (band_probability(band_misfit(mode, band, kind_), band.coefficients.rows(), peak_lines) < no_chance)
+        throw std::invalid_argument(
+            "its band is not that of one mode, nor of two: close modes, or a load that is not white; try "
+            "ssi_cov");
       found.orders.back().poles.push_back(pole);
       if (!lines.empty())
         found.warnings.push_back(
@@ -152,8 +225,9 @@ ResponseKind response_kind(const std::string& name) {
 
 const bool bayoma_registered = modal_method_registry().add(
     {"bayoma",
-     "Bayes' fast Fourier method, one mode in each band, for random vibration, with standard deviations",
-     "[au2011], [au2014]",
+     "Bayes' fast Fourier method, one mode in each band or two close ones, for random vibration, with "
+     "standard deviations",
+     "[au2011], [au2017, ch. 13], [au2014]",
      {{"response", std::string("acceleration"), "",
        "what was measured: displacement, velocity, acceleration"},
       {"kappa", 10.0, "", "half width of a mode's band over damping ratio times frequency"},

@@ -1,8 +1,8 @@
 // Modes from the lines around each peak of the frequency responses of a hammer test [ewins2000].
 #include <stdexcept>
 
+#include "experiments/modal/hammer_response.hpp"
 #include "experiments/modal/modal_method.hpp"
-#include "experiments/modal/response_peaks.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,7 +1,7 @@
 // Least-squares complex frequency estimation from the frequency responses of a hammer test [guillaume1998].
 #include <stdexcept>
 
-#include "experiments/modal/common_denominator.hpp"
+#include "experiments/modal/input_responses.hpp"
 
 namespace beamid::experiments {
 namespace {

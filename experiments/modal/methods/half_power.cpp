@@ -1,5 +1,5 @@
 // Half-power width of each mode's spectrum [ewins2000], the bias of the finite record taken off.
-#include "experiments/modal/half_power.hpp"
+#include "experiments/modal/classic_estimators.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Logarithmic decrement of each mode, isolated [rao2018].
-#include "experiments/modal/logarithmic_decrement.hpp"
+#include "experiments/modal/classic_estimators.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Poles of the averaged responses to measured inputs, refined on all lines of the record [guillaume1998].
-#include "experiments/modal/common_denominator.hpp"
+#include "experiments/modal/input_responses.hpp"
 
 namespace beamid::experiments {
 namespace {

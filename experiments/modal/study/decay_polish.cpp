@@ -10,13 +10,12 @@
 
 #include <fmt/format.h>
 
+#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
-#include "experiments/modal/shape_fit.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/modal/study/phase_wander.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
-#include "experiments/signal/median.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

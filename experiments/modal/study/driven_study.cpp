@@ -7,11 +7,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/modal/response_peaks.hpp"
+#include "experiments/modal/hammer_response.hpp"
 #include "experiments/modal/study/decay_part.hpp"
 #include "experiments/modal/study/record_kind.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "experiments/modal/amplitude_dependence.hpp"
+#include "experiments/modal/hammer_response.hpp"
 #include "experiments/modal/hit_sampling.hpp"
-#include "experiments/modal/response_peaks.hpp"
 #include "experiments/modal/study/record_kind.hpp"
 
 namespace beamid::experiments {

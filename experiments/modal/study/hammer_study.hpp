@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/modal/hammer_response.hpp"
 #include "experiments/modal/residue_fit.hpp"
-#include "experiments/modal/response_peaks.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 
 namespace beamid::experiments {

@@ -12,14 +12,14 @@
 #include <fmt/format.h>
 
 #include "experiments/modal/decay_jump.hpp"
-#include "experiments/modal/shape_fit.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/steady_lines.hpp"
 #include "experiments/modal/study/decay_part.hpp"
 #include "experiments/modal/study/decay_polish.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/modal/study/record_kind.hpp"
 #include "experiments/modal/third_overtone.hpp"
-#include "experiments/signal/median.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/modal/modal_method.hpp"
-#include "experiments/modal/pole.hpp"
+#include "experiments/modal/poles.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/text/choice.hpp"
 

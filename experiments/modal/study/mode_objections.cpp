@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -8,9 +8,8 @@
 #include <fmt/format.h>
 
 #include "experiments/modal/amplitude_dependence.hpp"
-#include "experiments/modal/shape_fit.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
-#include "experiments/signal/least_squares.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {

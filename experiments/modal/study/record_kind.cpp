@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "experiments/modal/hammer_response.hpp"
 #include "experiments/modal/mode_by_mode.hpp"
-#include "experiments/modal/response_peaks.hpp"
-#include "experiments/signal/median.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

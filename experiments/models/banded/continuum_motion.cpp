@@ -12,8 +12,8 @@
 #include "experiments/models/banded/banded_step.hpp"
 #include "experiments/models/banded/continuum_sensors.hpp"
 #include "filters/discrete_model.hpp"
+#include "filters/observed_model.hpp"
 #include "filters/step_input.hpp"
-#include "filters/timed_model.hpp"
 
 namespace beamid::experiments {
 // The continuum in steps of the scheme `pade`, as filters take it.

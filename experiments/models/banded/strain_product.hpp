@@ -8,7 +8,7 @@
 
 #include "experiments/models/banded/banded_lanes.hpp"
 #include "experiments/models/banded/symmetric_pattern.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::experiments::banded {
 

@@ -5,8 +5,8 @@
 
 #include "experiments/models/motion/parametric_motion.hpp"
 #include "experiments/models/motion/second_order_motion.hpp"
-#include "fem/damping.hpp"
 #include "fem/modes.hpp"
+#include "fem/structural_system.hpp"
 #include "fem/structure.hpp"
 
 namespace beamid::experiments {

@@ -14,7 +14,7 @@
 
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/unknown.hpp"
-#include "filters/options.hpp"
+#include "filters/registry.hpp"
 
 namespace beamid::experiments {
 

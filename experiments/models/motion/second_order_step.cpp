@@ -7,9 +7,9 @@
 
 #include "experiments/models/motion/rational_step.hpp"
 #include "filters/nonzeros.hpp"
+#include "filters/observed_model.hpp"
 #include "filters/schemes/forced_oscillator.hpp"
 #include "filters/schemes/matrix_exponential.hpp"
-#include "filters/timed_model.hpp"
 
 namespace beamid::experiments {
 namespace {

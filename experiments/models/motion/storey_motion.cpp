@@ -8,8 +8,8 @@
 #include <Eigen/LU>
 
 #include "filters/discrete_model.hpp"
+#include "filters/observed_model.hpp"
 #include "filters/step_input.hpp"
-#include "filters/timed_model.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -6,10 +6,9 @@
 #include <string>
 
 #include "experiments/record/recognised_column.hpp"
-#include "experiments/record/record_reader.hpp"
-#include "experiments/record/text_cells.hpp"
+#include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {

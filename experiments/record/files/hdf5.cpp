@@ -11,8 +11,8 @@
 #include "experiments/record/files/hdf5/handle.hpp"
 #include "experiments/record/files/hdf5/own_storage.hpp"
 #include "experiments/record/read_apart.hpp"
-#include "experiments/record/record_reader.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/record/record_table.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {

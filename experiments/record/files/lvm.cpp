@@ -1,23 +1,205 @@
 // LabVIEW measurement files: header blocks of keys, then columns; one block for each segment.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-#include "experiments/record/files/lvm/lvm_instants.hpp"
-#include "experiments/record/files/lvm/lvm_lines.hpp"
-#include "experiments/record/record_reader.hpp"
-#include "experiments/record/text_cells.hpp"
-#include "experiments/record/time_unit.hpp"
+#include <fmt/format.h>
+
+#include "experiments/record/delimited_text.hpp"
+#include "experiments/record/record.hpp"
+#include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/text/input_error.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {
+
+// The lines of a LabVIEW measurement file, and the headers among them.
+
+/// What a segment's header says of its channels; empty: nothing.
+struct LvmSegment {
+  std::vector<std::string> units, dimensions, x_units;
+  std::vector<double> starts, intervals, samples;
+  Place place = {};  ///< of the header's end
+
+  bool over_time() const { return dimensions.empty() || dimensions[0] == "Time"; }
+  std::string x_unit() const { return x_units.empty() ? "" : x_units[0]; }
+};
+
+/// Walks a file that is in memory.
+class LvmLines {
+ public:
+  /// Behind the file's header, whose separator and decimal mark hold from there on.
+  /// @param text must live as long as this
+  /// @throws InputError where the header has no end.
+  LvmLines(std::string file, std::string_view text);
+
+  /// False at the file's end.
+  bool next();
+  /// Whether the line begins a block of keys, after rows or before the first of them.
+  bool begins_segment() const;
+  /// From there to its end. @throws InputError where it has none, or a number is none.
+  LvmSegment read_segment();
+
+  std::string_view line() const { return line_; }
+  std::size_t number() const { return number_; }
+  const std::vector<std::string_view>& fields() const { return fields_; }
+  char separator() const { return separator_; }
+  char decimal() const { return decimal_; }
+
+  InputError bad(const std::string& message) const { return {{file_, number_, 1}, message}; }
+
+ private:
+  bool next_line();
+  void read_file_header();
+  std::vector<double> numbers(const std::vector<std::string>& words) const;
+
+  std::string file_;
+  std::string_view rest_, line_;
+  std::size_t number_ = 0;
+  char separator_ = '\t', decimal_ = '.';
+  std::vector<std::string_view> fields_;
+};
+
+using std::string_view;
+
+constexpr string_view end_of_header = "***End_of_Header***";
+
+LvmLines::LvmLines(std::string file, string_view text) : file_(std::move(file)), rest_(text) {
+  read_file_header();
+}
+
+bool LvmLines::next() {
+  if (!next_line()) return false;
+  split_fields(line_, separator_, fields_);
+  return true;
+}
+
+bool LvmLines::next_line() {
+  if (rest_.empty()) return false;
+  const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+  line_ = rest_.substr(0, end);
+  rest_.remove_prefix(std::min(rest_.size(), end + (rest_.substr(end).starts_with("\r\n") ? 2 : 1)));
+  ++number_;
+  return true;
+}
+
+void LvmLines::read_file_header() {
+  bool ended = false;
+  char stated = '\t';
+  while (!ended && next_line()) {
+    if (number_ > 1)
+      stated = line_.find('\t') != string_view::npos  ? '\t'
+               : line_.find(',') != string_view::npos ? ','
+                                                      : stated;
+    split_fields(line_, stated, fields_);
+    if (fields_.empty()) continue;
+    ended = fields_[0] == end_of_header;
+    const string_view value = fields_.size() > 1 ? fields_[1] : string_view();
+    if (fields_[0] == "Separator") separator_ = value == "Comma" ? ',' : '\t';
+    if (fields_[0] == "Decimal_Separator" && value == ",") decimal_ = ',';
+    if (fields_[0] == "Decimal_Separator" && line_.ends_with(",")) decimal_ = ',';
+  }
+  if (!ended) throw bad(fmt::format("the file ends in its header; expected {}", end_of_header));
+  if (separator_ == ',') decimal_ = '.';
+}
+
+bool LvmLines::begins_segment() const {
+  static const char* const keys[] = {
+      "Channels",    "Samples",  "Notes",   "Test_Name", "Test_Numbers",
+      "Test_Series", "UUT_Name", "UUT_M/N", "UUT_S/N",   "***End_of_Header***"};
+  return std::any_of(std::begin(keys), std::end(keys), [&](const char* key) { return fields_[0] == key; });
+}
+
+LvmSegment LvmLines::read_segment() {
+  std::map<std::string, std::vector<std::string>, std::less<>> keys;
+  bool special = false;
+  for (bool ended = fields_[0] == end_of_header; !ended;) {
+    if (!fields_.empty() && !special) {
+      std::vector<std::string>& values = keys[std::string(fields_[0])];
+      values.assign(fields_.begin() + 1, fields_.end());
+    }
+    if (!next_line())
+      throw bad(fmt::format("the file ends in a segment's header; expected {}", end_of_header));
+    split_fields(line_, separator_, fields_);
+    if (fields_.empty()) continue;
+    if (fields_[0].starts_with("***Start_Special***")) special = true;
+    ended = fields_[0] == end_of_header;
+    if (fields_[0].starts_with("***End_Special***")) special = false, fields_.clear();
+  }
+  const auto list = [&](const char* key) {
+    const auto found = keys.find(key);
+    return found == keys.end() ? std::vector<std::string>{} : found->second;
+  };
+  return {list("Y_Unit_Label"),     list("X_Dimension"),      list("X_Unit_Label"), numbers(list("X0")),
+          numbers(list("Delta_X")), numbers(list("Samples")), {file_, number_, 1}};
+}
+
+std::vector<double> LvmLines::numbers(const std::vector<std::string>& words) const {
+  std::vector<double> values;
+  for (const std::string& word : words) {
+    const ParsedNumber parsed = parse_number(word, decimal_);
+    if (!parsed.finite) throw bad(fmt::format("'{}' in a segment's header; expected a number", word));
+    values.push_back(parsed.value);
+  }
+  return values;
+}
+
+// The instants of LabVIEW segments that have no X columns.
+
+/// t_k = X0 + k Delta_X, each segment by its own header.
+class LvmInstants {
+ public:
+  /// Those of a segment's rows. @param seconds of one unit of X; absent: the header tells no instants.
+  /// @throws InputError at the header where its channels differ or it begins before the segment before ends.
+  void add(const LvmSegment& segment, std::size_t rows, std::optional<double> seconds);
+
+  const std::vector<double>& times() const {
+    return times_;
+  }  ///< [s]; of segments that tell none: no entries
+
+  /// One clock for all of them; nothing where they do not follow each other at one interval.
+  std::optional<Clock> clock() const;
+
+ private:
+  std::vector<double> times_;
+  std::optional<Clock> first_;
+  bool one_interval_ = true;
+};
+
+void LvmInstants::add(const LvmSegment& segment, std::size_t rows, std::optional<double> seconds) {
+  if (rows == 0 || !seconds || segment.intervals.empty() || !(segment.intervals[0] > 0)) return;
+  for (const auto* values : {&segment.starts, &segment.intervals})
+    if (std::any_of(values->begin(), values->end(), [&](double value) { return value != values->front(); }))
+      throw InputError(segment.place, "channels of different X0 or Delta_X; expected the same for all");
+  const Clock clock{*seconds * (segment.starts.empty() ? 0.0 : segment.starts[0]),
+                    *seconds * segment.intervals[0]};
+  if (!first_) first_ = clock;
+  one_interval_ = one_interval_ && std::abs(clock.interval / first_->interval - 1) < 1e-9;
+  if (!times_.empty() && clock.start < times_.back() + 0.5 * clock.interval)
+    throw InputError(segment.place,
+                     fmt::format("a segment that begins at {:g} s, where the one before runs to {:g} s; "
+                                 "expected segments in succession",
+                                 clock.start, times_.back()));
+  for (std::size_t k = 0; k < rows; ++k)
+    times_.push_back(clock.start + static_cast<double>(k) * clock.interval);
+}
+
+std::optional<Clock> LvmInstants::clock() const {
+  if (times_.empty() || !one_interval_) return std::nullopt;
+  // Where a segment begins late all that follow do.
+  const double last = first_->start + static_cast<double>(times_.size() - 1) * first_->interval;
+  return std::abs(times_.back() - last) <= 0.5 * first_->interval ? first_ : std::nullopt;
+}
 
 using std::string_view;
 
@@ -232,4 +414,5 @@ const bool lvm_registered = record_reader_registry().add(
      [](const filters::Options&) { return std::make_unique<LvmReader>(); }});
 
 }  // namespace
+
 }  // namespace beamid::experiments

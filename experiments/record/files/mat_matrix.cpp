@@ -8,7 +8,7 @@
 #include "experiments/record/files/hdf5/own_storage.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/text/input_error.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {

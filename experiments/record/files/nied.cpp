@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "experiments/record/record_reader.hpp"
+#include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {

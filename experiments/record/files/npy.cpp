@@ -6,8 +6,8 @@
 #include <fstream>
 #include <regex>
 
-#include "experiments/record/record_reader.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/record/record_table.hpp"
+#include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {

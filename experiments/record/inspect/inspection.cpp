@@ -1,16 +1,354 @@
 #include "experiments/record/inspect/inspection.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
+#include <stdexcept>
+#include <vector>
 
-#include "experiments/record/inspect/channel_inspection.hpp"
-#include "experiments/record/inspect/time_column.hpp"
-#include "experiments/record/record_reader.hpp"
+#include <fmt/format.h>
+
+#include "experiments/record/inspect/noise_floor.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
+#include "experiments/record/record_columns.hpp"
+#include "experiments/record/record_table.hpp"
+#include "experiments/record/units.hpp"
+#include "experiments/signal/missing_samples.hpp"
+#include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
+
+using Eigen::Index, Eigen::VectorXd;
+
+std::vector<SignalEvent> find_events(const VectorXd& signal, double interval, double noise,
+                                     double frequency_hz) {
+  constexpr double rise = 2.5, above_noise = 10.0, smallest = 0.05, resting = 0.01, fewest_cycles = 5.0;
+  const Index size = signal.size();
+  std::vector<SignalEvent> events;
+  if (size < 16) return events;
+  const VectorXd deviation = signal.array() - median(signal);
+  const VectorXd distance = deviation.cwiseAbs();
+  const double largest = distance.maxCoeff();
+  const double at_rest = median(distance);
+  const bool pulse = at_rest < resting * largest && at_rest < 5 * noise;
+  const double cycles = frequency_hz * interval * static_cast<double>(size);
+  if (!pulse && cycles < fewest_cycles) return events;
+  Index window = 8;
+  if (!pulse && frequency_hz > 0)
+    window = std::clamp<Index>(static_cast<Index>(2 / (frequency_hz * interval)) + 1, 8, size / 10 + 8);
+  const double level = std::max(above_noise * noise, smallest * largest);
+  if (!(largest > level)) return events;
+  Index free_from = 0;
+  for (Index k = 1; k < size; ++k) {
+    if (k < free_from || distance[k] <= level) continue;
+    const Index from = std::max<Index>(0, k - window);
+    const double before = distance.segment(from, k - from).maxCoeff();
+    const Index ahead = std::min(window, size - k);
+    Index peak = 0;
+    const double after = distance.segment(k, ahead).maxCoeff(&peak);
+    if (after <= rise * before) continue;
+    Index start = k;  // back to where the rise begins
+    while (start > 0 && k - start < window && distance[start - 1] < distance[start] &&
+           distance[start] > 3 * noise)
+      --start;
+    events.push_back({start, deviation[k + peak], pulse});
+    free_from = k + std::max<Index>(peak, 1) + window;
+  }
+  return events;
+}
+
+void take_slow_release(const VectorXd& signal, double interval, double frequency_hz,
+                       std::vector<SignalEvent>& events) {
+  constexpr double deflected = 1.0 / 3;
+  constexpr Index fewest = 65, apart = 16;
+  if (signal.size() < fewest) return;
+  const VectorXd differences = signal.tail(signal.size() - 1) - signal.head(signal.size() - 1);
+  const VectorXd deviation = signal.array() - median(signal);
+  const double largest = deviation.cwiseAbs().maxCoeff();
+  for (const SignalEvent& event :
+       find_events(differences, interval, noise_floor(differences), frequency_hz)) {
+    const Index at = event.sample;
+    if (event.pulse || !(std::abs(deviation[at]) > deflected * largest)) continue;
+    std::erase_if(events, [&](const SignalEvent& pull) {
+      if (pull.sample >= at) return pull.sample - at < apart;
+      const auto held = deviation.segment((pull.sample + at) / 2, at - (pull.sample + at) / 2).array();
+      return held.minCoeff() * held.maxCoeff() > 0;
+    });
+    events.push_back({at, deviation[at], false});
+    break;
+  }
+  std::sort(events.begin(), events.end(), [](const auto& a, const auto& b) { return a.sample < b.sample; });
+}
+
+SamplingCheck check_sampling(const std::vector<double>& times, double resolution) {
+  if (times.size() < 2) throw std::invalid_argument("fewer than two instants; expected at least two");
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
+  SamplingCheck check;
+  check.interval = median(intervals);
+  const double tolerated = 0.05 * check.interval + 1.01 * resolution;
+  std::vector<double> from_median;
+  for (const double interval : intervals) from_median.push_back(std::abs(interval - check.interval));
+  const double scatter = median(from_median) / check.interval;  // where stamps jitter, late ones are no gaps
+  const double late = (scatter > 0.05 ? 2.5 : 1.5) * check.interval + 1.01 * resolution;
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const double interval = intervals[i];
+    if (interval == 0) {
+      check.repeats.push_back(i + 1);
+    } else if (interval < 0) {
+      check.returns.push_back(i + 1);
+    } else if (interval > late) {
+      check.gaps.push_back(i + 1);
+      check.longest_gap = std::max(check.longest_gap, interval);
+    } else {
+      sum += interval, count += 1.0;
+    }
+    check.uniform = check.uniform && std::abs(interval - check.interval) <= tolerated;
+  }
+  const double mean = sum / std::max(count, 1.0);
+  for (const double interval : intervals)
+    if (interval > 0 && interval <= late) check.jitter += (interval - mean) * (interval - mean);
+  check.jitter = std::sqrt(check.jitter / std::max(count, 1.0));
+  return check;
+}
+
+std::optional<OffsetDrift> offset_drift(const VectorXd& signal, double period, double noise) {
+  constexpr Index most_parts = 20, fewest_parts = 5, fewest_samples = 16;
+  constexpr double share = 0.25, times_noise = 10;
+  // Whole periods, so that the part of one that is left over shifts no mean.
+  const double periods =
+      period > 0 ? std::max(2.0, std::floor(static_cast<double>(signal.size()) / most_parts / period)) : 0;
+  const Index length =
+      std::max<Index>(fewest_samples, period > 0 ? static_cast<Index>(std::round(periods * period))
+                                                 : signal.size() / most_parts);
+  const Index parts = signal.size() / length;
+  if (parts < fewest_parts) return {};
+  std::vector<double> middles;
+  for (Index part = 0; part < parts; ++part) middles.push_back(signal.segment(part * length, length).mean());
+  const auto [low, high] = std::minmax_element(middles.begin(), middles.end());
+  const double least = std::max(share * (signal.array() - median(signal)).abs().maxCoeff(),
+                                times_noise * noise / std::sqrt(static_cast<double>(length)));
+  if (!(*high - *low > least)) return {};
+  OffsetDrift found{*low, *high, false, 0};
+  const double end = median(
+      std::vector<double>(middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2), middles.end()));
+  Index settled = parts;
+  while (settled > 0 && std::abs(middles[static_cast<std::size_t>(settled - 1)] - end) < 0.5 * least)
+    --settled;
+  found.start_up = settled > 0 && settled <= parts / 2;
+  found.settled = settled * length;
+  return found;
+}
+
 namespace {
+
+// The instants of a file that is inspected: which column they are, or how else they are known.
+
+/// Rises from row to row; a few rows may be at fault.
+bool looks_like_time(const std::vector<double>& values) {
+  constexpr std::size_t fewest = 16;
+  constexpr double share = 0.99;
+  if (values.size() < fewest) return false;
+  std::size_t rising = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) rising += values[i] > values[i - 1];
+  return static_cast<double>(rising) > share * static_cast<double>(values.size() - 1);
+}
+
+bool is_named_time(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return name == "t" || name.starts_with("time") || name.starts_with("t_") || name.starts_with("t ") ||
+         name.starts_with("t[") || name.starts_with("t(");
+}
+
+/// The line of [record] that names the column of time.
+std::string time_key(const RecordColumn& column) {
+  const std::string unit = column.factor == 1 ? "s" : column.factor == 1e-3 ? "ms" : "us";
+  return fmt::format("time = {{ column = {}, unit = \"{}\" }}", column.index + 1, unit);
+}
+
+/// The column of time, what is said of it, and what would state it.
+std::optional<RecordColumn> find_time(const RecordTable& table, const RecordFormat& format, std::string& text,
+                                      std::string& key) {
+  const auto titled = [&](std::size_t index) {
+    return index < table.names.size() && !table.names[index].empty()
+               ? fmt::format("column {}, '{}'", index + 1, table.names[index])
+               : fmt::format("column {}", index + 1);
+  };
+  if (format.time) {
+    const RecordColumn column{find_index(table, *format.time), format.time->factor, {}};
+    key = time_key(column);
+    text = "Time is " + titled(column.index) + ".";
+    return column;
+  }
+  for (std::size_t index = 0; index < table.width(); ++index)
+    if (const auto meaning = stated_meaning(table, index); meaning && !meaning->quantity) {
+      text = "Time is " + titled(index) + ".";
+      return RecordColumn{index, meaning->factor, {}};
+    }
+  if (table.clock || format.sampling_rate) return std::nullopt;
+  for (const bool named : {true, false})
+    for (std::size_t index = 0; index < table.width(); ++index) {
+      if (named && !(index < table.names.size() && is_named_time(table.names[index]))) continue;
+      if (!looks_like_time(table.columns[index])) continue;
+      if (!named && index > 0) return std::nullopt;  // a column further on may rise for other reasons
+      text = fmt::format(
+          "Nothing states which column is time: {} rises throughout and is taken for seconds "
+          "(--time {} confirms it, --time {}:ms says otherwise).",
+          titled(index), index + 1, index + 1);
+      key = time_key({index, 1, {}});
+      return RecordColumn{index, 1, {}};
+    }
+  return std::nullopt;
+}
+
+/// Instants of all rows from that column, the file's clock or the rate stated; else rows are counted.
+void set_time(const RecordTable& table, const RecordFormat& format, const std::optional<RecordColumn>& column,
+              Inspection& found) {
+  found.time.resize(table.rows());
+  double start = 0.0, interval = 1.0;
+  if (column) {
+    const std::vector<double>& stamps = table.columns[column->index];
+    for (std::size_t i = 0; i < stamps.size(); ++i) found.time[i] = stamps[i] * column->factor;
+    found.resolution = column->factor * std::max(table.precision[column->index].resolution(stamps.front()),
+                                                 table.precision[column->index].resolution(stamps.back()));
+    if (!format.sampling_rate) return;
+    start = found.time.front();
+  } else if (table.clock) {
+    start = table.clock->start, interval = table.clock->interval;
+    found.time_text = fmt::format("The file states an interval of {:.9g} s.", interval);
+  } else if (!format.sampling_rate) {
+    found.has_time = false;
+    found.time_text =
+        "Nothing tells the time: samples are counted, frequencies are per sample (--rate HZ states it).";
+  }
+  if (format.sampling_rate) {
+    found.time_key += fmt::format("{}sampling_rate_hz = {:.12g}", found.time_key.empty() ? "" : "\n",
+                                  *format.sampling_rate);
+    interval = 1 / *format.sampling_rate, found.resolution = 0.0;
+    found.time_text += fmt::format("{}Counted at {:.9g} Hz, as stated.", found.time_text.empty() ? "" : " ",
+                                   *format.sampling_rate);
+  }
+  for (std::size_t i = 0; i < found.time.size(); ++i)
+    found.time[i] = start + interval * static_cast<double>(i);
+}
+
+// One channel of a file that is inspected.
+
+/// Even samples without a hole, for what looks at a whole signal: straight lines across what is missing.
+struct EvenSignal {
+  VectorXd time, signal;
+  double interval = 1;
+};
+
+EvenSignal even_signal(const std::vector<double>& time, const VectorXd& samples, double resolution) {
+  constexpr Index fewest = 16;
+  std::vector<Index> kept;  // stamps that come after all before them
+  for (Index k = 0; k < samples.size(); ++k)
+    if (kept.empty() || time[k] > time[static_cast<std::size_t>(kept.back())]) kept.push_back(k);
+  Record record;
+  record.time = Eigen::Map<const VectorXd>(time.data(), samples.size())(kept);
+  record.samples = samples(kept).transpose();
+  record.channels.resize(1);
+  record.time_resolution = resolution;
+  if (record.size() >= fewest && !evenly_sampled(record))
+    step_registry().make("resample", step_registry().completed("resample", {}))->apply(record);
+  const double interval = record.size() > 1 ? record.interval() : 1;
+  return {record.time, bridged_straight(record.samples.row(0).transpose()), interval};
+}
+
+/// Rests between pulses, as a hammer's force does: nothing in it is then too short or held for too long.
+bool rests(const InspectedChannel& channel) {
+  constexpr double smallest = 0.05, most_of_it = 0.95;
+  std::vector<double> distance;
+  for (const double value : channel.samples)
+    if (std::isfinite(value)) distance.push_back(std::abs(value - channel.offset));
+  if (distance.empty()) return false;
+  const double level = smallest * *std::max_element(distance.begin(), distance.end());
+  const auto resting = std::count_if(distance.begin(), distance.end(), [&](double d) { return d <= level; });
+  const auto longest = [&] {  // of what goes further: a spike is one sample, and most of them are alone
+    std::size_t run = 0, most = 0;
+    for (const double d : distance) most = std::max(most, run = d > level ? run + 1 : 0);
+    return most;
+  }();
+  return static_cast<double>(resting) > most_of_it * static_cast<double>(distance.size()) && longest > 2;
+}
+
+/// The column's samples, in SI units where its quantity is stated.
+/// @param described by the experiment file; nullptr: not
+InspectedChannel make_channel(const RecordTable& table, std::size_t index,
+                              const ColumnDescription* described) {
+  InspectedChannel channel;
+  channel.column = static_cast<int>(index) + 1;
+  channel.samples = table.columns[index];
+  if (index < table.names.size()) channel.name = table.names[index];
+  if (index < table.units.size()) channel.unit = table.units[index];
+  double factor = 1.0;
+  if (described != nullptr && described->stated)
+    channel.quantity = described->quantity, factor = described->factor;
+  else if (const auto meaning = stated_meaning(table, index); meaning && meaning->quantity)
+    channel.quantity = *meaning->quantity, factor = meaning->factor;
+  if (channel.quantity) {
+    channel.unit = si_unit(*channel.quantity);
+    for (const Unit& unit : units(*channel.quantity))
+      if (unit.factor == factor) channel.file_unit = unit.symbol;
+  }
+  for (double& value : channel.samples) value *= factor;
+  return channel;
+}
+
+/// Defects, noise, frequency and events of the channel's samples at the instants found.
+void inspect_channel(const Inspection& found, InspectedChannel& channel) {
+  constexpr Index fewest = 64;
+  std::vector<double> finite;
+  for (const double value : channel.samples)
+    if (std::isfinite(value)) finite.push_back(value);
+  channel.missing = channel.samples.size() - finite.size();
+  if (finite.empty()) {
+    channel.defects.dead = true;
+    return;
+  }
+  channel.offset = median(finite);
+  channel.least = *std::min_element(finite.begin(), finite.end());
+  channel.greatest = *std::max_element(finite.begin(), finite.end());
+  const bool force = channel.quantity ? *channel.quantity == Quantity::force : rests(channel);
+  channel.defects = find_defects(channel.samples, force ? SignalKind::force : SignalKind::motion);
+  if (channel.defects.dead || std::ssize(finite) < fewest) return;
+  VectorXd samples = Eigen::Map<const VectorXd>(channel.samples.data(), std::ssize(channel.samples));
+  for (const auto* runs : {&channel.defects.spikes, &channel.defects.dropped})
+    for (const Run& run : *runs)
+      samples.segment(static_cast<Index>(run.first), static_cast<Index>(run.length))
+          .setConstant(std::nan(""));
+  const auto [time, signal, interval] = even_signal(found.time, samples, found.resolution);
+  if (signal.size() < fewest) return;
+  const VectorXd place = VectorXd::LinSpaced(signal.size(), -0.5, 0.5);
+  channel.drift = place.dot(signal) / place.squaredNorm();
+  channel.noise = noise_floor(signal);
+  const double power = (signal.array() - signal.mean()).square().mean();
+  const double noise = channel.noise * channel.noise;
+  channel.signal_to_noise_db =
+      10 * std::log10(std::max(power - noise, 1e-3 * noise) / std::max(noise, 1e-300));
+  if (!(signal.maxCoeff() > signal.minCoeff())) return;
+  channel.frequency_hz = strongest_frequency(signal, interval);
+  channel.events = find_events(signal, interval, channel.noise, channel.frequency_hz);
+  take_slow_release(signal, interval, channel.frequency_hz, channel.events);
+  if (!channel.events.empty() && channel.events.front().pulse) channel.frequency_hz = 0;  // pulses have none
+  if (channel.frequency_hz > 0)
+    channel.wandering = offset_drift(signal, 1 / (channel.frequency_hz * interval), channel.noise);
+  for (SignalEvent& event : channel.events) {
+    const auto at =
+        std::lower_bound(found.time.begin(), found.time.end(), time[event.sample] - 0.5 * interval);
+    event.sample = std::min<Index>(at - found.time.begin(), std::ssize(found.time) - 1);
+  }
+  if (channel.wandering)
+    channel.wandering->settled =
+        std::lower_bound(found.time.begin(), found.time.end(),
+                         time[std::min(channel.wandering->settled, time.size() - 1)]) -
+        found.time.begin();
+}
 
 void cut(Inspection& found, const RecordFormat& format) {
   const auto& [from, to] = *format.window;

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "experiments/record/prepare/filter_step.hpp"
+#include "experiments/record/prepare/channel_step.hpp"
 #include "experiments/signal/butterworth.hpp"
 
 namespace beamid::experiments {

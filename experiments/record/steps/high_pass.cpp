@@ -1,7 +1,7 @@
 // Butterworth high-pass [butterworth1930], against offset and drift.
 #include <fmt/format.h>
 
-#include "experiments/record/prepare/filter_step.hpp"
+#include "experiments/record/prepare/channel_step.hpp"
 #include "experiments/signal/butterworth.hpp"
 
 namespace beamid::experiments {

@@ -10,9 +10,9 @@
 
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/signal/interpolation.hpp"
-#include "experiments/signal/median.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/results/vtk/nodal_motion.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 #include "fem/structure.hpp"
 
 namespace beamid::experiments {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/results/vtk/drawing.hpp"
 #include "experiments/results/vtk/vtu_text.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "experiments/config/description.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/studies/update/report.hpp"
 #include "experiments/text/spelling.hpp"
 #include "fem/assembly.hpp"

@@ -11,7 +11,7 @@
 #include "experiments/models/oscillator.hpp"
 #include "experiments/text/progress.hpp"
 #include "fem/beam.hpp"
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::experiments {
 

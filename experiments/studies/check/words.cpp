@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "experiments/identify/update/updating.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/studies/check/report.hpp"
 #include "experiments/text/spelling.hpp"
 

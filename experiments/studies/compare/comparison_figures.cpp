@@ -1,15 +1,16 @@
-#include "experiments/studies/compare/comparison_figures.hpp"
+
+#include "experiments/studies/compare/report.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "experiments/identify/compare/run_verdict.hpp"
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/record/axis_label.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
+#include "experiments/record/record.hpp"
+#include "experiments/results/figure.hpp"
 #include "experiments/results/forest_plot.hpp"
-#include "experiments/results/signal_panels.hpp"
 #include "experiments/signal/missing_samples.hpp"
 
 namespace beamid::experiments {

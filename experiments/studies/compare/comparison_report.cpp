@@ -1,4 +1,5 @@
-#include "experiments/studies/compare/comparison_report.hpp"
+
+#include "experiments/studies/compare/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +10,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/measured_force.hpp"
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/record/column_name.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/measured_force.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/record/units.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/results/table.hpp"
-#include "experiments/studies/compare/comparison_figures.hpp"
-#include "experiments/studies/identify/diagnostics_report.hpp"
+#include "experiments/studies/identify/report.hpp"
 
 namespace beamid::experiments {
 

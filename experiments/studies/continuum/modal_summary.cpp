@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
-#include "experiments/config/read_beam.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "fem/assembly.hpp"
-#include "fem/damping.hpp"
 #include "fem/exact/exact_modes.hpp"
 #include "fem/free_decay.hpp"
 #include "fem/stiffness_solver.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::experiments {
 

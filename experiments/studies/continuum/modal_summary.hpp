@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/text/progress.hpp"
 #include "fem/assembly.hpp"
 #include "fem/complex_modes.hpp"

@@ -1,4 +1,5 @@
-#include "experiments/studies/continuum/modes_study.hpp"
+
+#include "experiments/studies/continuum/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,18 +11,18 @@
 #include <fmt/format.h>
 #include <Eigen/Core>
 
-#include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
-#include "experiments/config/read_beam.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/results/file.hpp"
 #include "experiments/results/mode_figure.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
 #include "experiments/studies/continuum/modal_summary.hpp"
 #include "experiments/text/progress.hpp"
-#include "fem/damping.hpp"
 #include "fem/modes.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::experiments {
 namespace {

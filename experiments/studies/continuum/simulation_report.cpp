@@ -1,4 +1,5 @@
-#include "experiments/studies/continuum/simulation_report.hpp"
+
+#include "experiments/studies/continuum/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,16 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "experiments/config/channel_places.hpp"
 #include "experiments/config/description.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/structure_description.hpp"
-#include "experiments/record/axis_label.hpp"
-#include "experiments/record/column_name.hpp"
-#include "experiments/record/record_places.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/record/units.hpp"
-#include "experiments/record/write_record.hpp"
-#include "experiments/results/file.hpp"
-#include "experiments/results/signal_panels.hpp"
+#include "experiments/results/figure.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/results/vtk/field_history.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "experiments/signal/spectrum.hpp"

@@ -1,4 +1,5 @@
-#include "experiments/studies/damping/compared_laws.hpp"
+
+#include "experiments/studies/damping/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +8,9 @@
 
 #include "experiments/config/description.hpp"
 #include "experiments/identify/damping_law/damping_law.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/record/axis_label.hpp"
-#include "experiments/studies/damping/law_words.hpp"
+#include "experiments/record/record.hpp"
 
 namespace beamid::experiments {
 namespace {

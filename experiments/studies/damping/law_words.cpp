@@ -1,4 +1,5 @@
-#include "experiments/studies/damping/law_words.hpp"
+
+#include "experiments/studies/damping/report.hpp"
 
 #include <fmt/format.h>
 

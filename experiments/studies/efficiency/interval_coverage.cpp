@@ -8,12 +8,12 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/identify/analysis.hpp"
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/engine/analysis.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
-#include "experiments/signal/random.hpp"
-#include "experiments/text/countdown.hpp"
+#include "experiments/signal/toolbox.hpp"
+#include "experiments/text/progress.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "reduction/reduction.hpp"

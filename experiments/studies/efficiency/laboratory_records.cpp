@@ -11,11 +11,11 @@
 #include <unistd.h>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/identification_request.hpp"
-#include "experiments/identify/record_identification.hpp"
-#include "experiments/record/write_record.hpp"
-#include "experiments/studies/identify/record_report.hpp"
-#include "experiments/text/countdown.hpp"
+#include "experiments/identify/engine/identification_request.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
+#include "experiments/record/record.hpp"
+#include "experiments/studies/identify/report.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "experiments/record/write_record.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/studies/efficiency/laboratory_records.hpp"
 
 namespace beamid::experiments {

@@ -11,10 +11,9 @@
 
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/oscillator.hpp"
-#include "experiments/signal/positive.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/text/choice_text.hpp"
-#include "experiments/text/countdown.hpp"
+#include "experiments/text/progress.hpp"
 #include "filters/filter_run.hpp"
 #include "filters/fisher_information.hpp"
 #include "filters/random.hpp"

@@ -10,11 +10,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/signal/random.hpp"
-#include "experiments/studies/identify/record_report.hpp"
-#include "experiments/text/countdown.hpp"
+#include "experiments/signal/toolbox.hpp"
+#include "experiments/studies/identify/report.hpp"
+#include "experiments/text/progress.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"
 #include "filters/monte_carlo.hpp"

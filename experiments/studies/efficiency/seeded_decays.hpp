@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/progress.hpp"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_simulation.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "fem/assembly.hpp"
 #include "fem/modes.hpp"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
-#include "experiments/rig/acquisition.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/rig/virtual_rig.hpp"
 
 namespace beamid::experiments {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "experiments/models/estimates.hpp"
-#include "experiments/studies/identify/diagnostics_report.hpp"
+#include "experiments/studies/identify/report.hpp"
 
 namespace beamid::experiments {
 namespace {

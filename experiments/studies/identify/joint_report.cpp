@@ -1,4 +1,5 @@
-#include "experiments/studies/identify/joint_report.hpp"
+
+#include "experiments/studies/identify/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +7,10 @@
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
-#include "experiments/identify/joint_comparison.hpp"
+#include "experiments/identify/engine/joint_comparison.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/forest_plot.hpp"
-#include "experiments/studies/compare/comparison_report.hpp"
-#include "experiments/studies/identify/diagnostics_report.hpp"
+#include "experiments/studies/compare/report.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,4 +1,5 @@
-#include "experiments/studies/identify/record_report.hpp"
+
+#include "experiments/studies/identify/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "experiments/config/channel_places.hpp"
-#include "experiments/identify/record_identification.hpp"
-#include "experiments/identify/run_diagnostics.hpp"
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/engine/identified_parameters.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/record/axis_label.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/results/figure.hpp"
-#include "experiments/results/signal_panels.hpp"
-#include "experiments/studies/identify/diagnostics_report.hpp"
 
 namespace beamid::experiments {
 namespace {

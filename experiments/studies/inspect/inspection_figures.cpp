@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/results/signal_panels.hpp"
+#include "experiments/results/figure.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/studies/inspect/inspection_report.hpp"
 

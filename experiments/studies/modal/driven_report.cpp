@@ -1,4 +1,5 @@
-#include "experiments/studies/modal/driven_report.hpp"
+
+#include "experiments/studies/modal/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "experiments/modal/study/hammer_study.hpp"
-#include "experiments/studies/modal/report.hpp"
 
 namespace beamid::experiments {
 

@@ -1,4 +1,5 @@
-#include "experiments/studies/modal/event_report.hpp"
+
+#include "experiments/studies/modal/report.hpp"
 
 #include <fmt/format.h>
 

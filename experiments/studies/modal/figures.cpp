@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "experiments/results/signal_panels.hpp"
+#include "experiments/results/figure.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/studies/modal/report.hpp"
 

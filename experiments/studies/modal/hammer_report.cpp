@@ -1,4 +1,5 @@
-#include "experiments/studies/modal/hammer_report.hpp"
+
+#include "experiments/studies/modal/report.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +9,6 @@
 
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/results/gnuplot_axes.hpp"
-#include "experiments/studies/modal/report.hpp"
 
 namespace beamid::experiments {
 namespace {

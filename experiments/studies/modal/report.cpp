@@ -1,3 +1,4 @@
+
 #include "experiments/studies/modal/report.hpp"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include "experiments/modal/ambient_mode.hpp"
 #include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/results/cell_text.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,13 +1,50 @@
-// The modal analysis of records, as a user sees it.
+// The modes of a driven record, as a user sees them.
 #pragma once
 
+#include <complex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "experiments/modal/study/driven_study.hpp"
+#include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/modal/study/merged_modes.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
+
+// Modal masses from a hammer's impulse, as a user sees them.
+
+/// A table `hammer_mass` and `hammer_mass` of results.json, one row for each mode and record:
+/// hammer_study.hpp. Nothing where no record has a force with a hit.
+/// @param rates of the modes of each record [rad/s]
+/// @param coarse_reported whether hits of few samples have their warning already
+void add_masses(const std::vector<std::string>& names, const std::vector<Record>& records,
+                const std::vector<std::vector<std::complex<double>>>& rates, Results& results,
+                bool coarse_reported = false);
+
+/// A section for each record; figures, results.json.
+Results report(const ModalStudySettings& settings, const std::vector<DrivenStudy>& studies);
+
+// A column of soil, or a building, in one earthquake after the other.
+
+/// f1 and xi of every record (modal/base_response.hpp) beside its peak acceleration: a table `events`, and a
+/// figure `events` of both over the peak.
+///
+/// Of several accelerometers the last one counts: of files with a surface and a borehole the surface.
+/// @throws std::invalid_argument where a record has no base_acceleration or no acceleration, beginning with
+/// its name.
+Results event_report(const std::vector<std::string>& names, const std::vector<Record>& records,
+                     const std::optional<std::pair<double, double>>& band_hz);
+
+// A hammer test as text, tables, figures and JSON.
+
+/// As a user sees it: modes with modal masses, responses with what the modes make of them, coherence.
+Results report(const ModalStudySettings& settings, const HammerStudy& study);
+
+// The modal analysis of records, as a user sees it.
 
 /// Sections for each record, then one for all of them where there are several; figures, results.json.
 Results report(const ModalStudySettings& settings, const std::vector<RecordModes>& records);

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/signal/positive.hpp"
-#include "experiments/text/countdown.hpp"
+#include "experiments/signal/toolbox.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
 namespace {

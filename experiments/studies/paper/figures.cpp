@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/results/signal_panels.hpp"
+#include "experiments/results/figure.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
 #include "experiments/studies/paper/report.hpp"
 #include "fem/assembly.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "experiments/modal/classic_estimators.hpp"
 #include "experiments/modal/dominant_mode.hpp"
-#include "experiments/modal/logarithmic_decrement.hpp"
 #include "experiments/models/identification.hpp"
 #include "experiments/rig/virtual_rig.hpp"
 #include "experiments/signal/integration.hpp"

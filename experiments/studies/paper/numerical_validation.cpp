@@ -11,7 +11,7 @@
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/oscillator.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/studies/paper/monte_carlo.hpp"
 #include "experiments/studies/paper/report.hpp"
 #include "fem/free_decay.hpp"

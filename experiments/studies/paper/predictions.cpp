@@ -12,7 +12,7 @@
 #include "experiments/studies/paper/numerical_validation.hpp"
 #include "experiments/studies/paper/report.hpp"
 #include "fem/free_decay.hpp"
-#include "filters/innovation_consistency.hpp"
+#include "filters/diagnostics.hpp"
 
 namespace beamid::experiments::paper {
 namespace {

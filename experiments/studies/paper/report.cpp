@@ -13,7 +13,7 @@
 #include "experiments/signal/butterworth.hpp"
 #include "experiments/studies/paper/monte_carlo.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
-#include "experiments/text/countdown.hpp"
+#include "experiments/text/progress.hpp"
 #include "fem/free_decay.hpp"
 #include "filters/scheme.hpp"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
-#include "experiments/identify/measured_force.hpp"
+#include "experiments/identify/engine/measured_force.hpp"
 #include "experiments/studies/sensing/report.hpp"
 #include "experiments/studies/update/report.hpp"
 

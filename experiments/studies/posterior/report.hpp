@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/identify/posterior/posterior_study.hpp"
 #include "experiments/results/results.hpp"
 

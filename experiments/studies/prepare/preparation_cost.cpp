@@ -6,9 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/modal/classic_estimators.hpp"
 #include "experiments/modal/dominant_mode.hpp"
-#include "experiments/modal/logarithmic_decrement.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 
 namespace beamid::experiments {

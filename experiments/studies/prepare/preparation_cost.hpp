@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/record/record_format.hpp"
+#include "experiments/record/record.hpp"
 
 namespace beamid::experiments {
 

@@ -9,14 +9,11 @@
 #include <fmt/format.h>
 
 #include "experiments/modal/dominant_mode.hpp"
-#include "experiments/record/axis_label.hpp"
-#include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
-#include "experiments/record/write_record.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/results/figure.hpp"
 #include "experiments/results/gnuplot_axes.hpp"
-#include "experiments/results/signal_panels.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "experiments/signal/spectrum.hpp"
 

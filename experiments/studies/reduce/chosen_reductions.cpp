@@ -1,4 +1,5 @@
-#include "experiments/studies/reduce/chosen_reductions.hpp"
+
+#include "experiments/studies/reduce/report.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
-#include "experiments/studies/reduce/mode_agreement.hpp"
+
+#include "experiments/studies/reduce/report.hpp"
 
 #include <cmath>
 #include <limits>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "fem/assembly.hpp"
 #include "fem/free_decay.hpp"
 #include "fem/modes.hpp"

@@ -1,3 +1,4 @@
+
 #include "experiments/studies/reduce/report.hpp"
 
 #include <algorithm>
@@ -9,14 +10,12 @@
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
-#include "experiments/config/read_reduction.hpp"
+#include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/models/structure_points.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/results/vtk/vtu_file.hpp"
-#include "experiments/studies/reduce/chosen_reductions.hpp"
-#include "experiments/studies/reduce/mode_agreement.hpp"
-#include "experiments/text/method_choice.hpp"
+#include "experiments/text/choice.hpp"
 #include "fem/response/frequency_response.hpp"
 #include "fem/stiffness_solver.hpp"
 

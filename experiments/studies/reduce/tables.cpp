@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/studies/reduce/mode_agreement.hpp"
 #include "experiments/studies/reduce/report.hpp"
 
 namespace beamid::experiments {

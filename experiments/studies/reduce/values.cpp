@@ -1,5 +1,4 @@
 #include "experiments/config/description.hpp"
-#include "experiments/studies/reduce/mode_agreement.hpp"
 #include "experiments/studies/reduce/report.hpp"
 
 namespace beamid::experiments {

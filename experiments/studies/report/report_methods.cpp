@@ -1,11 +1,12 @@
-#include "experiments/studies/report/report_methods.hpp"
+
+#include "experiments/studies/report/report.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 
-#include "experiments/results/html.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "experiments/config/description.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
 
 namespace beamid::experiments {
 namespace {

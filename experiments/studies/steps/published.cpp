@@ -1,4 +1,5 @@
-#include "experiments/studies/steps/published.hpp"
+
+#include "experiments/studies/steps/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,6 @@
 
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/truth_behind.hpp"
-#include "experiments/models/two_channel_bias.hpp"
 
 namespace beamid::experiments {
 namespace {

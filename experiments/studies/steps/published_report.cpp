@@ -5,7 +5,7 @@
 
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/studies/steps/published.hpp"
+#include "experiments/studies/steps/report.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,3 +1,4 @@
+
 #include "experiments/studies/steps/report.hpp"
 
 #include <fmt/format.h>

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "experiments/config/description.hpp"
-#include "experiments/identify/measured_force.hpp"
+#include "experiments/identify/engine/measured_force.hpp"
 #include "experiments/results/forest_plot.hpp"
-#include "experiments/signal/chi_square_limit.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "experiments/results/key_label.hpp"
 #include "experiments/studies/sweep/report.hpp"
-#include "experiments/text/words.hpp"
+#include "experiments/text/choice_text.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,4 +1,5 @@
-#include "experiments/studies/sweep/perform.hpp"
+
+#include "experiments/studies/sweep/report.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -9,12 +10,11 @@
 #include <fmt/format.h>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/manifest.hpp"
 #include "experiments/sweep/repeats.hpp"
 #include "experiments/sweep/rows.hpp"
-#include "experiments/text/countdown.hpp"
 #include "experiments/text/memory_need.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
 namespace {

@@ -1,3 +1,4 @@
+
 #include "experiments/studies/sweep/report.hpp"
 
 #include <fmt/format.h>
@@ -8,9 +9,9 @@
 #include <set>
 
 #include "experiments/config/description.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/sweep/hdf5_table.hpp"
-#include "experiments/text/words.hpp"
+#include "experiments/text/choice_text.hpp"
 
 namespace beamid::experiments {
 namespace {

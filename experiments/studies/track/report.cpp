@@ -9,10 +9,9 @@
 
 #include "experiments/identify/tracking/tracking.hpp"
 #include "experiments/models/estimates.hpp"
-#include "experiments/record/axis_label.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/results/figure.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {

@@ -73,16 +73,6 @@ using Eigen::Index;
 
 constexpr std::size_t most_shown = 8;
 
-// What decides between them, a clause.
-std::string prior_text(const RecordTwin& likeliest) {
-  constexpr double clear = 6.0, most = 100.0;
-  const double more = likeliest.prior_chi_square;
-  if (std::abs(more) < clear) return "what was known beforehand does not tell which is true";
-  return fmt::format("only what was known beforehand tells them apart, {:.2g} to 1 for {}",
-                     std::exp(0.5 * std::min(std::abs(more), most)),
-                     more > 0.0 ? "the one found" : "another one");
-}
-
 Table twin_table(const ComparedRun& run, const RecordTwins& twins) {
   const std::size_t shown = std::min(twins.sets.size(), most_shown);
   Table table{"twins", "Other sets of parameters that explain the record as well"};
@@ -107,17 +97,6 @@ Table twin_table(const ComparedRun& run, const RecordTwins& twins) {
 
 }  // namespace
 
-void warn_of_twins(Comparison& found, const RecordTwins& twins) {
-  if (twins.sets.empty()) return;
-  const std::size_t others = twins.sets.size();
-  std::string text = fmt::format(
-      "NOT UNIQUE: at least {} other set{} of parameters explain{} this record as well, and {}. The "
-      "intervals are those of one of {} answers.",
-      others, others == 1 ? "" : "s", others == 1 ? "s" : "", prior_text(twins.sets.front()), others + 1);
-  std::vector<std::string>& warnings = found.runs.front().warnings;
-  warnings.insert(warnings.begin(), std::move(text));
-}
-
 void add_twins(Results& results, const ComparedRun& run, const RecordTwins& twins) {
   if (twins.tried == 0) return;
   auto sets = nlohmann::ordered_json::array();
@@ -139,6 +118,11 @@ void add_twins(Results& results, const ComparedRun& run, const RecordTwins& twin
         twins.tried == 1 ? "it" : "them"));
     return;
   }
+  if (twins.undecided() < twins.sets.size())
+    results.paragraph(
+        "Of the sets below, those with a chi^2 of 6 or more, of the record and beforehand together, are "
+        "decidedly less "
+        "likely than the one found.");
   results.table(twin_table(run, twins));
   if (!twins.deciding.empty()) {
     results.paragraph("Best to tell them apart: " + deciding_text(twins.deciding.front()) + ".");

@@ -12,9 +12,6 @@ namespace beamid::experiments {
 /// The sets first, then how complete they are and what would decide.
 Results twins_report(const Experiment& experiment, const UpdateStudy& study);
 
-/// The first of the run's warnings where other sets explain the record as well; else nothing.
-void warn_of_twins(Comparison& found, const RecordTwins& twins);
-
 /// Their table, what would decide, and "twins" of results.json; nothing where none was tried.
 void add_twins(Results& results, const ComparedRun& run, const RecordTwins& twins);
 

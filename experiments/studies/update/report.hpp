@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/identify/update/update_study.hpp"
 #include "experiments/results/results.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/identify/measured_force.hpp"
+#include "experiments/identify/engine/measured_force.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/studies/update/report.hpp"
 #include "experiments/text/spelling.hpp"

@@ -1,5 +1,5 @@
 // Oracles: positions as they were given; a file written and read back.
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,9 +7,8 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/record/read_record.hpp"
-#include "experiments/record/record_places.hpp"
-#include "experiments/record/write_record.hpp"
-#include "experiments/results/file.hpp"
+#include "experiments/record/record.hpp"
+#include "experiments/results/result_directory.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::channel_places_test {

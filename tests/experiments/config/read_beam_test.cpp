@@ -1,5 +1,5 @@
 // Oracles: closed forms of section properties; the values written in the files themselves.
-#include "experiments/config/read_beam.hpp"
+#include "experiments/config/readers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Oracles: the values written in the files themselves, closed forms of section properties.
-#include "experiments/config/read_frame.hpp"
+#include "experiments/config/readers.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "experiments/config/read_parameters.hpp"
+#include "experiments/config/readers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "experiments/config/read_reduction.hpp"
+#include "experiments/config/readers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Oracles: the values written in the files themselves.
-#include "experiments/config/read_simulation.hpp"
+#include "experiments/config/readers.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // One value of damping where it depends on amplitude: how much of the decay its interval holds. Oracle: the
 // damping ratio that the simulation had at each instant.
-#include "experiments/identify/amplitude_sections.hpp"
+#include "experiments/identify/verdict/amplitude_sections.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <random>
 
 #include "experiments/models/estimates.hpp"
-#include "experiments/studies/identify/record_report.hpp"
+#include "experiments/studies/identify/report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::amplitude_sections_test {

@@ -7,12 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/record/prepare/record_defects.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/record/read_record.hpp"
-#include "experiments/record/write_record.hpp"
+#include "experiments/record/record.hpp"
 #include "experiments/rig/simulated_test.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/identify/ground_motion.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"
 

@@ -1,6 +1,6 @@
 // Channels of one decay beside each other. Oracle: the closed form of the motion, one channel of which is
 // multiplied by what a wrong unit multiplies it by.
-#include "experiments/identify/analysis.hpp"
+#include "experiments/identify/engine/analysis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

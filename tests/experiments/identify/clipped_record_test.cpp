@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "experiments/studies/identify/record_report.hpp"
+#include "experiments/studies/identify/report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::clipped_record_test {

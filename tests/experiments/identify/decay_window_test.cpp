@@ -1,6 +1,6 @@
 // The part of a record that is identified where nobody says which. Oracle: when the beam was released in the
 // simulated record, and the time constant 1/(xi omega) it was made with.
-#include "experiments/identify/identification_request.hpp"
+#include "experiments/identify/engine/identification_request.hpp"
 
 #include <gtest/gtest.h>
 

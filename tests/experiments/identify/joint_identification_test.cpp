@@ -1,7 +1,7 @@
 // Several records of one beam. Oracles: one least-squares fit of all of them, and the truth they were
 // simulated with.
-#include "experiments/identify/joint_comparison.hpp"
-#include "experiments/studies/identify/joint_report.hpp"
+#include "experiments/identify/engine/joint_comparison.hpp"
+#include "experiments/studies/identify/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
-#include "experiments/modal/shape_fit.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::joint_identification_test {

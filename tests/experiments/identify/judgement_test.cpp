@@ -1,6 +1,6 @@
 // The first lines of a result: what contradicts it, and why. Oracles: the closed form of a scheme, the other
 // mode that was put in, the prior that was stated wrongly.
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "experiments/models/discretisation_bias.hpp"
-#include "experiments/studies/identify/record_report.hpp"
+#include "experiments/studies/identify/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 

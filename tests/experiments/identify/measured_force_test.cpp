@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "experiments/identify/compare/chosen_channels.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/oscillator.hpp"
 #include "filters/batch_estimator.hpp"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
 #include "experiments/record/read_record.hpp"
-#include "experiments/studies/identify/record_report.hpp"
+#include "experiments/studies/identify/report.hpp"
 #include "fem/beam.hpp"
 
 namespace beamid::experiments::measured_record_test {

@@ -1,5 +1,5 @@
 // Oracle: the beam assembled by hand, with the same points.
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 
 #include <gtest/gtest.h>
 

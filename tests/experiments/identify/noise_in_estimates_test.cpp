@@ -1,12 +1,12 @@
 // Coloured noise, where estimates are determined.
-#include "experiments/identify/noise_in_estimates.hpp"
+#include "experiments/identify/engine/noise_in_estimates.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "experiments/models/joint_model.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "fem/assembly.hpp"
 #include "filters/batch_estimator.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"

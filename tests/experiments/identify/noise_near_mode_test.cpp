@@ -1,5 +1,5 @@
 // How dense the noise is at the mode. Oracle: the density with which it was made.
-#include "experiments/identify/noise_near_mode.hpp"
+#include "experiments/identify/verdict/noise_near_mode.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::noise_near_mode_test {
 namespace {

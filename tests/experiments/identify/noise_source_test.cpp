@@ -1,14 +1,14 @@
 // Noise from the record, and the batch estimate beside the filter. Oracle: what the records were simulated
 // with.
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "experiments/identify/analysis.hpp"
-#include "experiments/studies/identify/record_report.hpp"
+#include "experiments/identify/engine/analysis.hpp"
+#include "experiments/studies/identify/report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::noise_source_test {

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::one_engine_test {

@@ -1,5 +1,5 @@
 // Oracle: what the handbooks know of materials, and beams described in wrong units.
-#include "experiments/identify/plausibility.hpp"
+#include "experiments/identify/verdict/plausibility.hpp"
 
 #include <gmock/gmock.h>
 

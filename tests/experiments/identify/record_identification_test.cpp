@@ -1,6 +1,6 @@
 // Simulated records. Oracle: the stiffness and damping with which they were made.
-#include "experiments/identify/record_identification.hpp"
-#include "experiments/studies/identify/record_report.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
+#include "experiments/studies/identify/report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Oracle: the free decay of one degree of freedom in closed form.
-#include "experiments/identify/reproduction.hpp"
+#include "experiments/identify/verdict/reproduction.hpp"
 
 #include <gtest/gtest.h>
 

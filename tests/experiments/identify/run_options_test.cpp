@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/record/read_record.hpp"
-#include "experiments/studies/identify/record_report.hpp"
+#include "experiments/studies/identify/report.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 

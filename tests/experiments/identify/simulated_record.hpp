@@ -3,9 +3,9 @@
 
 #include <numbers>
 
-#include "experiments/identify/record_identification.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
 #include "experiments/models/oscillator.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "fem/exact/exact_cantilever.hpp"
 #include "fem/free_decay.hpp"
 #include "tests/fem/five_beams.hpp"

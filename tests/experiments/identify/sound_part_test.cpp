@@ -1,5 +1,5 @@
 // Decays that something befell. Oracle: the truth the record was simulated with, and when it was knocked.
-#include "experiments/identify/identification_request.hpp"
+#include "experiments/identify/engine/identification_request.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

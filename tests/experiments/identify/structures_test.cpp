@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"

@@ -7,9 +7,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "experiments/modal/modal_method.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/modal/shaken_chain.hpp"
 
 namespace beamid::experiments::ambient_mode_test {
@@ -130,6 +132,59 @@ TEST(Bayoma, NamesWhatItRefuses) {
   EXPECT_THROW(method->search(MatrixXd::Random(1, 100), 0.1, 0), std::invalid_argument);
   EXPECT_THROW(modal_method_registry().make("bayoma", {{"response", std::string("speed")}}),
                std::invalid_argument);
+}
+
+/// Poles of `bayoma` in a record (p x N) of displacements.
+std::vector<Pole> listed(const MatrixXd& channels, double dt) {
+  const auto method = modal_method_registry().make("bayoma", {{"response", std::string("displacement")}});
+  return method->search(channels, dt, 0).orders.back().poles;
+}
+
+// 600 s of two modes of 1 % damping, 0.5 to 5 % apart, on two channels. Oracle: the structure that was
+// shaken.
+TEST(AmbientPair, IsTwoModesWhereTheBandHasTwo) {
+  constexpr double f = 5.0, zeta = 0.01, dt = 0.05;
+  constexpr Index samples = 12000;
+  int inside = 0, asked = 0;
+  for (const double apart : {0.005, 0.01, 0.02, 0.05})
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+      filters::RandomStream random(11, seed);
+      const VectorXd a = shaken(f, zeta, dt, samples, random),
+                     b = shaken((1.0 + apart) * f, zeta, dt, samples, random);
+      MatrixXd channels(2, samples);
+      channels << (a + b).transpose(), (a - 0.7 * b).transpose();
+      channels += 0.02 * a.norm() / std::sqrt(static_cast<double>(samples)) * random.normal(2, samples);
+      const std::vector<Pole> poles = listed(channels, dt);
+      ASSERT_EQ(poles.size(), 2u) << apart << " " << seed;
+      for (int i = 0; i < 2; ++i) {
+        const Pole& pole = poles[static_cast<std::size_t>(i)];
+        const double true_hz = i == 0 ? f : (1.0 + apart) * f,
+                     by_frequency = std::abs(pole.frequency_hz() - true_hz) / pole.frequency_deviation_hz,
+                     by_damping = std::abs(pole.damping_ratio() - zeta) / pole.damping_ratio_deviation;
+        EXPECT_LT(by_frequency, 4.0) << apart << " " << seed;
+        EXPECT_LT(by_damping, 4.0) << apart << " " << seed;
+        inside += (by_frequency < 1.96) + (by_damping < 1.96), asked += 2;
+      }
+    }
+  EXPECT_GE(inside, asked - 7);  // 48 intervals of 95 %: more than 7 outside by chance in one of 300
+}
+
+// One mode, whose channels have unequal noise, which a single mode's spectrum does not describe.
+TEST(AmbientPair, IsNotSeenWhereThereIsOneMode) {
+  constexpr double f = 5.0, zeta = 0.01, dt = 0.05;
+  constexpr Index samples = 12000;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    filters::RandomStream random(12, seed);
+    const VectorXd a = shaken(f, zeta, dt, samples, random);
+    MatrixXd channels(3, samples);
+    channels << a.transpose(), a.transpose(), 0.5 * a.transpose();
+    MatrixXd noise = random.normal(3, samples);
+    noise.row(2) *= 0.5;
+    channels += 0.02 * a.norm() / std::sqrt(static_cast<double>(samples)) * noise;
+    const std::vector<Pole> poles = listed(channels, dt);
+    ASSERT_EQ(poles.size(), 1u) << seed;
+    EXPECT_LT(std::abs(poles[0].damping_ratio() - zeta), 4.0 * poles[0].damping_ratio_deviation) << seed;
+  }
 }
 
 }  // namespace

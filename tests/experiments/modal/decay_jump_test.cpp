@@ -6,7 +6,7 @@
 #include <cmath>
 #include <complex>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 #include "tests/experiments/modal/nonlinear_decay.hpp"
 

@@ -1,4 +1,4 @@
-#include "experiments/modal/shape_fit.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
 
 #include <gtest/gtest.h>
 

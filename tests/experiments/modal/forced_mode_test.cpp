@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "experiments/identify/analysis.hpp"
+#include "experiments/identify/engine/analysis.hpp"
 #include "tests/experiments/forced_oscillator.hpp"
 
 namespace beamid::experiments::forced_mode_test {

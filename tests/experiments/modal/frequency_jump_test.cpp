@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "experiments/modal/decay_jump.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 #include "tests/experiments/modal/nonlinear_decay.hpp"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/modal/response_peaks.hpp"
+#include "experiments/modal/hammer_response.hpp"
 #include "experiments/modal/study/hammer_study.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::hammer_test {
 namespace {

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "experiments/modal/study/hammer_study.hpp"
-#include "experiments/signal/random.hpp"
-#include "experiments/studies/modal/hammer_report.hpp"
+#include "experiments/signal/toolbox.hpp"
+#include "experiments/studies/modal/report.hpp"
 #include "tests/experiments/modal/struck_modes.hpp"
 
 namespace beamid::experiments::hit_sampling_test {

@@ -1,4 +1,4 @@
-#include "experiments/modal/logarithmic_decrement.hpp"
+#include "experiments/modal/classic_estimators.hpp"
 
 #include <gtest/gtest.h>
 

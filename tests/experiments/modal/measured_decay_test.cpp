@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/modal/classic_estimators.hpp"
 #include "experiments/modal/dominant_mode.hpp"
-#include "experiments/modal/logarithmic_decrement.hpp"
 
 namespace beamid::experiments::measured_decay_test {
 namespace {

@@ -5,10 +5,10 @@
 #include <complex>
 #include <numbers>
 
-#include "experiments/modal/half_power.hpp"
+#include "experiments/modal/classic_estimators.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/modal/mode_by_mode.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::mode_by_mode_test {
 namespace {

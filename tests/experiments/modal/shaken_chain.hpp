@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::test {
 

@@ -1,5 +1,5 @@
 // Reading stabilisation diagrams, and all modes of a decay by least squares.
-#include "experiments/modal/pole.hpp"
+#include "experiments/modal/poles.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "experiments/modal/dominant_mode.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/modal/modal_method.hpp"
-#include "experiments/modal/shape_fit.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 #include "tests/experiments/modal/shaken_chain.hpp"
 

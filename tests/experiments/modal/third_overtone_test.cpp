@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 
 namespace beamid::experiments::third_overtone_test {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 #include "tests/experiments/models/beam_model.hpp"
 
 namespace beamid::experiments::beam_damping_test {

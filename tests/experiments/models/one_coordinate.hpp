@@ -1,7 +1,7 @@
 // What a reduction to one coordinate leaves.
 #pragma once
 
-#include "fem/damping.hpp"
+#include "fem/structural_system.hpp"
 
 namespace beamid::test {
 

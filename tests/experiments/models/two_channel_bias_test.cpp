@@ -1,13 +1,12 @@
 // What a forward-Euler filter finds from displacement and velocity together. Oracles: extended Kalman filters
 // and least squares that are really run on exact decays; series in the time step; numbers of an independent
 // program.
-#include "experiments/models/two_channel_bias.hpp"
+#include "experiments/models/discretisation_bias.hpp"
 
 #include <gtest/gtest.h>
 
 #include <complex>
 
-#include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/oscillator.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"

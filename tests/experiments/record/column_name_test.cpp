@@ -1,9 +1,8 @@
 // Oracle: the grammar quantity[_label]_unit, by hand.
-#include "experiments/record/column_name.hpp"
+#include "experiments/record/units.hpp"
 
 #include <gtest/gtest.h>
 
-#include "experiments/record/units.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments::column_name_test {

@@ -160,6 +160,31 @@ TEST(RecognisedRecord, ReadsStoredArchivesOfArraysAndRefusesDamagedOnes) {
   }
 }
 
+// Two channels of 16 bits at 400 Hz. Oracle: the format's own bytes; full scale, 32768, is 1.
+TEST(RecognisedRecord, ReadsSoundFilesAtTheirOwnRate) {
+  const auto number = [](std::size_t value, int length) {
+    std::string text;
+    for (int k = 0; k < length; ++k, value >>= 8) text += static_cast<char>(value & 0xFF);
+    return text;
+  };
+  constexpr std::size_t frames = 50;
+  std::string data;
+  for (std::size_t k = 0; k < frames; ++k)
+    data += number(1000 * (k % 7), 2) + number(65536 - 2000 * (k % 5), 2);
+  const std::string whole = "RIFF" + number(36 + data.size(), 4) + "WAVEfmt " + number(16, 4) + number(1, 2) +
+                            number(2, 2) + number(400, 4) + number(1600, 4) + number(4, 2) + number(16, 2) +
+                            "data" + number(data.size(), 4) + data;
+  const TemporaryFile file("sound.wav", whole);
+  const Record record = read_record(file.path(), {});
+  ASSERT_EQ(record.size(), static_cast<Eigen::Index>(frames));
+  ASSERT_EQ(record.channels.size(), 2U);
+  EXPECT_NEAR(record.interval(), 1.0 / 400.0, 1e-12);
+  EXPECT_DOUBLE_EQ(record.samples(0, 3), 3000.0 / 32768.0);
+  EXPECT_DOUBLE_EQ(record.samples(1, 4), -8000.0 / 32768.0);
+  const TemporaryFile cut("cut.wav", whole.substr(0, 20));
+  EXPECT_THROW(read_record(cut.path(), {}), InputError);
+}
+
 TEST(RecognisedRecord, ReadsUtf16) {
   std::string text = "\xFF\xFE";
   std::string plain = "Zeit [s];Beschl. [m/s2]\n";

@@ -1,5 +1,5 @@
 // Oracle: times made at a known rate and printed with a known rounding, by two printing rules.
-#include "experiments/record/sampling.hpp"
+#include "experiments/record/record_table.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Oracle: what was written is what is read.
-#include "experiments/record/write_record.hpp"
+#include "experiments/record/record.hpp"
 
 #include <gtest/gtest.h>
 

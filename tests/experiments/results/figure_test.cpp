@@ -12,9 +12,8 @@
 #include <limits>
 #include <set>
 
-#include "experiments/results/envelope.hpp"
 #include "experiments/results/gnuplot.hpp"
-#include "experiments/results/html.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
 #include "experiments/results/process.hpp"
 #include "experiments/results/vtk/drawing.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"

@@ -7,11 +7,10 @@
 #include <regex>
 #include <sstream>
 
+#include "experiments/results/figure.hpp"
 #include "experiments/results/forest_plot.hpp"
 #include "experiments/results/gnuplot.hpp"
-#include "experiments/results/gnuplot_layout.hpp"
-#include "experiments/results/gnuplot_ticks.hpp"
-#include "experiments/results/signal_panels.hpp"
+#include "experiments/results/text.hpp"
 #include "experiments/results/vtk/drawing.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"
 

@@ -6,9 +6,8 @@
 
 #include <limits>
 
-#include "experiments/results/html.hpp"
-#include "experiments/results/typeset.hpp"
-#include "experiments/studies/report/joined_report.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
+#include "experiments/studies/report/report.hpp"
 
 namespace beamid::experiments::report_page_test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "experiments/results/cell_text.hpp"
-#include "experiments/results/print.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
+#include "experiments/results/results.hpp"
 #include "experiments/results/text.hpp"
 #include "experiments/text/fields.hpp"
 

@@ -1,6 +1,6 @@
 // What cheap sensors do to the written record. Oracles: the shares that were asked for, counted in the
 // record; the same test read by a perfect instrument.
-#include "experiments/rig/acquisition.hpp"
+#include "experiments/rig/virtual_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "experiments/rig/simulated_test.hpp"
-#include "experiments/signal/median.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/fem/five_beams.hpp"
 
 namespace beamid::experiments::acquisition_test {

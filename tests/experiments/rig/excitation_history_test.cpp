@@ -1,6 +1,6 @@
 // Oracles: conservation of momentum; the static deflection of a cantilever, x^2 (3 L - x) / (2 L^3) of its
 // tip's.
-#include "experiments/rig/excitation_history.hpp"
+#include "experiments/rig/virtual_rig.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::band_limited_test {
 namespace {

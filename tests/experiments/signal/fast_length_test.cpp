@@ -1,5 +1,5 @@
 // Oracle: factors, tried one by one.
-#include "experiments/signal/fast_length.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "experiments/signal/least_squares.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 #include <gtest/gtest.h>
 

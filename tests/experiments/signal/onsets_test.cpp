@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::onsets_test {
 namespace {

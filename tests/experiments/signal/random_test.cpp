@@ -1,5 +1,5 @@
 // Oracle: what independent normal numbers must do.
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 #include <gtest/gtest.h>
 

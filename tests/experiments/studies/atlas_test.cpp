@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-#include "experiments/identify/model_setting.hpp"
-#include "experiments/studies/atlas/input_hold.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
 
 namespace beamid::experiments::atlas_test {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "experiments/studies/sweep/perform.hpp"
+#include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/statistics.hpp"
 #include "experiments/text/input_error.hpp"
 #include "tests/experiments/sweep/exact_rig.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/studies/sweep/perform.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/manifest.hpp"
 #include "experiments/sweep/read_sweep.hpp"

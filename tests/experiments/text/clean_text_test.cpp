@@ -1,5 +1,5 @@
 // Texts from outside may be shown anywhere: on a terminal, in a page, in a plot.
-#include "experiments/text/clean_text.hpp"
+#include "experiments/text/fields.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // JSON read back: what is no JSON is refused at its place, in beamid's own words.
-#include "experiments/text/json_file.hpp"
+#include "experiments/text/toml_table.hpp"
 
 #include <gtest/gtest.h>
 

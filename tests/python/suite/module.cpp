@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "apps/python/python_filter.hpp"
-#include "apps/python/python_model.hpp"
+#include "apps/python/filters.hpp"
 #include "beamid/testing/filter_contracts.hpp"
 
 namespace beamid::test {

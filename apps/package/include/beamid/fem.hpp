@@ -4,7 +4,6 @@
 #include "fem/assembly.hpp"
 #include "fem/beam.hpp"
 #include "fem/complex_modes.hpp"
-#include "fem/damping.hpp"
 #include "fem/exact/exact_cantilever.hpp"
 #include "fem/exact/exact_modes.hpp"
 #include "fem/frame.hpp"
@@ -16,3 +15,4 @@
 #include "fem/response/response.hpp"
 #include "fem/space_frame.hpp"
 #include "fem/stiffness_solver.hpp"
+#include "fem/structural_system.hpp"

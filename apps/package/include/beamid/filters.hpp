@@ -8,7 +8,6 @@
 #include "filters/filter_run.hpp"
 #include "filters/fisher_information.hpp"
 #include "filters/identifiability.hpp"
-#include "filters/innovation_consistency.hpp"
 #include "filters/linearised_step.hpp"
 #include "filters/monte_carlo.hpp"
 #include "filters/noise_estimation.hpp"

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "experiments/record/record.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::simulated_decay {
 

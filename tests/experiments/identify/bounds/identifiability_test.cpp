@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_reduction.hpp"
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/config/readers.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 #include "experiments/studies/bounds/report.hpp"
 #include "experiments/text/toml_table.hpp"
 

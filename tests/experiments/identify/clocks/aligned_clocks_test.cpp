@@ -10,7 +10,7 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/rig/simulated_test.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/identify/ground_motion.hpp"
 #include "tests/experiments/results/temporary_folder.hpp"
 

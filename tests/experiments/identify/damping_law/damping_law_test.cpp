@@ -1,7 +1,7 @@
 // Which damping law a record supports. Oracle: simulated free decays whose law and parameters are known,
 // integrated in fine steps by the textbook Runge-Kutta formula, not by the project's own schemes.
 #include "experiments/identify/damping_law/damping_law.hpp"
-#include "experiments/studies/damping/compared_laws.hpp"
+#include "experiments/studies/damping/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/fem/five_beams.hpp"
 
 namespace beamid::experiments::damping_law_test {

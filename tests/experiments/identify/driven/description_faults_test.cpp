@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/compare/comparison.hpp"
+#include "experiments/identify/engine/comparison.hpp"
 #include "tests/experiments/shaken_building.hpp"
 
 namespace beamid::experiments::description_faults_test {

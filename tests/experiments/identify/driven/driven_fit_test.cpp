@@ -8,10 +8,10 @@
 #include <fstream>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/compare/comparison.hpp"
-#include "experiments/identify/compare/first_guess.hpp"
 #include "experiments/identify/driven/driven_fit.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/comparison.hpp"
+#include "experiments/identify/engine/first_guess.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "tests/experiments/shaken_building.hpp"
 
 namespace beamid::experiments::driven_fit_test {

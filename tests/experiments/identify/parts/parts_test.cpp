@@ -10,13 +10,13 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/rig/simulated_test.hpp"
 #include "filters/innovation_likelihood.hpp"
-#include "filters/noisy_inputs.hpp"
+#include "filters/latent_inputs.hpp"
 
 namespace beamid::experiments::parts_test {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/parts/parts.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::span_test {
 namespace {

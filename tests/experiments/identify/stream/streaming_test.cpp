@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "experiments/identify/model_setting.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/stream/sample_source.hpp"
 #include "experiments/identify/stream/streamed_identification.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"

@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/studies/track/report.hpp"
 
 namespace beamid::experiments::tracking_test {

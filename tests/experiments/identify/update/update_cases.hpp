@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/config/channel_places.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/modal/modal_data.hpp"
 
 namespace beamid::experiments {

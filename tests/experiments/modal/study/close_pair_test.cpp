@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "experiments/modal/study/modal_study.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/modal/nonlinear_decay.hpp"
 
 namespace beamid::experiments::close_pair_test {

@@ -12,7 +12,7 @@
 
 #include "experiments/modal/study/driven_study.hpp"
 #include "experiments/modal/study/record_kind.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/shaken_building.hpp"
 
 namespace beamid::experiments::driven_study_test {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "experiments/modal/study/modal_study.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::find_modes_test {
 namespace {

@@ -10,8 +10,8 @@
 #include "fem/beam.hpp"
 #include "filters/batch_estimator.hpp"
 #include "filters/discrete_model.hpp"
-#include "filters/input_path.hpp"
 #include "filters/scheme.hpp"
+#include "filters/step_input.hpp"
 #include "tests/experiments/models/banded/dense_continuum.hpp"
 
 namespace beamid::experiments::forced_mesh_test {

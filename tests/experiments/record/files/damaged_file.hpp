@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "experiments/record/record_format.hpp"
+#include "experiments/record/record.hpp"
 
 namespace beamid::experiments {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/record/read_record.hpp"
-#include "experiments/record/record_reader.hpp"
+#include "experiments/record/record_table.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/record/files/damaged_file.hpp"
 #include "tests/experiments/record/files/written_record.hpp"

@@ -10,7 +10,7 @@
 
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/read_record.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/text/toml_table.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::hdf5_dangers_test {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "experiments/record/read_record.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/text/toml_table.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/record/files/damaged_file.hpp"
 #include "tests/experiments/record/files/written_record.hpp"

@@ -5,8 +5,8 @@
 #include <matio.h>
 
 #include "experiments/record/read_record.hpp"
-#include "experiments/record/record_reader.hpp"
-#include "experiments/text/text_file.hpp"
+#include "experiments/record/record_table.hpp"
+#include "experiments/text/toml_table.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/record/files/damaged_file.hpp"
 #include "tests/experiments/record/files/written_record.hpp"

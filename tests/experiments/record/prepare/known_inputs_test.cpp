@@ -1,5 +1,5 @@
 // Oracles: the record's own window; what was put where the input is missing.
-#include "experiments/record/prepare/known_inputs.hpp"
+#include "experiments/record/prepare/prepared_record.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,11 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/record/prepare/analysable_record.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
-#include "experiments/record/write_record.hpp"
-#include "experiments/signal/random.hpp"
+#include "experiments/record/record.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::record_defects_test {

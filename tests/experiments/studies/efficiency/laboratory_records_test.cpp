@@ -9,7 +9,7 @@
 #include <set>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/config/read_simulation.hpp"
+#include "experiments/config/readers.hpp"
 #include "fem/exact/exact_cantilever.hpp"
 
 namespace beamid::experiments::laboratory_records_test {

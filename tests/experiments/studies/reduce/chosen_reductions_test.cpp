@@ -1,10 +1,10 @@
-#include "experiments/studies/reduce/chosen_reductions.hpp"
+#include "experiments/studies/reduce/report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "experiments/config/read_reduction.hpp"
+#include "experiments/config/readers.hpp"
 #include "fem/beam.hpp"
 #include "reduction/reduction.hpp"
 #include "tests/fem/five_beams.hpp"

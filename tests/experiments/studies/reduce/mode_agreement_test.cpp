@@ -1,5 +1,5 @@
 // Oracles: modes of one model are orthogonal in its mass; vectors small enough for a hand.
-#include "experiments/studies/reduce/mode_agreement.hpp"
+#include "experiments/studies/reduce/report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/config/read_reduction.hpp"
+#include "experiments/config/readers.hpp"
 #include "tests/fem/five_beams.hpp"
 
 namespace beamid::experiments::reduction_comparison_test {

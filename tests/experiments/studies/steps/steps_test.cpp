@@ -7,8 +7,7 @@
 #include <sstream>
 
 #include "experiments/models/discretisation_bias.hpp"
-#include "experiments/results/print.hpp"
-#include "experiments/studies/steps/published.hpp"
+#include "experiments/results/results.hpp"
 #include "experiments/studies/steps/report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "beamid/testing/every_filter.hpp"
-#include "filters/innovation_consistency.hpp"
+#include "filters/diagnostics.hpp"
 
 namespace beamid::test::identification {
 

@@ -9,7 +9,6 @@
 #include "beamid/testing/every_filter.hpp"
 #include "beamid/testing/forced_oscillator.hpp"
 #include "filters/latent_inputs.hpp"
-#include "filters/unknown_inputs.hpp"
 
 namespace beamid::test::unknown_inputs {
 

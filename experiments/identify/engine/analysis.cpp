@@ -1,0 +1,377 @@
+#include "experiments/identify/engine/analysis.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unsupported/Eigen/FFT>
+
+#include "experiments/config/experiment.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/verdict/noise_near_mode.hpp"
+#include "experiments/modal/dominant_mode.hpp"
+#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/modal/mode_by_mode.hpp"
+#include "experiments/models/estimates.hpp"
+#include "experiments/record/prepare/preparation_step.hpp"
+#include "experiments/signal/decimation.hpp"
+#include "experiments/signal/missing_samples.hpp"
+#include "fem/assembly.hpp"
+#include "fem/modes.hpp"
+#include "reduction/reduction.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// Largest line of what the mode leaves of the first channel above twice its frequency, as the deviation of
+// white noise whose mean line is as high. No window: what a decay begins with is what does harm.
+double largest_line(const Record& record, const ModalEstimate& modal) {
+  const Eigen::MatrixXd first = record.samples.row(0);
+  const ShapeFit fit = fit_shapes(first, record.interval(), {modal.rate(), 0.0}, {true, false});
+  const auto count = static_cast<std::size_t>(record.size()), length = std::bit_ceil(count);
+  std::vector<double> left(length, 0.0);
+  Eigen::Map<Eigen::RowVectorXd>(left.data(), record.size()) = first - fit.reconstruction;
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<std::complex<double>> lines;
+  transform.fwd(lines, left);
+  const double from = 2 * modal.frequency_hz * record.interval() * static_cast<double>(length);
+  double largest = 0;
+  for (auto k = static_cast<std::size_t>(from) + 1; k < lines.size(); ++k)
+    largest = std::max(largest, std::norm(lines[k]));
+  return std::sqrt(largest / static_cast<double>(count));
+}
+
+}  // namespace
+
+std::optional<Choice> step_against_higher_modes(const Experiment& experiment, const Record& record) {
+  constexpr double too_large = 6, samples_per_cycle = 8;
+  constexpr Eigen::Index enough = 50;  // samples to be left, as the modal analysis wants them
+  const RecordAnalysis found = analyse(experiment, record);
+  if (!found.modal_refusal.empty()) throw std::invalid_argument(found.modal_refusal);
+  if (!found.modal ||
+      !(largest_line(found.even.record, *found.modal) > too_large * found.near_mode->deviation))
+    return {};
+  const int factor = decimation_factor(
+      1 / (samples_per_cycle * found.modal->frequency_hz * record.interval()), record.size() / enough);
+  constexpr int least = 2, most = 1000;  // of the step
+  if (factor < least || factor > most) return {};
+  filters::Options options;
+  options.set("factor", static_cast<double>(factor));
+  return Choice{"decimate", step_registry().completed("decimate", options)};
+}
+
+RecordedFrequency recorded_frequency(const Eigen::VectorXd& output, const Eigen::MatrixXd& inputs,
+                                     double interval, double expected_hz) {
+  try {
+    if (inputs.rows() > 0) return {forced_mode(output, inputs, interval, expected_hz).frequency_hz, ""};
+    ModalAnalysisSettings settings;
+    settings.expected_frequency_hz = expected_hz;
+    return {dominant_mode(output, interval, settings).frequency_hz, ""};
+  } catch (const std::exception& error) {
+    return {{}, error.what()};
+  }
+}
+
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
+
+// u_i s^k_i of the first mode as described (p); empty: not to be had.
+VectorXcd expected(const Experiment& experiment, const Record& record, const std::vector<Index>& outputs,
+                   Complex rate) {
+  constexpr double node = 0.05;  // of the largest reading of the same kind
+  constexpr Index most_rigid = 6;
+  const Choice one_mode{"modal_truncation",
+                        reduction::reduction_registry().completed("modal_truncation", {})};
+  const fem::StructuralSystem system = model_setting(experiment, record, one_mode).system;
+  const fem::Modes modes = fem::modes(system, std::min<Index>(most_rigid + 1, system.size()));
+  if (modes.rigid >= modes.size()) throw std::invalid_argument("no mode that oscillates");
+  const VectorXd shape = system.outputs * modes.shape.col(modes.rigid);
+  VectorXcd found(shape.size());
+  for (Index i = 0; i < shape.size(); ++i) {
+    const Quantity own =
+        record.channels[static_cast<std::size_t>(outputs[static_cast<std::size_t>(i)])].quantity;
+    double largest = 0.0;
+    for (Index j = 0; j < shape.size(); ++j)
+      if (record.channels[static_cast<std::size_t>(outputs[static_cast<std::size_t>(j)])].quantity == own)
+        largest = std::max(largest, std::abs(shape[j]));
+    found[i] = std::abs(shape[i]) > node * largest ? shape[i] * std::pow(rate, times_differentiated(own))
+                                                   : Complex(0.0);
+  }
+  return found;
+}
+
+// What a reading too large by a factor is taken for.
+std::string usual_unit(double factor, Quantity quantity) {
+  struct Usual {
+    double factor;
+    const char *is, *taken_for;
+    bool acceleration;
+  };
+  constexpr double near = 0.15;  // of a logarithm: a place that is not quite right
+  for (const auto& [usual, is, taken_for, acceleration] :
+       {Usual{1.0 / 9.80665, "g", "m/s2", true}, Usual{9.80665, "m/s2", "g", true},
+        Usual{1000.0, "thousandths of a unit", "whole ones (mm for m)", false},
+        Usual{0.001, "whole units", "thousandths (m for mm)", false}})
+    if (std::abs(std::log(factor / usual)) < near && (!acceleration || quantity == Quantity::acceleration))
+      return fmt::format(", as where {} {} taken for {}", is, acceleration ? "is" : "are", taken_for);
+  return {};
+}
+
+std::string named(const Channel& channel) {
+  return fmt::format("{} '{}'", to_string(channel.quantity), channel.name);
+}
+
+ChannelAmplitudes amplitudes_of(const Record& record, const std::vector<Index>& outputs,
+                                const VectorXcd& found, const VectorXcd& expected,
+                                const VectorXd& deviation) {
+  constexpr double far = 1.5, too_far = 3.0, beyond_noise = 5.0;
+  ChannelAmplitudes result;
+  const auto channel = [&](Index i) -> const Channel& {
+    return record.channels[static_cast<std::size_t>(outputs[static_cast<std::size_t>(i)])];
+  };
+  if (std::abs(found[0]) < beyond_noise * deviation[0]) return result;
+  for (Index i = 1; i < found.size(); ++i) {
+    if (expected[i] == Complex(0.0)) continue;
+    const Complex should_be = found[0] * expected[i] / expected[0], ratio = found[i] / should_be;
+    const double noise = std::hypot(deviation[i], deviation[0] * std::abs(expected[i] / expected[0])),
+                 size = std::abs(ratio), off = std::max(size, 1.0 / size);
+    const bool turned = ratio.real() < -0.5 * size;
+    if (!(std::abs(found[i] - should_be) > beyond_noise * noise) || (!turned && off < far)) continue;
+    result.contradict |= turned || off > too_far;
+    result.text += fmt::format("{}{} has {:.4g} times the amplitude{} that the mode's shape makes of {}{}",
+                               result.text.empty() ? "" : "; ", named(channel(i)), size,
+                               turned ? ", with its sign turned," : "", named(channel(0)),
+                               usual_unit(size, channel(i).quantity));
+  }
+  return result;
+}
+
+}  // namespace
+
+ChannelAmplitudes channel_amplitudes(const Experiment& experiment, const RecordAnalysis& analysis) {
+  if (analysis.forced() || !analysis.modal || analysis.aliased) return {};
+  const Record& record = analysis.even.record;
+  const std::vector<Index> outputs = output_channels(record);
+  if (outputs.size() < 2) return {};
+  try {
+    const Complex rate = analysis.modal->rate();
+    const MatrixXd samples = record.samples(outputs, Eigen::all);
+    const ShapeFit fit = fit_shapes(samples, record.interval(), {rate, 0.0}, {true, false});
+    const double fading = 2.0 * std::max(0.0, -rate.real()) * record.interval(),
+                 count = static_cast<double>(samples.cols()),
+                 whole = fading > 0.0 ? -std::expm1(-fading * count) / fading : count;
+    const VectorXd deviation = fit.residual_standard_deviation * std::sqrt(2.0 / whole);
+    const VectorXcd should_be = expected(experiment, record, outputs, rate);
+    if (should_be[0] == Complex(0.0)) return {};
+    ChannelAmplitudes result = amplitudes_of(record, outputs, fit.shapes.col(0), should_be, deviation);
+    if (!result.text.empty())
+      result.text =
+          "The channels do not agree on the motion: " + result.text +
+          ". A unit, gain, sign or place is likely wrong in [record], and the estimates make up for it: "
+          "correct it, or leave the channel out (--channel).";
+    return result;
+  } catch (const std::exception&) {  // no such shape, or a channel with gaps too long to fill
+    return {};
+  }
+}
+
+namespace {
+
+void refuse_dead_channels(const Record& record) {
+  for (const Index i : output_channels(record)) {
+    const Channel& channel = record.channels[static_cast<std::size_t>(i)];
+    const auto samples = record.samples.row(i).array();
+    const auto read = samples.isFinite();
+    if (!read.any())
+      throw std::invalid_argument(fmt::format("channel '{}' has no reading in this window", channel.name));
+    const double largest = read.select(samples, -std::numeric_limits<double>::infinity()).maxCoeff(),
+                 least = read.select(samples, std::numeric_limits<double>::infinity()).minCoeff();
+    if (largest == least)
+      throw std::invalid_argument(
+          fmt::format("channel '{}' is dead: it shows {:g} {} throughout; expected motion, or other channels "
+                      "(--channel, record.channels)",
+                      channel.name, least, si_unit(channel.quantity)));
+  }
+}
+
+double beam_frequency_hz(const Experiment& experiment) {
+  return fem::modes(fem::assemble(experiment.structure, experiment.elements), 1).frequency_hz()[0];
+}
+
+void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
+  constexpr double mostly_read = 0.7;  // what is filled in follows the mode, not its changes
+  const Record& stamped = found.evenly_stamped();
+  ModalAnalysisSettings settings;
+  settings.expected_frequency_hz = found.expected_hz;
+  try {
+    found.modal = dominant_mode(stamped.samples.row(output_channels(stamped)[0]).transpose(),
+                                stamped.interval(), settings);
+    found.mode = FoundMode{found.modal->frequency_hz, found.modal->damping_ratio};
+    found.mode_noise = found.residual_noise(*found.modal);
+    found.near_mode = found.noise_at(*found.modal);
+    const Index first = output_channels(stamped)[0];
+    found.overtone = third_overtone(stamped.samples.row(first).transpose(), stamped.interval(), *found.modal);
+    const double interval = found.even.record.interval();
+    const VectorXd filled = found.even.record.samples.row(first).transpose();
+    if (found.even.share < mostly_read) return;
+    found.jump = decay_jump(filled, interval, *found.modal);
+    if (asks_free_oscillator(experiment, found.record))
+      found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
+  } catch (const std::invalid_argument& error) {
+    found.modal_refusal = fmt::format(
+        "modal analysis: {} (looked for near {:.6g} Hz of {})", error.what(), found.expected_hz,
+        experiment.prior.stiffness ? "prior.stiffness_n_per_m"
+                                   : "the beam as described; prior.stiffness_n_per_m says it better");
+  } catch (const std::runtime_error& error) {
+    found.modal_failure = error.what();
+  }
+}
+
+// Of the response to a measured force.
+void find_driven_mode(RecordAnalysis& found) {
+  const filters::Measurements measured = measurements(found.even.record);
+  const RecordedFrequency recorded = recorded_frequency(measured.outputs.row(0).transpose(), measured.inputs,
+                                                        found.even.record.interval(), found.expected_hz);
+  if (recorded.value_hz) found.mode = FoundMode{*recorded.value_hz, 0.0};
+  found.modal_failure = recorded.failure;
+}
+
+// Forces run from sample to sample: of their record, what was filled in is left out of the motion only.
+void take_complete_forces(RecordAnalysis& found) {
+  if (evenly_sampled(found.record) && found.record.samples.allFinite()) return;
+  found.record = found.even.record;
+  if (found.even.filled.size() == 0) return;
+  for (const Index i : output_channels(found.record))
+    found.record.samples.row(i) = found.even.filled.row(i).select(std::nan(""), found.record.samples.row(i));
+}
+
+bool has_supports(const Record& record) {
+  return std::any_of(record.channels.begin(), record.channels.end(),
+                     [](const Channel& channel) { return is_imposed(channel.quantity); });
+}
+
+std::string aliased_text(double beam_hz, double rate, double shown) {
+  return fmt::format(
+      "ALIASED: the beam's first mode, at {:.5g} Hz, lies above half the sampling rate, {:.5g} Hz. The "
+      "record shows it at {:.5g} Hz, as it would show any mode at a multiple of {:.5g} Hz plus or minus "
+      "that: which of them it is only the initial estimates say.",
+      beam_hz, 0.5 * rate, shown, rate);
+}
+
+}  // namespace
+
+double described_frequency_hz(const Experiment& experiment, const Record& record) {
+  if (!experiment.prior.stiffness || experiment.model.name != "sdof") return beam_frequency_hz(experiment);
+  const ModelSetting setting =
+      model_setting(experiment, with_places(record, experiment), experiment.reduction);
+  const auto model = model_registry().make(experiment.model.name, experiment.model.options, setting);
+  return std::sqrt(*experiment.prior.stiffness / model->equivalent_mass) / (2.0 * std::numbers::pi);
+}
+
+double shown_at(double frequency_hz, double sampling_rate_hz) {
+  return std::abs(std::remainder(frequency_hz, sampling_rate_hz));
+}
+
+bool RecordAnalysis::forced() const {
+  return !input_channels(record).empty();
+}
+
+const Record& RecordAnalysis::evenly_stamped() const {
+  return evenly_sampled(record) ? record : even.record;
+}
+
+bool asks_free_oscillator(const Experiment& experiment, const Record& record) {
+  return experiment.model.name == "sdof" && experiment.parameters.empty() && input_channels(record).empty();
+}
+
+VectorXd RecordAnalysis::residual_noise(const ModalEstimate& of) const {
+  const std::vector<Index> outputs = output_channels(record);
+  const MatrixXd samples = record.samples(outputs, Eigen::all);
+  VectorXd noise = mode_residual(samples, record.time, of.rate()).standard_deviation;
+  for (Index i = 0; i < noise.size(); ++i)
+    noise[i] = std::max(noise[i], smallest_relative_noise * largest_measured(samples.row(i)));
+  return noise;
+}
+
+NoiseNearMode RecordAnalysis::noise_at(const ModalEstimate& of) const {
+  const Record& stamped = evenly_stamped();
+  NoiseNearMode near =
+      noise_near_mode(stamped.samples.row(output_channels(record)[0]).transpose(), stamped.interval(), of);
+  // What is filled in has no noise of its own, and an even grid may be denser than the readings.
+  if (&stamped != &record) near.deviation /= std::sqrt(even.share * even.density);
+  return near;
+}
+
+RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
+  RecordAnalysis found;
+  found.record = with_places(record, experiment);
+  if (output_channels(found.record).empty())
+    throw std::invalid_argument("the record holds forces only; expected at least one channel of motion");
+  refuse_dead_channels(found.record);
+  found.even = analysable(found.record);
+  found.beam_frequency_hz = beam_frequency_hz(experiment);
+  const double rate = 1.0 / found.record.interval(),
+               described = described_frequency_hz(experiment, found.record);
+  found.expected_hz = shown_at(described, rate);
+  found.aliased = 2.0 * described > rate;
+  if (found.aliased) found.warnings.push_back(aliased_text(described, rate, found.expected_hz));
+  if (found.forced()) {
+    take_complete_forces(found);
+    if (has_supports(found.record))
+      found.modal_failure = "a part between supports has other frequencies than the whole";
+    else
+      find_driven_mode(found);
+  } else {
+    find_decaying_mode(experiment, found);
+    found.channels = channel_amplitudes(experiment, found);
+  }
+  if (!found.mode)
+    found.notes.push_back(fmt::format(
+        "The record's own frequency could not be had without a model ({}): the beam's takes its place as a "
+        "first estimate, and runs are not checked against it.",
+        found.modal_failure.empty() ? found.modal_refusal : found.modal_failure));
+  return found;
+}
+
+namespace {
+
+DecayObjection jump_objection(const DecayJump& jump, double from) {
+  constexpr double much = 0.05;
+  const MotionJump* const motion = jump.motion();
+  const bool contradicts =
+      !motion || std::abs(motion->amplitude_ratio - 1) > much || std::abs(motion->phase) > much;
+  return {fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
+                      "intervals. Expected a --window on one side of it.",
+                      contradicts ? "CONTRADICTED: " : "", jump.sentence(from)),
+          contradicts};
+}
+
+}  // namespace
+
+std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode) {
+  std::vector<DecayObjection> objections;
+  if (analysis.jump) objections.push_back(jump_objection(*analysis.jump, analysis.even.record.time[0]));
+  if (const auto& overtone = analysis.overtone; overtone && !analysis.sections.frequency.varies()) {
+    constexpr double twice = 2;
+    const double half = quantile_95 * mode.damping_ratio_deviation,
+                 error = overtone->damping_error() * std::abs(mode.damping_ratio);
+    if (std::abs(error) > half)
+      objections.push_back(
+          {fmt::format("{} The damping ratio is wrong by about {:.2g} % through it, more than its interval. "
+                       "Expected a later --window, or a sensor of larger range.",
+                       overtone->words(), 100 * std::abs(overtone->damping_error())),
+           std::abs(error) > twice * half});
+  }
+  return objections;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,196 @@
+#include "experiments/identify/verdict/input_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/record/units.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+const Channel& channel_of(const Record& record, Index place) {
+  return record.channels[static_cast<std::size_t>(place)];
+}
+
+// Whose clock it is, and beside which: "acceleration_x1m" and "the rest".
+std::pair<std::string, std::string> clocks_of(const Record& record, const LikeliestClock& found) {
+  const auto outputs = output_channels(record), inputs = input_channels(record);
+  if (found.output)
+    return {channel_of(record, outputs[static_cast<std::size_t>(*found.output)]).name, "the rest"};
+  return {outputs.size() == 1 ? channel_of(record, outputs[0]).name : "All motion",
+          inputs.size() > 1 ? "the inputs" : channel_of(record, inputs[0]).name};
+}
+
+// "acceleration_x1m is 2.50 +- 0.04 ms behind the rest"
+std::string lag_text(const Record& record, const LikeliestClock& found, double deviation) {
+  const auto [who, to] = clocks_of(record, found);
+  return fmt::format("{} is {:.3g} +- {:.2g} ms {} {}", who, 1e3 * std::abs(found.lag()),
+                     1e3 * quantile_95 * deviation, found.lag() > 0.0 ? "behind" : "ahead of", to);
+}
+
+// "acceleration_x1m falls behind the rest by 98 +- 5 ppm"
+std::string growth_text(const Record& record, const LikeliestClock& found, double deviation) {
+  const auto [who, to] = clocks_of(record, found);
+  return fmt::format("{} {} {} by {:.3g} +- {:.2g} ppm of the time", who,
+                     found.growth() > 0.0 ? "falls behind" : "runs ahead of", to,
+                     1e6 * std::abs(found.growth()), 1e6 * quantile_95 * deviation);
+}
+
+// What a user may do about it.
+std::string advice(const Record& record, const LikeliestClock& found, double deviation) {
+  constexpr double far = 4.0;
+  const double half = 0.5 * record.interval();
+  std::string text;
+  if (!found.output && std::abs(std::abs(found.lag()) - half) < far * deviation)
+    text = "It is half an interval: look at input in [record], how the input runs between its samples. ";
+  const auto inputs = input_channels(record);
+  if (!found.output && inputs.size() > 1)
+    return text + "Expected [[record.prepare]] step = \"shift\" that takes it out.";
+  const Index channel =
+      found.output ? output_channels(record)[static_cast<std::size_t>(*found.output)] : inputs[0];
+  return text + fmt::format("own_clock = [\"{}\"] in [record] finds the lag with the parameters.",
+                            channel_of(record, channel).name);
+}
+
+// How far the lag turns the phase of the motion [rad]: a linear step holds for a fraction of one.
+double phase_of(const ComparedRun& run, double lag, double interval) {
+  const Eigen::MatrixXd& y = run.reproduced;
+  const Index n = y.cols() - 1;
+  return std::abs(lag) / interval * (y.rightCols(n) - y.leftCols(n)).norm() / y.norm();
+}
+
+// What speaks against the inputs, and how far it moves the unknown that it moves most.
+struct InputFault {
+  std::string text, advice;
+  Index unknown = 0;
+  double moved = 0.0;      ///< in deviations as they are reported
+  double explained = 0.0;  ///< of the squares that are left
+  bool is_sure = true;     ///< neither chance nor of the size of what an interpolation does
+};
+
+constexpr double sure_deviations = 4.5, likely = 3.3;  // deviations: by chance in one of 10^5 records, of 1000
+constexpr double small = 0.5;                 // phase [rad]
+constexpr double material = 0.01;             // of an interval
+
+// What a clock would do. @param lag the largest within the record [s]
+InputFault clock_fault(const RunContext& context, const ComparedRun& run, const LikeliestClock& found,
+                       double lag) {
+  InputFault fault;
+  fault.moved = found.step.shift.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
+  fault.explained = 1.0 - found.step.left_share;
+  fault.is_sure = std::abs(lag) > material * context.analysis.record.interval();
+  return fault;
+}
+
+std::optional<InputFault> of_rates(const RunContext& context, const ComparedRun& run) {
+  const Record& record = context.analysis.record;
+  if (!run.likeliest_clocks.drifting) return {};
+  const LikeliestClock& found = *run.likeliest_clocks.drifting;
+  const double deviation = run.interval_factor * found.growth_deviation(),
+               most = std::max(std::abs(found.lag()),
+                               std::abs(found.lag() + found.growth() * record.interval() *
+                                                          static_cast<double>(record.size() - 1)));
+  if (!(std::abs(found.growth()) > likely * deviation) || !(phase_of(run, most, record.interval()) < small))
+    return {};
+  InputFault fault = clock_fault(context, run, found, most);
+  // Of one hit a rate is next to a stiffness, and a gain or a mass that is wrong looks like it.
+  constexpr double apart = 3.0;
+  fault.is_sure = fault.is_sure && std::abs(found.growth()) > sure_deviations * deviation &&
+                  found.step.widening.maxCoeff() < apart;
+  if (!fault.is_sure) fault.explained = 0.0;
+  fault.text = growth_text(record, found, deviation);
+  fault.advice = "Expected channels that one clock stamps, or one of them alone (channels in [record]).";
+  return fault;
+}
+
+std::optional<InputFault> of_lags(const RunContext& context, const ComparedRun& run) {
+  if (!run.likeliest_clocks.late) return {};
+  const Record& record = context.analysis.record;
+  const LikeliestClock& found = *run.likeliest_clocks.late;
+  const double deviation = run.interval_factor * found.lag_deviation();
+  if (!(std::abs(found.lag()) > sure_deviations * deviation) ||
+      !(phase_of(run, found.lag(), record.interval()) < small))
+    return {};
+  InputFault fault = clock_fault(context, run, found, found.lag());
+  fault.text = lag_text(record, found, deviation);
+  fault.advice = advice(record, found, deviation);
+  return fault;
+}
+
+std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun& run) {
+  constexpr double clearly = 0.5 * sure_deviations * sure_deviations;  // of a logarithm of likelihood
+  if (!run.likeliest_input_noise || !(run.likeliest_input_noise->gain > clearly)) return {};
+  const Record& record = context.analysis.record;
+  const auto inputs = input_channels(record);
+  InputFault fault;
+  for (std::size_t j = 0; j < inputs.size(); ++j) {
+    const Channel& channel = channel_of(record, inputs[j]);
+    const double noise = run.likeliest_input_noise->deviation[static_cast<Index>(j)];
+    fault.text += fmt::format("{}{:.2g} {} of noise in {}", j > 0 ? ", " : "", noise,
+                              si_unit(channel.quantity), channel.name);
+    fault.advice += fmt::format("{}{} = {:.2g}", j > 0 ? ", " : "", quantity_key(channel.quantity), noise);
+  }
+  fault.text += " would leave motion as it is left here";
+  fault.advice = "State it: [noise] " + fault.advice + ".";
+  const VectorXd moved = run.likeliest_input_noise->moved;
+  if (moved.size() > 0) fault.moved = moved.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
+  return fault;
+}
+
+}  // namespace
+
+void judge_inputs(const RunContext& context, ComparedRun& run) {
+  if (run.parameters.empty()) return;
+  const std::optional<InputFault> rate = of_rates(context, run);
+  std::optional<InputFault> fault = rate && rate->is_sure ? rate : of_lags(context, run);
+  if (!fault) fault = of_noise(context, run);
+  if (!fault) fault = rate;
+  constexpr double mostly = 0.5;  // what is left is no noise then, and the deviations are none
+  if (!fault) return;
+  // What a model lacks looks like a clock or an input's noise; the cause of most of it is one all the same.
+  const bool approximate = run.status == ComparedRun::Status::approximate;
+  const bool excluded =
+      (fault->moved > quantile_95 && fault->is_sure && !approximate) || fault->explained > mostly;
+  if (!excluded && (approximate || !(fault->moved > 1.0))) return;
+  const std::string explained =
+      fault->explained > mostly
+          ? fmt::format(" and makes {:.0f} % of what is left, in squares", 100.0 * fault->explained)
+          : "";
+  const bool said = run.status == ComparedRun::Status::contradicted;  // by all that is left
+  run.warnings.insert(
+      run.warnings.begin() + (said ? 1 : 0),
+      fmt::format("{}{}, or the model lacks what looks so: allowed for, it moves {} by {:.2g} of its "
+                  "deviations{}. {}",
+                  excluded && !said ? "CONTRADICTED: " : "", fault->text,
+                  run.parameters[static_cast<std::size_t>(fault->unknown)].estimate.name, fault->moved,
+                  explained, fault->advice));
+  if (!excluded || said) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = fault->text;
+}
+
+std::string clock_scatter_text(const Record& record, const ClockScatter& scatter) {
+  std::vector<std::string> names;
+  for (const Index i : output_channels(record)) names.push_back(channel_of(record, i).name);
+  return "CONTRADICTED: " + scatter.sentence(names) +
+         " No estimate holds for all of them: expected channels that one clock stamps, or one of them alone "
+         "(channels in [record]).";
+}
+
+void judge_clock_scatter(const RunContext& context, ComparedRun& run) {
+  if (!run.clock_scatter || !run.has_estimate()) return;
+  run.warnings.insert(run.warnings.begin(), clock_scatter_text(context.analysis.record, *run.clock_scatter));
+  if (!run.answers()) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = "the channels do not ring at one frequency";
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,395 @@
+#include "experiments/identify/verdict/run_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "experiments/identify/engine/analysis.hpp"
+#include "experiments/identify/engine/compared_run.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/engine/record_identification.hpp"
+#include "experiments/identify/engine/run_bound.hpp"
+#include "experiments/identify/verdict/against_description.hpp"
+#include "experiments/identify/verdict/input_faults.hpp"
+#include "experiments/models/discretisation_bias.hpp"
+#include "experiments/models/estimates.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/models/motion/beam_equations.hpp"
+#include "experiments/signal/spectrum.hpp"
+#include "fem/modes.hpp"
+#include "fem/structure.hpp"
+#include "filters/sample_walk.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// What a discretisation does to the higher modes of a model.
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+/// The share of a channel's squares within a tenth of a frequency.
+double share_near(const AmplitudeSpectrum& spectrum, double hz) {
+  constexpr double near = 0.1;
+  const auto squares = spectrum.amplitude.array().square();
+  const auto inside = (spectrum.frequency_hz.array() / hz - 1).abs() < near;
+  return inside.select(squares, 0).sum() / squares.sum();
+}
+
+/// Of what a run asks for, the narrowest 95 % half interval over the value.
+double narrowest_interval(const ComparedRun& run) {
+  double narrowest = 1;
+  for (const ComparedParameter& p : run.parameters)
+    if (!p.estimate.nuisance && p.estimate.value != 0)
+      narrowest = std::min(narrowest, quantile_95 * p.estimate.deviation / std::abs(p.estimate.value));
+  return narrowest;
+}
+
+/// A sentence where the scheme of a run, by its closed form (discretisation_bias.hpp), moves the stiffness of
+/// a mode that holds a hundredth of the record by more than the narrowest interval of the run: what is
+/// determined by that mode comes out wrong by as much. Empty otherwise, for exact schemes and for models that
+/// are not linear.
+///
+/// A mode holds what the outputs' spectra do within a tenth of its frequency; modes above half the sampling
+/// rate are left out.
+std::string step_error(const RunContext& context, const ComparedRun& run) {
+  constexpr double least_share = 0.01, light_damping = 0.005, rounding = 1e-6;
+  if (run.discretisation == "exponential" || !run.model || is_nonlinear(*run.model)) return {};
+  const Record& record = context.analysis.even.record;
+  const double interval = record.interval();
+  std::vector<AmplitudeSpectrum> spectra;
+  for (const Index i : output_channels(record))
+    spectra.push_back(amplitude_spectrum(record.samples.row(i).transpose(), interval));
+  double worst = 0, at_hz = 0;
+  for (const double w : run.model->mode_frequencies) {
+    const double hz = w / (2 * std::numbers::pi);
+    if (!(w > 0 && w * interval < std::numbers::pi)) continue;
+    const bool held = std::any_of(spectra.begin(), spectra.end(), [&](const AmplitudeSpectrum& one) {
+      return share_near(one, hz) > least_share;
+    });
+    if (!held) continue;
+    try {
+      const Oscillator truth = Oscillator::from_frequency(1, w, light_damping);
+      const double error = seen_through(run.discretisation, truth, interval).stiffness / truth.stiffness - 1;
+      if (std::abs(error) > std::abs(worst)) worst = error, at_hz = hz;
+    } catch (const std::exception&) {  // no closed form for it, or too long a step: the verdict says so
+    }
+  }
+  if (!(std::abs(worst) > std::max(rounding, narrowest_interval(run)))) return {};
+  return fmt::format(
+      "WRONG BY THE STEP: at {:.3g} ms {} makes the stiffness of the mode at {:.4g} Hz {:.2g} % too {}, more "
+      "than the narrowest interval here; what that mode determines comes out wrong by as much. Expected a "
+      "reduction, such as modal_truncation, with the discretisation exponential, or a higher sampling rate.",
+      1e3 * interval, run.discretisation, at_hz, 100 * std::abs(worst), worst > 0 ? "large" : "small");
+}
+
+// What a reduction does by itself to the mode that it is identified by.
+
+// The structure with what the run found of it; absent where it found nothing of it, or what cannot be.
+std::optional<fem::Structure> found_structure(const Experiment& experiment, const ComparedRun& run) {
+  fem::Structure structure = experiment.structure;
+  bool any = false;
+  try {
+    for (std::size_t j = 0; j < run.unknowns.size() && j < run.parameters.size(); ++j)
+      if (const auto quantity = beam_quantity(run.unknowns[j].quantity)) {
+        structure = fem::with_value(structure, {*quantity, run.unknowns[j].region, run.unknowns[j].name},
+                                    run.parameters[j].estimate.value);
+        any = true;
+      }
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+  return any ? std::optional(structure) : std::nullopt;
+}
+
+// Of its lowest modes, the frequency that is nearest [Hz].
+double nearest_frequency(const fem::Structure& structure, int elements, double hz) {
+  constexpr Index enough = 8;
+  const fem::StructuralSystem system = fem::assemble(structure, elements);
+  const Eigen::VectorXd all = fem::modes(system, std::min(enough, system.size())).frequency_hz();
+  return *std::min_element(all.begin(), all.end(),
+                           [&](double a, double b) { return std::abs(a - hz) < std::abs(b - hz); });
+}
+
+/// A filter fits the frequency that its reduced model has to that of the record. Where the model, reduced,
+/// has another frequency than the structure with the same parameters, as a static shape's mass and stiffness
+/// make it, it is the parameters that come out wrong, by about twice as much in a stiffness, and no interval
+/// shows it. A sentence where that is more than three of the frequency's deviations; else empty, as for
+/// models without a parameter of the structure.
+std::string reduction_error(const RunContext& context, const ComparedRun& run) {
+  constexpr double surely = 3.0, rounding = 1e-6;
+  if (run.reduction == "none" || !run.mode) return {};
+  const Experiment& experiment = context.experiment;
+  const auto structure = found_structure(experiment, run);
+  if (!structure) return {};
+  double whole = 0.0;
+  try {
+    whole = nearest_frequency(*structure, experiment.elements, run.mode->frequency_hz);
+  } catch (const std::exception&) {  // a structure without such modes has no such error
+    return {};
+  }
+  const double error = run.mode->frequency_hz / whole - 1.0,
+               deviation = run.mode->frequency_deviation_hz / run.mode->frequency_hz;
+  if (!(std::abs(error) > std::max(surely * deviation, rounding))) return {};
+  return fmt::format(
+      "WRONG BY THE REDUCTION: with these parameters the structure has a mode at {:.5g} Hz, and the model "
+      "that {} makes of it {:.5g} Hz, {:+.2g} %, {:.2g} standard deviations. Stiffness comes out wrong by "
+      "about {:+.2g} %, which no interval here holds. Expected a reduction that keeps the mode, such as "
+      "modal_truncation.",
+      whole, run.reduction, run.mode->frequency_hz, 100.0 * error, std::abs(error) / deviation,
+      100.0 * (1.0 / std::pow(1.0 + error, 2) - 1.0));
+}
+
+// What the measured input makes of the structure as described, beside what the record shows.
+
+// (p x N)
+MatrixXd response_as_described(const JointModel& model, const filters::Measurements& record) {
+  const Index p = record.outputs.rows();
+  VectorXd start = VectorXd::Zero(static_cast<Index>(model.motion->state_labels().size())), output(p);
+  for (std::size_t j = 0; j < model.unknowns.size(); ++j)
+    start[model.unknown_places[j]] = model.unknowns[j].to_state(model.unknowns[j].guess);
+  const auto discrete = finest(model, record.interval(), MatrixXd::Identity(p, p));
+  MatrixXd response(p, record.size()), no_directions(start.size(), 0);
+  filters::walk_samples(*discrete, record, record.size(), start, no_directions,
+                        [&](Index step, const auto& x, const auto& input) {
+                          discrete->output(x, input, output);
+                          response.col(step) = output;
+                        });
+  return response;
+}
+
+/// From rest and at the guesses, y_d(t), with the gain rms(y_d) / rms(y) over all channels, each in units of
+/// its own size. A description that is wrong by some per cent moves it by a factor of two at most under a
+/// force of many frequencies; a unit by more.
+/// @returns where a forced run has no estimate that makes the record: a sentence that names a gain beyond 4,
+/// or a sign that is turned; else empty
+std::string described_response_text(const RunContext& context, const ComparedRun& run) {
+  constexpr double far = 4.0, alike = 0.5, near = 0.25;  // near: of a logarithm
+  if (!context.analysis.forced() || !run.model) return {};
+  try {
+    const filters::Measurements record = measurements(context.analysis.record);
+    const MatrixXd response = response_as_described(*run.model, record);
+    if (!response.allFinite()) return {};
+    double sizes = 0.0, product = 0.0;
+    for (Index i = 0; i < response.rows(); ++i) {
+      const auto read = record.outputs.row(i).array().isFinite();
+      const Eigen::ArrayXd y = read.select(record.outputs.row(i).array(), 0.0).transpose(),
+                           d = read.select(response.row(i).array(), 0.0).transpose();
+      const double square = std::max(y.square().sum(), 1e-300);
+      sizes += d.square().sum() / square;
+      product += (y * d).sum() / square;
+    }
+    const double channels = static_cast<double>(response.rows()), gain = std::sqrt(sizes / channels);
+    const bool turned = product < -alike * gain * channels;
+    if (!(gain > 0.0) || (!turned && gain < far && far * gain > 1.0)) return {};
+    return fmt::format(
+        "The structure as described, moved by the measured input, moves {:.3g} times as much as the record "
+        "shows{}{}. The unit, gain or sign of the input or of the motion is the likely cause: check "
+        "[record].",
+        gain, turned ? ", and against it" : "", usual_scale(gain, near));
+  } catch (const std::exception&) {  // a guess that has no motion
+    return {};
+  }
+}
+
+// A model's lowest mode beside the modal analysis of the record.
+
+// "the damping ratio 0.56 % (modal analysis 0.40 %, 12 standard deviations)", where it is many of them.
+void add_difference(const char* what, double found, double deviation, double modal, double modal_deviation,
+                    double shown, const char* unit, std::string& text) {
+  constexpr double many = 3.0;
+  const double apart = std::abs(found - modal) / std::hypot(deviation, modal_deviation);
+  if (!(apart > many)) return;
+  text += fmt::format(
+      "{}{} {:.5g} {} ({:+.3g} % from the {:.5g} {} of the modal analysis, {:.3g} standard "
+      "deviations)",
+      text.empty() ? "" : ", ", what, shown * found, unit, 100.0 * (found / modal - 1.0), shown * modal, unit,
+      apart);
+}
+
+std::string difference_text(const ModalEstimate& modal, const ComparedRun& run) {
+  std::string text;
+  add_difference("frequency", run.mode->frequency_hz, run.mode->frequency_deviation_hz, modal.frequency_hz,
+                 modal.frequency_standard_deviation_hz, 1.0, "Hz", text);
+  add_difference("damping ratio", run.mode->damping_ratio, run.mode->damping_ratio_deviation,
+                 modal.damping_ratio, modal.damping_ratio_standard_deviation, 100.0, "%", text);
+  if (text.empty()) return {};
+  return "The model and the modal analysis of the first channel DISAGREE: " + text +
+         ". The modal analysis knows no model: trust it, or give the model the modes that it lacks.";
+}
+
+// As K and C of one degree of freedom are judged (record_identification.cpp): damping that is not the
+// record's is no estimate.
+bool has_another_damping(const ModalEstimate& modal, const ComparedRun& run) {
+  constexpr double twice = 2.0, many = 3.0;
+  const FoundMode& mode = *run.mode;
+  const double apart = std::abs(mode.damping_ratio - modal.damping_ratio) /
+                       std::hypot(mode.damping_ratio_deviation, modal.damping_ratio_standard_deviation);
+  return apart > many && !(mode.damping_ratio < twice * modal.damping_ratio &&
+                           twice * mode.damping_ratio > modal.damping_ratio);
+}
+
+/// A warning where frequency or damping ratio at the estimate and in the modal analysis of the first channel
+/// differ by more than three of their standard deviations together. The run is contradicted where the damping
+/// ratios differ by more than a factor of two besides: such damping is not the record's. Records driven by a
+/// measured force have no modal analysis, and models that are not linear no mode.
+void judge_against_modal_analysis(const RunContext& context, ComparedRun& run) {
+  const auto& modal = context.analysis.modal;
+  // A model that has the mode's companions does not have its frequency alone, and an aliased one has another.
+  const bool one_mode =
+      !context.analysis.aliased && (run.coordinates == 1 || (modal && modal->companions.empty()));
+  if (!modal || !run.mode || !one_mode) return;
+  const std::string text = difference_text(*modal, run);
+  if (text.empty()) return;
+  run.warnings.push_back(text);
+  if (!has_another_damping(*modal, run)) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = fmt::format("damping ratio {:.3g} %, where the modal analysis of the record has {:.3g} %",
+                           100.0 * run.mode->damping_ratio, 100.0 * modal->damping_ratio);
+}
+
+// Passes that still move by many deviations have found nothing yet, whatever the record is.
+void judge_settling(ComparedRun& run) {
+  constexpr double many = 5.0;
+  if (!(run.last_move > many)) return;
+  const std::string moved =
+      fmt::format("the last one moved an unknown by {:.2g} of its standard deviations", run.last_move);
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = "the passes have not settled: " + moved;
+  run.warnings.insert(run.warnings.begin(),
+                      "NOT SETTLED: " + moved +
+                          ". The estimates are not to be relied on; expected more passes "
+                          "([compare] passes) or nearer initial estimates.");
+}
+
+void judge_decay(const RunContext& context, ComparedRun& run) {
+  if (!run.mode) return;
+  for (const DecayObjection& one : decay_objections(context.analysis, *run.mode)) {
+    run.warnings.insert(run.warnings.begin(), one.text);
+    if (!one.contradicts) continue;
+    run.status = ComparedRun::Status::contradicted;
+    run.reason = "the record is no free decay of one damping ratio";
+  }
+}
+
+// What the base moves beyond the model's coordinates is in the record, too.
+void judge_moved_mass(ComparedRun& run) {
+  constexpr double enough = 0.95;
+  if (run.model->moved_share >= enough) return;
+  run.warnings.push_back(fmt::format(
+      "The {} coordinates of this model hold {:.3g} % of the mass that the base moves; the rest is in the "
+      "record and not in the model. Expected more of them: [reduction] modes.",
+      run.coordinates, 100.0 * run.model->moved_share));
+}
+
+// A unit that is wrong, of a forced motion that nothing makes by its size.
+void judge_size(const RunContext& context, ComparedRun& run) {
+  if (const std::string text = described_response_text(context, run); !text.empty())
+    run.warnings.push_back(text);
+}
+
+// Collapsed particles, or a filter linearised elsewhere: the truth may lie many of its intervals away.
+void judge_certainty(ComparedRun& run) {
+  constexpr double far_surer = 0.5;
+  std::string names;
+  for (const ComparedParameter& p : run.parameters)
+    if (p.overconfidence < far_surer) names += (names.empty() ? "" : ", ") + p.estimate.name;
+  if (names.empty()) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = "the filter is more than twice as sure of " + names + " as the record allows";
+  run.warnings.insert(run.warnings.begin(),
+                      "CONTRADICTED: " + run.reason +
+                          ", so that the truth may lie many of its intervals away. Expected nearer initial "
+                          "estimates, more passes ([compare] passes), a reduction in place of the mesh, or "
+                          "`identify` in place of `compare`, which asks all samples at once.");
+}
+
+// Of the general model: its lowest mode beside the modal analysis, its innovations.
+void judge_model(const RunContext& context, ComparedRun& run) {
+  widen_intervals(context, run);
+  if (const std::string text = reduction_error(context, run); !text.empty())
+    run.warnings.insert(run.warnings.begin(), text);
+  if (const std::string text = step_error(context, run); !text.empty())
+    run.warnings.insert(run.warnings.begin(), text);
+  judge_settling(run);
+  judge_motion_left(context, run);
+  if (!judge_faults(run)) judge_inputs(context, run);
+  judge_decay(context, run);
+  judge_moved_mass(run);
+  judge_what_is_said(run);
+  if (run.answers())
+    judge_description(context, run);
+  else
+    judge_size(context, run);
+  judge_against_modal_analysis(context, run);
+  judge_certainty(run);
+  judge_innovations(context, run);
+}
+
+// K and C of a free decay: with what is known of one mode and its amplitude.
+void judge_oscillator(const RunContext& context, ComparedRun& run) {
+  const auto found =
+      std::make_shared<const RecordIdentification>(oscillator_of(context.experiment, context.analysis, run));
+  run.warnings = found->judgement.messages;
+  run.near_mode = found->near_mode;
+  run.interval_factor = found->interval_factor;
+  if (found->interval_factor > 1.0) {
+    run.noise_ratio = found->noise_ratio();
+    run.noise_freedom = found->near_mode.freedom;
+  }
+  if (run.has_estimate()) run.status = found->judgement.verdict;
+  run.oscillator = found;
+  if (run.parameters.size() != 2) return;
+  widen(run, 0, found->frequency_factor());
+  widen(run, 1, found->damping_factor());
+  if (!run.mode) return;
+  run.mode->frequency_deviation_hz *= found->frequency_factor();
+  run.mode->damping_ratio_deviation *= found->damping_factor();
+}
+
+// A unit that is wrong, of a free decay by its channels.
+void judge_channels(const RunContext& context, ComparedRun& run) {
+  const ChannelAmplitudes& channels = context.analysis.channels;
+  if (!channels.text.empty()) run.warnings.push_back(channels.text);
+  if (!channels.contradict || run.status != ComparedRun::Status::converged) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = channels.text;
+}
+
+}  // namespace
+
+void judge_what_is_said(ComparedRun& run) {
+  // Of the prior deviation: half of the information is the prior's.
+  constexpr double next_to_nothing = 0.7;
+  std::string text;
+  for (const ComparedParameter& p : run.parameters)
+    if (const double share = p.estimate.deviation / p.estimate.prior_deviation;
+        !p.estimate.nuisance && share > next_to_nothing)
+      text += fmt::format("{}{} ({:.2g})", text.empty() ? "" : ", ", p.estimate.name, share);
+  if (!text.empty())
+    run.warnings.push_back("NOT DETERMINED: the record says next to nothing of " + text +
+                           "; what is printed is the prior, in brackets the standard deviation "
+                           "over the prior one.");
+}
+
+void judge_run(const RunContext& context, ComparedRun& run) {
+  if (run.status == ComparedRun::Status::refused || context.compared.has_open_clocks()) return;
+  if (run.noise.size() == 0) return;  // no pass has begun: there was no motion to filter about
+  if (asks_free_oscillator(context.experiment, context.analysis.record))
+    judge_oscillator(context, run);
+  else if (run.answers())
+    judge_model(context, run);
+  else {
+    run.warnings.insert(run.warnings.begin(),
+                        "DIVERGED: " + run.reason + ". There is no estimate to rely on.");
+    judge_size(context, run);
+  }
+  if (run.oscillator) return;  // whose own verdict holds them
+  judge_channels(context, run);
+  judge_clock_scatter(context, run);
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,302 @@
+#include "experiments/modal/ambient_pair.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <stdexcept>
+
+#include <Eigen/Dense>
+
+#include "filters/levenberg_marquardt.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr Index most_channels = 6;
+
+// Unknowns: [f_1, f_2 in units of the first half width, ln zeta_1, ln zeta_2, ln l_11, ln l_22, Re l_21,
+// Im l_21 (relative to l_22 at the start), ln S_e, then p - 1 coordinates of each shape about its start], S =
+// L L^H.
+enum Entry { f1, f2, zeta1, zeta2, l11, l22, real21, imaginary21, noise, shapes };
+
+struct TwoStarts {
+  double frequency_hz[2], damping_ratio, density;
+  MatrixXd shapes;  // of unit length (p x 2)
+};
+
+class PairLikelihood {
+ public:
+  PairLikelihood(const MatrixXcd& coefficients, const VectorXd& frequency_hz, const AmbientMode& one,
+                 double beyond, Index channels_beyond, TwoStarts start, ResponseKind kind)
+      : coefficients_(coefficients),
+        frequency_hz_(frequency_hz),
+        one_(one),
+        beyond_(beyond),
+        channels_beyond_(channels_beyond),
+        start_(std::move(start)),
+        power_(static_cast<int>(kind)) {
+    const Index p = coefficients.rows();
+    for (int i = 0; i < 2; ++i)  // an orthonormal basis of what is across the shape (p x p - 1)
+      across_[i] = MatrixXd(start_.shapes.col(i).householderQr().householderQ()).rightCols(p - 1);
+  }
+
+  VectorXd first() const {
+    VectorXd at = VectorXd::Zero(size());
+    at[zeta1] = at[zeta2] = std::log(start_.damping_ratio);
+    at[l11] = at[l22] = 0.5 * std::log(start_.density);
+    at[noise] = std::log(one_.noise_density);
+    return at;
+  }
+
+  Index size() const { return shapes + 2 * (coefficients_.rows() - 1); }
+  double unit_hz() const { return start_.damping_ratio * one_.frequency_hz; }
+  double frequency(const VectorXd& at, int i) const { return start_.frequency_hz[i] + unit_hz() * at[i]; }
+
+  double force_density(const VectorXd& at, int i) const {
+    const double own = std::exp(2.0 * at[l11 + i]);
+    return i == 0 ? own : own + std::norm(Complex(at[real21], at[imaginary21])) * start_.density;
+  }
+
+  /// |S_12| / sqrt(S_11 S_22).
+  double coherence(const VectorXd& at) const {
+    return std::abs(Complex(at[real21], at[imaginary21])) * std::sqrt(start_.density / force_density(at, 1));
+  }
+
+  VectorXd shape(const VectorXd& at, int i) const {
+    const Index more = coefficients_.rows() - 1;
+    return (start_.shapes.col(i) + across_[i] * at.segment(shapes + i * more, more)).normalized();
+  }
+
+  /// E_k of all lines.
+  std::vector<MatrixXcd> covariances(const VectorXd& at) const {
+    MatrixXcd factor = MatrixXcd::Zero(2, 2);
+    factor(0, 0) = std::exp(at[l11]), factor(1, 1) = std::exp(at[l22]);
+    factor(1, 0) = Complex(at[real21], at[imaginary21]) * std::sqrt(start_.density);
+    MatrixXd shapes(coefficients_.rows(), 2);
+    shapes << shape(at, 0), shape(at, 1);
+    const double se = std::exp(at[noise]);
+    std::vector<MatrixXcd> found;
+    found.reserve(static_cast<std::size_t>(frequency_hz_.size()));
+    for (const double f : frequency_hz_) {
+      Eigen::Vector2cd h;
+      for (int i = 0; i < 2; ++i) {
+        const double b = f / frequency(at, i);
+        h[i] = std::pow(Complex(0.0, b), power_) / Complex(1.0 - b * b, 2.0 * std::exp(at[zeta1 + i]) * b);
+      }
+      const MatrixXcd moved = shapes * h.asDiagonal() * factor;
+      found.push_back(moved * moved.adjoint());
+      found.back().diagonal().array() += se;
+    }
+    return found;
+  }
+
+  double operator()(const VectorXd& at) const {
+    if (!(frequency(at, 0) > 0.0 && frequency(at, 1) > 0.0)) return std::numeric_limits<double>::infinity();
+    const std::vector<MatrixXcd> covariance = covariances(at);
+    double sum = own_noise(at);
+    for (Index k = 0; k < frequency_hz_.size(); ++k) {
+      const Eigen::LLT<MatrixXcd> factor(covariance[static_cast<std::size_t>(k)]);
+      if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+      sum += 2.0 * factor.matrixLLT().diagonal().real().array().log().sum() +
+             factor.matrixL().solve(coefficients_.col(k)).squaredNorm();
+    }
+    return sum;
+  }
+
+  /// Slope of -ln p and Fisher's information, by differences of E_k.
+  void score(const VectorXd& at, VectorXd& slope, MatrixXd& information) const {
+    constexpr double h = 1e-4;
+    const Index q = size(), n = frequency_hz_.size();
+    const std::vector<MatrixXcd> here = covariances(at);
+    std::vector<std::vector<MatrixXcd>> change;
+    for (Index j = 0; j < q; ++j) {
+      VectorXd up = at, down = at;
+      up[j] += h, down[j] -= h;
+      change.push_back(covariances(up));
+      const std::vector<MatrixXcd> below = covariances(down);
+      for (std::size_t k = 0; k < below.size(); ++k)
+        change.back()[k] = (change.back()[k] - below[k]) / (2.0 * h);
+    }
+    slope = VectorXd::Zero(q);
+    information = MatrixXd::Zero(q, q);
+    for (Index k = 0; k < n; ++k) {
+      const auto line = static_cast<std::size_t>(k);
+      const Eigen::LLT<MatrixXcd> factor(here[line]);
+      const Eigen::VectorXcd weighed_line = factor.solve(coefficients_.col(k));
+      std::vector<MatrixXcd> scaled;
+      for (Index j = 0; j < q; ++j) {
+        const MatrixXcd& e = change[static_cast<std::size_t>(j)][line];
+        scaled.push_back(factor.solve(e));
+        slope[j] += scaled.back().trace().real() - weighed_line.dot(e * weighed_line).real();
+      }
+      for (Index i = 0; i < q; ++i)
+        for (Index j = 0; j <= i; ++j)
+          information(i, j) += scaled[static_cast<std::size_t>(i)]
+                                   .cwiseProduct(scaled[static_cast<std::size_t>(j)].transpose())
+                                   .sum()
+                                   .real();
+    }
+    const double weighed = static_cast<double>(channels_beyond_ * n);
+    slope[noise] +=
+        weighed - beyond_ / std::exp(at[noise]) + (at[noise] - std::log(one_.noise_density)) / 16.0;
+    information(noise, noise) += weighed + 1.0 / 16.0;
+    information = MatrixXd(information.selfadjointView<Eigen::Lower>());
+  }
+
+  VectorXd misfit(const VectorXd& at) const {
+    const std::vector<MatrixXcd> covariance = covariances(at);
+    VectorXd found(frequency_hz_.size());
+    for (Index k = 0; k < found.size(); ++k)
+      found[k] =
+          covariance[static_cast<std::size_t>(k)].llt().matrixL().solve(coefficients_.col(k)).squaredNorm();
+    return found;
+  }
+
+ private:
+  // Of the channels beyond, which hold noise alone, and of what is assumed of S_e: a factor of e^4.
+  double own_noise(const VectorXd& at) const {
+    return static_cast<double>(channels_beyond_ * frequency_hz_.size()) * at[noise] +
+           beyond_ / std::exp(at[noise]) + std::pow(at[noise] - std::log(one_.noise_density), 2) / 32.0;
+  }
+
+  const MatrixXcd& coefficients_;
+  const VectorXd& frequency_hz_;
+  const AmbientMode& one_;
+  double beyond_;
+  Index channels_beyond_;
+  TwoStarts start_;
+  int power_;
+  MatrixXd across_[2];
+};
+
+struct Descent {
+  VectorXd at;
+  double cost = std::numeric_limits<double>::infinity();
+  MatrixXd information;
+  bool settled = false;
+};
+
+Descent descend(const PairLikelihood& likelihood) {
+  constexpr double close_enough = 1e-4;  // of -ln p: a hundredth of a standard deviation
+  Descent now;
+  now.at = likelihood.first();
+  now.cost = likelihood(now.at);
+  VectorXd slope;
+  bool moved = true;
+  const auto step = [&](double damping) -> VectorXd {
+    if (std::exchange(moved, false)) likelihood.score(now.at, slope, now.information);
+    return -filters::solve_damped(now.information, damping, slope);
+  };
+  const auto take = [&](const VectorXd& tried) {
+    if (!tried.allFinite() || tried.cwiseAbs().maxCoeff() > 3.0) return filters::TriedStep{};
+    if (std::abs(tried.dot(slope)) < close_enough) return filters::TriedStep{0.0, true};
+    const double there = likelihood(now.at + tried);
+    if (!(there < now.cost)) return filters::TriedStep{};
+    now.cost = there, now.at += tried, moved = true;
+    return filters::TriedStep{1.0, false};
+  };
+  filters::MarquardtDamping rule;
+  rule.first = 1e-2, rule.most_steps = 100;
+  now.settled = filters::levenberg_marquardt(rule, step, take) == filters::DescentEnd::settled;
+  likelihood.score(now.at, slope, now.information);
+  return now;
+}
+
+AmbientMode mode_at(const PairLikelihood& likelihood, const Descent& found, const MatrixXd& covariance, int i,
+                    const MatrixXd& basis, const AmbientMode& one) {
+  AmbientMode mode;
+  mode.frequency_hz = likelihood.frequency(found.at, i);
+  mode.damping_ratio = std::exp(found.at[zeta1 + i]);
+  mode.noise_density = std::exp(found.at[noise]);
+  mode.shape = basis * likelihood.shape(found.at, i);
+  mode.frequency_deviation_hz = likelihood.unit_hz() * std::sqrt(std::max(0.0, covariance(f1 + i, f1 + i)));
+  mode.damping_ratio_deviation =
+      mode.damping_ratio * std::sqrt(std::max(0.0, covariance(zeta1 + i, zeta1 + i)));
+  mode.force_density = likelihood.force_density(found.at, i);
+  mode.band_hz = one.band_hz;
+  mode.converged = found.settled;
+  return mode;
+}
+
+// -ln p of one mode, as PairLikelihood has that of two.
+double cost_of_one(const AmbientMode& one, const BandCoefficients& band, ResponseKind kind) {
+  const VectorXd misfit = band_misfit(one, band, kind);
+  const auto p = static_cast<double>(band.coefficients.rows());
+  double sum = misfit.sum();
+  for (const double f : band.frequency_hz) {
+    const double b = f / one.frequency_hz,
+                 own = std::pow(b, 2 * static_cast<int>(kind)) /
+                       (std::pow(b * b - 1.0, 2) + std::pow(2.0 * one.damping_ratio * b, 2));
+    sum += std::log(one.force_density * own + one.noise_density) + (p - 1.0) * std::log(one.noise_density);
+  }
+  return sum;
+}
+
+}  // namespace
+
+AmbientPair ambient_pair(const BandCoefficients& band, const AmbientMode& one,
+                         const std::vector<std::pair<double, double>>& starts, ResponseKind kind) {
+  const Index n = band.frequency_hz.size(), channels = band.coefficients.rows();
+  if (n < 16) throw std::invalid_argument("fewer than 16 frequencies in the band; expected a longer record");
+  const MatrixXd power = (band.coefficients * band.coefficients.adjoint()).real();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> directions(power);
+  const Index p = std::min(channels, most_channels);
+  const MatrixXd basis = directions.eigenvectors().rightCols(p);
+  const MatrixXcd kept = basis.transpose() * band.coefficients;
+  const double beyond = std::max(0.0, band.coefficients.squaredNorm() - kept.squaredNorm());
+
+  Descent best;
+  AmbientPair pair;
+  const auto from = [&](double below, double above, double damping_ratio, double across) {
+    TwoStarts start{{below, above}, damping_ratio, 0.5 * one.force_density, MatrixXd::Ones(1, 2)};
+    if (p > 1) {  // the strongest direction, and that with a share of the second strongest either way
+      start.shapes = MatrixXd::Zero(p, 2);
+      start.shapes.row(p - 1).setConstant(std::sqrt(1.0 - across * across));
+      start.shapes(p - 2, 0) = across, start.shapes(p - 2, 1) = -across;
+    }
+    const PairLikelihood likelihood(kept, band.frequency_hz, one, beyond, channels - p, start, kind);
+    const Descent found = descend(likelihood);
+    if (!(found.cost < best.cost)) return;
+    best = found;
+    const MatrixXd covariance = found.information.completeOrthogonalDecomposition().pseudoInverse();
+    for (int i = 0; i < 2; ++i)
+      pair.modes[static_cast<std::size_t>(i)] = mode_at(likelihood, found, covariance, i, basis, one);
+    pair.misfit = likelihood.misfit(found.at);
+    pair.converged = found.settled;
+    pair.coherence = likelihood.coherence(found.at);
+    pair.more_parameters = 5 + static_cast<int>(p - 1);
+  };
+  for (const auto& [below, above] : starts)
+    for (const double across : {0.3, 0.7})
+      from(below, above, std::min(one.damping_ratio, 0.25 * (above - below) / below), across);
+  for (const double apart : {0.4, 1.5})
+    for (const double across : {0.3, 0.7}) {
+      const double half = apart * one.damping_ratio * one.frequency_hz;
+      from(one.frequency_hz - half, one.frequency_hz + half, 0.7 * one.damping_ratio, across);
+      if (p == 1) break;
+    }
+  if (pair.modes[1].frequency_hz < pair.modes[0].frequency_hz) std::swap(pair.modes[0], pair.modes[1]);
+  // What lies beyond the six combinations is noise of the pair's density.
+  pair.misfit.array() += beyond / pair.modes[0].noise_density / static_cast<double>(n);
+  pair.gain = 2.0 * (cost_of_one(one, band, kind) - best.cost);
+  return pair;
+}
+
+double band_probability(const VectorXd& misfit, Index channels, Index lines) {
+  const Index size = std::max<Index>(8, lines), groups = misfit.size() / size;
+  if (groups < 3) return 1.0;
+  double square = 0.0;
+  const auto p = static_cast<double>(channels);
+  for (Index g = 0; g < groups; ++g)
+    square += std::pow(misfit.segment(g * size, size).sum() - p * static_cast<double>(size), 2) /
+              (p * static_cast<double>(size));
+  return boost::math::cdf(
+      boost::math::complement(boost::math::chi_squared(static_cast<double>(groups)), square));
+}
+
+}  // namespace beamid::experiments

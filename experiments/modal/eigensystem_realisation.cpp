@@ -1,0 +1,217 @@
+#include "experiments/modal/eigensystem_realisation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+
+#include "experiments/signal/toolbox.hpp"
+
+namespace beamid::experiments {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+ShapeFit fit_shapes_at(const Eigen::MatrixXd& outputs, const Eigen::VectorXd& time,
+                       const std::vector<Complex>& rates, const std::vector<bool>& oscillating) {
+  const Index count = outputs.cols(), modes = static_cast<Index>(rates.size());
+  const auto scaled_at = [&](Index m) { return rates[m].real() > 0 ? time[count - 1] : 0.0; };
+  Eigen::MatrixXd basis(count, 2 * modes);
+  Index columns = 0;
+  for (Index m = 0; m < modes; ++m) {
+    for (Index k = 0; k < count; ++k) {
+      const Complex value = std::exp(rates[m] * (time[k] - scaled_at(m)));
+      basis(k, columns) = value.real();
+      if (oscillating[m]) basis(k, columns + 1) = -value.imag();
+    }
+    columns += oscillating[m] ? 2 : 1;
+  }
+  basis.conservativeResize(Eigen::NoChange, columns);
+  const Eigen::MatrixXd parts = least_squares(basis, outputs.transpose());  // (columns x p)
+
+  ShapeFit fit;
+  fit.shapes.resize(outputs.rows(), modes);
+  for (Index m = 0, at = 0; m < modes; ++m) {
+    Eigen::VectorXcd shape = parts.row(at++).transpose().cast<Complex>();
+    if (oscillating[m]) shape += Complex(0, 1) * parts.row(at++).transpose().cast<Complex>();
+    fit.shapes.col(m) = shape * std::exp(-rates[m] * scaled_at(m));
+  }
+  fit.reconstruction = (basis * parts).transpose();
+  const auto freedom = static_cast<double>(std::max<Index>(1, count - 2 * columns));
+  fit.residual_standard_deviation =
+      ((outputs - fit.reconstruction).rowwise().squaredNorm() / freedom).cwiseSqrt();
+  return fit;
+}
+
+ShapeFit fit_shapes(const Eigen::MatrixXd& outputs, double interval, const std::vector<Complex>& rates,
+                    const std::vector<bool>& oscillating) {
+  Eigen::VectorXd time(outputs.cols());
+  for (Index k = 0; k < time.size(); ++k) time[k] = interval * static_cast<double>(k);
+  return fit_shapes_at(outputs, time, rates, oscillating);
+}
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double gram_floor = 1e-7;      // of the largest singular value: what squaring them leaves
+constexpr double vanishing_pole = 1e-6;  // poles z that are over within a sample
+
+void check_realisation(const MatrixXd& outputs, double interval, const EigensystemSettings& settings,
+                       Index rows) {
+  const Index p = outputs.rows(), count = outputs.cols();
+  std::ostringstream message;
+  if (!(interval > 0))
+    message << "sampling interval " << interval << " s; expected a positive value";
+  else if (p < 1 || count < 12)
+    message << "free decay of " << p << " outputs and " << count << " samples; expected at least 1 and 12";
+  else if (!outputs.allFinite())
+    message << "free decay holds a value that is not a finite number";
+  else if (rows < 2 || 2 * rows > count)
+    message << rows << " block rows; expected 2 to " << count / 2 << ", half of the " << count << " samples";
+  else if (settings.order < 0 || settings.order > rows * p)
+    message << "order " << settings.order << "; expected 0 (automatic) to " << rows * p;
+  else if (const double largest = outputs.cwiseAbs().maxCoeff(); largest == 0)
+    message << "free decay of zeros only has no modes";
+  else if (!(largest > 1e-100 && largest < 1e100))  // products of outputs must neither vanish nor overflow
+    message << "free decay with values up to " << largest << "; expected between 1e-100 and 1e100";
+  if (const std::string text = message.str(); !text.empty()) throw std::invalid_argument(text);
+}
+
+/// H H^T of the block Hankel matrix with `rows` block rows, each block from the one up left of it.
+MatrixXd hankel_gram(const MatrixXd& y, Index rows) {
+  const Index p = y.rows(), columns = y.cols() - rows + 1;
+  MatrixXd gram(rows * p, rows * p);
+  for (Index j = 0; j < rows; ++j)
+    gram.block(0, j * p, p, p) = y.leftCols(columns) * y.middleCols(j, columns).transpose();
+  for (Index i = 0; i + 1 < rows; ++i)
+    for (Index j = i; j + 1 < rows; ++j)
+      gram.block((i + 1) * p, (j + 1) * p, p, p) = gram.block(i * p, j * p, p, p) -
+                                                   y.col(i) * y.col(j).transpose() +
+                                                   y.col(i + columns) * y.col(j + columns).transpose();
+  gram.triangularView<Eigen::StrictlyLower>() = gram.transpose();
+  return gram;
+}
+
+int order_above_noise(const VectorXd& singular_values, const EigensystemSettings& settings) {
+  const double median = singular_values[singular_values.size() / 2];
+  const double floor = std::max(settings.noise_factor * median, gram_floor * singular_values[0]);
+  const auto above = (singular_values.array() > floor).count();
+  return std::clamp(static_cast<int>(above), 1, settings.largest_order);
+}
+
+/// Singular values of H(0), falling, and left singular vectors, in the opposite order.
+struct Decomposition {
+  VectorXd singular_values;
+  MatrixXd left;
+  MatrixXd shifted;  ///< H(1) H(0)^T
+};
+
+Decomposition decompose(const MatrixXd& gram, Index p) {
+  const Index size = gram.rows() - p;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(gram.topLeftCorner(size, size));
+  return {solver.eigenvalues().reverse().cwiseMax(0).cwiseSqrt(), solver.eigenvectors(),
+          gram.bottomLeftCorner(size, size)};
+}
+
+/// Eigenvalues of A, one of each complex pair.
+std::vector<Complex> discrete_poles(const Decomposition& cut, int n) {
+  const MatrixXd left = cut.left.rightCols(n);
+  const VectorXd root = cut.singular_values.head(n)
+                            .cwiseMax(1e-12 * cut.singular_values[0])
+                            .reverse()
+                            .cwiseSqrt();  // S^(1/2), S rising as the solver sorts them
+  const MatrixXd transition = root.cwiseInverse().asDiagonal() * (left.transpose() * cut.shifted * left) *
+                              root.array().pow(-3).matrix().asDiagonal();
+  const Eigen::VectorXcd eigenvalues = transition.eigenvalues();
+  std::vector<Complex> poles;
+  for (const Complex& z : eigenvalues)
+    if (z.imag() >= 0 && std::abs(z) > vanishing_pole) poles.push_back(z);
+  return poles;
+}
+
+IdentifiedMode mode_of(Complex pole, double interval) {
+  IdentifiedMode mode;
+  mode.rate = std::log(pole) / interval;
+  const bool oscillates = pole.imag() > 0;
+  mode.frequency_hz = oscillates ? std::abs(mode.rate) / (2 * std::numbers::pi) : 0;
+  mode.damping_ratio = std::abs(mode.rate) > 0 ? -mode.rate.real() / std::abs(mode.rate) : 0;
+  mode.spurious = !oscillates || mode.damping_ratio < 0;
+  return mode;
+}
+
+/// Least-squares shapes of all modes, and what they leave.
+void add_shapes(const MatrixXd& outputs, double interval, EigensystemRealisation& result) {
+  std::vector<Complex> rates;
+  std::vector<bool> oscillating;
+  for (const IdentifiedMode& mode : result.modes) {
+    rates.push_back(mode.rate);
+    oscillating.push_back(mode.frequency_hz > 0);
+  }
+  const ShapeFit fit = fit_shapes(outputs, interval, rates, oscillating);
+  for (std::size_t m = 0; m < rates.size(); ++m)
+    result.modes[m].shape = fit.shapes.col(static_cast<Index>(m));
+  result.reconstruction = fit.reconstruction;
+  result.residual_standard_deviation = fit.residual_standard_deviation;
+}
+
+void mark_spurious(std::vector<IdentifiedMode>& modes, const EigensystemSettings& settings) {
+  double strongest = 0;
+  for (IdentifiedMode& mode : modes) {
+    mode.spurious = mode.spurious || mode.damping_ratio > settings.largest_damping_ratio;
+    if (!mode.spurious) strongest = std::max(strongest, mode.shape.norm());
+  }
+  for (IdentifiedMode& mode : modes)
+    mode.spurious = mode.spurious || mode.shape.norm() < settings.smallest_amplitude * strongest;
+}
+
+Index block_rows(const MatrixXd& outputs, const EigensystemSettings& settings) {
+  constexpr Index most_rows = 200;
+  if (settings.rows > 0) return settings.rows;
+  return std::min(outputs.cols() / 3, most_rows / std::max<Index>(outputs.rows(), 1));
+}
+
+EigensystemRealisation realise(const MatrixXd& outputs, double interval, const Decomposition& cut, int order,
+                               const EigensystemSettings& settings) {
+  EigensystemRealisation result;
+  result.order = order;
+  result.singular_values = cut.singular_values;
+  for (const Complex& pole : discrete_poles(cut, order)) result.modes.push_back(mode_of(pole, interval));
+  std::sort(result.modes.begin(), result.modes.end(),
+            [](const auto& a, const auto& b) { return a.frequency_hz < b.frequency_hz; });
+  add_shapes(outputs, interval, result);
+  mark_spurious(result.modes, settings);
+  return result;
+}
+
+}  // namespace
+
+EigensystemRealisation eigensystem_realisation(const MatrixXd& outputs, double interval,
+                                               const EigensystemSettings& settings) {
+  const Index rows = block_rows(outputs, settings);
+  check_realisation(outputs, interval, settings, rows);
+  const Decomposition cut = decompose(hankel_gram(outputs, rows + 1), outputs.rows());
+  const int order = settings.order > 0 ? settings.order : order_above_noise(cut.singular_values, settings);
+  return realise(outputs, interval, cut, order, settings);
+}
+
+std::vector<EigensystemRealisation> eigensystem_realisations(const MatrixXd& outputs, double interval,
+                                                             int largest_order,
+                                                             const EigensystemSettings& settings) {
+  const Index rows = block_rows(outputs, settings);
+  EigensystemSettings any_order = settings;
+  any_order.order = 0;
+  check_realisation(outputs, interval, any_order, rows);
+  const Decomposition cut = decompose(hankel_gram(outputs, rows + 1), outputs.rows());
+  std::vector<EigensystemRealisation> found;
+  for (int order = 2; order <= std::min<Index>(largest_order, rows * outputs.rows()); order += 2) {
+    found.push_back(realise(outputs, interval, cut, order, settings));
+    found.back().reconstruction.resize(0, 0);
+  }
+  return found;
+}
+
+}  // namespace beamid::experiments

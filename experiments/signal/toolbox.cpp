@@ -1,0 +1,69 @@
+#include "experiments/signal/toolbox.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/QR>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+namespace beamid::experiments {
+
+double chi_square_limit(double freedom, double probability) {
+  return quantile(boost::math::chi_squared_distribution<double, InDouble>(freedom), probability);
+}
+
+double student_factor(double freedom) {
+  constexpr double point = 0.975, normal_point = 1.959963984540054,
+                   least = 0.1;  // freedom, where the factor is 1e12; less overflows
+  const boost::math::students_t_distribution<double, InDouble> law(std::max(least, freedom));
+  return boost::math::quantile(law, point) / normal_point;
+}
+
+void require_positive(double value, const std::string& name) {
+  if (!(value > 0.0 && std::isfinite(value)))
+    throw std::invalid_argument(name + ": " + std::to_string(value) + "; expected a positive number");
+}
+
+using Eigen::Index;
+
+bool transforms_fast(Index length, Index largest_factor) {
+  for (Index factor = 2; factor <= largest_factor; ++factor)
+    while (length % factor == 0) length /= factor;
+  return length == 1;
+}
+
+Index fast_length_within(Index samples, Index largest_factor) {
+  while (!transforms_fast(samples, largest_factor)) --samples;
+  return samples;
+}
+
+Index even_fast_length_around(Index samples) {
+  Index half = (samples + 1) / 2;
+  while (!transforms_fast(half)) ++half;
+  return 2 * half;
+}
+
+namespace {
+
+template <class Matrix>
+Matrix solve(const Matrix& a, const Matrix& b) {
+  if (!a.allFinite() || !b.allFinite())
+    throw std::invalid_argument("least squares with a value that is not a finite number");
+  if (a.size() == 0 || a.isZero(0)) return Matrix::Zero(a.cols(), b.cols());
+  const Eigen::VectorXd scale = a.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  return scale.asDiagonal() * (a * scale.asDiagonal()).colPivHouseholderQr().solve(b);
+}
+
+}  // namespace
+
+Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return solve(a, b);
+}
+
+Eigen::MatrixXcd complex_least_squares(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
+  return solve(a, b);
+}
+
+}  // namespace beamid::experiments
