@@ -68,6 +68,7 @@ foreach(page IN LISTS decisions)
   string(APPEND nav "          - ${page}\n")
 endforeach()
 
+file(COPY ${CMAKE_CURRENT_LIST_DIR}/site_hook.py DESTINATION ${site})
 file(READ ${ROOT}/docs/mkdocs.yml configuration)
 file(WRITE ${site}/mkdocs.yml "${configuration}${nav}")
 set(build ${MKDOCS} build --strict --config-file ${site}/mkdocs.yml)
