@@ -1,5 +1,5 @@
-// README and tutorials, read from top to bottom: every command runs as printed, from the folder that the page
-// is in by then, beginning at the repository's root, and prints what the page shows.
+// README, guides and tutorials, read from top to bottom: every command runs as printed, from the folder that
+// the page is in by then, beginning at the repository's root, and prints what the page shows.
 #include <gmock/gmock.h>
 
 #include <iostream>
@@ -16,6 +16,8 @@ std::vector<std::string> pages() {
   for (const auto& entry : fs::directory_iterator(source("docs/tutorials")))
     if (entry.is_directory())
       found.push_back("docs/tutorials/" + entry.path().filename().string() + "/README.md");
+  for (const auto& entry : fs::directory_iterator(source("docs/guides")))
+    if (entry.path().extension() == ".md") found.push_back("docs/guides/" + entry.path().filename().string());
   std::sort(found.begin() + 1, found.end());
   return found;
 }
@@ -105,8 +107,10 @@ TEST_P(Pages, PrintWhatTheirCommandsPrint) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Documentation, Pages, testing::ValuesIn(pages()), [](const auto& tested) {
-  std::string name = fs::path(tested.param).parent_path().filename().string();
-  return name.empty() ? "README" : "Tutorial" + name;
+  const fs::path page(tested.param);
+  const std::string folder = page.parent_path().filename().string();
+  if (folder.empty()) return std::string("README");
+  return folder == "guides" ? "Guide_" + page.stem().string() : "Tutorial" + folder;
 });
 
 }  // namespace

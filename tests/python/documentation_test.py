@@ -1,4 +1,4 @@
-"""Every example of the docstrings, of docs/python.md and of docs/tutorials/python gives what it shows."""
+"""Every example of the docstrings, of docs/python.md, of the guide from_matlab_and_python and of docs/tutorials/python gives what it shows."""
 import contextlib
 import doctest
 import importlib.util
@@ -76,15 +76,20 @@ class Documentation(unittest.TestCase):
                          if callable(value) and getattr(value, "__module__", "") == module.__name__]
             self.check(self.examples([module, *functions]))
 
-    def test_the_page_shows_what_its_examples_print(self):
-        page = (SOURCE / "docs/python.md").read_text()
+    def test_the_pages_show_what_their_examples_print(self):
+        for name in ("docs/python.md", "docs/guides/from_matlab_and_python.md"):
+            with self.subTest(name):
+                self.check_page(name)
+
+    def check_page(self, name):
+        page = (SOURCE / name).read_text()
         names = {}
         with working_folder() as folder:
             os.symlink(SOURCE / "docs", folder / "docs")
             for block in re.findall(r"^```python\n(.*?)^```$", page, re.M | re.S):
                 # A fence shows blank lines as they are; doctest takes them for the end of what is expected.
                 marked = re.sub(r"\n(?=\n+(?!>>>)[^\n])", "\n<BLANKLINE>", block)
-                test = doctest.DocTestParser().get_doctest(marked, names, "docs/python.md", None, None)
+                test = doctest.DocTestParser().get_doctest(marked, names, name, None, None)
                 if importlib.util.find_spec("pandas") is None:
                     test.examples = [one for one in test.examples if ".frame(" not in one.source]
                 runner = Remembering(optionflags=FLAGS)
@@ -96,7 +101,7 @@ class Documentation(unittest.TestCase):
                 else:
                     self.assertEqual(runner.summarize(verbose=False).failed, 0, out.getvalue())
         if UPDATES:
-            (SOURCE / "docs/python.md").write_text(page)
+            (SOURCE / name).write_text(page)
 
     def test_the_tutorials_print_what_they_show(self):
         try:
