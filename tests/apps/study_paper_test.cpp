@@ -48,9 +48,10 @@ TEST(StudyDocument, MapsTheReferencesOfStiffness) {
                stiffness = beams.at(1).at("reference_stiffness_n_per_m"),
                static_stiffness = 3.0 * 2.12e11 * 0.06 * std::pow(0.006, 3) / 12.0 / std::pow(1.1, 3);
   expect_quoted(written(own, "%.6f") + " kg, where Meq is\n" + written(equivalent, "%.6f") + " kg");
-  expect_quoted("Meq w1^2 = " + written(stiffness, "%.3f") + " N/m, the reference of section 6, and " +
+  expect_quoted(R"($M_{eq} \omega_1^2$ = )" + written(stiffness, "%.3f") +
+                " N/m, the reference of section 6, and " +
                 written(100.0 * (stiffness / static_stiffness - 1.0), "%.3f") +
-                " % off 3EI/L^3 = " + written(static_stiffness, "%.3f") + " N/m");
+                " % off $3 EI/L^3$ = " + written(static_stiffness, "%.3f") + " N/m");
   double others = 0.0, lightest = 0.0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double mass = beams.at(i).at("equivalent_mass_kg"), tip = beams.at(i).at("tip_mass_kg"),
@@ -83,7 +84,7 @@ TEST(StudyDocument, QuotesTheBiasAgainstTheCovariances) {
     expect_quoted("| " + written(one.at("damping_error_percent"), "%+.3f") + " |");
   const double truth = 2.0 * 0.1 * std::sqrt(515.8 * 3.0);
   expect_quoted(
-      "C_f - C = K dt (1 - 4 xi^2) / 2: " +
+      R"($C_f - C = K \Delta t (1 - 4 \xi^2) / 2$: )" +
       written(
           100.0 * (found_by("paper").at("step_by_step").at("damping_n_s_per_m").get<double>() / truth - 1.0),
           "%+.3f") +

@@ -137,8 +137,9 @@ TEST(StudyDocument, QuotesTheStepsOfAMeasuredRecord) {
     return values;
   };
   expect_quoted("| dt [ms] " + row_of(each(exact, "/step_s", 1e3), "%.3f"));
-  expect_quoted("| xi, exact [%] " + row_of(each(exact, "/found/damping_ratio", 100.0), "%.4f"));
-  expect_quoted("| xi, forward Euler [%] " + row_of(each(euler, "/found/damping_ratio", 100.0), "%.4f"));
+  expect_quoted(R"(| $\xi$, exact [%] )" + row_of(each(exact, "/found/damping_ratio", 100.0), "%.4f"));
+  expect_quoted(R"(| $\xi$, forward Euler [%] )" +
+                row_of(each(euler, "/found/damping_ratio", 100.0), "%.4f"));
   for (const json* scheme : {&exact, &euler})
     expect_quoted("| mean NIS, exact and forward Euler " + row_of(each(*scheme, "/mean_nis", 1.0), "%.3f"));
   json predicted;
