@@ -198,7 +198,12 @@ bool Passes::filter_once() {
   run_.noise = assumed_noise(known_, noise_shown());
   run_.settings.output_noise = run_.noise.cwiseAbs2().asDiagonal();
   SteadyClock::time_point start = SteadyClock::now();
-  run_.run = filter_record(model, record_, run_.settings, settings_.keep);
+  // A smoother needs every estimate; the figure of an oscillator's K and C their history.
+  const bool smoothed = !context_.experiment.smoother.empty();
+  const bool drawn = settings_.keep == filters::Keep::all_estimates && !smoothed && is_oscillator(model);
+  run_.run = filter_record(
+      model, record_, run_.settings, smoothed ? settings_.keep : filters::Keep::last_estimate,
+      drawn ? filters::Trace{{model.unknown_places[0], model.unknown_places[1]}} : filters::Trace{});
   run_.seconds += seconds_since(start);
   run_.remarks = run_.run.remarks;
   filters::Gaussian& initial = run_.settings.initial;
