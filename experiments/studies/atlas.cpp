@@ -6,6 +6,7 @@
 #include "experiments/config/storey_laws.hpp"
 #include "experiments/identify/plausibility.hpp"
 #include "experiments/studies/atlas/input_hold_report.hpp"
+#include "experiments/studies/atlas/many_degrees.hpp"
 #include "experiments/studies/atlas/report.hpp"
 #include "experiments/studies/study.hpp"
 #include "fem/assembly.hpp"
@@ -42,6 +43,7 @@ class AtlasStudy final : public Study {
   Results run(const Progress& progress) const override {
     Results results = report(make_atlas(settings_, progress));
     add_hold_page(make_hold_page(settings_, progress), settings_.beam, results);
+    add_degrees_page(make_degrees_page(progress), results);
     warn_of_file(results, config_);
     return results;
   }
