@@ -42,7 +42,7 @@ SecondOrder unevenly_damped() {
   return {masses(), chain_matrix(Vector3d(4000.0, 0.0, 1500.0)), chain().stiffness};
 }
 
-// What a chain's matrix says of storey j, by C_11 + C_12, -C_12, -C_23.
+// Storey j of a chain's matrix: C_11 + C_12, -C_12, -C_23.
 double storey(const MatrixXd& c, int j) {
   return j == 0 ? c(0, 0) + c(0, 1) : -c(j - 1, j);
 }

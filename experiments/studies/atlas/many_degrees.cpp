@@ -47,9 +47,9 @@ MatrixXd spring(Index floors, Index floor) {
 
 /// Adds unknowns to a family, with how far a filter may have to go: a tenth of a stiffness, and of a damping
 /// itself or dt K, whichever is larger.
-class Asked {
+class PartList {
  public:
-  Asked(UnknownFamily& family, double damping_time) : family_(family), time_(damping_time) {}
+  PartList(UnknownFamily& family, double damping_time) : family_(family), time_(damping_time) {}
 
   void stiffness(std::string name, std::string unit, double value, MatrixXd matrix, double size) {
     constexpr double share = 0.1;
@@ -96,18 +96,18 @@ UnknownFamily modal_family(const std::string& name, const std::string& unknowns,
                   MatrixXd(w.cwiseAbs2().asDiagonal())};
   family.outputs = parametric.system.outputs * modes.shape;
   family.start = displaced * family.outputs.cwiseAbs().colwise().maxCoeff().cwiseInverse().transpose();
-  Asked asked(family, std::max(2.0 * ratio_of_damping / w[0], family.interval));
+  PartList parts(family, std::max(2.0 * ratio_of_damping / w[0], family.interval));
   family.fixed_stiffness = family.truth.stiffness;
   for (std::size_t j = 0; j < names.size(); ++j) {
     const double value = parametric.values[static_cast<Index>(j)];
     const MatrixXd slope = modes.shape.transpose() * (parametric.stiffness_derivative(j) * modes.shape);
     family.fixed_stiffness -= value * slope;
-    asked.stiffness(names[j], units[j], value, slope, value);
+    parts.stiffness(names[j], units[j], value, slope, value);
   }
   for (Index k = 0; k < count; ++k) {
     MatrixXd matrix = MatrixXd::Zero(count, count);
     matrix(k, k) = 2.0 * w[k];
-    asked.damping(numbered("ratio_", k), "1", ratio_of_damping, std::move(matrix), ratio_of_damping, w[k]);
+    parts.damping(numbered("ratio_", k), "1", ratio_of_damping, std::move(matrix), ratio_of_damping, w[k]);
   }
   return family;
 }
@@ -142,7 +142,7 @@ UnknownFamily chain_family(int storeys, double dt, const std::string& unknowns) 
   family.complete = unknowns == "all entries" || unknowns == "modes";
   family.samples = static_cast<Index>(
       family.complete ? 500.0 : std::max(500.0, periods * 2.0 * M_PI / (modes.frequency[0] * dt)));
-  Asked asked(family, std::max(beta, dt));
+  PartList parts(family, std::max(beta, dt));
 
   if (unknowns == "all entries") {
     const auto entry = [&](const MatrixXd& of, Index i, Index j) {
@@ -157,9 +157,9 @@ UnknownFamily chain_family(int storeys, double dt, const std::string& unknowns) 
           const auto [c, size_of_c] = entry(family.truth.damping, i, j);
           const std::string place = fmt::format("{}{}", i + 1, j + 1);
           if (damping)
-            asked.damping("C_" + place, "N s/m", c, std::move(matrix), size_of_c, size_of_k);
+            parts.damping("C_" + place, "N s/m", c, std::move(matrix), size_of_c, size_of_k);
           else
-            asked.stiffness("K_" + place, "N/m", k, std::move(matrix), size_of_k);
+            parts.stiffness("K_" + place, "N/m", k, std::move(matrix), size_of_k);
         }
     return family;
   }
@@ -169,25 +169,25 @@ UnknownFamily chain_family(int storeys, double dt, const std::string& unknowns) 
         const double square = modes.frequency[j] * modes.frequency[j];
         MatrixXd matrix = momentum.col(j) * momentum.col(j).transpose();
         if (damping)
-          asked.damping(numbered("two_xi_omega_", j), "1/s", beta * square, std::move(matrix), beta * square,
+          parts.damping(numbered("two_xi_omega_", j), "1/s", beta * square, std::move(matrix), beta * square,
                         square);
         else
-          asked.stiffness(numbered("omega_squared_", j), "1/s2", square, std::move(matrix), square);
+          parts.stiffness(numbered("omega_squared_", j), "1/s2", square, std::move(matrix), square);
       }
     return family;
   }
   for (Index j = 0; j < n; ++j)
-    asked.stiffness(numbered("k_", j), "N/m", stiffnesses[j], spring(n, j), stiffnesses[j]);
+    parts.stiffness(numbered("k_", j), "N/m", stiffnesses[j], spring(n, j), stiffnesses[j]);
   if (unknowns == "storeys") {
     for (Index j = 0; j < n; ++j)
-      asked.damping(numbered("c_", j), "N s/m", beta * stiffnesses[j], spring(n, j), beta * stiffnesses[j],
+      parts.damping(numbered("c_", j), "N s/m", beta * stiffnesses[j], spring(n, j), beta * stiffnesses[j],
                     stiffnesses[j]);
   } else if (unknowns == "Rayleigh") {
     const double square = modes.frequency[0] * modes.frequency[0];
-    asked.damping("alpha", "1/s", 0.0, family.truth.mass, beta * square, square);
-    asked.damping("beta", "s", beta, stiffness, beta, 1.0);
+    parts.damping("alpha", "1/s", 0.0, family.truth.mass, beta * square, square);
+    parts.damping("beta", "s", beta, stiffness, beta, 1.0);
   } else if (unknowns == "one ratio") {
-    asked.damping("ratio", "1", ratio_of_damping, of_one_ratio, ratio_of_damping, modes.frequency[n - 1]);
+    parts.damping("ratio", "1", ratio_of_damping, of_one_ratio, ratio_of_damping, modes.frequency[n - 1]);
   } else {
     throw std::invalid_argument("no unknowns '" + unknowns + "' of a chain");
   }
@@ -310,6 +310,35 @@ DegreesCure cure_of(int storeys, double dt) {
   return cure;
 }
 
+constexpr double relative_noise = 1e-3;
+constexpr int noise_seeds = 20;
+
+// Of every dashpot of the chain of three, by one filter and scheme over the seeds.
+std::vector<DegreesNoise> noisy_case(const std::string& filter, const std::string& scheme) {
+  const UnknownFamily family = chain_family(3, 0.002, "storeys");
+  const SecondOrder& truth = family.truth;
+  const MatrixXd near = nearest(
+      family, {filters::seen_through(*filters::scheme_registry().make(scheme, {}), truth, family.interval),
+               changed_by(truth, family.interval * truth.stiffness, 0.0 * truth.stiffness)});
+  const VectorXd values = family.values(), bound = bounds(family, relative_noise);
+  MatrixXd errors(values.size(), noise_seeds);
+  for (int seed = 0; seed < noise_seeds; ++seed) {
+    const auto found =
+        measured_unknowns(family, scheme, {filter, relative_noise, static_cast<std::uint64_t>(seed + 1)});
+    errors.col(seed) = found ? VectorXd(*found - values) : VectorXd::Constant(values.size(), not_found);
+  }
+  std::vector<DegreesNoise> made;
+  for (Index j = 0; j < values.size(); ++j) {
+    const UnknownFamily::Part& part = family.parts[static_cast<std::size_t>(j)];
+    if (!part.damping) continue;
+    const double mean = errors.row(j).mean(), by_dt_k = near(j, 1) - values[j],
+                 scatter = std::sqrt((errors.row(j).array() - mean).square().sum() / (noise_seeds - 1));
+    made.push_back({family.unknowns, filter, scheme, part.name, mean / by_dt_k,
+                    (near(j, 0) - values[j]) / by_dt_k, mean / bound[j], scatter / bound[j]});
+  }
+  return made;
+}
+
 }  // namespace
 
 DegreesPage make_degrees_page(const Progress& progress) {
@@ -333,6 +362,9 @@ DegreesPage make_degrees_page(const Progress& progress) {
       page.projections.push_back(degrees_case(chain_family(3, interval, unknowns), "forward_euler"));
   for (const int storeys : {3, 6, 12})
     for (const double interval : {1e-3, 2e-3, 5e-3}) page.cures.push_back(cure_of(storeys, interval));
+  for (const char* filter : {"ekf", "ukf"})
+    for (const char* scheme : {"forward_euler", "exponential"})
+      for (DegreesNoise& one : noisy_case(filter, scheme)) page.noisy.push_back(std::move(one));
   return page;
 }
 

@@ -10,7 +10,7 @@
 
 namespace beamid::experiments {
 
-/// A chain of `storeys` whose springs and dashpots the page asks about, sampled every dt [s].
+/// A chain of `storeys` of the page, sampled every dt [s].
 /// @param unknowns "all entries" of both symmetric matrices, "modes": frequency and damping of each;
 /// "storeys": every spring and dashpot; "Rayleigh": springs, alpha and beta; "one ratio": springs and one
 /// ratio of all modes. The damping is proportional to stiffness, 1 % in the first mode; of "one ratio", 1 %
@@ -55,16 +55,26 @@ struct DegreesCure {
   double exact = 0.0;  ///< of the filter that moves by `exponential`; NaN where it was not run
 };
 
+/// One unknown of damping in noisy records.
+struct DegreesNoise {
+  std::string unknowns, filter, scheme, unknown;
+  double bias = 0.0;        ///< mean error over seeds, over dt K
+  double law = 0.0;         ///< over dt K
+  double bias_bound = 0.0;  ///< mean error over the Cramer-Rao bound
+  double scatter = 0.0;     ///< standard deviation over seeds, over the bound
+};
+
 struct DegreesPage {
   std::vector<DegreesCase> cases;        ///< every scheme
   std::vector<DegreesCase> projections;  ///< forward Euler, fewer unknowns of damping
   std::vector<DegreesCure> cures;
+  std::vector<DegreesNoise> noisy;  ///< chain of three, extended and unscented filters
 };
 
 DegreesPage make_degrees_page(const Progress& progress);
 
-/// Adds it: text, tables `many_degrees_damping`, `many_degrees_stiffness`, `fewer_damping_unknowns` and
-/// `cures`, many_degrees_unknowns.csv.
+/// Adds it: text, tables `many_degrees_damping`, `many_degrees_stiffness`, `fewer_damping_unknowns`, `cures`
+/// and `noisy_records`, many_degrees_unknowns.csv.
 void add_degrees_page(const DegreesPage& page, Results& results);
 
 }  // namespace beamid::experiments

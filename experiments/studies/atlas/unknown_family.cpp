@@ -10,6 +10,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 #include <utility>
 
+#include "experiments/signal/random.hpp"
 #include "filters/discrete_model.hpp"
 #include "filters/filter_run.hpp"
 
@@ -221,14 +222,16 @@ filters::Measurements exact_record(const UnknownFamily& family) {
   return record;
 }
 
-std::optional<VectorXd> measured_unknowns(const UnknownFamily& family, const std::string& scheme) {
+std::optional<VectorXd> measured_unknowns(const UnknownFamily& family, const std::string& scheme,
+                                          const FamilyRun& how) {
   const Index n = family.truth.size(), q = static_cast<Index>(family.parts.size());
-  const filters::Measurements record = exact_record(family);
+  filters::Measurements record = exact_record(family);
   const auto motion = std::make_shared<FamilyMotion>(family);
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(family.truth.stiffness, family.truth.mass,
                                                                  Eigen::EigenvaluesOnly);
   const double size = record.outputs.topRows(family.outputs.rows()).cwiseAbs().maxCoeff(),
-               noise = 1e-7 * size, fastest = std::sqrt(modes.eigenvalues().maxCoeff());
+               noise = (how.noise > 0.0 ? how.noise : 1e-7) * size,
+               fastest = std::sqrt(modes.eigenvalues().maxCoeff());
   VectorXd state = released(family), scale(q), noises = VectorXd::Zero(2 * n + q);
   state.conservativeResize(2 * n + q);
   state.tail(q) = family.values();
@@ -237,20 +240,48 @@ std::optional<VectorXd> measured_unknowns(const UnknownFamily& family, const std
   noises.segment(n, n).setConstant(family.motion_noise * size * fastest);
   VectorXd of_sensors = VectorXd::Constant(record.outputs.rows(), noise);
   if (family.velocities) of_sensors.tail(family.outputs.rows()) *= fastest;
-  // As uncertain as the bias may be, then less and less: what a linearisation drops vanishes too.
-  for (const double share : {1.0, 1e-1, 1e-2, 1e-3}) {
+  if (how.noise > 0.0)
+    for (Index i = 0; i < record.outputs.rows(); ++i)
+      record.outputs.row(i) +=
+          of_sensors[i] *
+          standard_normal(record.outputs.cols(), how.seed, static_cast<std::uint64_t>(i)).transpose();
+  // As uncertain as the bias may be, then less and less: what a linearisation drops vanishes too. In noise a
+  // narrow prior would count the record twice.
+  const std::vector<double> shares =
+      how.noise > 0.0 ? std::vector<double>{1.0, 1.0} : std::vector<double>{1.0, 1e-1, 1e-2, 1e-3};
+  for (const double share : shares) {
     VectorXd deviation(2 * n + q);
     deviation << VectorXd::Constant(n, size), VectorXd::Constant(n, fastest * size), share * scale;
     filters::Noise assumed{{}, of_sensors.cwiseAbs2().asDiagonal()};
     if (family.motion_noise > 0.0) assumed.process = noises.cwiseAbs2().asDiagonal();
     const auto filter = filters::filter_registry().make(
-        "ekf", {}, filters::discretise(motion, family.interval, scheme, assumed));
+        how.filter, {}, filters::discretise(motion, family.interval, scheme, assumed));
     const filters::FilterRun run =
         filters::run(*filter, {state, MatrixXd(deviation.cwiseAbs2().asDiagonal())}, record);
     if (run.failure) return {};
     state.tail(q) = run.last.mean.tail(q);
   }
   return state.tail(q);
+}
+
+VectorXd bounds(const UnknownFamily& family, double noise) {
+  const Index l = 2 * family.truth.size(), q = static_cast<Index>(family.parts.size());
+  const auto exact = filters::scheme_registry().make("exponential", {});
+  const MatrixXd a = family.truth.motion_matrix() * family.interval;
+  std::vector<MatrixXd> directions = directions_of(family);
+  for (MatrixXd& direction : directions)
+    direction = filters::amplification_slope(*exact, a, direction * family.interval);
+  MatrixXd columns = sensitivities(family, released(family), a.exp(), directions);
+  const VectorXd size = columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().transpose();
+  columns = (columns * size.asDiagonal()).eval();
+  const MatrixXd root = columns.householderQr().matrixQR().topRows(l + q).triangularView<Eigen::Upper>();
+  const MatrixXd inverse = root.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(l + q, l + q));
+  const double deviation = noise * exact_record(family).outputs.cwiseAbs().maxCoeff();
+  VectorXd found(q);
+  for (Index j = 0; j < q; ++j)
+    found[j] =
+        deviation * size[l + j] * inverse.row(l + j).norm() * family.parts[static_cast<std::size_t>(j)].scale;
+  return found;
 }
 
 }  // namespace beamid::experiments

@@ -1,4 +1,4 @@
-// A structure that rings down, what is asked about it, and what filters answer that move by a scheme.
+// A structure that rings down, its unknowns, and what filters that move by a scheme find.
 //
 // M x'' + C x' + K x = 0, its record exact. A filter looks for K and C within a family, affine in the
 // unknowns,
@@ -17,6 +17,7 @@
 // - C_f) phi_k / 2|^2. Of the shapes it counts with S_0, which is smaller by 16 xi^2.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +27,7 @@
 
 namespace beamid::experiments {
 
-/// A structure with its record, and what is asked about it.
+/// A structure with its record and its unknowns.
 struct UnknownFamily {
   std::string structure;  ///< "chain of 3 storeys"
   std::string unknowns;   ///< "storeys", "all entries", "modes", ...
@@ -61,9 +62,19 @@ struct UnknownFamily {
 /// in the record, linearised at the truth (d^T F d).
 Eigen::MatrixXd nearest(const UnknownFamily& family, const std::vector<filters::SecondOrder>& targets);
 
-/// What an extended Kalman filter really ends with: noise-free displacements, R small, several passes from
-/// the truth. Nothing where it fails.
-std::optional<Eigen::VectorXd> measured_unknowns(const UnknownFamily& family, const std::string& scheme);
+/// How a filter is run on a family's record.
+struct FamilyRun {
+  std::string filter = "ekf";
+  double noise = 0.0;      ///< of displacements, over the record's largest; 0: exact, and R small
+  std::uint64_t seed = 1;  ///< of the noise
+};
+
+/// What a filter really ends with, after several passes from the truth. Absent where it fails.
+std::optional<Eigen::VectorXd> measured_unknowns(const UnknownFamily& family, const std::string& scheme,
+                                                 const FamilyRun& how = {});
+
+/// Cramer-Rao bound on the deviation of each u_j under such noise, the start being unknown (q).
+Eigen::VectorXd bounds(const UnknownFamily& family, double noise);
 
 /// The motion of a family's structure, exact: its free decay, with the response to held forces.
 filters::Measurements exact_record(const UnknownFamily& family);

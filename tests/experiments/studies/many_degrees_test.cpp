@@ -179,9 +179,42 @@ std::vector<std::string> printed_lines(const std::filesystem::path& page) {
   return lines;
 }
 
+const DegreesPage& whole_page() {
+  static const DegreesPage page = make_degrees_page(unwatched);
+  return page;
+}
+
+// Oracle: the Cramer-Rao bound for the scatter over seeds, 1 +- 0.16 of twenty; the law for the mean error.
+TEST(ManyDegrees, AreBiasedByManyBoundsInNoise) {
+  const DegreesPage& page = whole_page();
+  ASSERT_EQ(page.noisy.size(), 12u);
+  for (const DegreesNoise& one : page.noisy) {
+    EXPECT_NEAR(one.scatter, 1.0, 0.5) << one.filter << ", " << one.scheme << ", " << one.unknown;
+    EXPECT_NEAR(one.bias_bound, one.law * one.bias_bound / one.bias,
+                3.0 / std::sqrt(20.0) + 0.03 * std::abs(one.bias_bound))
+        << one.filter << ", " << one.scheme << ", " << one.unknown;
+  }
+}
+
+// Sigma points in place of the linearisation: the same limit.
+TEST_P(ManyDegreesUnder, TheUnscentedFilterFindsTheSame) {
+  const UnknownFamily family = chain_family(3, 0.002, "modes");
+  const Eigen::VectorXd law =
+      nearest(family, {filters::seen_through(*filters::scheme_registry().make(GetParam(), {}), family.truth,
+                                             family.interval)});
+  const auto found = measured_unknowns(family, GetParam(), {"ukf"});
+  ASSERT_TRUE(found);
+  for (std::size_t j = 0; j < family.parts.size(); ++j) {
+    const auto at = static_cast<Eigen::Index>(j);
+    EXPECT_NEAR((*found)[at], law[at],
+                1e-4 * std::abs(law[at] - family.parts[j].value) + 1e-7 * family.parts[j].scale)
+        << family.parts[j].name;
+  }
+}
+
 TEST(ManyDegrees, HavePagesThatHoldWhatTheCommandPrints) {
   Results results;
-  add_degrees_page(make_degrees_page(unwatched), results);
+  add_degrees_page(whole_page(), results);
   std::ostringstream printed;
   print(printed, results);
   const std::vector<std::string> output = docs::lines_of(printed.str()),
