@@ -13,6 +13,7 @@
 #include "experiments/results/result_directory.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/studies/atlas/atlas.hpp"
+#include "experiments/studies/atlas/many_degrees.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
 #include "experiments/studies/study.hpp"
 #include "fem/assembly.hpp"
@@ -296,6 +297,7 @@ class AtlasStudy final : public Study {
   Results run(const Progress& progress) const override {
     Results results = report(make_atlas(settings_, progress));
     add_hold_page(make_hold_page(settings_, progress), settings_.beam, results);
+    add_degrees_page(make_degrees_page(progress), results);
     warn_of_file(results, config_);
     return results;
   }

@@ -76,9 +76,10 @@ struct InputFault {
   bool is_sure = true;     ///< neither chance nor of the size of what an interpolation does
 };
 
-constexpr double sure_deviations = 4.5, likely = 3.3;  // deviations: by chance in one of 10^5 records, of 1000
-constexpr double small = 0.5;                 // phase [rad]
-constexpr double material = 0.01;             // of an interval
+constexpr double sure_deviations = 4.5,
+                 likely = 3.3;     // deviations: by chance in one of 10^5 records, of 1000
+constexpr double small = 0.5;      // phase [rad]
+constexpr double material = 0.01;  // of an interval
 
 // What a clock would do. @param lag the largest within the record [s]
 InputFault clock_fault(const RunContext& context, const ComparedRun& run, const LikeliestClock& found,

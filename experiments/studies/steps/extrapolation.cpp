@@ -1,10 +1,9 @@
 #include <Eigen/LU>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "experiments/studies/steps/steps.hpp"
-#include "filters/scheme.hpp"
+#include "filters/scheme_bias.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -29,15 +28,12 @@ FoundMode at_zero(const std::vector<double>& intervals, const std::vector<FoundM
 }  // namespace
 
 int order_of(const std::string& scheme) {
-  const auto method = filters::scheme_registry().make(scheme, {});
-  const auto missing = [&](double size) {
-    const std::complex<double> z = std::polar(size, 1.0);
-    return std::abs(std::exp(z) - method->amplification(z).value);
-  };
-  constexpr double size = 0.05, rounding = 1e-14;
-  const double small = missing(size), twice = missing(2.0 * size);
-  if (small < rounding) return 0;
-  return static_cast<int>(std::lround(std::log2(twice / small))) - 1;
+  constexpr int highest = 8;
+  const std::vector<double> series =
+      filters::bias_series(*filters::scheme_registry().make(scheme, {}), highest);
+  for (std::size_t k = 0; k < series.size(); ++k)
+    if (series[k] != 0.0) return static_cast<int>(k) + 1;
+  return 0;
 }
 
 std::optional<Extrapolation> StepsStudy::extrapolated(std::size_t discretisation) const {

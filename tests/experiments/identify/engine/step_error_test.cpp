@@ -41,5 +41,54 @@ TEST(StepError, IsSaidOfTheMeshAndNotOfItsModes) {
   EXPECT_THAT(found.runs[1].warnings, testing::Not(said));
 }
 
+constexpr const char* falling_chain = R"toml(
+[chain]
+masses_kg = [1000, 800, 900]
+stiffnesses_n_per_m = [2.0e6, 1.5e6, 1.2e6]
+dashpots_n_s_per_m = [2055, 1541, 1233]
+heights_m = [3, 3, 3]
+[excitation]
+kind = "release"
+position_m = 9
+deflection_m = 0.01
+[simulation]
+duration_s = 10
+sampling_rate_hz = 500
+seed = 3
+[[sensors]]
+quantity = "displacement"
+position_m = 3
+noise_m = 1e-6
+[[sensors]]
+quantity = "displacement"
+position_m = 6
+noise_m = 1e-6
+[[sensors]]
+quantity = "displacement"
+position_m = 9
+noise_m = 1e-6
+[model]
+name = "beam"
+[[parameters]]
+quantity = "storey_stiffness"
+relative_deviation = 0.1
+[[parameters]]
+quantity = "storey_damping"
+relative_deviation = 1.0
+)toml";
+
+// Oracle: 1 % in the first mode at 3.097 Hz, to which forward Euler adds w dt / 2 = 1.95 %.
+TEST(StepError, IsSaidOfTheDampingOfEveryLinearModel) {
+  Experiment experiment = read_experiment(TomlTable::parse(falling_chain, "falling.toml"));
+  experiment.filters = {experiment.filter};
+  experiment.reductions = {parse_reduction("modal_truncation:modes=3", "test")};
+  experiment.discretisations = {"exponential", "forward_euler"};
+  const Comparison found = compare(experiment, simulated_record(experiment, {}, silent), {}, silent);
+  const auto said = testing::Contains(
+      testing::HasSubstr("WRONG BY THE STEP: at 2 ms forward_euler has a damping ratio of"));
+  EXPECT_THAT(found.runs[0].warnings, testing::Not(said));
+  EXPECT_THAT(found.runs[1].warnings, said);
+}
+
 }  // namespace
 }  // namespace beamid::experiments::step_error_test
