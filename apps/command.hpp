@@ -81,6 +81,7 @@ struct Command {
   std::vector<Option> all_options() const;
 };
 
+/// Commands under one heading of the first screen.
 struct CommandGroup {
   std::string title;  ///< empty: not shown in the help
   std::vector<Command> commands;

@@ -24,6 +24,7 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What the command line gives for the options and arguments of a command.
 class Values {
  public:
   /// Long options as --name VALUE or --name=VALUE, short ones as -n VALUE or -nVALUE, flags joined as in -qv;

@@ -10,6 +10,7 @@ namespace beamid::experiments {
 
 // What each of several known poles contributes to a record.
 
+/// Shapes of known poles, with the reconstruction and its residual.
 struct ShapeFit {
   Eigen::MatrixXcd shapes;                      ///< (p x n)
   Eigen::MatrixXd reconstruction;               ///< (p x N)

@@ -46,6 +46,7 @@ double phase_collinearity(const Eigen::VectorXcd& shape);
 
 // Which poles stay where they are as the model order grows: those of the structure.
 
+/// How far a pole may move from order to order.
 struct StabilisationSettings {
   double frequency_tolerance = 0.01;  ///< relative change from the order before
   double damping_tolerance = 0.1;     ///< of the damping ratio, relative
@@ -60,6 +61,7 @@ struct StabilisationSettings {
 
 enum class Stability { unstable, frequency, full };  ///< frequency only, or damping and shape too
 
+/// A pole in the stabilisation diagram.
 struct DiagramPole {
   int order = 0;
   Pole pole;
@@ -73,6 +75,7 @@ struct PoleCluster {
   std::string objection;    ///< why it is no mode of the structure; empty: it is one
 };
 
+/// The diagram and the modes that are stable in it.
 struct Stabilisation {
   std::vector<DiagramPole> poles;     ///< within the band
   std::vector<PoleCluster> modes;     ///< by rising frequency

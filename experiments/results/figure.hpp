@@ -111,6 +111,7 @@ std::vector<std::string> files_of(const Figure& figure);
 
 // Panels that several commands draw of a signal.
 
+/// A signal as it is drawn.
 struct DrawnSignal {
   std::string label;  ///< in the legend; empty where there is one signal
   Eigen::VectorXd samples;

@@ -8,6 +8,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
+#include "experiments/signal/in_double.hpp"
+
 namespace beamid::experiments {
 
 double chi_square_limit(double freedom, double probability) {

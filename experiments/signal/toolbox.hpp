@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <boost/math/policies/policy.hpp>
 
 #include "filters/random.hpp"
 
@@ -26,12 +25,6 @@ double student_factor(double freedom);
 
 /// @throws std::invalid_argument "mass: -1.000000; expected a positive number"
 void require_positive(double value, const std::string& name);
-
-// Inverse distributions worked out in double.
-
-/// Not by way of long double: the tables of its inverse error function are made when a program starts, and
-/// overflow where a processor (valgrind's) has but 64 bits of it.
-using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 // Lengths that transform fast: no prime factor above 7, or another that is asked for.
 

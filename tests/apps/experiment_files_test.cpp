@@ -171,7 +171,7 @@ TEST(Tutorials, HoldExperimentFilesThatAreValid) {
     const Outcome outcome = Workplace().run("validate '" + entry.path().string() + "'");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
-  EXPECT_EQ(found, 47);
+  EXPECT_EQ(found, 48);
 }
 
 // Oracle: the rows that the reader has. A line behind # is a key, too.

@@ -31,6 +31,7 @@ std::optional<Choice> step_against_higher_modes(const Experiment& experiment, co
 
 // What frequency a record shows, whatever model looks at it: an aid, never a condition.
 
+/// A frequency that a record shows by itself.
 struct RecordedFrequency {
   std::optional<double> value_hz;  ///< absent: could not be had
   std::string failure;             ///< why not
@@ -114,6 +115,7 @@ double shown_at(double frequency_hz, double sampling_rate_hz);
 
 // What in a free decay speaks against any one frequency and damping ratio of it.
 
+/// A sentence against one frequency and damping ratio of a free decay.
 struct DecayObjection {
   std::string text;          ///< a sentence or more for the first lines of a report
   bool contradicts = false;  ///< the estimates are not to be relied on

@@ -78,7 +78,7 @@ Beam with_root(Beam beam, bool fem::Support::*held, double fem::Spring::*spring,
 // An ideal clamp gives so little, of what is plausible: it has the coordinates of one that is not ideal.
 constexpr double ideal = 1e-6;
 
-std::function<fem::Structure(const fem::Structure&, double)> on_beam(
+std::function<fem::Structure(const fem::Structure&, double)> change_of_beam(
     std::function<Beam(const Beam&, double)> changed) {
   return [=](const fem::Structure& s, double x) { return fem::Structure(changed(s.beam(), x)); };
 }
@@ -103,7 +103,7 @@ Candidate at_root(const Beam& beam, const char* name, bool fem::Support::*held, 
   Candidate c = beam_cause(name, turns ? "rad/(N m)" : "m/N", turns ? "N m/rad" : "N/m", -now,
                            100 * plausible, plausible);
   c.plausible_lower = -now;
-  c.changed = on_beam([=](const Beam& b, double x) {
+  c.changed = change_of_beam([=](const Beam& b, double x) {
     return with_root(b, held, spring,
                      std::max(0.0, root_compliance(b, held, spring) + x) + ideal * plausible);
   });
@@ -125,7 +125,7 @@ std::vector<Candidate> beam_candidates(const Beam& beam) {
   std::vector<Candidate> all;
   const auto add = [&](Candidate c, const std::function<Beam(const Beam&, double)>& changed,
                        const std::function<double(const Beam&, double)>& value) {
-    c.changed = on_beam(changed), c.value = value_on_beam(value);
+    c.changed = change_of_beam(changed), c.value = value_on_beam(value);
     all.push_back(std::move(c));
   };
   add(

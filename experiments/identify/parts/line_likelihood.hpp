@@ -58,6 +58,7 @@ struct LineProblem {
   filters::Gaussian prior;                    ///< theta_0, P_0 (its covariance) (q)
 };
 
+/// The likeliest unknowns of a part, with their covariance.
 struct LineFit {
   Eigen::VectorXd theta;        ///< (q)
   Eigen::MatrixXd information;  ///< I, without P_0 (q x q)

@@ -13,6 +13,7 @@
 #include <boost/math/special_functions/erf.hpp>
 
 #include "experiments/identify/posterior/no_u_turn.hpp"
+#include "experiments/signal/in_double.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "filters/random.hpp"
 

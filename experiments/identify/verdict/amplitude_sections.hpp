@@ -34,6 +34,7 @@ struct AmplitudeLawStart {
   double log_amplitude = 0;
 };
 
+/// How frequency and damping of a decay follow its amplitude.
 struct AmplitudeLaw {
   LawLine frequency_hz, damping_ratio;
   double squares = 0, freedom = 0;  ///< of the residuals

@@ -91,13 +91,23 @@ MatrixXd fitted_space(const DecimatedSignal& coarse, const ModalEstimate& modal)
   return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(n, columns.cols());
 }
 
-/// Periodograms |X_k|^2 / n of the columns of x (n x c) at line k.
-VectorXd periodogram(const MatrixXd& x, Index k) {
-  const auto n = static_cast<double>(x.rows());
-  Eigen::VectorXcd turns(x.rows());
-  for (Index j = 0; j < x.rows(); ++j)
-    turns[j] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>((j * k) % x.rows()) / n);
-  return (x.transpose() * turns).cwiseAbs2() / n;
+/// e^(-2 pi i j / n), j = 0 ... n - 1: the turns of all lines, since line k at sample j has turn (j k) mod n.
+Eigen::VectorXcd turns_of(Index n) {
+  Eigen::VectorXcd turns(n);
+  for (Index j = 0; j < n; ++j)
+    turns[j] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(n));
+  return turns;
+}
+
+/// Periodograms |X_k|^2 / n of the columns of x (n x c) at line k. @param all turns_of(n)
+VectorXd periodogram(const MatrixXd& x, Index k, const Eigen::VectorXcd& all) {
+  const Index n = x.rows();
+  Eigen::VectorXcd turns(n);
+  for (Index j = 0, at = 0; j < n; ++j) {
+    turns[j] = all[at];
+    if ((at += k) >= n) at -= n;  // k < n
+  }
+  return (x.transpose() * turns).cwiseAbs2() / static_cast<double>(n);
 }
 
 /// Of the lines around the mode: what is left (P), the share of it that the fit does not take (w), and
@@ -113,10 +123,11 @@ SpectralLines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal
   const double line = 1 / (static_cast<double>(space.rows()) * coarse.interval);  // [Hz]
   const auto first = std::max<Index>(1, static_cast<Index>(std::ceil(modal.frequency_hz / line_band / line))),
              last = static_cast<Index>(modal.frequency_hz * line_band / line);
+  const Eigen::VectorXcd turns = turns_of(space.rows());
   SpectralLines lines;
   double sum = 0;
   for (Index k = first; (k <= last || sum < least_weight) && 2 * k < space.rows(); ++k) {
-    const VectorXd power = periodogram(columns, k);
+    const VectorXd power = periodogram(columns, k, turns);
     lines.left.push_back(power[0]);
     lines.weight.push_back(std::max(0.0, 1 - power.tail(space.cols()).sum()));
     lines.log_frequency.push_back(std::log(static_cast<double>(k) * line / modal.frequency_hz));

@@ -12,6 +12,7 @@ namespace beamid::experiments {
 
 // What one mode and an offset leave of a record.
 
+/// The motion of one mode and an offset, and the residual.
 struct ModeResidual {
   Eigen::MatrixXd reproduced;          ///< the nearest motion, of every sample (p x N)
   Eigen::VectorXd standard_deviation;  ///< of what it leaves of the samples that were measured (p)

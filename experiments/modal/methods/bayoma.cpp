@@ -98,7 +98,7 @@ class BayesMethod final : public ModalMethod {
   /// does by more than chance makes of one in a hundred thousand, and each is determined.
   bool add_pair(const BandCoefficients& all, const std::pair<double, double>& peaks,
                 const std::pair<double, double>& room, PoleSearch& found) const {
-    constexpr double by_chance = 1e-5, determined = 0.5;
+    constexpr double by_chance = 1e-5, determined = 0.5, widths_apart = 4.0;  // half widths
     const bool two_peaks = peaks.second > peaks.first;
     try {
       AmbientMode one;
@@ -127,6 +127,9 @@ class BayesMethod final : public ModalMethod {
         return false;
       for (const AmbientMode& mode : pair.modes)
         if (!(mode.damping_ratio_deviation < determined * mode.damping_ratio) ||
+            !(mode.frequency_deviation_hz < determined * mode.damping_ratio * mode.frequency_hz) ||
+            (!two_peaks && std::abs(mode.frequency_hz - one.frequency_hz) >
+                               widths_apart * one.damping_ratio * one.frequency_hz) ||
             mode.damping_ratio * mode.frequency_hz < all.frequency_hz[0] ||
             mode.frequency_hz < one.band_hz.first || mode.frequency_hz > one.band_hz.second)
           return false;

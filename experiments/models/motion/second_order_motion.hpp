@@ -101,6 +101,7 @@ struct ReducedEquations {
 /// unknowns are left to the caller.
 std::vector<DampedMode> damped_modes(const ReducedEquations& equations);
 
+/// Motion of a reduced model.
 class ReducedMotion final : public SecondOrderMotion {
  public:
   /// @param rows what the observations read (p x r)
