@@ -1,7 +1,6 @@
 #include "experiments/modal/ambient_pair.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -287,7 +286,7 @@ AmbientPair ambient_pair(const BandCoefficients& band, const AmbientMode& one,
   return pair;
 }
 
-double band_probability(const VectorXd& misfit, Index channels, Index lines) {
+double band_dispersion(const VectorXd& misfit, Index channels, Index lines) {
   const Index size = std::max<Index>(8, lines), groups = misfit.size() / size;
   if (groups < 3) return 1.0;
   double square = 0.0;
@@ -295,8 +294,7 @@ double band_probability(const VectorXd& misfit, Index channels, Index lines) {
   for (Index g = 0; g < groups; ++g)
     square += std::pow(misfit.segment(g * size, size).sum() - p * static_cast<double>(size), 2) /
               (p * static_cast<double>(size));
-  return boost::math::cdf(
-      boost::math::complement(boost::math::chi_squared(static_cast<double>(groups)), square));
+  return square / static_cast<double>(groups);
 }
 
 }  // namespace beamid::experiments

@@ -32,12 +32,12 @@ struct AmbientPair {
 AmbientPair ambient_pair(const BandCoefficients& band, const AmbientMode& one,
                          const std::vector<std::pair<double, double>>& starts, ResponseKind kind);
 
-/// Probability that a band lies as far from a spectrum as this one does where the spectrum is right: chi^2 of
-/// the sums of its misfit over groups of neighbouring lines, which chance makes independent and a wrong
-/// spectrum does not.
-/// @param misfit of p channels, p on the average at each line (n)
+/// Mean square of the sums of a band's misfit over groups of neighbouring lines, each in its standard
+/// deviations: about 1 where the spectrum is right, as chance makes the lines independent; more where it is
+/// not. @param misfit of p channels, p on the average at each line (n)
 /// @param lines in a group, about the width of a mode's peak; at least 8 are taken, so that sums are near
 /// normal
-double band_probability(const Eigen::VectorXd& misfit, Eigen::Index channels, Eigen::Index lines);
+/// @returns 1 for fewer than three groups
+double band_dispersion(const Eigen::VectorXd& misfit, Eigen::Index channels, Eigen::Index lines);
 
 }  // namespace beamid::experiments

@@ -49,7 +49,8 @@ std::string lines_sentence(const AmbientMode& mode, Index in_band, std::vector<d
       text, mode.frequency_hz, static_cast<Index>(3 * lines.size()), in_band);
 }
 
-constexpr double no_chance = 1e-6;  // of a band that is that of its mode
+constexpr double most_dispersed =
+    10.0;  // of a band: one for its mode, 4 to 5 where the load is not quite white
 
 class BayesMethod final : public ModalMethod {
  public:
@@ -184,7 +185,9 @@ class BayesMethod final : public ModalMethod {
         throw std::invalid_argument(
             "as narrow as so long a record shows: a machine, or a mode that needs a longer one");
       const auto peak_lines = static_cast<Index>(2.0 * zeta * mode.frequency_hz / step);
-      if (band_probability(band_misfit(mode, band, kind_), band.coefficients.rows(), peak_lines) < no_chance)
+      const double dispersion =
+          band_dispersion(band_misfit(mode, band, kind_), band.coefficients.rows(), peak_lines);
+      if (dispersion > most_dispersed)
         throw std::invalid_argument(
             "its band is not that of one mode, nor of two: close modes, or a load that is not white; try "
             "ssi_cov");
