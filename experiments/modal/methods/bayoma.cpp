@@ -99,7 +99,7 @@ class BayesMethod final : public ModalMethod {
   /// does by more than chance makes of one in a hundred thousand, and each is determined.
   bool add_pair(const BandCoefficients& all, const std::pair<double, double>& peaks,
                 const std::pair<double, double>& room, PoleSearch& found) const {
-    constexpr double by_chance = 1e-5, determined = 0.5, widths_apart = 4.0;  // half widths
+    constexpr double by_chance = 1e-5, determined = 0.5, widths_apart = 8.0;  // half widths
     const bool two_peaks = peaks.second > peaks.first;
     try {
       AmbientMode one;
