@@ -160,6 +160,12 @@ fs::path record_file(const std::string& word) {
   return input.file();
 }
 
+Words delimiter_names() {
+  Words names;
+  for (const auto& [name, sign] : delimiters) names.push_back(name);
+  return names;
+}
+
 Words quantity_names() {
   Words names;
   for (const Quantity quantity : all_quantities) names.emplace_back(to_string(quantity));
@@ -190,7 +196,7 @@ OptionGroup column_options() {
                .by_default("as_they_are")
                .one_of({"even", "as_they_are"}),
            text("delimiter", "SIGN", "between the columns of a text file, where its rows do not show it")
-               .one_of({"comma", "semicolon", "tab", "space"}),
+               .one_of(delimiter_names()),
            text("decimal", "SIGN", "between whole and fraction, where the rows do not show it")
                .one_of({"point", "comma"}),
            flag("skip-malformed", "leave malformed lines out, counted and located"),

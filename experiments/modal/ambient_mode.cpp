@@ -17,20 +17,11 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::Vector4d, Eigen::VectorXcd, Eigen::VectorXd;
 
-// D_k.
-double response_to_force(double b, double zeta, int power) {
-  return std::pow(b, power) / (std::pow(b * b - 1.0, 2) + std::pow(2.0 * zeta * b, 2));
-}
-
-int power_of_kind(ResponseKind kind) {
-  return 2 * static_cast<int>(kind);
-}
-
 // [f / f_start - 1 in units of the damping ratio, ln zeta, ln S, ln S_e], and -ln p of them.
 class BandLikelihood {
  public:
   BandLikelihood(const BandCoefficients& band, double frequency_hz, double damping_ratio, ResponseKind kind)
-      : band_(band), scale_(damping_ratio), frequency_(frequency_hz), power_(power_of_kind(kind)) {
+      : band_(band), scale_(damping_ratio), frequency_(frequency_hz), kind_(kind) {
     total_ = band.coefficients.squaredNorm();
   }
 
@@ -65,7 +56,7 @@ class BandLikelihood {
     return found;
   }
 
-  double response(double b, double zeta) const { return response_to_force(b, zeta, power_); }
+  double response(double b, double zeta) const { return response_to_force(b, zeta, kind_); }
 
  private:
   double eigenvalue(const VectorXd& weight, VectorXd* vector) const {
@@ -79,7 +70,7 @@ class BandLikelihood {
 
   const BandCoefficients& band_;
   double scale_, frequency_, noise_ = 0.0;
-  int power_;
+  ResponseKind kind_;
   double total_ = 0.0;
 };
 
@@ -134,6 +125,11 @@ bool descend(const BandLikelihood& cost, Vector4d& at, Curvature& last) {
 }
 
 }  // namespace
+
+double response_to_force(double b, double damping_ratio, ResponseKind kind) {
+  return std::pow(b, 2 * static_cast<int>(kind)) /
+         (std::pow(b * b - 1.0, 2) + std::pow(2.0 * damping_ratio * b, 2));
+}
 
 BandCoefficients fourier_coefficients(const MatrixXd& outputs, double interval) {
   const Index samples = fast_length_within(outputs.cols()), half = (samples - 1) / 2;
@@ -203,8 +199,8 @@ AmbientMode ambient_mode(const BandCoefficients& band, double frequency_hz, doub
 VectorXd band_misfit(const AmbientMode& mode, const BandCoefficients& band, ResponseKind kind) {
   VectorXd misfit(band.frequency_hz.size());
   for (Index k = 0; k < misfit.size(); ++k) {
-    const double own = mode.force_density * response_to_force(band.frequency_hz[k] / mode.frequency_hz,
-                                                              mode.damping_ratio, power_of_kind(kind));
+    const double own = mode.force_density *
+                       response_to_force(band.frequency_hz[k] / mode.frequency_hz, mode.damping_ratio, kind);
     const double along = std::norm(mode.shape.cast<Complex>().dot(band.coefficients.col(k)));
     misfit[k] = along / (own + mode.noise_density) +
                 (band.coefficients.col(k).squaredNorm() - along) / mode.noise_density;

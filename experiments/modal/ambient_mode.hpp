@@ -10,6 +10,10 @@ namespace beamid::experiments {
 /// What the response's spectrum is of a force of flat spectrum.
 enum class ResponseKind { displacement, velocity, acceleration };
 
+/// D(b) = b^(2 q) / ((b^2 - 1)^2 + (2 zeta b)^2), b = f / f_0: that spectrum of a mode, q = 0, 1, 2 of a
+/// displacement, a velocity, an acceleration.
+double response_to_force(double b, double damping_ratio, ResponseKind kind);
+
 /// Fourier coefficients of a band, F_k = sqrt(2 dt / N) sum_j y_j e^(-i 2 pi f_k t_j) for p channels, of the
 /// N first samples that transform fast.
 struct BandCoefficients {

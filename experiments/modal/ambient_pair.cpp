@@ -228,9 +228,7 @@ double cost_of_one(const AmbientMode& one, const BandCoefficients& band, Respons
   const auto p = static_cast<double>(band.coefficients.rows());
   double sum = misfit.sum();
   for (const double f : band.frequency_hz) {
-    const double b = f / one.frequency_hz,
-                 own = std::pow(b, 2 * static_cast<int>(kind)) /
-                       (std::pow(b * b - 1.0, 2) + std::pow(2.0 * one.damping_ratio * b, 2));
+    const double own = response_to_force(f / one.frequency_hz, one.damping_ratio, kind);
     sum += std::log(one.force_density * own + one.noise_density) + (p - 1.0) * std::log(one.noise_density);
   }
   return sum;

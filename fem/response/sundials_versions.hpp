@@ -1,5 +1,5 @@
-// SUNDIALS 6 (Debian 12) and 7 (Debian 13) under the names of 7. Everything in which they differ is here, and
-// in fem/sundials.cmake.
+// SUNDIALS 6 (Debian 12) and 7 (Debian 13) under the names of 7. Everything in which they differ for fem is
+// here, and in fem/sundials.cmake.
 #pragma once
 
 #include <arkode/arkode_arkstep.h>

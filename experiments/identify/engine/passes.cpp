@@ -200,7 +200,7 @@ bool Passes::filter_once() {
   SteadyClock::time_point start = SteadyClock::now();
   // A smoother needs every estimate; the figure of an oscillator's K and C their history.
   const bool smoothed = !context_.experiment.smoother.empty();
-  const bool drawn = settings_.keep == filters::Keep::all_estimates && !smoothed && is_oscillator(model);
+  const bool drawn = settings_.keep == filters::Keep::all_estimates && is_oscillator(model);
   run_.run = filter_record(
       model, record_, run_.settings, smoothed ? settings_.keep : filters::Keep::last_estimate,
       drawn ? filters::Trace{{model.unknown_places[0], model.unknown_places[1]}} : filters::Trace{});

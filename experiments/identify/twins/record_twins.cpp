@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
@@ -153,7 +154,7 @@ std::string not_unique_text(const RecordTwins& twins) {
   const std::size_t others = twins.undecided();
   double least = deciding_chi_square;
   for (const RecordTwin& twin : twins.sets)
-    if (std::abs(twin.more()) < deciding_chi_square) least = std::min(least, twin.more());
+    if (twin.is_undecided()) least = std::min(least, twin.more());
   return fmt::format(
       "NOT UNIQUE: at least {} other set{} of parameters explain{} this record as well (chi^2 {:+.2g}, with "
       "what was "
@@ -170,9 +171,8 @@ const RecordTwin* RecordTwins::better() const {
 }
 
 std::size_t RecordTwins::undecided() const {
-  return static_cast<std::size_t>(std::count_if(sets.begin(), sets.end(), [](const RecordTwin& twin) {
-    return std::abs(twin.more()) < deciding_chi_square;
-  }));
+  return static_cast<std::size_t>(
+      std::count_if(sets.begin(), sets.end(), std::mem_fn(&RecordTwin::is_undecided)));
 }
 
 RecordTwins record_twins(const Experiment& experiment, const Comparison& comparison,

@@ -1,6 +1,8 @@
 // Other sets of parameters that explain a record as well as the one that was found.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -11,6 +13,9 @@
 
 namespace beamid::experiments {
 
+/// A set is decidedly likelier than another where it is twenty times likelier: -2 ln of the ratio.
+inline constexpr double deciding_chi_square = 6.0;
+
 /// One such set, at the minimum of the misfit near it.
 struct RecordTwin {
   Eigen::VectorXd values;  ///< of the run's parameters, in their order and units (q)
@@ -20,10 +25,9 @@ struct RecordTwin {
 
   /// -2 ln of its posterior density over that of the set found.
   double more() const { return chi_square + prior_chi_square; }
+  /// Whether it is neither decidedly less nor decidedly more likely than the set found.
+  bool is_undecided() const { return std::abs(more()) < deciding_chi_square; }
 };
-
-/// Two sets are told apart where one is twenty times likelier than the other: -2 ln of the ratio.
-inline constexpr double deciding_chi_square = 6.0;
 
 struct RecordTwins {
   std::vector<RecordTwin> sets;               ///< the most likely beforehand first
@@ -32,8 +36,7 @@ struct RecordTwins {
 
   /// The set of the highest posterior where that is decidedly higher than that of the set found; else null.
   const RecordTwin* better() const;
-  /// How many sets are neither decidedly less nor decidedly more likely than the set found.
-  std::size_t undecided() const;
+  std::size_t undecided() const;  ///< how many sets are
 };
 
 /// The sets with the frequencies of the structure that was found (twins.hpp), each moved to where it is

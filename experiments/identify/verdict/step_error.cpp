@@ -54,13 +54,6 @@ bool asks_for_damping(const ComparedRun& run) {
                      [](const Unknown& one) { return !one.nuisance && is_damping(one.quantity); });
 }
 
-/// Undamped frequency [rad/s] and damping ratio of a pole.
-struct Pole {
-  double frequency = 0, ratio = 0;
-  explicit Pole(std::complex<double> lambda)
-      : frequency(std::abs(lambda)), ratio(-lambda.real() / frequency) {}
-};
-
 /// What the scheme adds to the damping of the model as found: by the law of many degrees of freedom
 /// (filters/scheme_bias.hpp) every pole of the motion behind it is log(g(lambda_f dt)) / dt, whatever the
 /// damping. Of the modes that the record holds the one with the largest share.
@@ -72,23 +65,24 @@ std::string damping_of_step(const ComparedRun& run, double interval,
   motion->motion_matrix(run.run.last.mean, matrix);
   const auto scheme = filters::scheme_registry().make(run.discretisation, {});
   double worst = 0;
-  std::optional<Pole> found, behind;
+  std::optional<Oscillator> found, behind;
   const Eigen::VectorXcd poles = matrix.eigenvalues();
   for (const std::complex<double> pole : poles) {
     if (!(pole.imag() > 0 && std::abs(pole) * interval < std::numbers::pi)) continue;
-    const Pole one(pole), other(std::log(scheme->amplification(pole * interval).value) / interval);
-    const double share = 1 - other.ratio / one.ratio;
-    if (!(std::abs(share) > std::abs(worst)) || !holds(other.frequency / (2 * std::numbers::pi))) continue;
+    const auto one = Oscillator::from_eigenvalue(1, pole),
+               other = Oscillator::from_eigenvalue(
+                   1, std::log(scheme->amplification(pole * interval).value) / interval);
+    const double share = 1 - other.damping_ratio() / one.damping_ratio();
+    if (!(std::abs(share) > std::abs(worst)) || !holds(other.frequency_hz())) continue;
     worst = share, found = one, behind = other;
   }
   constexpr double much = 0.01;
   if (!found || !(std::abs(worst) > std::max(much, narrowest_interval(run, true)))) return {};
   return fmt::format(
       "WRONG BY THE STEP: at {:.3g} ms {} has a damping ratio of {:.3g} % at {:.4g} Hz where {:.3g} % make "
-      "the "
-      "same record; dampings are too {} by that. Expected the discretisation exponential.",
-      1e3 * interval, run.discretisation, 100 * found->ratio, found->frequency / (2 * std::numbers::pi),
-      100 * behind->ratio, found->ratio > behind->ratio ? "large" : "small");
+      "the same record; dampings are too {} by that. Expected the discretisation exponential.",
+      1e3 * interval, run.discretisation, 100 * found->damping_ratio(), found->frequency_hz(),
+      100 * behind->damping_ratio(), found->damping_ratio() > behind->damping_ratio() ? "large" : "small");
 }
 
 }  // namespace

@@ -109,16 +109,14 @@ class BayesMethod final : public ModalMethod {
           (two_peaks && (peaks.second - peaks.first) > kappa_ * first_ratio_ * peaks.first))
         return false;
       BandCoefficients band;
-      for (int pass = 0; pass < 2; ++pass) {
-        const double half = two_peaks ? kappa_ * first_ratio_ * one.frequency_hz
-                                      : kappa_ * one.damping_ratio * one.frequency_hz;
-        band = within(all, {std::max(room.first, (two_peaks ? peaks.first : one.frequency_hz) - half),
-                            std::min(room.second, (two_peaks ? peaks.second : one.frequency_hz) + half)});
+      for (int pass = 0; pass < (two_peaks ? 1 : 2); ++pass) {
+        const auto [lower, upper] = two_peaks ? peaks : std::pair(one.frequency_hz, one.frequency_hz);
+        const double half = kappa_ * (two_peaks ? first_ratio_ : one.damping_ratio) * one.frequency_hz;
+        band = within(all, {std::max(room.first, lower - half), std::min(room.second, upper + half)});
         one = ambient_mode(band, one.frequency_hz, one.damping_ratio, kind_);
         if (!(one.damping_ratio < 0.2) || one.frequency_hz < one.band_hz.first ||
             one.frequency_hz > one.band_hz.second)
           return false;
-        if (two_peaks) break;
       }
       std::vector<std::pair<double, double>> starts;
       if (two_peaks) starts.push_back(peaks);
@@ -126,14 +124,15 @@ class BayesMethod final : public ModalMethod {
       const boost::math::chi_squared law(pair.more_parameters);
       if (!pair.converged || !separate(pair) || !(pair.gain > quantile(complement(law, by_chance))))
         return false;
-      for (const AmbientMode& mode : pair.modes)
+      const double furthest = widths_apart * one.damping_ratio * one.frequency_hz;
+      for (const AmbientMode& mode : pair.modes) {
+        const double half_width = mode.damping_ratio * mode.frequency_hz;
         if (!(mode.damping_ratio_deviation < determined * mode.damping_ratio) ||
-            !(mode.frequency_deviation_hz < determined * mode.damping_ratio * mode.frequency_hz) ||
-            (!two_peaks && std::abs(mode.frequency_hz - one.frequency_hz) >
-                               widths_apart * one.damping_ratio * one.frequency_hz) ||
-            mode.damping_ratio * mode.frequency_hz < all.frequency_hz[0] ||
+            !(mode.frequency_deviation_hz < determined * half_width) || half_width < all.frequency_hz[0] ||
+            (!two_peaks && std::abs(mode.frequency_hz - one.frequency_hz) > furthest) ||
             mode.frequency_hz < one.band_hz.first || mode.frequency_hz > one.band_hz.second)
           return false;
+      }
       for (const AmbientMode& mode : pair.modes) found.orders.back().poles.push_back(pole_of(mode));
       return true;
     } catch (const std::invalid_argument&) {

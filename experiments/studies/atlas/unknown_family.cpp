@@ -37,25 +37,36 @@ MatrixXd observed_rows(const UnknownFamily& family) {
   return rows;
 }
 
+/// -M^-1 K and -M^-1 C in the last n rows (2n x 2n).
+MatrixXd rows_of_rates(const UnknownFamily& family, const MatrixXd& stiffness, const MatrixXd& damping) {
+  const Index n = family.truth.size();
+  const Eigen::LDLT<MatrixXd> mass(family.truth.mass);
+  MatrixXd made = MatrixXd::Zero(2 * n, 2 * n);
+  made.bottomLeftCorner(n, n) = -mass.solve(stiffness);
+  made.bottomRightCorner(n, n) = -mass.solve(damping);
+  return made;
+}
+
+/// dA / du_j.
+MatrixXd slope_of(const UnknownFamily& family, const UnknownFamily::Part& part) {
+  const MatrixXd zero = MatrixXd::Zero(family.truth.size(), family.truth.size());
+  return rows_of_rates(family, part.damping ? zero : part.matrix, part.damping ? part.matrix : zero);
+}
+
 /// The family as a filter takes it: state [x, x', u].
 class FamilyMotion final : public filters::LinearMotion {
  public:
-  explicit FamilyMotion(const UnknownFamily& family) : family_(family), n_(family.truth.size()) {
-    const Eigen::LDLT<MatrixXd> mass(family.truth.mass);
-    fixed_ = MatrixXd::Zero(2 * n_, 2 * n_);
-    fixed_.topRightCorner(n_, n_).setIdentity();
-    if (family.fixed_stiffness.size() > 0)
-      fixed_.bottomLeftCorner(n_, n_) = -mass.solve(family.fixed_stiffness);
-    if (family.fixed_damping.size() > 0) fixed_.bottomRightCorner(n_, n_) = -mass.solve(family.fixed_damping);
-    for (const UnknownFamily::Part& part : family.parts) {
-      MatrixXd slope = MatrixXd::Zero(2 * n_, 2 * n_);
-      (part.damping ? slope.bottomRightCorner(n_, n_) : slope.bottomLeftCorner(n_, n_)) =
-          -mass.solve(part.matrix);
-      slopes_.push_back(std::move(slope));
-    }
+  explicit FamilyMotion(const UnknownFamily& family)
+      : parts_(family.parts),
+        n_(family.truth.size()),
+        input_(input_matrix_of(family)),
+        observed_(observed_rows(family)) {
+    const SecondOrder fixed = family.at(VectorXd::Zero(static_cast<Index>(parts_.size())));
+    fixed_ = fixed.motion_matrix();
+    for (const UnknownFamily::Part& part : parts_) slopes_.push_back(slope_of(family, part));
   }
 
-  Index input_size() const override { return family_.places.cols(); }
+  Index input_size() const override { return input_.cols(); }
   Index motion_size() const override { return 2 * n_; }
   Index parameter_size() const override { return static_cast<Index>(slopes_.size()); }
   void motion_matrix(const VectorXd& state, MatrixXd& matrix) const override {
@@ -66,48 +77,36 @@ class FamilyMotion final : public filters::LinearMotion {
   void motion_matrix_derivative(const VectorXd&, Index j, MatrixXd& matrix) const override {
     matrix = slopes_[static_cast<std::size_t>(j)];
   }
-  void input_matrix(const VectorXd&, MatrixXd& matrix) const override { matrix = input_matrix_of(family_); }
+  void input_matrix(const VectorXd&, MatrixXd& matrix) const override { matrix = input_; }
   std::vector<filters::Label> state_labels() const override {
     std::vector<filters::Label> labels;
     for (Index i = 0; i < 2 * n_; ++i) labels.push_back({"x_" + std::to_string(i + 1), i < n_ ? "m" : "m/s"});
-    for (const UnknownFamily::Part& part : family_.parts) labels.push_back({part.name, part.unit});
+    for (const UnknownFamily::Part& part : parts_) labels.push_back({part.name, part.unit});
     return labels;
   }
   std::vector<filters::Label> output_labels() const override {
-    return std::vector<filters::Label>(static_cast<std::size_t>(observed_rows(family_).rows()), {"x", "m"});
+    return std::vector<filters::Label>(static_cast<std::size_t>(observed_.rows()), {"x", "m"});
   }
   void output(const VectorXd& state, const VectorXd&, VectorXd& output) const override {
-    output = observed_rows(family_) * state.head(2 * n_);
+    output.noalias() = observed_ * state.head(2 * n_);
   }
   void output_jacobian(const VectorXd& state, const VectorXd&, MatrixXd& jacobian) const override {
-    const MatrixXd rows = observed_rows(family_);
-    jacobian.setZero(rows.rows(), state.size());
-    jacobian.leftCols(2 * n_) = rows;
+    jacobian.setZero(observed_.rows(), state.size());
+    jacobian.leftCols(2 * n_) = observed_;
   }
 
  private:
-  UnknownFamily family_;
+  std::vector<UnknownFamily::Part> parts_;
   Index n_;
-  MatrixXd fixed_;
+  MatrixXd input_, observed_, fixed_;
   std::vector<MatrixXd> slopes_;
 };
 
-MatrixXd rows_of_rates(const UnknownFamily& family, const MatrixXd& stiffness, const MatrixXd& damping) {
-  const Index n = family.truth.size();
-  const Eigen::LDLT<MatrixXd> mass(family.truth.mass);
-  MatrixXd made = MatrixXd::Zero(2 * n, 2 * n);
-  made.bottomLeftCorner(n, n) = -mass.solve(stiffness);
-  made.bottomRightCorner(n, n) = -mass.solve(damping);
-  return made;
-}
-
 /// What one unit of `scale` of each unknown does to A.
 std::vector<MatrixXd> directions_of(const UnknownFamily& family) {
-  const MatrixXd zero = MatrixXd::Zero(family.truth.size(), family.truth.size());
   std::vector<MatrixXd> directions;
   for (const UnknownFamily::Part& part : family.parts)
-    directions.push_back(part.scale * rows_of_rates(family, part.damping ? zero : part.matrix,
-                                                    part.damping ? part.matrix : zero));
+    directions.push_back(part.scale * slope_of(family, part));
   return directions;
 }
 
@@ -130,17 +129,26 @@ MatrixXd sensitivities(const UnknownFamily& family, const VectorXd& start, const
   return found;
 }
 
+VectorXd released(const UnknownFamily& family) {
+  VectorXd start = VectorXd::Zero(2 * family.truth.size());
+  start.head(family.truth.size()) = family.start;
+  return start;
+}
+
+/// What z_0 and changes of A along directions do to the exact record (p N x 2n + d).
+MatrixXd record_sensitivities(const UnknownFamily& family, std::vector<MatrixXd> directions) {
+  const auto exact = filters::scheme_registry().make("exponential", {});
+  const MatrixXd a = family.truth.motion_matrix() * family.interval;
+  for (MatrixXd& direction : directions)
+    direction = filters::amplification_slope(*exact, a, direction * family.interval);
+  return sensitivities(family, released(family), a.exp(), directions);
+}
+
 /// x of columns x = right, each column brought to length 1.
 MatrixXd solved(const MatrixXd& columns, const MatrixXd& right) {
   const VectorXd size = columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().transpose();
   const MatrixXd scaled = columns * size.asDiagonal();
   return size.asDiagonal() * scaled.householderQr().solve(right);
-}
-
-VectorXd released(const UnknownFamily& family) {
-  VectorXd start = VectorXd::Zero(2 * family.truth.size());
-  start.head(family.truth.size()) = family.start;
-  return start;
 }
 
 /// Of a complete family, entry by entry.
@@ -190,11 +198,7 @@ MatrixXd nearest(const UnknownFamily& family, const std::vector<SecondOrder>& ta
   for (const SecondOrder& target : targets)
     directions.push_back(rows_of_rates(family, target.stiffness - family.truth.stiffness,
                                        target.damping - family.truth.damping));
-  const auto exact = filters::scheme_registry().make("exponential", {});
-  const MatrixXd a = family.truth.motion_matrix() * family.interval;
-  for (MatrixXd& direction : directions)
-    direction = filters::amplification_slope(*exact, a, direction * family.interval);
-  const MatrixXd columns = sensitivities(family, released(family), a.exp(), directions),
+  const MatrixXd columns = record_sensitivities(family, std::move(directions)),
                  moved = solved(columns.leftCols(l + q), columns.rightCols(count));
   for (Index j = 0; j < q; ++j) {
     const UnknownFamily::Part& part = family.parts[static_cast<std::size_t>(j)];
@@ -266,12 +270,7 @@ std::optional<VectorXd> measured_unknowns(const UnknownFamily& family, const std
 
 VectorXd bounds(const UnknownFamily& family, double noise) {
   const Index l = 2 * family.truth.size(), q = static_cast<Index>(family.parts.size());
-  const auto exact = filters::scheme_registry().make("exponential", {});
-  const MatrixXd a = family.truth.motion_matrix() * family.interval;
-  std::vector<MatrixXd> directions = directions_of(family);
-  for (MatrixXd& direction : directions)
-    direction = filters::amplification_slope(*exact, a, direction * family.interval);
-  MatrixXd columns = sensitivities(family, released(family), a.exp(), directions);
+  MatrixXd columns = record_sensitivities(family, directions_of(family));
   const VectorXd size = columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().transpose();
   columns = (columns * size.asDiagonal()).eval();
   const MatrixXd root = columns.householderQr().matrixQR().topRows(l + q).triangularView<Eigen::Upper>();

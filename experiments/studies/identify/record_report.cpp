@@ -21,7 +21,7 @@ namespace {
 
 // Pictures of an identification: measured against reproduced motion, and convergence with its band.
 
-using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using Eigen::Index, Eigen::VectorXd;
 
 constexpr const char* reproduced_label = "reproduced with the identified K and C";
 
@@ -77,37 +77,22 @@ Panel history(const Record& record, const VectorXd& estimate, const VectorXd& de
   return panel.up(last - shown, last + shown);
 }
 
-/// K, C and their standard deviations after each sample of the last pass (4 x N); no columns where the run
-/// kept none.
-MatrixXd history_of_constants(const filters::FilterRun& run) {
-  if (run.filtered.empty()) {
-    if (run.means.rows() == 0) return MatrixXd(4, 0);
-    const Index reached =
-        run.failure ? std::min<Index>(run.failure->step, run.means.cols()) : run.means.cols();
-    MatrixXd kept(4, reached);
-    kept << run.means.leftCols(reached), run.deviations.leftCols(reached);
-    return kept;
-  }
-  MatrixXd constants(4, static_cast<Index>(run.filtered.size()));
-  for (Index k = 0; k < constants.cols(); ++k) {
-    const filters::Gaussian& state = run.filtered[static_cast<std::size_t>(k)];
-    constants.col(k) << state.mean.segment<2>(2), state.covariance.diagonal().segment<2>(2).cwiseSqrt();
-  }
-  return constants;
+Index samples_traced(const filters::FilterRun& run) {
+  return run.failure ? std::min<Index>(run.failure->step, run.means.cols()) : run.means.cols();
 }
 
 Figure convergence(const Record& record, const RecordIdentification& found) {
-  const MatrixXd constants = history_of_constants(found.identification.run);
-  const Index count = constants.cols();
+  const filters::FilterRun& run = found.identification.run;  // its traced entries are K and C
+  const Index count = samples_traced(run);
   VectorXd frequency(count), frequency_deviation(count), ratio(count), ratio_deviation(count);
   const double frequency_factor = found.frequency_factor(), damping_factor = found.damping_factor();
   for (Index k = 0; k < count; ++k) {
-    const Oscillator now{found.identification.found.mass, constants(0, k), constants(1, k)};
+    const Oscillator now{found.identification.found.mass, run.means(0, k), run.means(1, k)};
     frequency[k] = now.frequency_hz();
-    frequency_deviation[k] = frequency_factor * 0.5 * frequency[k] * constants(2, k) / now.stiffness;
+    frequency_deviation[k] = frequency_factor * 0.5 * frequency[k] * run.deviations(0, k) / now.stiffness;
     ratio[k] = 100.0 * now.damping_ratio();
     ratio_deviation[k] =
-        damping_factor * 100.0 * constants(3, k) / (2.0 * std::sqrt(now.stiffness * now.mass));
+        damping_factor * 100.0 * run.deviations(1, k) / (2.0 * std::sqrt(now.stiffness * now.mass));
   }
   const double last_ratio = ratio[count - 1], absent = found.modal_failure.empty() ? 0.0 : std::nan("");
   Figure figure{"convergence", {}, 2, 1};
@@ -125,8 +110,7 @@ std::vector<Figure> figures(const Record& record, const RecordIdentification& fo
     result.push_back(reproduction(record, found, row));
   if (found.reproduced.size() > 0)
     if (auto shown = spectrum(record, found)) result.push_back(std::move(*shown));
-  if (!found.identification.run.filtered.empty() || found.identification.run.means.size() > 0)
-    result.push_back(convergence(record, found));
+  if (samples_traced(found.identification.run) > 0) result.push_back(convergence(record, found));
   return result;
 }
 
