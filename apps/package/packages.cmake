@@ -31,7 +31,7 @@ string(CONCAT about "beamid computes beams and plane frames, and identifies stif
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME beamid)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, fonts-dejavu-core")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, fonts-dejavu-core, libsndfile1, libmseed2")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "beamid-paraview")
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${about}This package holds the command, beamid.")
 
@@ -59,7 +59,8 @@ if(TARGET beamid_python)
   list(POP_FRONT next major minor)
   math(EXPR minor "${minor} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${series}), python3 (<< ${major}.${minor}), python3-numpy")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, fonts-dejavu-core")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS
+      "gnuplot-nox | gnuplot, fonts-dejavu-core, libsndfile1, libmseed2")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib, beamid-paraview")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "${about}This package holds the Python module, beamid.")
 endif()

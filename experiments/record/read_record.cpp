@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -135,11 +133,7 @@ Record cut(const Record& record, const RecordFormat& format, const std::string& 
 /// Whether a cell says that nothing was read.
 bool is_missing(const RecordTable& table, std::size_t row, std::size_t column) {
   if (!table.cell) return std::isnan(table.columns[column][row]);
-  std::string text = unquoted(table.cell(row, column).text);
-  for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  static const std::set<std::string> nothing{"",     "nan",      "na",  "n/a", "#n/a", "null",
-                                             "none", "overflow", "ovf", "ol",  "-",    "--"};
-  return nothing.contains(text);
+  return says_missing(table.cell(row, column).text);
 }
 
 /// A column that is read, and what one of its unit is in that of the record.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "experiments/text/clean_text.hpp"
 
@@ -22,7 +23,7 @@ std::size_t quoted_length(std::string_view rest, char separator) {
       ++end;
       continue;
     }
-    const std::size_t next = separator == ' ' ? end : rest.find_first_not_of(blanks, end);
+    const std::size_t next = separator == ' ' || separator == '\t' ? end : rest.find_first_not_of(blanks, end);
     const bool last = next >= rest.size();
     return last || (separator == ' ' ? blanks.find(rest[next]) != blanks.npos : rest[next] == separator) ? end
                                                                                                          : 0;
@@ -51,7 +52,7 @@ std::string unquoted(std::string_view field) {
 }
 
 char separator_of(std::string_view line) {
-  for (const char candidate : {'\t', ';', ','})
+  for (const char candidate : {'\t', ';', '|', ','})
     if (line.find(candidate) != std::string_view::npos) return candidate;
   return ' ';
 }
@@ -95,6 +96,12 @@ ParsedNumber parse_number(std::string_view field) {
   ParsedNumber parsed;
   const char* const end = field.data() + field.size();
   const auto result = std::from_chars(field.data(), end, parsed.value);
+  if (result.ptr != end && result.ptr != field.data() && (*result.ptr == 'D' || *result.ptr == 'd') &&
+      field.size() < 64) {
+    std::string with_e(field);
+    with_e[static_cast<std::size_t>(result.ptr - field.data())] = 'E';
+    return parse_number(with_e);
+  }
   parsed.number = result.ptr == end && result.ec != std::errc::invalid_argument;
   parsed.finite = parsed.number && result.ec == std::errc() && std::isfinite(parsed.value);
   return parsed;
@@ -107,6 +114,15 @@ ParsedNumber parse_number(std::string_view field, char decimal) {
   char pointed[longest];
   std::replace_copy(field.begin(), field.end(), pointed, decimal, '.');
   return parse_number(std::string_view(pointed, field.size()));
+}
+
+bool says_missing(std::string_view field) {
+  if (field.empty()) return true;
+  std::string text = unquoted(field);
+  for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  static const std::set<std::string> nothing{"",     "nan",      "na",  "n/a", "#n/a", "null",
+                                             "none", "overflow", "ovf", "ol",  "-",    "--"};
+  return nothing.contains(text);
 }
 
 bool holds_number(const std::vector<std::string_view>& fields, char decimal) {

@@ -17,7 +17,7 @@ std::string field_text(std::string_view field);
 /// The same, or without one pair of single quotes around it.
 std::string unquoted(std::string_view field);
 
-/// The first of tab, semicolon, comma that occurs, else ' ' for blanks.
+/// The first of tab, semicolon, |, comma that occurs, else ' ' for blanks.
 char separator_of(std::string_view line);
 
 /// The trimmed fields of a line, views into it. ' ' stands for any run of blanks and tabs. A separator
@@ -43,11 +43,14 @@ struct ParsedNumber {
   bool finite = false;  ///< and a double can hold it
 };
 
-/// A decimal number with a point, in whatever locale: -1, +.5, 2.5E-3.
+/// A decimal number with a point, in whatever locale: -1, +.5, 2.5E-3, or Fortran's 2.5D-3.
 ParsedNumber parse_number(std::string_view field);
 
 /// The same with `decimal` between whole and fraction, '.' or ','.
 ParsedNumber parse_number(std::string_view field, char decimal);
+
+/// Whether a cell says that nothing was read: it is empty, or NaN, NA, null, OVERFLOW, - or the like.
+bool says_missing(std::string_view field);
 
 bool holds_number(const std::vector<std::string_view>& fields, char decimal = '.');
 bool all_numbers(const std::vector<std::string_view>& fields, char decimal = '.');
