@@ -7,10 +7,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <map>
 
 #include "experiments/config/read_record_format.hpp"
 #include "experiments/record/record_reader.hpp"
 #include "experiments/record/units.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::apps {
@@ -18,6 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace experiments;
+
+const std::map<std::string, char> separators{
+    {"tab", '\t'}, {"comma", ','}, {"semicolon", ';'}, {"bar", '|'}, {"space", ' '}};
+
+Words names_of_separators() {
+  Words names;
+  for (const auto& [name, separator] : separators) names.push_back(name);
+  return names;
+}
 
 /// "3" is a column's number, anything else its name.
 ColumnDescription column(const std::string& word) {
@@ -71,18 +82,44 @@ ColumnDescription time_column(const std::string& word) {
   return described;
 }
 
-void take_words(const Values& values, RecordFormat& format) {
+/// Where the sensors of --column sit: a number [m], or the name of a place.
+void take_positions(const Words& positions, RecordFormat& format) {
+  if (positions.empty()) return;
+  if (positions.size() > 1 && positions.size() != format.channels.size())
+    throw UsageError(
+        fmt::format("{} times --position for {} times --column; expected as many, or one for all",
+                    positions.size(), format.channels.size()));
+  for (std::size_t k = 0; k < format.channels.size(); ++k) {
+    const std::string word = word_for(positions, k);
+    const ParsedNumber number = parse_number(word);
+    if (number.finite)
+      format.channels[k].position = number.value;
+    else
+      format.channels[k].place = word;
+  }
+}
+
+}  // namespace
+
+void take_record_words(const Values& values, RecordFormat& format) {
   const auto given = [&](const char* name) { return values.has(name) ? values.texts(name) : Words{}; };
   const Words columns = given("column"), quantities = given("quantity"), units_given = given("unit");
-  if (columns.empty() && (!quantities.empty() || !units_given.empty()))
-    throw UsageError("--quantity and --unit of which column? Add --column");
+  const Words positions = given("position");
+  if (columns.empty() && (!quantities.empty() || !units_given.empty() || !positions.empty()))
+    throw UsageError("--quantity, --unit and --position of which column? Add --column");
   if (!columns.empty()) format.channels = channels(columns, quantities, units_given);
+  take_positions(positions, format);
+  if (values.has("delimiter")) format.separator = separators.at(values.text("delimiter"));
+  if (values.has("decimal")) format.decimal = values.text("decimal") == "comma" ? ',' : '.';
+  if (values.has("header-lines")) format.header_lines = values.whole("header-lines");
   if (values.has("time")) format.time = time_column(values.text("time"));
   if (values.has("rate")) format.sampling_rate = values.number("rate");
   if (values.has("reader")) format.reader = values.text("reader");
   if (values.has("skip-malformed")) format.malformed = MalformedRows::skip;
   if (values.has("stamps")) format.irregular = values.text("stamps") == "as_they_are";
 }
+
+namespace {
 
 /// Standard input in a file of its own: readers look at the beginning of a file first, and a pipe is read
 /// once.
@@ -128,23 +165,30 @@ Argument record_argument(bool several) {
 }
 
 OptionGroup column_options() {
-  return {"Record",
-          {text("column", "N|NAME", "a column to use, by number from 1 or by name").repeated(),
-           text("quantity", "WHAT", "that it measures; one for each column or for all")
-               .repeated()
-               .one_of(quantity_names()),
-           text("unit", "UNIT", "of its numbers: g, m/s2, mm, N, um/m, ...; one for each column or for all")
-               .repeated(),
-           text("time", "N|NAME[:UNIT]", "column of time, in s unless the unit is given: 1, t:ms"),
-           number("rate", "HZ", "exact sampling rate, in place of rounded times or where there are none [Hz]")
-               .greater_than(0)
-               .less_than(1e300),
-           text("stamps", "HOW", "as_they_are: times may be at unequal intervals; even: they must not")
-               .by_default("as_they_are")
-               .one_of({"even", "as_they_are"}),
-           flag("skip-malformed", "leave malformed lines out, counted and located"),
-           text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
-               .one_of(names_in(record_reader_registry()))}};
+  return {
+      "Record",
+      {text("column", "N|NAME", "a column to use, by number from 1 or by name").repeated(),
+       text("quantity", "WHAT", "that it measures; one for each column or for all")
+           .repeated()
+           .one_of(quantity_names()),
+       text("unit", "UNIT", "of its numbers: g, m/s2, mm, N, um/m, ...; one for each column or for all")
+           .repeated(),
+       text("position", "M|PLACE", "where its sensor sits [m], or the name of that place; likewise")
+           .repeated(),
+       text("time", "N|NAME[:UNIT]", "column of time, in s unless the unit is given: 1, t:ms"),
+       number("rate", "HZ", "exact sampling rate, in place of rounded times or where there are none [Hz]")
+           .greater_than(0)
+           .less_than(1e300),
+       text("stamps", "HOW", "as_they_are: times may be at unequal intervals; even: they must not")
+           .by_default("as_they_are")
+           .one_of({"even", "as_they_are"}),
+       text("delimiter", "WHAT", "that parts the columns of a text; else what its rows show")
+           .one_of(names_of_separators()),
+       text("decimal", "SIGN", "of its numbers; else what its rows show").one_of({"point", "comma"}),
+       whole("header-lines", "N", 1, 1e6, "lines before its first row; else found"),
+       flag("skip-malformed", "leave malformed lines out, counted and located"),
+       text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
+           .one_of(names_in(record_reader_registry()))}};
 }
 
 OptionGroup record_options() {
@@ -158,7 +202,7 @@ OptionGroup record_options() {
 
 std::vector<fs::path> record_files(const Values& values, const fs::path& config,
                                    const std::optional<std::string>& named, RecordFormat& format) {
-  take_words(values, format);
+  take_record_words(values, format);
   std::vector<fs::path> files;
   for (const std::string& word : values.texts("record")) files.push_back(record_file(word));
   std::size_t parts = format.files.size();

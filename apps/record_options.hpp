@@ -13,11 +13,15 @@ namespace beamid::apps {
 /// The word RECORD, "-" for standard input; or several.
 Argument record_argument(bool several = false);
 
-/// --column, --quantity, --unit, --time, --rate, --window, --reader, --skip-malformed, --stamps, --config.
+/// --column, --quantity, --unit, --position, --time, --rate, --window, --stamps, --delimiter, --decimal,
+/// --header-lines, --skip-malformed, --reader, --config.
 OptionGroup record_options();
 
 /// The same without --window and --config, for commands that have their own.
 OptionGroup column_options();
+
+/// Takes over into `format` what column_options() state. @throws UsageError on words that make no sense.
+void take_record_words(const Values& values, experiments::RecordFormat& format);
 
 /// The RECORDs of the command line, or else the `file` under [record] of the experiment file, if it names
 /// one. Standard input, "-", is copied to a file that is removed when the program ends. Where channels come

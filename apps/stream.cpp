@@ -8,6 +8,7 @@
 
 #include "apps/command.hpp"
 #include "apps/method_options.hpp"
+#include "apps/record_options.hpp"
 #include "experiments/config/failure_response.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/storey_laws.hpp"
@@ -128,6 +129,7 @@ int run_stream(const Values& values) {
   Experiment experiment = read_experiment(config);
   require_linear_storeys(experiment, "stream");
   choose_failure_response(values, experiment);
+  take_record_words(values, experiment.format);
   const Record earlier = earlier_record(values, experiment, config);
   StreamedIdentification stream =
       at_place({config.string()}, [&] { return StreamedIdentification(experiment, earlier); });
@@ -172,7 +174,7 @@ Command stream_command() {
       "--config FILE [--like RECORD] [--resume STATE] [--save-state STATE] < SAMPLES",
       "stiffness, damping and other unknowns while samples arrive on standard input",
       {},
-      {stream_options()},
+      {stream_options(), column_options()},
       "  beamid stream --config cantilever.toml < tip_acceleration.csv\n"
       "  logger | beamid stream --config cantilever.toml --save-state now.json\n"
       "  logger | beamid stream --config cantilever.toml --resume now.json\n",
@@ -185,7 +187,8 @@ Command stream_command() {
       "settling, settled, undetermined (no motion stands out of the noise: the unknowns are as at first), "
       "left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
       "first example the higher modes of the release keep the filter from it until 2.4 s.\n"
-      "[[record.prepare]] prepares the earlier record; samples are expected to arrive as it leaves them.\n",
+      "--column, --unit and the like describe the earlier record. [[record.prepare]] prepares it; samples "
+      "are expected to arrive as it leaves them.\n",
       "1  the filter failed as well\n3  the earlier record, identified with this experiment, has no estimate "
       "to rely on: nor has the stream; or no motion stood out of the noise\n"};
 }

@@ -164,23 +164,6 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
   table.keep(kept);
 }
 
-/// Of a file that nobody described: an axis that is not connected is no channel, unless no other moves
-/// either.
-void leave_out_dead(RecordTable& table, RecordColumns& columns) {
-  std::vector<RecordColumn> alive;
-  std::string dead;
-  for (const RecordColumn& column : columns.channels) {
-    const std::vector<double>& values = table.columns[column.index];
-    if (std::ranges::any_of(values, [&](double value) { return value != values.front(); }))
-      alive.push_back(column);
-    else
-      dead += (dead.empty() ? "'" : ", '") + column.channel.name + "'";
-  }
-  if (alive.empty() || dead.empty()) return;
-  columns.channels = std::move(alive);
-  table.remarks.push_back("Without any motion, left out: " + dead + ".");
-}
-
 }  // namespace
 
 Record read_record(const std::filesystem::path& file, const RecordFormat& format) {

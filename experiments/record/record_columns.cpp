@@ -274,27 +274,33 @@ class Recognition {
   }
 };
 
+// The first column that rises is time.
+// @param columns of which `time` or `counted` is set
+// @returns the first column behind it
+std::size_t take_first_rising(const RecordTable& table, bool stamped, RecordColumns& columns) {
+  std::size_t first = 0;
+  while (first + 1 < table.width() && holds_words(table, first)) ++first;
+  if (table.width() <= first + 1 || table.time || !rises(table.columns[first])) return first;
+  if (counts_samples(table.columns[first])) {
+    columns.counted = first;
+    if (table.width() > first + 2 && runs_evenly(table.columns[first + 1]) &&
+        !counts_samples(table.columns[first + 1]))
+      ++first;  // counts, then times
+  }
+  if (columns.counted != first && !stamped) {
+    const double unit = seconds_of_epoch(table.columns[first]);
+    if (unit == 1.0) require_plausible_step(table, first);
+    columns.time = RecordColumn{first, unit, {}};
+    columns.counted = {};
+  }
+  return first + 1;
+}
+
 // The first column that rises is time, the rest are signals.
 RecordColumns columns_without_header(RecordTable& table, bool stamped) {
   RecordColumns columns;
   columns.recognised = true;
-  std::size_t first = 0;
-  while (first + 1 < table.width() && holds_words(table, first)) ++first;
-  if (table.width() > first + 1 && !table.time && rises(table.columns[first])) {
-    if (counts_samples(table.columns[first])) {
-      columns.counted = first;
-      if (table.width() > first + 2 && runs_evenly(table.columns[first + 1]) &&
-          !counts_samples(table.columns[first + 1]))
-        ++first;  // counts, then times
-    }
-    if (columns.counted != first && !stamped) {
-      const double unit = seconds_of_epoch(table.columns[first]);
-      if (unit == 1.0) require_plausible_step(table, first);
-      columns.time = RecordColumn{first, unit, {}};
-      columns.counted = {};
-    }
-    ++first;
-  }
+  const std::size_t first = take_first_rising(table, stamped, columns);
   const auto never_moves = [](const std::vector<double>& values) {  // dates beside times of day
     return std::ranges::all_of(values, [&](double value) { return value == 0.0; });
   };
@@ -419,8 +425,12 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   for (std::size_t index = 0; !columns.time && index < std::min(table.names.size(), table.width()); ++index)
     if (const auto meaning = stated_meaning(table, index); meaning && !meaning->quantity)
       columns.time = RecordColumn{index, meaning->factor, {}};
-  if (!columns.time && !format.channels.empty() && table.by_people && !table.clock && !format.sampling_rate)
-    Recognition().take_time(table, columns, false);
+  if (!columns.time && !format.channels.empty() && table.by_people && !table.clock && !format.sampling_rate) {
+    if (table.names.empty())
+      take_first_rising(table, false, columns);
+    else
+      Recognition().take_time(table, columns, false);
+  }
   if (!columns.time && !table.clock && !format.sampling_rate && table.stated_rate) {
     table.clock = Clock{0.0, 1.0 / *table.stated_rate};
     table.remarks.push_back(fmt::format(
@@ -440,6 +450,21 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
                      "no column of time; expected the sampling rate, --rate HZ, or the column, --time "
                      "COLUMN:UNIT (record.sampling_rate_hz, record.time in the configuration)");
   return columns;
+}
+
+void leave_out_dead(RecordTable& table, RecordColumns& columns) {
+  std::vector<RecordColumn> alive;
+  std::string dead;
+  for (const RecordColumn& column : columns.channels) {
+    const std::vector<double>& values = table.columns[column.index];
+    if (std::ranges::any_of(values, [&](double value) { return value != values.front(); }))
+      alive.push_back(column);
+    else
+      dead += (dead.empty() ? "'" : ", '") + column.channel.name + "'";
+  }
+  if (alive.empty() || dead.empty()) return;
+  columns.channels = std::move(alive);
+  table.remarks.push_back("Without any motion, left out: " + dead + ".");
 }
 
 }  // namespace beamid::experiments

@@ -1,6 +1,6 @@
 // Files in thousands of forms, each made of parts that instruments, programs and people use: the record is
 // what was written, or the file is refused with a sentence; never another record. Oracle: the generator,
-// which knows instants and values.
+// which has the instants and values.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -207,7 +207,7 @@ std::string difference(const Record& record, const Written& written) {
   return "";
 }
 
-TEST(WrittenByPeople, IsReadAsItWasWrittenOrAskedAbout) {
+TEST(WrittenByPeople, IsReadAsItWasWrittenOrRefused) {
   constexpr int cases = 4000;
   int right = 0, stated = 0;
   std::string refused;
