@@ -24,6 +24,8 @@ using namespace experiments;
 const std::map<std::string, char> separators{
     {"tab", '\t'}, {"comma", ','}, {"semicolon", ';'}, {"bar", '|'}, {"space", ' '}};
 
+const std::map<std::string, char> decimal_signs{{"auto", '\0'}, {"point", '.'}, {"comma", ','}};
+
 Words names_of_separators() {
   Words names;
   for (const auto& [name, separator] : separators) names.push_back(name);
@@ -110,7 +112,7 @@ void take_record_words(const Values& values, RecordFormat& format) {
   if (!columns.empty()) format.channels = channels(columns, quantities, units_given);
   take_positions(positions, format);
   if (values.has("delimiter")) format.separator = separators.at(values.text("delimiter"));
-  if (values.has("decimal")) format.decimal = values.text("decimal") == "comma" ? ',' : '.';
+  if (values.has("decimal")) format.decimal = decimal_signs.at(values.text("decimal"));
   if (values.has("header-lines")) format.header_lines = values.whole("header-lines");
   if (values.has("time")) format.time = time_column(values.text("time"));
   if (values.has("rate")) format.sampling_rate = values.number("rate");
@@ -184,8 +186,8 @@ OptionGroup column_options() {
            .one_of({"even", "as_they_are"}),
        text("delimiter", "WHAT", "that parts the columns of a text; else what its rows show")
            .one_of(names_of_separators()),
-       text("decimal", "SIGN", "of its numbers; else what its rows show").one_of({"point", "comma"}),
-       whole("header-lines", "N", 1, 1e6, "lines before its first row; else found"),
+       text("decimal", "SIGN", "of its numbers; else what its rows show").one_of({"auto", "point", "comma"}),
+       whole("header-lines", "N", 0, 1e6, "lines before its first row; else found"),
        flag("skip-malformed", "leave malformed lines out, counted and located"),
        text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
            .one_of(names_in(record_reader_registry()))}};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "experiments/record/column_name.hpp"
 #include "experiments/record/time_unit.hpp"
 #include "experiments/record/units.hpp"
 
@@ -137,6 +138,12 @@ RecordTable CollectedSignals::table(const RecordFormat& format) const {
     table.precision.push_back(PrintedPrecision::of_digits(signal.digits));
   }
   find_time(table, format);
+  table.by_people = true;
+  for (std::size_t i = 0; i < table.width(); ++i) {
+    const auto meaning = parse_column_name(table.names[i]);
+    const auto unit = stated_unit(table.units[i]);
+    if ((meaning && meaning->quantity) || (unit && unit->quantity)) table.by_people = false;
+  }
   const auto stated = [&](std::size_t i) { return table.time != i && !table.units[i].empty(); };
   bool units = false;
   for (std::size_t i = 0; i < table.width(); ++i) units = units || stated(i);

@@ -49,7 +49,8 @@ class CollectedSignals {
   }
 
   /// Times are in the unit that their signal states, by its name or beside it, and in seconds where it states
-  /// none, which a remark then says.
+  /// none, which a remark then says. Where no signal states quantity and unit, names are recognised as people
+  /// write them.
   /// @throws InputError when there is no signal of at least two samples, or when times and a stated interval
   /// contradict each other or times are in another unit, unless the format states them itself.
   RecordTable table(const RecordFormat& format) const;

@@ -48,7 +48,8 @@ std::string_view typical_line(std::string_view text) {
 /// Length of the label of "ax: 0.25" or "ax=0.25" with its sign; 0 without one.
 std::size_t label_length(std::string_view field) {
   const std::size_t sign = field.find_first_of(":=");
-  if (sign == field.npos || sign == 0 || is_reading(field)) return 0;
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (sign == field.npos || sign == 0 || !letter(field.front())) return 0;
   return parse_number(trimmed(field.substr(sign + 1))).number ? sign + 1 : 0;
 }
 

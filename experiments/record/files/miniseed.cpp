@@ -90,7 +90,6 @@ class MiniSeedReader final : public RecordReader {
     const std::size_t bytes = count_bytes(file, "a MiniSEED file");
     RecordTable table =
         read_apart(file.string(), "libmseed", reading_limits(bytes), collect_traces).table(format);
-    table.by_people = true;
     table.remarks.emplace_back("MiniSEED states no unit: its signals are the counts of the file.");
     return table;
   }

@@ -64,7 +64,6 @@ class SoundReader final : public RecordReader {
     const std::size_t bytes = count_bytes(file, "a sound file");
     RecordTable table =
         read_apart(file.string(), "libsndfile", reading_limits(bytes), collect_sound).table(format);
-    table.by_people = true;
     table.remarks.emplace_back(
         "A sound file states no unit: its signals are as in the file, integers as fractions of full scale "
         "1.");
