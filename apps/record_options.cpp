@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include "experiments/record/units.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/sensing/report.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::apps {
@@ -40,6 +41,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::map<std::string, char> separators{
+    {"tab", '\t'}, {"comma", ','}, {"semicolon", ';'}, {"bar", '|'}, {"space", ' '}};
+
+const std::map<std::string, char> decimal_signs{{"auto", '\0'}, {"point", '.'}, {"comma", ','}};
+
+Words names_of_separators() {
+  Words names;
+  for (const auto& [name, separator] : separators) names.push_back(name);
+  return names;
+}
+
 /// "3" is a column's number, anything else its name.
 ColumnDescription column(const std::string& word) {
   ColumnDescription described;
@@ -61,20 +73,8 @@ std::string word_for(const Words& words, std::size_t k) {
   return words.size() == 1 ? words.front() : words[k];
 }
 
-const std::vector<std::pair<std::string, char>> delimiters{
-    {"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"space", ' '}};
-
-double metres(const std::string& word) {
-  double value = 0.0;
-  const char* const end = word.data() + word.size();
-  const auto [rest, error] = std::from_chars(word.data(), end, value);
-  if (error != std::errc() || rest != end || !std::isfinite(value))
-    throw UsageError(fmt::format("--position {}: expected a number of metres", word));
-  return value;
-}
-
 std::vector<ColumnDescription> channels(const Words& columns, const Words& quantities,
-                                        const Words& units_given, const Words& positions) {
+                                        const Words& units_given) {
   const auto check = [&](const Words& words, const char* option) {
     if (words.size() > 1 && words.size() != columns.size())
       throw UsageError(fmt::format("{} times {} for {} times --column; expected as many, or one for all",
@@ -82,7 +82,6 @@ std::vector<ColumnDescription> channels(const Words& columns, const Words& quant
   };
   check(quantities, "--quantity");
   check(units_given, "--unit");
-  check(positions, "--position");
   if (quantities.empty() != units_given.empty())
     throw UsageError("--quantity and --unit need each other: units are stated, never guessed");
   std::vector<ColumnDescription> described;
@@ -90,7 +89,6 @@ std::vector<ColumnDescription> channels(const Words& columns, const Words& quant
     described.push_back(column(columns[k]));
     ColumnDescription& channel = described.back();
     channel.stated = !quantities.empty();
-    if (!positions.empty()) channel.position = metres(word_for(positions, k));
     if (!channel.stated) continue;
     channel.quantity = *find_quantity(word_for(quantities, k));
     channel.factor = factor(word_for(units_given, k), units(channel.quantity), to_string(channel.quantity));
@@ -106,20 +104,36 @@ ColumnDescription time_column(const std::string& word) {
   return described;
 }
 
+/// Where the sensors of --column sit: a number [m], or the name of a place.
+void take_positions(const Words& positions, RecordFormat& format) {
+  if (positions.empty()) return;
+  if (positions.size() > 1 && positions.size() != format.channels.size())
+    throw UsageError(
+        fmt::format("{} times --position for {} times --column; expected as many, or one for all",
+                    positions.size(), format.channels.size()));
+  for (std::size_t k = 0; k < format.channels.size(); ++k) {
+    const std::string word = word_for(positions, k);
+    const ParsedNumber number = parse_number(word);
+    if (number.finite)
+      format.channels[k].position = number.value;
+    else
+      format.channels[k].place = word;
+  }
+}
+
 }  // namespace
 
 void take_columns(const Values& values, RecordFormat& format) {
   const auto given = [&](const char* name) { return values.has(name) ? values.texts(name) : Words{}; };
-  const Words columns = given("column"), quantities = given("quantity"), units_given = given("unit"),
-              positions = given("position");
+  const Words columns = given("column"), quantities = given("quantity"), units_given = given("unit");
+  const Words positions = given("position");
   if (columns.empty() && (!quantities.empty() || !units_given.empty() || !positions.empty()))
     throw UsageError("--quantity, --unit and --position of which column? Add --column");
-  if (!columns.empty()) format.channels = channels(columns, quantities, units_given, positions);
-  if (values.has("delimiter"))
-    format.separator = std::ranges::find(delimiters, values.text("delimiter"), [](const auto& one) {
-                         return one.first;
-                       })->second;
-  if (values.has("decimal")) format.decimal = values.text("decimal") == "comma" ? ',' : '.';
+  if (!columns.empty()) format.channels = channels(columns, quantities, units_given);
+  take_positions(positions, format);
+  if (values.has("delimiter")) format.separator = separators.at(values.text("delimiter"));
+  if (values.has("decimal")) format.decimal = decimal_signs.at(values.text("decimal"));
+  if (values.has("header-lines")) format.header_lines = values.whole("header-lines");
   if (values.has("time")) format.time = time_column(values.text("time"));
   if (values.has("rate")) format.sampling_rate = values.number("rate");
   if (values.has("reader")) format.reader = values.text("reader");
@@ -160,12 +174,6 @@ fs::path record_file(const std::string& word) {
   return input.file();
 }
 
-Words delimiter_names() {
-  Words names;
-  for (const auto& [name, sign] : delimiters) names.push_back(name);
-  return names;
-}
-
 Words quantity_names() {
   Words names;
   for (const Quantity quantity : all_quantities) names.emplace_back(to_string(quantity));
@@ -179,29 +187,30 @@ Argument record_argument(bool several) {
 }
 
 OptionGroup column_options() {
-  return {"Record",
-          {text("column", "N|NAME", "a column to use, by number from 1 or by name").repeated(),
-           text("quantity", "WHAT", "that it measures; one for each column or for all")
-               .repeated()
-               .one_of(quantity_names()),
-           text("unit", "UNIT", "of its numbers: g, m/s2, mm, N, um/m, ...; one for each column or for all")
-               .repeated(),
-           text("position", "M", "where along the structure it sits [m]; one for each column or for all")
-               .repeated(),
-           text("time", "N|NAME[:UNIT]", "column of time, in s unless the unit is given: 1, t:ms"),
-           number("rate", "HZ", "exact sampling rate, in place of rounded times or where there are none [Hz]")
-               .greater_than(0)
-               .less_than(1e300),
-           text("stamps", "HOW", "as_they_are: times may be at unequal intervals; even: they must not")
-               .by_default("as_they_are")
-               .one_of({"even", "as_they_are"}),
-           text("delimiter", "SIGN", "between the columns of a text file, where its rows do not show it")
-               .one_of(delimiter_names()),
-           text("decimal", "SIGN", "between whole and fraction, where the rows do not show it")
-               .one_of({"point", "comma"}),
-           flag("skip-malformed", "leave malformed lines out, counted and located"),
-           text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
-               .one_of(names_in(record_reader_registry()))}};
+  return {
+      "Record",
+      {text("column", "N|NAME", "a column to use, by number from 1 or by name").repeated(),
+       text("quantity", "WHAT", "that it measures; one for each column or for all")
+           .repeated()
+           .one_of(quantity_names()),
+       text("unit", "UNIT", "of its numbers: g, m/s2, mm, N, um/m, ...; one for each column or for all")
+           .repeated(),
+       text("position", "M|PLACE", "where its sensor sits [m], or the name of that place; likewise")
+           .repeated(),
+       text("time", "N|NAME[:UNIT]", "column of time, in s unless the unit is given: 1, t:ms"),
+       number("rate", "HZ", "exact sampling rate, in place of rounded times or where there are none [Hz]")
+           .greater_than(0)
+           .less_than(1e300),
+       text("stamps", "HOW", "as_they_are: times may be at unequal intervals; even: they must not")
+           .by_default("as_they_are")
+           .one_of({"even", "as_they_are"}),
+       text("delimiter", "WHAT", "that parts the columns of a text; else what its rows show")
+           .one_of(names_of_separators()),
+       text("decimal", "SIGN", "of its numbers; else what its rows show").one_of({"auto", "point", "comma"}),
+       whole("header-lines", "N", 0, 1e6, "lines before its first row; else found"),
+       flag("skip-malformed", "leave malformed lines out, counted and located"),
+       text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
+           .one_of(names_in(record_reader_registry()))}};
 }
 
 OptionGroup record_options() {

@@ -30,8 +30,7 @@ experiments::Results sensed_record(const experiments::Experiment& experiment,
 Argument record_argument(bool several = false);
 
 /// --column, --quantity, --unit, --position, --time, --rate, --window, --stamps, --delimiter, --decimal,
-/// --skip-malformed,
-/// --reader, --config.
+/// --header-lines, --skip-malformed, --reader, --config.
 OptionGroup record_options();
 
 /// The same without --window and --config, for commands that have their own.

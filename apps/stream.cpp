@@ -186,7 +186,8 @@ Command stream_command() {
       "settling, settled, undetermined (no motion stands out of the noise: the unknowns are as at first), "
       "left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
       "first example the higher modes of the release keep the filter from it until 2.4 s.\n"
-      "[[record.prepare]] prepares the earlier record; samples are expected in the form it has then.\n",
+      "--column, --unit and the like describe the earlier record. [[record.prepare]] prepares it; samples "
+      "are expected to arrive as it leaves them.\n",
       "1  the filter failed as well\n3  the earlier record, identified with this experiment, has no estimate "
       "to rely on: nor has the stream; or no motion stood out of the noise\n"};
 }

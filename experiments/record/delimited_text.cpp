@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
+#include "experiments/record/stamps.hpp"
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
@@ -35,12 +37,42 @@ std::function<TextField(std::size_t, std::size_t)> TextCells::cells(char separat
 
 namespace {
 
-constexpr std::size_t most_metadata_lines = 1000;
+constexpr std::size_t most_early_lines = 1000, most_header_lines = 4;
 constexpr const char* rows_expected = "; expected rows of numbers in columns";
 
-/// One of the two decimal signs makes all fields numbers.
-bool numbers_throughout(const std::vector<std::string_view>& fields) {
-  return all_numbers(fields, '.') || all_numbers(fields, ',');
+/// A number with either decimal sign, or a date or time.
+bool is_reading(std::string_view field) {
+  return parse_number(field).number || parse_number(field, ',').number || parse_stamp(unquoted(field));
+}
+
+bool is_row(const std::vector<std::string_view>& fields, bool with_gaps) {
+  bool read = false;
+  for (const std::string_view field : fields) {
+    const bool reading = is_reading(field);
+    if (!reading && !(with_gaps && says_missing(field))) return false;
+    read = read || reading;
+  }
+  return read;
+}
+
+bool holds_reading(const std::vector<std::string_view>& fields) {
+  return std::ranges::any_of(fields, is_reading);
+}
+
+/// A line from the middle of the text, where its rows are.
+std::string_view typical_line(std::string_view text) {
+  const std::size_t from = text.find_first_of("\r\n", text.size() / 2);
+  std::string_view rest = from == text.npos ? text : text.substr(from);
+  rest.remove_prefix(std::min(rest.find_first_not_of("\r\n \t"), rest.size()));
+  return rest.substr(0, rest.find_first_of("\r\n"));
+}
+
+/// "", "0", "1" or "0", "1", "2": what tables of pandas name columns without names.
+bool counts_columns(const std::vector<std::string_view>& fields) {
+  const std::size_t first = !fields.empty() && fields[0].empty() ? 1 : 0;
+  for (std::size_t k = first; k < fields.size(); ++k)
+    if (fields[k] != std::to_string(k - first)) return false;
+  return fields.size() > 2 - first;
 }
 
 }  // namespace
@@ -48,9 +80,13 @@ bool numbers_throughout(const std::vector<std::string_view>& fields) {
 DelimitedText::DelimitedText(std::string file, std::string_view text, char separator, int header_lines,
                              char decimal, bool tolerant)
     : file_(std::move(file)), rest_(text), separator_(separator), decimal_(decimal), tolerant_(tolerant) {
+  const std::string_view typical = typical_line(text);
+  semicolon_comments_ = separator_ != ';' && separator_of(typical) != ';';
+  split_fields(typical, separator_ == '\0' ? separator_of(typical) : separator_, fields_);
+  labelled_ = !fields_.empty() && std::ranges::all_of(fields_, label_length);
   if (tolerant_ && header_lines == 0)
     find_rows();
-  else if (header_lines > 0 || !find_behind_metadata())
+  else if (header_lines > 0 || !find_body())
     find_header(header_lines);
   first_row_pending_ = true;
 }
@@ -68,7 +104,7 @@ void DelimitedText::find_header(int header_lines) {
   };
   if (!next_row()) throw InputError({file_, 0, 0}, missing);
   if (header_lines == 0 && !holds()) {
-    header = line_, header_line_ = line_number_, comment_ = {};
+    header = line_, header_line_ = line_number_, comments_.clear();
     if (!next_row()) throw InputError({file_, 0, 0}, missing);
     if (!holds()) {
       const std::vector<std::string_view> units = fields_;
@@ -85,38 +121,128 @@ void DelimitedText::find_header(int header_lines) {
         for (const std::string_view unit : units) units_.emplace_back(unquoted(unit));
     }
   }
-  if (header.empty()) header = comment_, header_line_ = comment_line_;
   choose_separator();
-  if (!header.empty()) name_columns(header, header_line_);
+  if (!header.empty())
+    name_columns(header, header_line_);
+  else
+    take_comment();
 }
 
-bool DelimitedText::find_behind_metadata() {
+bool DelimitedText::find_body() {
   DelimitedText found(*this);
-  try {
-    found.find_rows(most_metadata_lines);
-  } catch (const InputError&) {  // no rows, or none so early
-    return false;
+  std::vector<EarlyLine> lines;
+  std::vector<std::vector<std::string_view>> fields;
+  std::size_t first = 0;
+  for (bool two = false; !two;) {
+    if (lines.size() == most_early_lines || !found.next_row()) return false;
+    found.split(found.line_);
+    if (!is_row(found.fields_, true) && separator_ == '\0') {  // "0,5 1,5": the commas are decimal
+      std::vector<std::string_view> parted;
+      split_fields(found.line_, ' ', parted);
+      if (parted.size() > 1 && all_numbers(parted, ',')) found.fields_ = parted;
+    }
+    lines.push_back({found.line_, found.line_number_, found.fields_.size(), is_row(found.fields_, true)});
+    fields.push_back(found.fields_);
+    if (lines.size() < 2) continue;
+    first = lines.size() - 2;
+    two = lines[first].rows && lines[first + 1].rows && lines[first].width == lines[first + 1].width;
   }
-  const std::size_t header = (found.names_.empty() ? 0 : 1) + (found.units_.empty() ? 0 : 1);
-  if (found.before_.size() < 2 || found.before_.size() == header) return false;
-  for (const EarlyLine& line : found.before_) {
-    if (found.header_line_ > 0 && line.number > found.header_line_ + (found.units_.empty() ? 0 : 1))
+  const std::size_t width = lines[first].width;
+  if (counts_columns(fields[first]) && first == 0 && !counts_columns(fields[1]) &&
+      !std::ranges::all_of(fields[1], [](auto field) { return field.find_first_of(".,eE") == field.npos; })) {
+    lines[0].rows = false;  // names
+    first = 1;
+  }
+  const auto same_readings = [&](std::size_t line) {  // words beside the first rows are no header
+    for (std::size_t k = 0; k < width; ++k)
+      if (is_reading(fields[first][k]) && !is_reading(fields[line][k])) return false;
+    return true;
+  };
+  while (first > 0 && lines[first - 1].width == width && same_readings(first - 1) &&
+         !counts_columns(fields[first - 1]))
+    --first;
+
+  const auto names_width = [&](std::size_t line) {
+    return named(lines[line].text, width).size() == width &&
+           (!holds_reading(fields[line]) || counts_columns(fields[line]));
+  };
+  const auto names = [&](std::size_t line) { return names_columns(named(lines[line].text, width)); };
+  for (std::size_t k = 0; k < first; ++k) {
+    const bool below_title = k > 0 && trimmed(lines[k - 1].text).ends_with(':');
+    if (lines[k].rows && !below_title && (lines[k].width == width || k + 1 == first)) return false;
+  }
+  std::optional<std::size_t> header, nearest;
+  for (std::size_t k = first; k-- > 0 && first - k <= most_header_lines && !header;) {
+    if (!names_width(k)) {
+      if (holds_reading(fields[k])) break;
+      continue;
+    }
+    if (names(k)) header = k;
+    if (!nearest && first - k <= 2) nearest = k;
+  }
+  if (first > 0 && holds_reading(fields[first - 1]) && !names_width(first - 1))
+    for (std::size_t k = 0; k < first; ++k)  // a line between names and rows is one of the rows
+      if (lines[first - 1].width == width || (names_width(k) && names(k))) return false;
+  if (!header && nearest && *nearest > 0 && first - *nearest == 1 && names_width(*nearest - 1)) --*nearest;
+  if (!header) header = nearest;
+  if (!header && first > 0) {  // names of more or fewer columns than the rows have
+    const char parted_by = separator_of(lines[first - 1].text);
+    if (fields[first - 1].size() > 1 && !holds_reading(fields[first - 1]) &&
+        names_columns(fields[first - 1]) && (parted_by != ' ' || separator_of(lines[first].text) == ' '))
       return false;
-    if (line.width == found.width_ && line.rows) return false;  // of numbers: refused as such
   }
-  found.skipped_.clear();
+
+  found.line_ = lines[first].text, found.line_number_ = lines[first].number;
+  found.rest_ =
+      rest_.substr(static_cast<std::size_t>(found.line_.data() + found.line_.size() - rest_.data()));
+  found.rest_.remove_prefix(
+      std::min(found.rest_.size(), std::size_t{found.rest_.starts_with("\r\n") ? 2u : 1u}));
+  found.choose_separator();
+  if (header) {
+    if (*header + 1 < first && names_width(*header + 1))
+      for (const std::string_view unit : found.named(lines[*header + 1].text, width))
+        found.units_.emplace_back(unquoted(unit));
+    found.header_line_ = lines[*header].number;
+    found.header_text_ = trimmed(lines[*header].text);
+    found.name_columns(lines[*header].text, found.header_line_);
+  } else {
+    found.take_comment();
+  }
+  found.split_row();
   *this = std::move(found);
   return true;
 }
 
-void DelimitedText::find_rows(std::size_t most_lines) {
+std::vector<std::string_view> DelimitedText::named(std::string_view line, std::size_t width) const {
+  std::vector<std::string_view> names;
+  const char chosen = separator_ == '\0' ? separator_of(line) : separator_;
+  for (const char separator : {chosen, '\t', ';', ',', '|'}) {
+    split_fields(line, separator, names);
+    if (names.size() == width && (separator == chosen || width > 1)) return names;
+  }
+  if (auto apart = parted_by_blanks(line); apart.size() == width) return apart;
+  split_fields(line, chosen, names);
+  return names;
+}
+
+void DelimitedText::take_comment() {
+  if (comments_.empty()) return;
+  const auto fitting = std::find_if(comments_.rbegin(), comments_.rend(), [&](const Comment& comment) {
+    std::vector<std::string_view> fields = named(words_of_comment(comment.text), width_);
+    return fields.size() == width_ && !holds_reading(fields) && names_columns(fields);
+  });
+  const Comment& chosen = fitting == comments_.rend() ? comments_.back() : *fitting;
+  name_columns(words_of_comment(chosen.text), header_line_ = chosen.line);
+}
+
+void DelimitedText::find_rows() {
   const std::string_view whole = rest_;
   for (const bool strict : {true, false}) {
     rest_ = whole, line_number_ = 0;
     std::vector<EarlyLine> before;
-    while (before.size() < most_lines && next_row()) {
-      split_fields(line_, separator_ == '\0' ? separator_of(line_) : separator_, fields_);
-      const bool row = strict ? numbers_throughout(fields_) : holds_number(fields_);
+    while (next_row()) {
+      split(line_);
+      const bool row = strict ? is_row(fields_, false) : holds_number(fields_);
       before.push_back({line_, line_number_, fields_.size(), row});
       if (before.size() < 2) continue;
       const EarlyLine& last = before.back();
@@ -128,7 +254,6 @@ void DelimitedText::find_rows(std::size_t most_lines) {
       rest_.remove_prefix(std::min(rest_.size(), std::size_t{rest_.starts_with("\r\n") ? 2u : 1u}));
       choose_separator();
       before.resize(before.size() - 2);
-      before_ = before;
       const auto names_width = [&](const EarlyLine& line) {
         split_fields(line.text, separator_, fields_);
         return fields_.size() == width_ && !holds_number(fields_) && !holds_number(fields_, ',');
@@ -151,9 +276,8 @@ void DelimitedText::find_rows(std::size_t most_lines) {
       if (!before.empty()) {
         header_line_ = before.back().number;
         name_columns(before.back().text, header_line_);
-      } else if (!comment_.empty()) {
-        header_line_ = comment_line_;
-        name_columns(comment_, header_line_);
+      } else {
+        take_comment();
       }
       split_row();
       return;
@@ -174,36 +298,34 @@ void DelimitedText::choose_separator() {
   width_ = fields_.size();
   if (decimal_ != '\0') return;
   decimal_ = '.';
-  if (separator_ == ',') return;
   constexpr int looked_at = 50;
-  bool comma = false;
+  bool comma = false, thousands = true, whole = false;  // "998;999;1,000;1,001"
   std::string_view rest = rest_, line = line_;
   for (int row = 0; row < looked_at; ++row) {
     std::vector<std::string_view> fields;
     split_fields(line, separator_, fields);
     for (const std::string_view field : fields) {
+      if (parse_stamp(field)) continue;
       if (field.find('.') != std::string_view::npos) return;
-      comma = comma || (field.find(',') != std::string_view::npos && parse_number(field, ',').finite);
+      const std::size_t at = field.find(',');
+      whole = whole || (at == field.npos && parse_number(field).finite);
+      if (at == field.npos || !parse_number(field, ',').finite) continue;
+      comma = true;
+      const std::size_t sign = field.starts_with('-') ? 1 : 0;
+      thousands = thousands && field.size() - at == 4 && field[sign] != '0' && at > sign;
     }
     if (rest.empty()) break;
     const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
     line = rest.substr(0, end);
     rest.remove_prefix(std::min(rest.size(), end + 1));
   }
-  if (comma) decimal_ = ',';
+  if (comma && !(thousands && whole)) decimal_ = ',';
 }
 
 void DelimitedText::name_columns(std::string_view header, std::size_t line) {
-  const bool comment = line == comment_line_;
-  header = trimmed(header);
-  header.remove_prefix(std::min(header.find_first_not_of("#% \t"), header.size()));
-  std::vector<std::string_view> fields;
-  split_fields(header, separator_, fields);
-  if (fields.size() != width_) {
-    std::vector<std::string_view> others;
-    split_fields(header, separator_of(header), others);
-    if (others.size() == width_) fields = others;
-  }
+  const bool comment = !comments_.empty() && line <= comments_.back().line &&
+                       std::ranges::find(comments_, line, &Comment::line) != comments_.end();
+  std::vector<std::string_view> fields = named(header, width_);
   if (comment && (fields.size() != width_ || holds_number(fields))) {
     header_line_ = 0;
     return;
@@ -213,11 +335,37 @@ void DelimitedText::name_columns(std::string_view header, std::size_t line) {
     split_row();
     if (fields_.size() != width_) width_ = shown;
   }
+  if (fields.size() + 1 == width_) {  // the first column holds the names of rows
+    split_row();
+    if (fields_.size() == width_ && (fields_[0] == "1" || fields_[0] == "0")) names_.emplace_back();
+  }
   for (const std::string_view field : fields) names_.emplace_back(unquoted(field));
+}
+
+std::string_view DelimitedText::words_of_comment(std::string_view comment) const {
+  comment.remove_prefix(std::min(comment.find_first_not_of("#%!;/ \t"), comment.size()));
+  for (const std::string_view title : {"Headers,", "Headers:", "Columns:", "columns:", "Names:"})
+    if (comment.starts_with(title)) comment.remove_prefix(title.size());
+  return comment;
+}
+
+void DelimitedText::split(std::string_view line) {
+  split_fields(line, separator_ == '\0' ? separator_of(line) : separator_, fields_);
+  if (labelled_) take_labels();
+}
+
+void DelimitedText::take_labels() {
+  for (std::string_view& field : fields_) field = trimmed(field.substr(label_length(field)));
 }
 
 void DelimitedText::split_row() {
   split_fields(line_, separator_, fields_);
+  if (labelled_) {
+    if (names_.empty())
+      for (const std::string_view field : fields_)
+        names_.emplace_back(trimmed(field.substr(0, std::max<std::size_t>(label_length(field), 1) - 1)));
+    take_labels();
+  }
   if (fields_.size() >= width_ || separator_ == ' ') return;
   std::vector<std::string_view> all;
   split_fields(line_, separator_, all, true);
@@ -237,10 +385,27 @@ bool DelimitedText::next_row() {
   while (next_line()) {
     const std::string_view content = trimmed(line_);
     if (content.empty()) continue;
-    if (content.front() != '#' && content.front() != '%') return true;
-    comment_ = content, comment_line_ = line_number_;
+    if (!is_comment(content)) return true;
+    if (width_ == 0 && comments_.size() < most_early_lines) comments_.push_back({content, line_number_});
   }
   return false;
+}
+
+bool DelimitedText::is_comment(std::string_view content) const {
+  return content.front() == '#' || content.front() == '%' || content.front() == '!' ||
+         content.starts_with("//") || (content.front() == ';' && semicolon_comments_);
+}
+
+bool DelimitedText::only_words_follow() const {
+  constexpr std::size_t longest = 4096;
+  if (rest_.size() > longest) return false;
+  DelimitedText ahead(*this);
+  std::size_t lines = 0;
+  do {
+    split_fields(ahead.line_, separator_, ahead.fields_);
+    if (holds_reading(ahead.fields_)) return false;
+  } while (++lines < most_early_lines && ahead.next_row());
+  return true;
 }
 
 bool DelimitedText::next() {
@@ -250,8 +415,9 @@ bool DelimitedText::next() {
   }
   while (next_row()) {
     split_row();
-    if (fields_.size() == width_) return true;
-    if (!tolerant_)
+    if (fields_.size() == width_ && (header_text_.empty() || trimmed(line_) != header_text_)) return true;
+    const bool repeated = !header_text_.empty() && trimmed(line_) == header_text_;
+    if (!tolerant_ && !repeated && !only_words_follow())
       throw InputError(row_place(), fmt::format("{}; expected {} as in the first row",
                                                 count_of_columns(fields_.size()), width_));
     skipped_.push_back(line_number_);

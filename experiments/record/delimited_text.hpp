@@ -37,14 +37,17 @@ class TextCells {
 
 /// Walks through the rows of a delimited text.
 ///
-/// Blank lines and comment lines (# or % first) are passed over, lines end with LF, CRLF or CR. The names of
-/// the columns come from the last non-blank of the header lines, or, without header lines, from a first row
-/// in which nothing is a number, a second such row being their units, or else from the comment just before
-/// the first row where it names as many columns. Cells at the end of a row that hold nothing count where the
-/// row has its separators.
+/// Blank lines and comment lines (#, %, !, // first, or ; where it parts no columns) are passed over, lines
+/// end with LF, CRLF or CR. The rows begin with the first two lines in succession that are equally long and
+/// hold nothing but numbers, stamps and words for what is missing. Their names stand in one of the four lines
+/// of words before them that has as many fields, the nearest that names a quantity or a time, their units in
+/// the line below; or, where the rows come first, in a comment. Lines of words before the names are passed
+/// over. A first row that holds words beside its numbers begins the rows too. Where fields carry their names
+/// ("ax: 0.25"), those are the names.
 ///
-/// Lines of words in front of the names, of whatever number, are passed over where the names stand just
-/// before the first two rows of equal length.
+/// With `header_lines`, the names come from the last non-blank of them. A line that repeats the header, and
+/// lines of words behind the last row, are left out and remembered. Cells at the end of a row that hold
+/// nothing count where the row has its separators.
 ///
 /// A tolerant walk begins at the first two rows in succession that are numbers throughout and equally long.
 /// The lines before them that hold as many fields and no number name the columns and then their units; rows
@@ -67,7 +70,7 @@ class DelimitedText {
   const std::vector<std::string>& units() const { return units_; }  ///< likewise
   char separator() const { return separator_; }
   char decimal() const { return decimal_; }
-  const std::vector<std::size_t>& skipped_lines() const { return skipped_; }  ///< of a tolerant walk
+  const std::vector<std::size_t>& skipped_lines() const { return skipped_; }  ///< that were left out
   std::size_t header_line() const { return header_line_; }  ///< where the names stand; 0 without
   std::size_t width() const { return width_; }              ///< columns of the first row of numbers
 
@@ -93,22 +96,35 @@ class DelimitedText {
     bool rows;  ///< numbers throughout, or, failing that, somewhere
   };
 
+  struct Comment {
+    std::string_view text;
+    std::size_t line;
+  };
+
   bool next_line();                    ///< of any kind
-  bool next_row();                     ///< passes over blank lines and comments, remembering the last comment
+  bool next_row();                     ///< passes over blank lines and comments, remembering the first ones
   void find_header(int header_lines);  ///< and the first row after it
-  void find_rows(std::size_t most_lines = ~std::size_t{0});  ///< the same of a tolerant walk
-  bool find_behind_metadata();  ///< the same behind lines of words; false: it has none, or no rows
-  void choose_separator();      ///< and the decimal sign, by the first rows
-  void split_row();             ///< of this line, with cells at its end that hold nothing
+  void find_rows();                    ///< the same of a tolerant walk
+  bool find_body();                    ///< the same by two rows in succession; false: there are none
+  void choose_separator();             ///< and the decimal sign, by the first rows
+  void split(std::string_view line);   ///< while the separator is open
+  void split_row();                    ///< of this line, with cells at its end that hold nothing
+  void take_labels();                  ///< from the fields
+  void take_comment();                 ///< as names, where one names the columns
   void name_columns(std::string_view header, std::size_t line);
+  std::vector<std::string_view> named(std::string_view line, std::size_t width) const;  ///< its fields
+  bool is_comment(std::string_view content) const;
+  std::string_view words_of_comment(std::string_view comment) const;
+  bool only_words_follow() const;  ///< from this line on
 
   std::string file_;
-  std::string_view rest_, line_, comment_;
-  std::size_t line_number_ = 0, comment_line_ = 0, header_line_ = 0, width_ = 0;
+  std::string_view rest_, line_, header_text_;
+  std::size_t line_number_ = 0, header_line_ = 0, width_ = 0;
   char separator_, decimal_;
   bool tolerant_;
   std::vector<std::size_t> skipped_;
-  std::vector<EarlyLine> before_;  ///< what stands before the first row
+  std::vector<Comment> comments_;  ///< before the first row
+  bool semicolon_comments_ = false, labelled_ = false;
   bool first_row_pending_ = false;
   std::vector<std::string_view> fields_;
   std::vector<std::string> names_, units_;

@@ -9,8 +9,10 @@
 #include <fstream>
 #include <map>
 #include <new>
+#include <stdexcept>
 #include <string>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -153,6 +155,12 @@ RecordTable CollectedSignals::table(const RecordFormat& format) const {
     table.precision.push_back(PrintedPrecision::of_digits(signal.digits));
   }
   find_time(table, format);
+  table.by_people = true;
+  for (std::size_t i = 0; i < table.width(); ++i) {
+    const auto meaning = parse_column_name(table.names[i]);
+    const auto unit = stated_unit(table.units[i]);
+    if ((meaning && meaning->quantity) || (unit && unit->quantity)) table.by_people = false;
+  }
   const auto stated = [&](std::size_t i) { return table.time != i && !table.units[i].empty(); };
   bool units = false;
   for (std::size_t i = 0; i < table.width(); ++i) units = units || stated(i);
@@ -395,6 +403,20 @@ CollectedSignals read_apart(const std::string& file, const std::string& library,
                             limits.bytes >> 20, expected));
   if (outcome == ApartOutcome::refused) throw refusal(file, message);
   return signals;
+}
+
+LoadedLibrary::LoadedLibrary(const std::string& file, const char* name, const char* package)
+    : handle_(dlopen(name, RTLD_NOW | RTLD_LOCAL)) {
+  if (handle_ == nullptr)
+    throw InputError({file, 0, 0}, fmt::format("cannot be read without {}; expected that library: it is in "
+                                               "Debian's package {}",
+                                               name, package));
+}
+
+void* LoadedLibrary::symbol(const char* name) const {
+  void* const found = dlsym(handle_, name);
+  if (found == nullptr) throw std::runtime_error(std::string("a library without ") + name);
+  return found;
 }
 
 }  // namespace beamid::experiments

@@ -51,7 +51,8 @@ class CollectedSignals {
   }
 
   /// Times are in the unit that their signal states, by its name or beside it, and in seconds where it states
-  /// none, which a remark then says.
+  /// none, which a remark then states. Where no signal states quantity and unit, names are recognised as
+  /// people write them.
   /// @throws InputError when there is no signal of at least two samples, or when times and a stated interval
   /// contradict each other or times are in another unit, unless the format states them itself.
   RecordTable table(const RecordFormat& format) const;
@@ -93,5 +94,28 @@ ReadingLimits reading_limits(std::size_t file_bytes);
 /// limits.
 CollectedSignals read_apart(const std::string& file, const std::string& library, const ReadingLimits& limits,
                             const std::function<void(CollectedSignals&)>& read);
+
+// Libraries that few files need, loaded when one of these is read: a start takes no longer for them.
+
+/// A shared object of the system.
+class LoadedLibrary {
+ public:
+  /// @param name of the shared object: "libsndfile.so.1". @param package of Debian that holds it.
+  /// @throws InputError at `file` where there is no such library.
+  LoadedLibrary(const std::string& file, const char* name, const char* package);
+
+  /// A function of it, of the type that the library's header gives it:
+  /// function<decltype(sf_open)>("sf_open").
+  /// @throws std::runtime_error when there is none.
+  template <class Function>
+  Function* function(const char* name) const {
+    return reinterpret_cast<Function*>(symbol(name));
+  }
+
+ private:
+  void* symbol(const char* name) const;
+
+  void* handle_;  // stays until the program ends
+};
 
 }  // namespace beamid::experiments

@@ -1,11 +1,9 @@
 #include "experiments/record/read_record.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +13,7 @@
 #include "experiments/record/record.hpp"
 #include "experiments/record/record_columns.hpp"
 #include "experiments/record/record_table.hpp"
-#include "experiments/record/rounded_stamps.hpp"
+#include "experiments/record/stamps.hpp"
 #include "experiments/signal/interpolation.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/input_error.hpp"
@@ -270,11 +268,7 @@ Record cut(const Record& record, const RecordFormat& format, const std::string& 
 /// Whether a cell says that nothing was read.
 bool is_missing(const RecordTable& table, std::size_t row, std::size_t column) {
   if (!table.cell) return std::isnan(table.columns[column][row]);
-  std::string text = unquoted(table.cell(row, column).text);
-  for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  static const std::set<std::string> nothing{"",     "nan",      "na",  "n/a", "#n/a", "null",
-                                             "none", "overflow", "ovf", "ol",  "-",    "--"};
-  return nothing.contains(text);
+  return says_missing(table.cell(row, column).text);
 }
 
 /// A column that is read, and what one of its unit is in that of the record.
@@ -303,23 +297,6 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
   if (lines.empty()) return;
   table.remarks.push_back(skipped_text(lines, "is not a row of numbers like the others"));
   table.keep(kept);
-}
-
-/// Of a file that nobody described: an axis that is not connected is no channel, unless no other moves
-/// either.
-void leave_out_dead(RecordTable& table, RecordColumns& columns) {
-  std::vector<RecordColumn> alive;
-  std::string dead;
-  for (const RecordColumn& column : columns.channels) {
-    const std::vector<double>& values = table.columns[column.index];
-    if (std::ranges::any_of(values, [&](double value) { return value != values.front(); }))
-      alive.push_back(column);
-    else
-      dead += (dead.empty() ? "'" : ", '") + column.channel.name + "'";
-  }
-  if (alive.empty() || dead.empty()) return;
-  columns.channels = std::move(alive);
-  table.remarks.push_back("Without any motion, left out: " + dead + ".");
 }
 
 }  // namespace

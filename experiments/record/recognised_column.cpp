@@ -1,16 +1,14 @@
 #include "experiments/record/recognised_column.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <charconv>
-#include <chrono>
 #include <regex>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "experiments/record/units.hpp"
+#include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -65,27 +63,43 @@ bool any_word(const std::vector<std::string>& words, const std::set<std::string>
 }
 
 const std::set<std::string> times{
-    "t",     "time",     "times",   "timestamp", "zeit",     "zeitstempel", "temps",    "tiempo",
-    "tempo", "seconds",  "secs",    "elapsed",   "sekunden", "secondes",    "segundos", "secondi",
-    "date",  "datetime", "datum",   "fecha",     "uhrzeit",  "epoch",       "unix",     "second",
-    "sec",   "sekunde",  "seconde", "segundo",   "secondo",  "hora",        "heure",    "ora"};
+    "t",       "time",    "times",   "timestamp", "zeit",     "zeitstempel", "temps",   "tiempo",  "tempo",
+    "seconds", "secs",    "elapsed", "sekunden",  "secondes", "segundos",    "secondi", "date",    "datetime",
+    "datum",   "fecha",   "uhrzeit", "epoch",     "unix",     "second",      "sec",     "sekunde", "seconde",
+    "segundo", "secondo", "hora",    "heure",     "ora",      "tijd",        "tid",     "aika",    "czas",
+    "时间",    "時間",    "時刻",    "время",     "zeitpunkt"};
+// Time, and its unit [s].
+const std::vector<std::pair<std::string_view, double>> clocks{
+    {"millis", 1e-3}, {"milliseconds", 1e-3}, {"msec", 1e-3},        {"micros", 1e-6}, {"microseconds", 1e-6},
+    {"usec", 1e-6},   {"nanos", 1e-9},        {"nanoseconds", 1e-9}, {"minutes", 60.0}};
 const std::set<std::string> counts{
     "sample",        "samples", "index",       "idx",      "n",       "nr",     "no",     "packet",
     "packetcounter", "counter", "count",       "row",      "id",      "i",      "k",      "probe",
     "abtastwert",    "muestra", "echantillon", "campione", "amostra", "nummer", "number", "point"};
 const std::set<std::string> no_motion{
-    "euler",      "roll",    "pitch",        "yaw",     "gyr",        "gyro",     "gyroscope",
-    "mag",        "magnet",  "magnetometer", "quat",    "quaternion", "temp",     "temperature",
-    "temperatur", "heading", "azimuth",      "battery", "pressure",   "humidity", "status"};
+    "euler",      "roll",    "pitch",        "yaw",      "gyr",        "gyro",     "gyroscope",
+    "mag",        "magnet",  "magnetometer", "quat",     "quaternion", "temp",     "temperature",
+    "temperatur", "heading", "azimuth",      "battery",  "pressure",   "humidity", "status",
+    "light",      "sound",   "altitude",     "latitude", "longitude",  "gps",      "proximity",
+    "druck",      "feuchte", "helligkeit",   "current",  "rpm"};
+// Of what a sensor of motion may put out.
+const std::set<std::string> readings{"V", "mV", "uV", "LSB", "counts"};
+// These, and units of what is no motion.
+const std::set<std::string> other_units{"lux", "lx",   "dB",  "dBA", "%",    "°C", "degC", "C",
+                                        "K",   "hPa",  "Pa",  "V",   "mV",   "uV", "LSB",  "counts",
+                                        "kPa", "mbar", "bar", "rpm", "RPM",  "µT", "uT",   "T",
+                                        "A",   "mA",   "Hz",  "W",   "km/h", "°",  "deg",  "lumen"};
 
-std::optional<Quantity> quantity_of(const std::vector<std::string>& words) {
+std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::string_view name) {
   const bool base = any_word(words, {"base", "ground", "table", "boden", "sol", "suelo", "suolo"});
   for (const std::string& word : words) {
     static const std::set<std::string> axes{"a",   "ax",  "ay",   "az",   "gfx",
                                             "gfy", "gfz", "accx", "accy", "accz"};
-    if (axes.contains(word) || begins(word, {"acc", "beschl", "acel"}))
+    if (axes.contains(word) ||
+        begins(word, {"acc", "beschl", "acel", "versnelling", "przysp", "ускор", "加速度"}))
       return base ? Quantity::base_acceleration : Quantity::acceleration;
-    if (begins(word, {"vel", "geschw", "vitesse", "veloc"}) || word == "v") return Quantity::velocity;
+    if (begins(word, {"vel", "geschw", "vitesse", "veloc"}) || (word == "v" && name.find('V') == name.npos))
+      return Quantity::velocity;
     if (begins(word, {"disp", "depla", "despl", "spost", "desloc", "ausl", "verschieb", "position"}) ||
         word == "weg" || word == "u")
       return Quantity::displacement;
@@ -144,19 +158,33 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
   if (plain.find("SampleTimeFine") != std::string::npos)
     return RecognisedColumn{Kind::time, {}, 1e-6, true, true};
   RecognisedColumn found;
-  if (const auto seconds = seconds_per_unit(stated); any_word(words, times) && (stated.empty() || seconds)) {
+  const auto is_time = [&](std::optional<double> seconds) {
     found.kind = Kind::time;
     found.factor = seconds.value_or(1.0);
     found.states_unit = seconds.has_value();
     return found;
-  }
-  const auto quantity = quantity_of(words);
+  };
+  for (const auto& [word, seconds] : clocks)
+    if (any_word(words, {std::string(word)})) return is_time(seconds);
+  if (const auto seconds = seconds_per_unit(stated); seconds && words.empty())
+    return is_time(seconds);  // "[s]"
+  if (const auto seconds = seconds_per_unit(trimmed(name)); seconds && stated.empty())
+    return is_time(seconds);
+  if (any_word(words, times) && any_word(words_of(stated), counts))
+    return RecognisedColumn{Kind::count};  // "time (samples)"
+  static const std::set<std::string> epochs{"unix", "epoch",    "utc", "gmt", "local",
+                                            "abs",  "absolute", "hh",  "rel"};
+  if (any_word(words, times) && any_word(words_of(stated), epochs)) return is_time({});
+  if (const auto seconds = seconds_per_unit(stated); any_word(words, times) && (stated.empty() || seconds))
+    return is_time(seconds);
+  const auto quantity = quantity_of(words, plain);
   if (!quantity && any_word(words, no_motion)) return RecognisedColumn{Kind::other};
-  if (!quantity && stated.empty() && any_word(words, counts)) return RecognisedColumn{Kind::count};
+  if (!quantity && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts))
+    return RecognisedColumn{Kind::count};
   const auto known = unit_of(stated);
   if (!quantity && !stated.empty() &&
       (stated.find("deg") != std::string::npos || stated.find("rad") != std::string::npos ||
-       stated.find("°") != std::string::npos || stated == "T" || stated == "uT"))
+       stated.find("°") != std::string::npos || (other_units.contains(stated) && !readings.contains(stated))))
     return RecognisedColumn{Kind::other};
   found.states_quantity = quantity || (known && known->quantity);
   found.quantity = quantity                   ? *quantity
@@ -178,86 +206,80 @@ bool names_columns(const std::vector<std::string_view>& fields) {
   bool named = false;
   for (const std::string_view field : fields) {
     const std::string text(unquoted(field));
-    if (unit_of(text) || seconds_per_unit(text)) return false;
+    if (unit_of(text) || seconds_per_unit(text) || other_units.contains(text)) return false;
     const auto found = recognise_column(text, "");
     named = named || !found || found->states_quantity || found->kind == RecognisedColumn::Kind::time;
   }
   return named;
 }
 
-std::optional<double> stated_rate(std::string_view lines) {
+namespace {
+
+/// Cells that name an interval, and a number in the next cell or in that below.
+std::optional<double> interval_in_cells(std::string_view text, char decimal) {
+  static const std::set<std::string> intervals{"increment", "xinc",    "xincrement", "sampleinterval",
+                                               "dt",        "deltat",  "deltax",     "samplinginterval",
+                                               "tinc",      "timestep"};
+  std::vector<std::string_view> cells, above;
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    if (trimmed(line).empty()) continue;
+    std::swap(cells, above);
+    split_fields(line, separator_of(line), cells);
+    const auto positive = [&](std::string_view cell) {
+      const ParsedNumber number = parse_number(cell, decimal);
+      return number.finite && number.value > 0.0 ? std::optional(number.value) : std::nullopt;
+    };
+    const auto names_interval = [&](std::string_view cell) {
+      std::string name;
+      for (const std::string& word : words_of(cell)) name += word;
+      return intervals.contains(name);
+    };
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (k + 1 < cells.size() && names_interval(cells[k]))
+        if (const auto number = positive(cells[k + 1]))
+          return *number * (k + 2 < cells.size() ? seconds_per_unit(cells[k + 2]).value_or(1.0) : 1.0);
+      if (k < above.size() && names_interval(above[k]))
+        if (const auto number = positive(cells[k])) return number;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<double> stated_rate(std::string_view lines, char decimal) {
+  static const std::string number = R"(([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)(?![0-9.,~]*[0-9]))";
   static const std::regex rate(
-      R"((?:sampl\w*[ _-]*(?:rate|freq\w*)|abtastrate|abtastfrequenz|\bfs\b|\brate\b)[^0-9\n]{0,20}([0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?)\s*(k?)hz?)",
+      R"((?:sampl\w*[ _-]*(?:rate|freq\w*)|abtastrate|abtastfrequenz|messrate|data_rate|\bfs\b|\brate\b)[^0-9.\n]{0,20})" +
+          number + R"([\s,;]*(k?)hz)",
       std::regex::icase),
-      bare(R"((?:\bfs\b|sampl\w*[ _-]*(?:rate|freq\w*))\s*[:=]\s*([0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?))",
-           std::regex::icase),
-      interval(
-          R"((?:\bdt\b|delta[ _]?t|sampl\w*[ _-]*(?:interval|period)|time[ _]?step)[^0-9\n]{0,12}([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(m?)s?)",
-          std::regex::icase);
-  const std::string text(lines);
+      bare(R"((?:\bfs\b|sampl\w*[ _-]*(?:rate|freq\w*))\s*[:=,;\t]\s*)" + number, std::regex::icase),
+      interval(R"((?:\bdt\b|delta[ _]?t|sampl\w*[ _-]*(?:interval|period)|time[ _]?step)([^0-9.\n]{0,12}))" +
+                   number + R"(\s*(ns|us|µs|ms|sec|s)?(?![a-zµ]))",
+               std::regex::icase);
+  std::string text(lines);
+  if (decimal == ',') {  // a point parts thousands
+    std::replace(text.begin(), text.end(), '.', '~');
+    std::replace(text.begin(), text.end(), ',', '.');
+  }
   std::smatch match;
   double found = 0.0;
   if (std::regex_search(text, match, rate))
     found = std::stod(match[1]) * (match[2].length() > 0 ? 1e3 : 1.0);
   else if (std::regex_search(text, match, bare))
     found = std::stod(match[1]);
-  else if (std::regex_search(text, match, interval) && std::stod(match[1]) > 0.0)
-    found = 1.0 / (std::stod(match[1]) * (match[2].length() > 0 ? 1e-3 : 1.0));
+  else if (std::regex_search(text, match, interval) && std::stod(match[2]) > 0.0) {
+    const std::string before = match[1], behind = match[3];
+    double unit = seconds_per_unit(behind).value_or(1.0);
+    for (const char* const symbol : {"ms", "us", "µs", "ns"})
+      if (behind.empty() && before.find(symbol) != before.npos) unit = *seconds_per_unit(symbol);
+    found = 1.0 / (std::stod(match[2]) * unit);
+  } else if (const auto in_cells = interval_in_cells(lines, decimal)) {
+    found = 1.0 / *in_cells;
+  }
   return found > 0.0 ? std::optional(found) : std::nullopt;
-}
-
-std::optional<double> seconds_of_stamp(std::string_view text) {
-  // Beginning as 2026-11-26T10:00:00; what follows are a fraction and an offset.
-  const auto number = [&](std::size_t at, std::size_t digits) -> int {
-    int value = -1;
-    if (at + digits > text.size()) return -1;
-    const auto [end, error] = std::from_chars(text.data() + at, text.data() + at + digits, value);
-    return error == std::errc() && end == text.data() + at + digits ? value : -1;
-  };
-  if (text.size() < 19 || (text[4] != '-' && text[4] != '/') || text[7] != text[4] ||
-      (text[10] != 'T' && text[10] != ' ') || text[13] != ':' || text[16] != ':')
-    return {};
-  const int year = number(0, 4), month = number(5, 2), day = number(8, 2), hour = number(11, 2),
-            minute = number(14, 2), second = number(17, 2);
-  const std::chrono::year_month_day date{std::chrono::year(year),
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
-  if (year < 0 || month < 0 || day < 0 || !date.ok() || hour < 0 || minute < 0 || second < 0) return {};
-  double fraction = 0.0, place = 0.1;
-  std::size_t at = 19;
-  if (at < text.size() && (text[at] == '.' || text[at] == ','))
-    for (++at; at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])); ++at, place *= 0.1)
-      fraction += place * (text[at] - '0');
-  double offset = 0.0;
-  if (at < text.size() && (text[at] == '+' || text[at] == '-')) {
-    const int hours = number(at + 1, 2),
-              minutes = std::max(0, number(at + (text.find(':', at) != std::string_view::npos ? 4 : 3), 2));
-    if (hours >= 0) offset = (text[at] == '-' ? -1.0 : 1.0) * (3600.0 * hours + 60.0 * minutes);
-  }
-  const auto days = std::chrono::sys_days(date).time_since_epoch().count();
-  return 86400.0 * static_cast<double>(days) + 3600.0 * hour + 60.0 * minute + second + fraction - offset;
-}
-
-std::optional<double> seconds_of_day(std::string_view text) {
-  const std::size_t first = text.find(':'),
-                    second = first == std::string_view::npos ? first : text.find(':', first + 1);
-  if (first == 0 || first > 2 || second != first + 3 || text.size() < second + 3) return {};
-  double parts[3];
-  const std::string_view fields[] = {text.substr(0, first), text.substr(first + 1, 2),
-                                     text.substr(second + 1)};
-  for (int i = 0; i < 3; ++i) {
-    std::string field(fields[i]);
-    std::replace(field.begin(), field.end(), ',', '.');
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), parts[i]);
-    if (error != std::errc() || end != field.data() + field.size() || !(parts[i] >= 0.0)) return {};
-  }
-  if (parts[0] > 24.0 || parts[1] >= 60.0 || parts[2] >= 61.0) return {};
-  return 3600.0 * parts[0] + 60.0 * parts[1] + parts[2];
-}
-
-bool is_date(std::string_view text) {
-  static const std::regex date(R"((\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}))");
-  return text.size() >= 6 && text.size() <= 10 && std::regex_match(text.begin(), text.end(), date);
 }
 
 }  // namespace beamid::experiments

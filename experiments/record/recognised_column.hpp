@@ -24,9 +24,10 @@ struct RecognisedColumn {
   bool states_unit = false;      ///< else values stay as in the file
 };
 
-/// "Time (s)", "t/s", "Zeit [s]", "acc_g", "gFx", "Linear Acceleration x (m/s^2)", "Accel-Tip", "Sample",
-/// "Roll": words of six languages (English, German, French, Spanish, Italian, Portuguese), and a unit in
-/// brackets, behind a slash, a comma or an underscore, or in a row of its own.
+/// "Time (s)", "t/s", "millis", "timestamp(unix)", "Zeit [s]", "acc_g", "gFx", "Linear Acceleration x
+/// (m/s^2)", "Accel-Tip", "Sample", "Roll": words of six languages (English, German, French, Spanish,
+/// Italian, Portuguese; time and acceleration in some more), and a unit in brackets, behind a slash, a comma
+/// or an underscore, or in a row of its own.
 /// @param unit that the file gives the column; empty: none
 /// @returns absent where the name looks like one of this project's own with a unit that is not known
 /// ("acceleration_ft_per_s2")
@@ -36,18 +37,10 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
 /// alone.
 bool names_columns(const std::vector<std::string_view>& fields);
 
-/// The rate that the lines above the columns state: "Sample rate: 400 Hz", "fs = 400", "dt = 0.0025",
-/// "Sampling interval (s): 0.0025" [Hz].
-std::optional<double> stated_rate(std::string_view lines);
-
-/// Seconds since 1970-01-01 of "2026-11-26T10:00:00.125Z" or with a blank, a comma or an offset; absent where
-/// it is no such stamp. Without an offset it counts as UTC: intervals do not depend on it.
-std::optional<double> seconds_of_stamp(std::string_view text);
-
-/// Seconds since midnight of "10:00:00.125" or "9:05:07"; absent where it is none.
-std::optional<double> seconds_of_day(std::string_view text);
-
-/// "2026-11-27", "27.11.2026", "11/27/2026": a date alone, which a column of times beside it completes.
-bool is_date(std::string_view text);
+/// The rate that lines of text state [Hz]: "Sample rate: 400 Hz", "fs = 400", "dt = 0.0025",
+/// "Sampling interval (s): 0.0025"; or a cell "Increment", "XInc", "Sample Interval", "dt:" and a number in
+/// the next cell or below it.
+/// @param decimal sign of the file's numbers
+std::optional<double> stated_rate(std::string_view lines, char decimal = '.');
 
 }  // namespace beamid::experiments

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/record/recognised_column.hpp"
+#include "experiments/record/stamps.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/text/spelling.hpp"
 
@@ -57,31 +58,54 @@ RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
   return column;
 }
 
-// Whole numbers one after the other: the samples counted.
-bool counts_samples(const std::vector<double>& values) {
-  if (values.size() < 2 || (values[0] != 0.0 && values[0] != 1.0)) return false;
-  for (std::size_t k = 1; k < values.size(); ++k)
-    if (values[k] != values[k - 1] + 1.0) return false;
+// Fewer than half of its cells hold numbers. @throws InputError at a cell that begins as a number does: a
+// column of such is one that was parted wrongly, or of numbers in another form.
+bool holds_words(const RecordTable& table, std::size_t index) {
+  const std::vector<double>& values = table.columns[index];
+  const auto numbers = std::ranges::count_if(values, [](double value) { return std::isfinite(value); });
+  if (2 * static_cast<std::size_t>(numbers) >= values.size()) return false;
+  for (std::size_t row = 0; table.cell && row < values.size(); ++row) {
+    if (std::isfinite(values[row])) continue;
+    const std::string text = table.cell(row, index).text;
+    const std::size_t first = text.find_first_not_of("\"'+-.,");
+    if (first != text.npos && text[first] >= '0' && text[first] <= '9') throw table.fault(row, index);
+  }
   return true;
 }
 
-bool rises(const std::vector<double>& values) {
-  for (std::size_t k = 1; k < values.size(); ++k)
-    if (!(values[k] > values[k - 1])) return false;
-  return values.size() > 1;
+std::string unit_of_time(double factor) {
+  return factor == 1.0       ? "s"
+         : factor == 1e-3    ? "ms"
+         : factor == 1e-6    ? "us"
+         : factor == 1e-9    ? "ns"
+         : factor == 60.0    ? "min"
+         : factor == 86400.0 ? "days"
+                             : fmt::format("{:g} s", factor);
 }
 
-// Stamps of a computer's clock: seconds, milliseconds, microseconds or nanoseconds since 1970, by their size;
-// days of a spreadsheet, or of MATLAB, by their size and that they hardly change from row to row.
-double seconds_of_epoch(const std::vector<double>& stamps) {
-  // A step that would be 200 kHz in seconds is 2.3 Hz in days.
-  constexpr double a_day = 86400.0, fastest = 5e-6, longest = 30.0;
-  const double first = stamps.front(), step = stamps.size() > 1 ? stamps[1] - first : 1.0;
-  const bool date = (first > 3e4 && first < 7e4) || (first > 6.9e5 && first < 8e5);
-  if (date && step > 0.0 && step < fastest && stamps.back() - first < longest) return a_day;
-  for (const double unit : {1e-9, 1e-6, 1e-3})
-    if (first * unit > 3e8 && first * unit < 4e9) return unit;
-  return 1.0;
+// "column 2 is", "columns 2 to 4 are".
+std::string numbers_of(const std::vector<RecordColumn>& columns) {
+  std::string list;
+  for (const RecordColumn& column : columns)
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", column.index + 1);
+  return fmt::format("column{} {} {}", columns.size() == 1 ? "" : "s", list,
+                     columns.size() == 1 ? "is" : "are");
+}
+
+// Times of no stated unit at steps of half a second or more, were they seconds: most are milliseconds.
+// @throws InputError the question
+void require_plausible_step(const RecordTable& table, std::size_t index) {
+  constexpr double slowest = 0.5;
+  const double step = mean_step(table.columns[index]);
+  if (!(step >= slowest)) return;
+  const std::string name = column_name_of(table, index);
+  throw InputError(
+      {table.file, table.header_line, 0},
+      fmt::format("column {}{} rises by {:.6g} from row to row and states no unit; expected the unit of its "
+                  "times: --time {}:ms ({:.6g} Hz), --time {}:us ({:.6g} Hz) or --time {}:s ({:.6g} Hz), or "
+                  "record.time in the configuration",
+                  index + 1, name.empty() ? "" : " '" + name + "'", step, index + 1, 1e3 / step, index + 1,
+                  1e6 / step, index + 1, 1.0 / step));
 }
 
 // Of columns whose names are not this project's own, what was recognised.
@@ -92,7 +116,33 @@ class Recognition {
     const std::string& name = table.names[index];
     const auto found = recognise_column(name, index < table.units.size() ? table.units[index] : "");
     if (!found) return false;
-    const auto add = [&](std::string& list) { list += (list.empty() ? "'" : ", '") + name + "'"; };
+    const auto add = [&](std::string& list) {
+      list += (list.empty() ? "" : ", ") +
+              (name.empty() ? fmt::format("column {}", index + 1) : "'" + name + "'");
+    };
+    const std::vector<double>& values = table.columns[index];
+    if (holds_words(table, index)) {
+      add(words_);
+      if (!first_words_) first_words_ = index;
+      return true;
+    }
+    if (name.empty()) {  // the index of a table
+      if (counts_samples(values))
+        counted_ = counted_.value_or(index);
+      else if (index == 0 && rises(values))
+        unnamed_ = index;
+      else
+        add(other_);
+      return true;
+    }
+    if (index == 0 && found->kind == RecognisedColumn::Kind::signal && !found->states_quantity &&
+        !found->states_unit && runs_evenly(values)) {  // no motion does
+      if (counts_samples(values))
+        counted_ = counted_.value_or(index);
+      else
+        unnamed_ = index;
+      return true;
+    }
     switch (found->kind) {
       case RecognisedColumn::Kind::count:
         if (!counted_) counted_ = index;
@@ -106,10 +156,8 @@ class Recognition {
         } else if (!found->states_unit && counts_samples(table.columns[index])) {
           counted_ = index;
         } else {
-          const double epoch = found->states_unit ? 1.0 : seconds_of_epoch(table.columns[index]);
-          columns.time = RecordColumn{index, found->factor * epoch, {}};
-          read_ += fmt::format("{}'{}' as time in {}", read_.empty() ? "" : ", ", name,
-                               unit_of_time(found->factor * epoch));
+          take_stamps(table, index, found->states_unit ? std::optional(found->factor) : std::nullopt,
+                      columns);
         }
         break;
       case RecognisedColumn::Kind::signal: {
@@ -124,36 +172,52 @@ class Recognition {
   }
 
   // Stamps alone, where channels are stated.
-  void take_time(RecordTable& table, RecordColumns& columns) {
+  void take_time(RecordTable& table, RecordColumns& columns, bool stamped) {
     for (std::size_t index = 0; index < std::min(table.names.size(), table.width()); ++index) {
       const auto found =
           recognise_column(table.names[index], index < table.units.size() ? table.units[index] : "");
-      if (found &&
-          (found->kind == RecognisedColumn::Kind::time || found->kind == RecognisedColumn::Kind::count))
+      if (found && (found->kind == RecognisedColumn::Kind::time ||
+                    found->kind == RecognisedColumn::Kind::count || (index == 0 && table.names[0].empty())))
         take(table, index, columns);
     }
-    other_.clear();
-    report(table, columns);
+    other_.clear(), words_.clear();
+    report(table, columns, stamped);
   }
 
   // Says it in one line, and asks the one question that is left.
-  void report(RecordTable& table, RecordColumns& columns) const {
-    if (!read_.empty()) table.remarks.push_back("Read: " + read_ + ".");
+  void report(RecordTable& table, RecordColumns& columns, bool stamped) {
+    if (columns.channels.empty() && first_words_) {
+      std::size_t row = 0;
+      while (std::isfinite(table.columns[*first_words_][row])) ++row;
+      throw table.fault(row, *first_words_);
+    }
+    if (unnamed_ && !columns.time && !table.time && !stamped) take_stamps(table, *unnamed_, {}, columns);
+    const std::string stamps = table.time && table.by_people && !column_name_of(table, *table.time).empty()
+                                   ? "'" + column_name_of(table, *table.time) + "' as dates or times of day, "
+                                   : "";
+    if (!read_.empty()) table.remarks.push_back("Read: " + stamps + read_ + ".");
+    if (!words_.empty()) table.remarks.push_back("Words in place of numbers, left out: " + words_ + ".");
     if (!other_.empty()) table.remarks.push_back("No channels of motion, left out: " + other_ + ".");
     if (!columns.time && !table.time) columns.counted = counted_;
     drop_first_zeros(table, columns);
   }
 
  private:
-  std::string read_, other_;
-  std::optional<std::size_t> counted_;
+  std::string read_, other_, words_;
+  std::optional<std::size_t> counted_, unnamed_, first_words_;
 
-  static std::string unit_of_time(double factor) {
-    return factor == 1.0       ? "s"
-           : factor == 1e-3    ? "ms"
-           : factor == 1e-6    ? "us"
-           : factor == 86400.0 ? "days"
-                               : fmt::format("{:g} s", factor);
+  // @param factor to seconds, where the file states it
+  void take_stamps(const RecordTable& table, std::size_t index, std::optional<double> factor,
+                   RecordColumns& columns) {
+    if (!factor) {
+      factor = seconds_of_epoch(table.columns[index]);
+      if (*factor == 1.0) require_plausible_step(table, index);
+    }
+    columns.time = RecordColumn{index, *factor, {}};
+    const std::string name = column_name_of(table, index);
+    read_ += fmt::format("{}{} as time in {}", read_.empty() ? "" : ", ",
+                         name.empty() ? fmt::format("column {}", index + 1) : "'" + name + "'",
+                         unit_of_time(*factor));
   }
 
   // A logger's first sample, before its sensor has answered.
@@ -170,36 +234,52 @@ class Recognition {
   }
 };
 
+// The first column that rises is time.
+// @param columns of which `time` or `counted` is set
+// @returns the first column behind it
+std::size_t take_first_rising(const RecordTable& table, bool stamped, RecordColumns& columns) {
+  std::size_t first = 0;
+  while (first + 1 < table.width() && holds_words(table, first)) ++first;
+  if (table.width() <= first + 1 || table.time || !rises(table.columns[first])) return first;
+  if (counts_samples(table.columns[first])) {
+    columns.counted = first;
+    if (table.width() > first + 2 && runs_evenly(table.columns[first + 1]) &&
+        !counts_samples(table.columns[first + 1]))
+      ++first;  // counts, then times
+  }
+  if (columns.counted != first && !stamped) {
+    const double unit = seconds_of_epoch(table.columns[first]);
+    if (unit == 1.0) require_plausible_step(table, first);
+    columns.time = RecordColumn{first, unit, {}};
+    columns.counted = {};
+  }
+  return first + 1;
+}
+
 // The first column that rises is time, the rest are signals.
-RecordColumns columns_without_header(RecordTable& table) {
+RecordColumns columns_without_header(RecordTable& table, bool stamped) {
   RecordColumns columns;
   columns.recognised = true;
-  std::size_t first = 0;
-  if (table.width() > 1 && (table.time || rises(table.columns[0]))) {
-    first = 1;
-    if (!table.time && counts_samples(table.columns[0]))
-      columns.counted = 0;
-    else if (!table.time)
-      columns.time = RecordColumn{0, seconds_of_epoch(table.columns[0]), {}};
-  }
+  const std::size_t first = take_first_rising(table, stamped, columns);
   const auto never_moves = [](const std::vector<double>& values) {  // dates beside times of day
     return std::ranges::all_of(values, [&](double value) { return value == 0.0; });
   };
   for (std::size_t index = first; index < table.width(); ++index)
-    if (table.time != index && !never_moves(table.columns[index]))
+    if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index))
       columns.channels.push_back({index, 1.0, {Quantity::acceleration, fmt::format("column_{}", index + 1)}});
   table.remarks.push_back(fmt::format(
       "No header: {}{} taken for acceleration in m/s2. Frequency and damping ratio do not depend on it.",
-      columns.time ? "column 1 is taken for time in s, " : "",
-      columns.channels.size() == 1 ? fmt::format("column {} is", first + 1)
-                                   : fmt::format("columns {} to {} are", first + 1, table.width())));
+      columns.time ? fmt::format("column {} is taken for time in {}, ", columns.time->index + 1,
+                                 unit_of_time(columns.time->factor))
+                   : "",
+      numbers_of(columns.channels)));
   return columns;
 }
 
-RecordColumns columns_of_header(RecordTable& table) {
+RecordColumns columns_of_header(RecordTable& table, bool stamped) {
   RecordColumns columns;
   const Place header{table.file, table.header_line, 0};
-  if (table.names.empty() && table.by_people) return columns_without_header(table);
+  if (table.names.empty() && table.by_people) return columns_without_header(table, stamped);
   if (table.names.size() != table.width())
     throw InputError(header,
                      fmt::format("a header of {} names for {}; expected one each, with its unit ({}), or {}",
@@ -227,7 +307,7 @@ RecordColumns columns_of_header(RecordTable& table) {
     else
       columns.time = RecordColumn{index, meaning->factor, {}};
   }
-  recognition.report(table, columns);
+  recognition.report(table, columns, stamped);
   if (columns.channels.empty() && !unknown.empty())
     throw InputError(
         header, fmt::format("no unit says what is measured: {}; expected {}", unknown, in_configuration));
@@ -292,7 +372,9 @@ std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted
 
 RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   RecordColumns columns;
-  if (format.channels.empty()) columns = columns_of_header(table);
+  // Times that are stated elsewhere need no column.
+  const bool stamped = format.time || format.sampling_rate;
+  if (format.channels.empty()) columns = columns_of_header(table, stamped);
   for (const ColumnDescription& wanted : format.channels)
     columns.channels.push_back(find_column(table, wanted));
   if (format.time) {
@@ -303,8 +385,12 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   for (std::size_t index = 0; !columns.time && index < std::min(table.names.size(), table.width()); ++index)
     if (const auto meaning = stated_meaning(table, index); meaning && !meaning->quantity)
       columns.time = RecordColumn{index, meaning->factor, {}};
-  if (!columns.time && !format.channels.empty() && table.by_people && !table.clock && !format.sampling_rate)
-    Recognition().take_time(table, columns);
+  if (!columns.time && !format.channels.empty() && table.by_people && !table.clock && !format.sampling_rate) {
+    if (table.names.empty())
+      take_first_rising(table, false, columns);
+    else
+      Recognition().take_time(table, columns, false);
+  }
   if (!columns.time && !table.clock && !format.sampling_rate && table.stated_rate) {
     table.clock = Clock{0.0, 1.0 / *table.stated_rate};
     table.remarks.push_back(fmt::format(
@@ -321,9 +407,24 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
                                        "record.sampling_rate_hz in the configuration"));
   if (!columns.time && !table.clock && !format.sampling_rate)
     throw InputError({table.file, 0, 0},
-                     "no times; expected a column time_s, or record.time or record.sampling_rate_hz in the "
-                     "configuration");
+                     "no column of time; expected the sampling rate, --rate HZ, or the column, --time "
+                     "COLUMN:UNIT (record.sampling_rate_hz, record.time in the configuration)");
   return columns;
+}
+
+void leave_out_dead(RecordTable& table, RecordColumns& columns) {
+  std::vector<RecordColumn> alive;
+  std::string dead;
+  for (const RecordColumn& column : columns.channels) {
+    const std::vector<double>& values = table.columns[column.index];
+    if (std::ranges::any_of(values, [&](double value) { return value != values.front(); }))
+      alive.push_back(column);
+    else
+      dead += (dead.empty() ? "'" : ", '") + column.channel.name + "'";
+  }
+  if (alive.empty() || dead.empty()) return;
+  columns.channels = std::move(alive);
+  table.remarks.push_back("Without any motion, left out: " + dead + ".");
 }
 
 }  // namespace beamid::experiments

@@ -35,6 +35,10 @@ std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted
 /// @throws InputError at the header or the first row.
 RecordColumns find_columns(RecordTable& table, const RecordFormat& format);
 
+/// Of a file that nobody described: an axis that is not connected is no channel, unless no other moves
+/// either. Left out with a remark in `table`.
+void leave_out_dead(RecordTable& table, RecordColumns& columns);
+
 /// What is stated of a column holds, also where its header is wrong; but a column taken for its neighbour, or
 /// for another unit, makes every result wrong without a sign: a warning in `table`.
 void compare_with_header(const ColumnDescription& wanted, std::size_t index, RecordTable& table);

@@ -92,7 +92,10 @@ InputError number_fault(const TextField& found, std::size_t column) {
   constexpr std::size_t longest = 40;
   const std::string shown =
       found.text.empty() ? "nothing" : fmt::format("'{}'", found.text.substr(0, longest));
-  const char* expected = parse_number(found.text).number ? "a finite number within double precision"
+  static const std::regex thousands(R"([-+]?[0-9]{1,3}([,.' ][0-9]{3})+([.,][0-9]+)?)");
+  const char* expected = std::regex_match(found.text.substr(0, longest), thousands)
+                             ? "a number without separators of thousands"
+                         : parse_number(found.text).number ? "a finite number within double precision"
                          : found.text.find(',') != std::string::npos ? "a number with a decimal point"
                                                                      : "a number";
   return {found.place, fmt::format("column {} holds {}; expected {}", column + 1, shown, expected)};

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -88,7 +89,8 @@ std::size_t quoted_length(std::string_view rest, char separator) {
       ++end;
       continue;
     }
-    const std::size_t next = separator == ' ' ? end : rest.find_first_not_of(blanks, end);
+    const std::size_t next =
+        separator == ' ' || separator == '\t' ? end : rest.find_first_not_of(blanks, end);
     const bool last = next >= rest.size();
     return last || (separator == ' ' ? blanks.find(rest[next]) != blanks.npos : rest[next] == separator) ? end
                                                                                                          : 0;
@@ -117,7 +119,7 @@ std::string unquoted(std::string_view field) {
 }
 
 char separator_of(std::string_view line) {
-  for (const char candidate : {'\t', ';', ','})
+  for (const char candidate : {'\t', ';', '|', ','})
     if (line.find(candidate) != std::string_view::npos) return candidate;
   return ' ';
 }
@@ -161,6 +163,12 @@ ParsedNumber parse_number(std::string_view field) {
   ParsedNumber parsed;
   const char* const end = field.data() + field.size();
   const auto result = std::from_chars(field.data(), end, parsed.value);
+  if (result.ptr != end && result.ptr != field.data() && (*result.ptr == 'D' || *result.ptr == 'd') &&
+      field.size() < 64) {
+    std::string with_e(field);
+    with_e[static_cast<std::size_t>(result.ptr - field.data())] = 'E';
+    return parse_number(with_e);
+  }
   parsed.number = result.ptr == end && result.ec != std::errc::invalid_argument;
   parsed.finite = parsed.number && result.ec == std::errc() && std::isfinite(parsed.value);
   return parsed;
@@ -173,6 +181,15 @@ ParsedNumber parse_number(std::string_view field, char decimal) {
   char pointed[longest];
   std::replace_copy(field.begin(), field.end(), pointed, decimal, '.');
   return parse_number(std::string_view(pointed, field.size()));
+}
+
+bool says_missing(std::string_view field) {
+  if (field.empty()) return true;
+  std::string text = unquoted(field);
+  for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  static const std::set<std::string> nothing{"",     "nan",      "na",  "n/a", "#n/a", "null",
+                                             "none", "overflow", "ovf", "ol",  "-",    "--"};
+  return nothing.contains(text);
 }
 
 bool holds_number(const std::vector<std::string_view>& fields, char decimal) {
@@ -196,6 +213,23 @@ std::string column_key(const std::string& name, const std::string& unit) {
       key += letter == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   }
   return key;
+}
+
+std::size_t label_length(std::string_view field) {
+  const std::size_t sign = field.find_first_of(":=");
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (sign == field.npos || sign == 0 || !letter(field.front())) return 0;
+  return parse_number(trimmed(field.substr(sign + 1))).number ? sign + 1 : 0;
+}
+
+std::vector<std::string_view> parted_by_blanks(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
+    const std::size_t end = std::min(line.find("  "), line.size());
+    words.push_back(trimmed(line.substr(0, end)));
+    line.remove_prefix(end);
+  }
+  return words;
 }
 
 }  // namespace beamid::experiments

@@ -32,7 +32,7 @@ std::string field_text(std::string_view field);
 /// The same, or without one pair of single quotes around it.
 std::string unquoted(std::string_view field);
 
-/// The first of tab, semicolon, comma that occurs, else ' ' for blanks.
+/// The first of tab, semicolon, |, comma that occurs, else ' ' for blanks.
 char separator_of(std::string_view line);
 
 /// The trimmed fields of a line, views into it. ' ' stands for any run of blanks and tabs. A separator
@@ -58,11 +58,20 @@ struct ParsedNumber {
   bool finite = false;  ///< and a double can hold it
 };
 
-/// A decimal number with a point, in whatever locale: -1, +.5, 2.5E-3.
+/// A decimal number with a point, in whatever locale: -1, +.5, 2.5E-3, or Fortran's 2.5D-3.
 ParsedNumber parse_number(std::string_view field);
 
 /// The same with `decimal` between whole and fraction, '.' or ','.
 ParsedNumber parse_number(std::string_view field, char decimal);
+
+/// Whether a cell says that nothing was read: it is empty, or NaN, NA, null, OVERFLOW, - or the like.
+bool says_missing(std::string_view field);
+
+/// Length of the label of "ax: 0.25" or "ax=0.25" with its sign; 0 without one.
+std::size_t label_length(std::string_view field);
+
+/// The words of a header whose columns stand under each other: parted by two blanks at least.
+std::vector<std::string_view> parted_by_blanks(std::string_view line);
 
 bool holds_number(const std::vector<std::string_view>& fields, char decimal = '.');
 bool all_numbers(const std::vector<std::string_view>& fields, char decimal = '.');

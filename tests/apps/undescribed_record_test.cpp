@@ -30,6 +30,32 @@ TEST(UndescribedRecord, GivesFrequencyAndDampingRatioAndWithAMassStiffness) {
   EXPECT_EQ(both.code, 2);
 }
 
+// A file in the form of a logger, whose options are the same words for every command.
+TEST(UndescribedRecord, IsDescribedByTheSameOptionsEverywhere) {
+  Workplace place;
+  std::ofstream file(place.folder() / "logger.txt");
+  file << "Logger 7\nn|clock|tip\n";
+  for (int k = 0; k < 2000; ++k)
+    file << k << "|" << 5 * k << "|"
+         << std::exp(-0.002 * k) * std::cos(2.0 * std::numbers::pi * 5.0 * 0.005 * k) << "\n";
+  file.close();
+  const std::string options =
+      " logger.txt --time clock:ms --column tip --quantity acceleration --unit g --delimiter bar --decimal "
+      "point "
+      "--header-lines 2 --json";
+  for (const std::string command : {"modal", "track", "backbone", "inspect", "identify"}) {
+    const Outcome outcome = place.run(command + options);
+    EXPECT_NE(outcome.code, 2) << command << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("5.00")) << command;
+  }
+  EXPECT_EQ(place.run("modal" + options + " --position 0.5").code, 0);
+  EXPECT_EQ(place.run("modal logger.txt --position 0.5").code, 2);
+  const Outcome written = place.run("inspect" + options + " --write mine.toml");
+  ASSERT_EQ(written.code, 0) << written.err;
+  EXPECT_THAT(place.run("modal --config mine.toml").out, HasSubstr("5.000"));
+  EXPECT_EQ(place.run("inspect logger.txt --time 2:ms --write mine.toml").code, 2) << "it exists";
+}
+
 // Oracle: the same record in one file.
 TEST(JoinedFiles, AreTheRecordThatOneFileHolds) {
   Workplace place;

@@ -81,6 +81,7 @@ inline const std::vector<Library>& libraries() {
       {"MPI", {"mpi.h"}, {"experiments/sweep/mpi_processes.cpp"}},
       {"matio", {"matio"}, {"experiments/record/files/"}},
       {"libsndfile", {"sndfile"}, {"experiments/record/files/"}},
+      {"libmseed", {"libmseed"}, {"experiments/record/files/"}},
       {"oneTBB", {"tbb/", "oneapi/"}, {"experiments/"}},
       {"Boost.Math", {"boost/math/"}, {"fem/", "filters/", "experiments/"}},
       {"pybind11", {"pybind11/"}, {"apps/python/"}},

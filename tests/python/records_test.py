@@ -36,6 +36,28 @@ class Records(unittest.TestCase):
         found = beamid.inspect(record)
         self.assertIn("400 samples", found.report)
 
+    def test_arrays_are_records(self):
+        rng = np.random.default_rng(3)
+        t = np.arange(2000) / 200.0
+        a = 4.0 * np.exp(-0.2 * t) * np.cos(2 * np.pi * 5.0 * t) + 0.01 * rng.normal(size=len(t))
+        gaps = a.copy()
+        gaps[500:520] = np.nan
+        stamps = np.datetime64("2026-11-26T10:00:00") + (t * 1e6).astype("timedelta64[us]")
+        for arguments, keywords in (((t, a), {}), ((a,), {"rate": 200}), ((t, gaps), {}), ((stamps, a), {}),
+                                    ((t, np.column_stack([a, 0.3 * a + 0.01 * rng.normal(size=len(t))])), {"unit": "g"}),
+                                    ((list(t), list(a)), {"quantity": "displacement", "unit": "mm"}),
+                                    ((beamid.Record(t, a),), {}), ((beamid.Record(a, rate_hz=200),), {})):
+            frequency = beamid.modal(*arguments, **keywords).tables["modes"]["frequency_hz"]
+            self.assertAlmostEqual(frequency[0], 5.0, 3)
+        self.assertAlmostEqual(beamid.identify(t, a, mass=2)["stiffness_n_per_m"].value / (2 * (10 * np.pi) ** 2), 1.0, 3)
+        for call, message in ((lambda: beamid.modal(a), "signals without times"),
+                              (lambda: beamid.modal(t, a[1:]), "times have 2000 samples and signals 1999"),
+                              (lambda: beamid.modal(t, a, a), "3 arrays"),
+                              (lambda: beamid.modal(t, np.array(["x"] * 2000)), "signals are no numbers")):
+            with self.assertRaises(beamid.InputError) as refused:
+                call()
+            self.assertIn(message, str(refused.exception))
+
     def test_samples_of_a_file_cannot_be_written_to_and_outlive_it(self):
         samples = beamid.read(TUTORIAL / "tip_acceleration.csv").samples
         self.assertFalse(samples.flags.writeable)

@@ -12,7 +12,7 @@ _Path = str | os.PathLike[str]
 _Number = float | np.floating[Any] | np.integer[Any]
 _Table = str | Mapping[str, Any]
 _Tables = _Table | Sequence[_Table]
-_Argument = Record | RecordFile | _Structure | _Path | Sequence[Record | RecordFile | _Path]
+_Argument = Record | RecordFile | npt.ArrayLike | _Structure | _Path | Sequence[Record | RecordFile | _Path]
 
 __version__: str
 
@@ -97,7 +97,8 @@ class RecordFile:
 class Record:
     name: str
     keys: dict[str, Any]
-    def __init__(self, time: npt.ArrayLike | None = ..., *, position_m: npt.ArrayLike | None = ..., name: str = ...,
+    def __init__(self, time: npt.ArrayLike | None = ..., acceleration: npt.ArrayLike | None = ..., *,
+        position_m: npt.ArrayLike | None = ..., name: str = ..., rate_hz: _Number | None = ...,
         displacement_m: npt.ArrayLike = ..., displacement_mm: npt.ArrayLike = ...,
         displacement_um: npt.ArrayLike = ..., velocity_m_per_s: npt.ArrayLike = ...,
         velocity_mm_per_s: npt.ArrayLike = ..., acceleration_m_per_s2: npt.ArrayLike = ...,
@@ -208,17 +209,18 @@ def identify(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...
     column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
     rate: _Number | None = ..., stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
-    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
-    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    header_lines: int | None = ..., skip_malformed: bool | None = ..., reader: str | None = ...,
+    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
+    **keys: Any) -> Results: ...
 def modal(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., method: str | None = ...,
     band: Sequence[_Number] | None = ..., order: int | None = ..., modes: int | None = ...,
     amplitude: bool | None = ..., events: bool | None = ..., polish: bool | None = ..., no_polish: bool | None = ...,
     column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
     rate: _Number | None = ..., window: Sequence[_Number] | None = ..., stamps: str | None = ...,
-    delimiter: str | None = ..., decimal: str | None = ..., skip_malformed: bool | None = ...,
-    reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
-    no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
+    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
+    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def compare(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     truth: _Path | _Structure | None = ..., channel: str | Sequence[str] | None = ...,
     reduction: str | Sequence[str] | None = ..., filter: str | Sequence[str] | None = ...,
@@ -230,53 +232,55 @@ def compare(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     damping_ratio: _Number | None = ..., elements: int | None = ..., column: str | Sequence[str] | None = ...,
     quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ...,
     position: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
-    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
+    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
     skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def report(*arguments: _Argument, out: _Path | None = ..., pdf: _Path | None = ..., all: bool | None = ...,
     force: bool | None = ...) -> str: ...
-def inspect(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
+def inspect(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., write: str | None = ...,
     column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
     rate: _Number | None = ..., window: Sequence[_Number] | None = ..., stamps: str | None = ...,
-    delimiter: str | None = ..., decimal: str | None = ..., skip_malformed: bool | None = ...,
-    reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
-    no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
+    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
+    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def prepare(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
     rate: _Number | None = ..., stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
-    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
-    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    header_lines: int | None = ..., skip_malformed: bool | None = ..., reader: str | None = ...,
+    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
+    **keys: Any) -> Results: ...
 def track(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., band: Sequence[_Number] | None = ...,
     walk: _Number | None = ..., false_alarms: _Number | None = ..., shortest: _Number | None = ...,
     column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
     rate: _Number | None = ..., window: Sequence[_Number] | None = ..., stamps: str | None = ...,
-    delimiter: str | None = ..., decimal: str | None = ..., skip_malformed: bool | None = ...,
-    reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
-    no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
+    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
+    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def backbone(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     band: Sequence[_Number] | None = ..., mass: _Number | None = ..., amplitude_ratio: _Number | None = ...,
     fewest_cycles: _Number | None = ..., linear: _Number | None = ..., column: str | Sequence[str] | None = ...,
     quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ...,
     position: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
     window: Sequence[_Number] | None = ..., stamps: str | None = ..., delimiter: str | None = ...,
-    decimal: str | None = ..., skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ...,
-    force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    decimal: str | None = ..., header_lines: int | None = ..., skip_malformed: bool | None = ...,
+    reader: str | None = ..., out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ...,
+    no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def stream(record: Record | RecordFile | _Path, *arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     like: _Path | None = ..., on_failure: str | None = ..., resume: _Path | None = ...,
     save_state: _Path | None = ..., column: str | Sequence[str] | None = ...,
     quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ...,
     position: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
-    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
+    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
     skip_malformed: bool | None = ..., reader: str | None = ..., **keys: Any) -> dict[str, npt.NDArray[Any]]: ...
 def check(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
     shape_error: _Number | None = ..., candidate: str | Sequence[str] | None = ..., method: str | None = ...,
     band: Sequence[_Number] | None = ..., column: str | Sequence[str] | None = ...,
     quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ...,
     position: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
-    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
+    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
     skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
@@ -285,21 +289,23 @@ def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     interval: _Number | None = ..., frequency: _Number | None = ..., column: str | Sequence[str] | None = ...,
     quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ...,
     position: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
-    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
+    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
     skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def sense(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., at: str | Sequence[str] | None = ...,
     filter: str | None = ..., column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
     rate: _Number | None = ..., stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
-    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
-    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    header_lines: int | None = ..., skip_malformed: bool | None = ..., reader: str | None = ...,
+    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
+    **keys: Any) -> Results: ...
 def substructures(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., no_whole: bool | None = ...,
     column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
     rate: _Number | None = ..., stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
-    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
-    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    header_lines: int | None = ..., skip_malformed: bool | None = ..., reader: str | None = ...,
+    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
+    **keys: Any) -> Results: ...
 def update(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., model_error: _Number | None = ...,
     shape_error: _Number | None = ..., starts: int | None = ..., out: _Path | None = ..., force: bool | None = ...,
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...

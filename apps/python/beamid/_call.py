@@ -8,6 +8,7 @@ import sys
 import tempfile
 
 from . import _beamid
+from ._arrays import ArrayRecord, is_array
 from ._errors import InputError, unknown
 from ._matrices import as_matrices, matrix_files
 from ._record import Record, RecordFile
@@ -32,8 +33,12 @@ class _Call:
         self.root, self.records, self.words = {}, [], []
         self.inputs = {}  # files that have only been in memory, by name
         self.config = keywords.pop("config", None)
+        self.arrays = []
         for argument in arguments:
             self.take_argument(argument)
+        if self.arrays:
+            self.records.append(ArrayRecord(self.arrays, keywords.get("rate"), keywords.pop("quantity", None),
+                                            keywords.pop("unit", None)))
         self.option_words, self.given = [], keywords
         for keyword, value in keywords.items():
             if value is not None:
@@ -44,6 +49,8 @@ class _Call:
     def take_argument(self, argument):
         if isinstance(argument, (Record, RecordFile)):
             self.records.append(argument)
+        elif is_array(argument) and {"record", "like"} & {*self.takes, *self.options}:
+            self.arrays.append(argument)
         elif isinstance(argument, Experiment):
             self.merge(argument.keywords)
         elif isinstance(argument, Table):
@@ -61,7 +68,7 @@ class _Call:
             else:
                 self.words.append(os.fspath(argument))
         else:
-            raise InputError(f"{self.name} takes no {type(argument).__name__}; expected records, structures "
+            raise InputError(f"{self.name} takes no {type(argument).__name__}; expected records, arrays, structures "
                              "(Beam, Chain, Frame, SpaceFrame, System, Experiment) or names of files")
 
     def merge(self, root):
@@ -205,7 +212,7 @@ def _python_message(message, name, folder):
 
 def _memory_for(inputs):
     """A folder in memory, where there is one with room; else None, the usual place."""
-    size = sum(30 * content.numbers for content in inputs.values() if isinstance(content, Record))  # bytes of text
+    size = sum(30 * content.numbers for content in inputs.values() if isinstance(content, (Record, ArrayRecord)))  # bytes of text
     try:
         free = os.statvfs("/dev/shm")
     except OSError:

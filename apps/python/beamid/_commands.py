@@ -15,6 +15,8 @@ def _described(name):
               "a record" if word["name"] == "record" else word["name"] for word in about["words"]]
     if _takes_structure(about):
         places.append("a structure: Beam, Chain, Frame, SpaceFrame, System or Experiment, or an experiment file, NAME.toml")
+    if places and places[0].startswith("a record"):
+        places[0] += ", or arrays in its place: times [s] and signals (N) or (N, p), or signals alone with rate"
     if places:
         lines += [f":param arguments: {'; '.join(places)}"]
     for option in about["options"]:
@@ -84,6 +86,11 @@ EXAMPLES = {
 >>> found = beamid.modal("docs/tutorials/02_identify_a_record/tip_acceleration.csv", window=(2, 10))
 >>> found.tables["modes"]["frequency_hz"].round(3)
 array([3.456])
+>>> import numpy as np
+>>> t = np.arange(2000) / 200
+>>> a = np.exp(-0.3 * t) * np.cos(40 * t)
+>>> beamid.modal(t, a).tables["modes"]["frequency_hz"].round(3), beamid.modal(a, rate=200).report == ""
+(array([6.366]), False)
 """,
     "frf": """
 >>> import beamid

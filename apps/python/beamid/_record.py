@@ -14,6 +14,9 @@ class Record:
     """Samples of one or more channels.
 
     :param time: (N) [s], increasing; or None with sampling_rate_hz
+    :param acceleration: (N), or (N, p) of p sensors [m/s2], where no channel is named: Record(t, a); with a rate also
+        alone, Record(a, rate_hz=200)
+    :param rate_hz: the same as sampling_rate_hz
     :param channels: QUANTITY_UNIT=values, such as acceleration_g, displacement_mm, force_n: (N), or (N, p) of p
         sensors, float64 in any order of memory, read where they lie
     :param position_m: of the sensors along the beam [m]: a number, or one for each motion channel in their order;
@@ -30,8 +33,14 @@ class Record:
     array([6.366])
     """
 
-    def __init__(self, time=None, *, position_m=None, name="record", **keywords):
+    def __init__(self, time=None, acceleration=None, *, position_m=None, name="record", rate_hz=None, **keywords):
         self.name = name
+        if rate_hz is not None:
+            keywords["sampling_rate_hz"] = rate_hz
+            if acceleration is None and len(keywords) == 1:
+                time, acceleration = None, time
+        if acceleration is not None:
+            keywords["acceleration_m_per_s2"] = acceleration
         self._columns, self._units, rest = [], [], {}
         known = {f"{quantity}_{suffix}": (quantity, symbol)
                  for quantity, units in quantities().items() for suffix, symbol in units.items()}

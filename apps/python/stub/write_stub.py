@@ -19,7 +19,7 @@ _Path = str | os.PathLike[str]
 _Number = float | np.floating[Any] | np.integer[Any]
 _Table = str | Mapping[str, Any]
 _Tables = _Table | Sequence[_Table]
-_Argument = Record | RecordFile | _Structure | _Path | Sequence[Record | RecordFile | _Path]
+_Argument = Record | RecordFile | npt.ArrayLike | _Structure | _Path | Sequence[Record | RecordFile | _Path]
 
 __version__: str
 
@@ -146,8 +146,10 @@ def main():
     keys = [f"{key}: {TYPES[about['type']]} = ..." for key, about in _specification.tables()["record"].items()
             if key not in ("file", "channels", "time")]
     print("class Record:\n    name: str\n    keys: dict[str, Any]")
-    print(signature("__init__", "self", ["time: npt.ArrayLike | None = ...", "*",
-                                         "position_m: npt.ArrayLike | None = ...", "name: str = ...", *channels, *keys],
+    print(signature("__init__", "self", ["time: npt.ArrayLike | None = ...",
+                                         "acceleration: npt.ArrayLike | None = ...", "*",
+                                         "position_m: npt.ArrayLike | None = ...", "name: str = ...",
+                                         "rate_hz: _Number | None = ...", *channels, *keys],
                     "None", "    "))
     print("    @property\n    def numbers(self) -> int: ...\n    @property\n    def path(self) -> None: ...\n    @property\n    def file_name(self) -> str: ...")
     print("    def save(self, path: _Path) -> None: ...\n")

@@ -1,17 +1,68 @@
 // Rows of numbers in columns: the text export of nearly every analyser.
 #include "experiments/record/delimited_text.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
+#include "experiments/record/stamps.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {
+
+struct OtherKind {
+  std::string_view beginning, found, remedy;
+};
+constexpr std::string_view save_as_csv = "save its sheet as CSV";
+constexpr OtherKind other_kinds[] = {
+    {"\xD0\xCF\x11\xE0", "a workbook of Excel (.xls)", save_as_csv},
+    {"%PDF", "a PDF document", "export the numbers of the record as text"},
+    {"\x1F\x8B", "compressed by gzip", "gunzip it"},
+    {"BZh", "compressed by bzip2", "bunzip2 it"},
+    {"\xFD"
+     "7zXZ",
+     "compressed by xz", "unxz it"},
+    {"7z\xBC\xAF", "a 7z archive", "unpack it"},
+    {"TDSm", "a TDMS file of National Instruments", "export it as LabVIEW measurement (.lvm) or CSV"},
+    {"PAR1", "a Parquet table", "write it as CSV or NumPy array (.npy)"},
+    {"ARROW1", "an Arrow table", "write it as CSV or NumPy array (.npy)"},
+    {"SQLite format 3", "an SQLite database", "export the table of the record as CSV"},
+    {"MDF ", "an MDF file", "export it as CSV or MATLAB file"},
+    {"ABCF", "an ABF file", "export it as CSV"}};
+
+/// Files whose beginning shows that they are no text of numbers.
+void refuse_other_kinds(const std::filesystem::path& file) {
+  std::ifstream stream = open_input(file, "a record of numbers in columns");
+  std::string beginning(4096, '\0');
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  const auto refuse = [&](std::string_view found, std::string_view remedy) {
+    throw InputError({file.string(), 0, 0},
+                     fmt::format("{}; expected a record of numbers in columns: {}", found, remedy));
+  };
+  for (const OtherKind& kind : other_kinds)
+    if (beginning.starts_with(kind.beginning)) refuse(kind.found, kind.remedy);
+  if (beginning.starts_with("PK\x03\x04")) {
+    const bool sheet = beginning.find("[Content_Types].xml") != beginning.npos ||
+                       beginning.find("xl/") != beginning.npos ||
+                       beginning.find("opendocument.spreadsheet") != beginning.npos;
+    refuse(sheet ? "a workbook (.xlsx or .ods)" : "a zip archive", sheet ? save_as_csv : "unpack it");
+  }
+  const std::size_t start = beginning.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (start == beginning.npos) return;
+  const std::string_view text = std::string_view(beginning).substr(start);
+  if (text.starts_with("<")) refuse("a page or a document of XML", "export the numbers of the record as CSV");
+  if (text.starts_with("{") || text.starts_with("[{") || text.starts_with("[["))
+    refuse("JSON", "write its arrays as columns of a CSV file");
+}
 
 class DelimitedTextReader final : public RecordReader {
  public:
@@ -19,6 +70,7 @@ class DelimitedTextReader final : public RecordReader {
   bool recognises(std::string_view) const override { return false; }
 
   RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const override {
+    refuse_other_kinds(file);
     const auto content =
         std::make_shared<const std::string>(read_text(file, "a record of numbers in columns"));
     DelimitedText text(file.string(), *content, format.separator, format.header_lines, format.decimal,
@@ -36,6 +88,7 @@ class DelimitedTextReader final : public RecordReader {
     std::vector<std::optional<double>> first_stamp(
         text.width());  // whole seconds: a double holds the rest finely
     constexpr double half_a_day = 43200.0;
+    constexpr std::size_t looked_at_for_a_rate = 4000;
     std::vector<double> days(text.width(), 0.0);  // that have passed [s]
     while (text.next()) {
       cells.add(text.line(), text.line_number());
@@ -44,27 +97,25 @@ class DelimitedTextReader final : public RecordReader {
         table.columns[column].push_back(text.value(column));
         token = text.field(column);
         if (!std::isfinite(table.columns[column].back())) {
-          const std::string_view field = unquoted(token);
-          if (const auto of_day = seconds_of_day(field)) {  // past midnight the days go on
-            double& value = table.columns[column].back();
-            value = *of_day + days[column];
-            const std::size_t rows = table.columns[column].size();
-            if (rows > 1 && value < table.columns[column][rows - 2] - half_a_day)
-              value += 2.0 * half_a_day, days[column] += 2.0 * half_a_day;
-            if (!table.time && table.lines.size() == 1) table.time = column;
-            const std::size_t point = token.find_last_of(".,");
-            token = "10000" + (point == std::string::npos ? "" : token.substr(point));
-          } else if (is_date(field)) {
-            table.columns[column].back() = 0.0;
-          } else if (const auto stamp = seconds_of_stamp(unquoted(token))) {
-            if (!first_stamp[column]) first_stamp[column] = std::floor(*stamp);
-            table.columns[column].back() = *stamp - *first_stamp[column];
-            if (!table.time && table.lines.size() == 1) table.time = column;
-            // What a stamp's printing shows: its fraction, behind as many digits as seconds since 1970 have.
-            const std::size_t point = token.find_last_of(".,");
-            token = "1000000000" + (point == std::string::npos
-                                        ? ""
-                                        : token.substr(point, token.find_first_of("Z+", point) - point));
+          const std::string field = unquoted(token);
+          double& value = table.columns[column].back();
+          if (const auto stamp = parse_stamp(field)) {
+            if (stamp->kind == Stamp::Kind::date) {
+              value = 0.0;
+            } else if (stamp->kind == Stamp::Kind::time_of_day) {  // past midnight the days go on
+              value = stamp->seconds + days[column];
+              const std::size_t rows = table.columns[column].size();
+              if (rows > 1 && value < table.columns[column][rows - 2] - half_a_day)
+                value += 2.0 * half_a_day, days[column] += 2.0 * half_a_day;
+            } else {
+              if (!first_stamp[column]) first_stamp[column] = std::floor(stamp->seconds);
+              value = stamp->seconds - *first_stamp[column];
+            }
+            if (!table.time && table.lines.size() == 1 && stamp->kind != Stamp::Kind::date)
+              table.time = column;
+            token = printed_like(*stamp);
+            if (stamp->kind != Stamp::Kind::date) table.precision[column].add(token);
+            continue;
           }
         }
         if (text.decimal() == ',')
@@ -74,8 +125,8 @@ class DelimitedTextReader final : public RecordReader {
     }
     table.cell = cells.cells(text.separator());
     if (!table.time)
-      if (const auto rate = stated_rate(content->substr(0, std::min<std::size_t>(content->size(), 2000))))
-        table.stated_rate = rate;
+      table.stated_rate =
+          stated_rate(std::string_view(*content).substr(0, looked_at_for_a_rate), text.decimal());
     table.skipped_lines = text.skipped_lines();
     if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");
     return table;

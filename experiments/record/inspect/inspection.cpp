@@ -371,6 +371,26 @@ void cut(Inspection& found, const RecordFormat& format) {
   compact(found.time);
 }
 
+/// The column of time by its name as people write it, or the rate that a line above the columns states.
+std::optional<RecordColumn> recognised_time(RecordTable& table, const RecordFormat& format,
+                                            std::string& text) {
+  if (!table.by_people || format.time || table.names.empty()) return {};
+  for (std::size_t index = 0; index < table.width(); ++index)
+    if (const auto meaning = stated_meaning(table, index); meaning && !meaning->quantity) return {};
+  try {
+    RecordTable copy(table);
+    const RecordColumns columns = find_columns(copy, format);
+    if (!columns.time) {
+      table.clock = copy.clock;
+      return {};
+    }
+    text = fmt::format("Time is column {}, '{}'.", columns.time->index + 1, table.names[columns.time->index]);
+    return columns.time;
+  } catch (const InputError&) {  // a question is left
+    return {};
+  }
+}
+
 }  // namespace
 
 Inspection inspect(const std::filesystem::path& file, const RecordFormat& format) {
@@ -381,7 +401,8 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
   found.reader = reader_of(file, format);
   RecordTable table = read_table(file, tolerant);
   found.skipped_lines = table.skipped_lines;
-  std::optional<RecordColumn> time = find_time(table, format, found.time_text, found.time_key);
+  std::optional<RecordColumn> time = recognised_time(table, format, found.time_text);
+  if (!time) time = find_time(table, format, found.time_text, found.time_key);
   if (time) {  // a row without its instant says nothing
     std::vector<bool> kept(table.rows());
     for (std::size_t row = 0; row < kept.size(); ++row) {

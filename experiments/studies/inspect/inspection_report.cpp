@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "experiments/record/record_table.hpp"
-#include "experiments/record/rounded_stamps.hpp"
+#include "experiments/record/stamps.hpp"
 
 namespace beamid::experiments {
 namespace {

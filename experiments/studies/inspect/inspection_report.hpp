@@ -1,6 +1,7 @@
 // What is wrong, unusual and in order with a record, as text, tables, figures and JSON.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -38,5 +39,14 @@ Table event_table(const Inspection& found);
 
 /// History and spectrum of every channel that moves, four to a figure.
 std::vector<Figure> inspection_figures(const Inspection& found);
+
+// An experiment file of one record: what was stated of it and what its file states, written down.
+
+/// The table [record] that makes every command read the file as read_record(file, format) does, and comments
+/// on what a structure needs besides.
+/// @param folder of the experiment file, from which the record's path is counted
+/// @throws InputError as read_record() does: the one question that is left.
+std::string described_record(const std::filesystem::path& file, const RecordFormat& format,
+                             const std::filesystem::path& folder);
 
 }  // namespace beamid::experiments

@@ -233,6 +233,7 @@ TEST(ReadExperiment, RefusesBadRecordTables) {
         "bad.toml:6:8: record.file is the text \"\"; expected the name of a file"},
        {BEAM "[record]\nseparator = \";\"\n",
         "bad.toml:6:13: record.separator is the text \";\"; expected one of auto, tab, comma, semicolon, "
+        "bar, "
         "space"},
        {BEAM "[record]\nheader_lines = -1\n",
         "bad.toml:6:16: record.header_lines is -1; expected a whole number from 0 to 1000000"},

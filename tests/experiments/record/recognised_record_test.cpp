@@ -170,7 +170,7 @@ TEST(RecognisedRecord, ReadsSoundFilesAtTheirOwnRate) {
   constexpr std::size_t frames = 50;
   std::string data;
   for (std::size_t k = 0; k < frames; ++k)
-    data += number(1000 * (k % 7), 2) + number(65536 - 2000 * (k % 5), 2);
+    data += number(1000 * (k % 7 + 1), 2) + number(65536 - 2000 * (k % 5 + 1), 2);
   const std::string whole = "RIFF" + number(36 + data.size(), 4) + "WAVEfmt " + number(16, 4) + number(1, 2) +
                             number(2, 2) + number(400, 4) + number(1600, 4) + number(4, 2) + number(16, 2) +
                             "data" + number(data.size(), 4) + data;
@@ -179,8 +179,8 @@ TEST(RecognisedRecord, ReadsSoundFilesAtTheirOwnRate) {
   ASSERT_EQ(record.size(), static_cast<Eigen::Index>(frames));
   ASSERT_EQ(record.channels.size(), 2U);
   EXPECT_NEAR(record.interval(), 1.0 / 400.0, 1e-12);
-  EXPECT_DOUBLE_EQ(record.samples(0, 3), 3000.0 / 32768.0);
-  EXPECT_DOUBLE_EQ(record.samples(1, 4), -8000.0 / 32768.0);
+  EXPECT_DOUBLE_EQ(record.samples(0, 3), 4000.0 / 32768.0);
+  EXPECT_DOUBLE_EQ(record.samples(1, 4), -10000.0 / 32768.0);
   const TemporaryFile cut("cut.wav", whole.substr(0, 20));
   EXPECT_THROW(read_record(cut.path(), {}), InputError);
 }

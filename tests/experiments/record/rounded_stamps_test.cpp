@@ -1,5 +1,5 @@
 // Stamps printed coarsely, of samples that are even. Oracle: the instants that were rounded.
-#include "experiments/record/rounded_stamps.hpp"
+#include "experiments/record/stamps.hpp"
 
 #include <gtest/gtest.h>
 

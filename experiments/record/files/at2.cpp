@@ -1,0 +1,97 @@
+// Strong-motion records of PEER [at2]: four lines of header, then the samples, several in a line.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <regex>
+
+#include "experiments/record/record_table.hpp"
+#include "experiments/text/fields.hpp"
+#include "experiments/text/toml_table.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+constexpr std::size_t at2_lines = 4;
+
+struct At2Header {
+  std::size_t count;
+  double interval;  ///< [s]
+};
+
+/// Of "NPTS=  5372, DT=   .0050 SEC" or "5372 0.0050 NPTS, DT".
+std::optional<At2Header> at2_header(std::string_view line) {
+  static const std::regex named(R"(NPTS\s*=\s*([0-9]+)\s*,?\s*DT\s*=\s*([0-9.eE+-]+))"),
+      followed(R"(^\s*([0-9]+)\s+([0-9.eE+-]+)\s+NPTS\s*,\s*DT)");
+  std::match_results<std::string_view::const_iterator> match;
+  if (!std::regex_search(line.begin(), line.end(), match, named) &&
+      !std::regex_search(line.begin(), line.end(), match, followed))
+    return {};
+  const ParsedNumber count = parse_number(match[1].str()), interval = parse_number(match[2].str());
+  constexpr double most = 1e9;
+  if (!interval.finite || !(interval.value > 0.0) || !(count.value <= most)) return {};
+  return At2Header{static_cast<std::size_t>(count.value), interval.value};
+}
+
+class At2Reader final : public RecordReader {
+ public:
+  bool recognises(std::string_view beginning) const override {
+    std::string_view line, rest = beginning;
+    for (std::size_t k = 0; k < at2_lines; ++k) line = next(rest);
+    return at2_header(line).has_value();
+  }
+
+  RecordTable read(const std::filesystem::path& file, const RecordFormat&) const override {
+    const std::string text = read_text(file, "a record of PEER");
+    std::string_view rest = text, line, words;
+    for (std::size_t k = 0; k < at2_lines; ++k) words = line, line = next(rest);
+    const auto header = at2_header(line);
+    if (!header)
+      throw InputError({file.string(), at2_lines, 1},
+                       fmt::format("'{}'; expected the count and the interval: NPTS= 5372, DT= .0050 SEC",
+                                   line.substr(0, 60)));
+    RecordTable table;
+    table.file = file.string();
+    table.clock = Clock{0.0, header->interval};
+    table.columns.resize(1);
+    std::vector<std::string_view> fields;
+    for (std::size_t number = at2_lines + 1; !rest.empty(); ++number) {
+      line = next(rest);
+      split_fields(line, ' ', fields);
+      for (const std::string_view field : fields) {
+        const ParsedNumber parsed = parse_number(field);
+        if (!parsed.finite)
+          throw InputError({file.string(), number, static_cast<std::size_t>(field.data() - line.data()) + 1},
+                           fmt::format("'{}'; expected a number", field));
+        table.columns[0].push_back(parsed.value);
+      }
+    }
+    if (table.rows() != header->count)
+      throw InputError({file.string(), 0, 0},
+                       fmt::format("{} samples; expected {}, as line 4 states", table.rows(), header->count));
+    table.precision = {PrintedPrecision::of_digits(7)};
+    const bool velocity = words.starts_with("VEL"), displacement = words.starts_with("DIS");
+    if (velocity || displacement)  // in cm
+      for (double& value : table.columns[0]) value *= 10.0;
+    table.names = {velocity ? "velocity_mm_per_s" : displacement ? "displacement_mm" : "acceleration_g"};
+    return table;
+  }
+
+ private:
+  static std::string_view next(std::string_view& rest) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
+  }
+};
+
+const bool at2_registered = record_reader_registry().add(
+    {"at2",
+     "strong-motion records of PEER: acceleration in g, velocity or displacement in cm, several in a line",
+     "[at2]",
+     {},
+     {},
+     [](const filters::Options&) { return std::make_unique<At2Reader>(); }});
+
+}  // namespace
+}  // namespace beamid::experiments

@@ -1,0 +1,247 @@
+#include "experiments/record/stamps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+
+#include "experiments/signal/toolbox.hpp"
+#include "experiments/text/fields.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+constexpr double an_hour = 3600.0, a_day = 24.0 * an_hour;
+
+/// Takes whole numbers and signs from the beginning of a text.
+struct StampText {
+  std::string_view rest;
+
+  bool at_digit() const { return !rest.empty() && std::isdigit(static_cast<unsigned char>(rest.front())); }
+
+  /// @returns -1 where no number of at most `digits` digits begins
+  int number(std::size_t digits, std::size_t* taken = nullptr) {
+    std::size_t length = 0;
+    while (length < std::min(digits, rest.size()) && std::isdigit(static_cast<unsigned char>(rest[length])))
+      ++length;
+    int value = -1;
+    if (length > 0) std::from_chars(rest.data(), rest.data() + length, value);
+    rest.remove_prefix(length);
+    if (taken) *taken = length;
+    return value;
+  }
+  bool take(char sign) {
+    if (rest.empty() || rest.front() != sign) return false;
+    rest.remove_prefix(1);
+    return true;
+  }
+  /// Its first sign, where it is one of these; else '\0'.
+  char take_any(std::string_view signs) {
+    if (rest.empty() || signs.find(rest.front()) == signs.npos) return '\0';
+    const char sign = rest.front();
+    rest.remove_prefix(1);
+    return sign;
+  }
+};
+
+/// 1 to 12 of "Jan" to "Dec", in English, German, French, Spanish or Italian; else 0.
+int month_of(std::string_view letters) {
+  if (letters.size() < 3) return 0;
+  std::string word(letters.substr(0, 3));
+  for (char& letter : word) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  static constexpr std::array<std::string_view, 12> names{
+      "jan ene gen", "feb fev", "mar mrz", "apr abr avr", "may mai mag", "jun jui giu",
+      "jul lug",     "aug ago", "sep set", "oct okt ott", "nov",         "dec dez dic"};
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (names[k].find(word) != names[k].npos) return static_cast<int>(k) + 1;
+  return 0;
+}
+
+/// Days since 1970-01-01.
+std::optional<double> take_date(StampText& text) {
+  StampText ahead = text;
+  std::size_t digits = 0;
+  int first = ahead.number(4, &digits);
+  const char sign = first < 0 ? '\0' : ahead.take_any("-/.");
+  if (sign == '\0') return {};
+  int year = first, month = 0, day = 0;
+  if (digits == 4) {
+    month = ahead.number(2);
+    if (!ahead.take(sign)) return {};
+    day = ahead.number(2);
+  } else {
+    std::size_t letters = 0;
+    while (letters < ahead.rest.size() && std::isalpha(static_cast<unsigned char>(ahead.rest[letters])))
+      ++letters;
+    int second = 0;
+    if (letters > 0) {
+      second = month_of(ahead.rest.substr(0, letters));
+      ahead.rest.remove_prefix(letters);
+    } else {
+      second = ahead.number(2);
+    }
+    if (!ahead.take(sign)) return {};
+    year = ahead.number(4, &digits);
+    if (digits == 2) year += 2000;
+    const bool month_first = letters == 0 && sign == '/' && first <= 12;
+    month = month_first ? first : second;
+    day = month_first ? second : first;
+    if (digits != 2 && digits != 4) return {};
+  }
+  if (ahead.at_digit() || month < 1 || day < 1) return {};
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok()) return {};
+  text = ahead;
+  return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+}
+
+/// Seconds since midnight. @param decimals of them, set
+std::optional<double> take_time_of_day(StampText& text, bool dated, int& decimals) {
+  StampText ahead = text;
+  const auto fraction = [&] {
+    double value = 0.0, place = 0.1;
+    for (decimals = 0; ahead.at_digit(); ++decimals, place *= 0.1) value += place * ahead.number(1);
+    return value;
+  };
+  std::size_t digits = 0;
+  const int first = ahead.number(2);
+  if (first < 0 || !ahead.take(':')) return {};
+  const int second = ahead.number(2, &digits);
+  if (second < 0 || digits != 2) return {};
+  double seconds = 0.0;
+  if (ahead.take(':')) {
+    const int third = ahead.number(2, &digits);
+    if (third < 0 || digits != 2 || first > 24 || second > 59 || third > 60) return {};
+    seconds = an_hour * first + 60.0 * second + third;
+    if (ahead.take_any(".,:") != '\0') seconds += fraction();
+  } else if (!dated && ahead.take_any(".,") != '\0' && second < 60) {
+    seconds = 60.0 * first + second + fraction();
+  } else {
+    return {};
+  }
+  StampText half = ahead;
+  half.take(' ');
+  if (half.rest.size() >= 2 && (half.rest[1] == 'M' || half.rest[1] == 'm')) {
+    const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(half.rest[0])));
+    if (letter == 'A' || letter == 'P') {
+      if (first < 1 || first > 12) return {};
+      seconds += an_hour * ((letter == 'P' ? 12 : 0) - (first == 12 ? 12 : 0));
+      half.rest.remove_prefix(2);
+      ahead = half;
+    }
+  }
+  text = ahead;
+  return seconds;
+}
+
+/// Of "+01:00" or "-0530" [s]; 0 without one.
+double take_offset(StampText& text) {
+  if (text.take('Z')) return 0.0;
+  const char sign = text.take_any("+-");
+  if (sign == '\0') return 0.0;
+  const int hours = text.number(2);
+  text.take(':');
+  return (sign == '-' ? -1.0 : 1.0) * (an_hour * std::max(0, hours) + 60.0 * std::max(0, text.number(2)));
+}
+
+}  // namespace
+
+std::optional<Stamp> parse_stamp(std::string_view field) {
+  StampText text{trimmed(field)};
+  if (text.rest.size() < 6 || !text.at_digit()) return {};  // "1:23.4"
+  Stamp stamp;
+  const auto days = take_date(text);
+  if (days) {
+    stamp.seconds = *days * a_day;
+    if (text.rest.empty()) return stamp;
+    if (text.take_any("T ,_") == '\0') return {};
+    text.take(' ');
+  }
+  const auto of_day = take_time_of_day(text, days.has_value(), stamp.decimals);
+  if (!of_day) return {};
+  stamp.kind = days ? Stamp::Kind::date_and_time : Stamp::Kind::time_of_day;
+  stamp.seconds += *of_day;
+  if (days) stamp.seconds -= take_offset(text);
+  if (days && text.take(' ') && (text.rest == "UTC" || text.rest == "GMT")) text.rest = {};
+  return text.rest.empty() ? std::optional(stamp) : std::nullopt;
+}
+
+std::string printed_like(const Stamp& stamp) {
+  std::string printed = stamp.kind == Stamp::Kind::time_of_day ? "10000" : "1000000000";
+  if (stamp.decimals > 0) printed += '.' + std::string(static_cast<std::size_t>(stamp.decimals), '1');
+  return printed;
+}
+
+bool counts_samples(const std::vector<double>& values) {
+  if (values.size() < 2 || (values[0] != 0.0 && values[0] != 1.0)) return false;
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (values[k] != values[k - 1] + 1.0) return false;
+  return true;
+}
+
+bool rises(const std::vector<double>& values) {
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (!(values[k] > values[k - 1])) return false;
+  return values.size() > 1;
+}
+
+double seconds_of_epoch(const std::vector<double>& stamps) {
+  // A step that would be 200 kHz in seconds is 2.3 Hz in days.
+  constexpr double a_day = 86400.0, fastest = 5e-6, longest = 30.0;
+  const double first = stamps.front(), step = stamps.size() > 1 ? stamps[1] - first : 1.0;
+  const bool date = (first > 3e4 && first < 7e4) || (first > 6.9e5 && first < 8e5);
+  if (date && step > 0.0 && step < fastest && stamps.back() - first < longest) return a_day;
+  for (const double unit : {1e-9, 1e-6, 1e-3})
+    if (first * unit > 3e8 && first * unit < 4e9) return unit;
+  return 1.0;
+}
+
+double mean_step(const std::vector<double>& stamps) {
+  return stamps.size() < 2 ? 0.0 : (stamps.back() - stamps.front()) / static_cast<double>(stamps.size() - 1);
+}
+
+bool runs_evenly(const std::vector<double>& values) {
+  constexpr double tolerated = 0.05;
+  const double step = mean_step(values);
+  if (!(step > 0.0)) return false;
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (!(std::abs(values[k] - values[k - 1] - step) <= tolerated * step)) return false;
+  return true;
+}
+
+std::optional<EvenStamps> without_rounding(const std::vector<double>& times, double resolution) {
+  // Rounding is half a resolution at most; 0.57 is the most that a line through 200 records left.
+  constexpr double most_off = 0.65, none_off = 1e-6, least = 2e-3;
+  const std::size_t size = times.size();
+  if (size < 3) return std::nullopt;
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < size; ++k) steps.push_back(times[k] - times[k - 1]);
+  const double usual = median(steps);
+  if (!(resolution > least * usual && resolution < 0.5 * usual)) return std::nullopt;
+  std::vector<double> count{0.0};
+  for (const double step : steps) count.push_back(count.back() + std::max(std::round(step / usual), 1.0));
+
+  double mean_count = 0.0, mean_time = 0.0, squares = 0.0, products = 0.0;
+  for (std::size_t k = 0; k < size; ++k) {
+    mean_count += count[k] / static_cast<double>(size);
+    mean_time += (times[k] - times[0]) / static_cast<double>(size);
+  }
+  for (std::size_t k = 0; k < size; ++k) {
+    squares += (count[k] - mean_count) * (count[k] - mean_count);
+    products += (count[k] - mean_count) * (times[k] - times[0] - mean_time);
+  }
+  EvenStamps line{{}, products / squares};
+  double off = 0.0;
+  for (std::size_t k = 0; k < size; ++k) {
+    line.times.push_back(times[0] + mean_time + (count[k] - mean_count) * line.interval);
+    off = std::max(off, std::abs(times[k] - line.times[k]));
+  }
+  if (off > most_off * resolution || off < none_off * resolution) return std::nullopt;
+  return line;
+}
+
+}  // namespace beamid::experiments

@@ -1,0 +1,66 @@
+// Stamps of samples: dates and times of day as loggers, spreadsheets and languages print them, columns of
+// numbers that are times, and times that were rounded.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace beamid::experiments {
+
+/// A date, a time of day, or both.
+struct Stamp {
+  enum class Kind { date, time_of_day, date_and_time };
+  Kind kind = Kind::date;
+  double seconds = 0.0;  ///< since 1970-01-01 without an offset or at UTC; of a time of day since midnight
+  int decimals = 0;      ///< of the seconds, as printed
+};
+
+/// Dates: 2026-11-26, 2026/11/26, 26.11.2026, 11/26/2026, 26/11/2026 (where the first number is no month),
+/// 26-Nov-2026. Times of day: 9:05:07, 10:00:00.125, 10:00:00,125, 10:00:00:125, 01:00:00 PM, and 12:07.5,
+/// minutes and seconds, where a fraction shows that they are. Both, parted by T, a blank, a comma or '_',
+/// with Z or an offset behind them; without one the stamp counts as UTC: intervals do not depend on it.
+/// @returns absent where the text is none
+std::optional<Stamp> parse_stamp(std::string_view text);
+
+/// A number of as many decimals as the stamp was printed with, and of as many digits before them, for the
+/// precision of a column (sampling.hpp).
+std::string printed_like(const Stamp& stamp);
+
+// Columns of numbers that may be stamps.
+
+/// 0, 1, 2, ... or 1, 2, 3, ...: samples that are counted, no times.
+bool counts_samples(const std::vector<double>& values);
+
+/// Each above the one before it.
+bool rises(const std::vector<double>& values);
+
+/// Rises by equal steps, to 5 %.
+bool runs_evenly(const std::vector<double>& values);
+
+/// 0 of fewer than two.
+double mean_step(const std::vector<double>& stamps);
+
+/// Seconds in one unit of a clock's stamps: of seconds, milliseconds, microseconds or nanoseconds since 1970,
+/// by their size; of the days of a spreadsheet, or of MATLAB, by their size and that they hardly change from
+/// row to row; else 1.
+double seconds_of_epoch(const std::vector<double>& stamps);
+
+// Even samples whose stamps are printed coarsely.
+
+/// Times without the rounding of their print.
+struct EvenStamps {
+  std::vector<double> times;  ///< (N), as the stamps that were given
+  double interval = 0.0;      ///< between neighbours, in their unit
+};
+
+/// The line t = a + n dt through all stamps, n counting samples, lost ones too, by least squares: of the
+/// first and the last stamp alone, each rounded by up to half a resolution, the interval would be wrong by as
+/// much over the duration, 1e-4 of 10 s printed to 1 ms. Nothing where the stamps lie on the line as they
+/// are, where rounding does not explain how far they are from it (they jitter), or where it is below 2e-3
+/// of an interval: 2e-6 of the rate over 1,000 samples.
+/// @param times (N), increasing; @param resolution to which they are printed
+std::optional<EvenStamps> without_rounding(const std::vector<double>& times, double resolution);
+
+}  // namespace beamid::experiments
