@@ -244,10 +244,26 @@ void lead_with(Results& results, const std::string& record_name, const Record& r
   }
 }
 
+namespace {
+
+/// The record's remarks that the report does not hold yet, in one text.
+std::string new_remarks(const Results& results, const Record& record) {
+  std::string text;
+  for (const std::string& remark : record.remarks) {
+    const bool printed = std::ranges::any_of(results.report, [&](const auto& part) {
+      const auto* paragraph = std::get_if<Paragraph>(&part);
+      return paragraph && paragraph->text == remark;
+    });
+    if (!printed) text += (text.empty() ? "" : " ") + remark;
+  }
+  return text;
+}
+
+}  // namespace
+
 void add_preparation(Results& results, const PreparedRecord& prepared, const RecordFormat& format) {
   lead_with(results, "", prepared.record);
-  std::string text;
-  for (const std::string& remark : prepared.record.remarks) text += (text.empty() ? "" : " ") + remark;
+  std::string text = new_remarks(results, prepared.record);
   if (!format.preparation.empty()) {
     const DominantCost found = dominant_cost(prepared, format);
     results.values["preparation"] = values(format, found);
@@ -259,8 +275,7 @@ void add_preparation(Results& results, const PreparedRecord& prepared, const Rec
 void add_cost(Results& results, const std::string& record_name, const PreparedRecord& prepared,
               const RecordFormat& format) {
   lead_with(results, record_name, prepared.record);
-  std::string text;
-  for (const std::string& remark : prepared.record.remarks) text += (text.empty() ? "" : " ") + remark;
+  std::string text = new_remarks(results, prepared.record);
   if (!text.empty()) results.paragraph(fmt::format("Record {}: {}", record_name, text));
   if (format.preparation.empty()) return;
   const DominantCost found = dominant_cost(prepared, format);
