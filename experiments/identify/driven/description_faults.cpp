@@ -19,10 +19,10 @@
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
+using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double worth_following = 0.1, mostly = 0.5, sure_score = 5.0;  // of what is left; deviations
-constexpr double hopeless = 2.5;                                     // times what is left, after a few steps
+constexpr double hopeless = 2.5;  // times what is left, after a few steps
 
 /// What is left at the unknowns, its slopes, and what they leave of other directions.
 class LeftOver {
@@ -41,22 +41,18 @@ class LeftOver {
   VectorXd change_of(const JointModel& model) const {
     const LinearResponse there(dynamic_cast<const filters::LinearMotion&>(*model.motion),
                                state_of_unknowns(model, theta_));
-    const PartLines made = part_lines(problem_, there, problem_.parts.front());
-    if (made.added.cols() != part().lines.added.cols())
-      throw std::runtime_error("another number of coordinates");
-    return part().change_to(made);
+    return part().change_to(problem_, there, problem_.parts.front());
   }
 
   /// Of a gain of one channel.
   VectorXd gain_of(Index channel) const {
-    VectorXcd lines = VectorXcd::Zero(part().lines.driven.rows());
-    const auto of = Eigen::seqN(channel, lines.size() / problem_.weights.size(), problem_.weights.size());
-    lines(of) = part().lines.driven.col(0)(of);
+    MatrixXcd lines = MatrixXcd::Zero(part().driven.rows(), part().driven.cols());
+    lines.row(channel) = part().driven.row(channel);
     return projected(lines);
   }
 
   /// Of a gain of all inputs.
-  VectorXd gain_of_inputs() const { return projected(part().lines.driven); }
+  VectorXd gain_of_inputs() const { return projected(part().driven); }
 
   struct Score {
     double change, deviation, score, explained;
@@ -93,8 +89,8 @@ class LeftOver {
   VectorXd at_once_;  // what no unknowns make, to first order
 
   const PartAt& part() const { return parts_.front(); }
-  VectorXd projected(const VectorXcd& lines) const {
-    VectorXd rows = line_rows(lines);
+  VectorXd projected(const MatrixXcd& lines) const {
+    VectorXd rows = line_rows(lines.reshaped());
     part().project(rows);
     return rows;
   }
@@ -282,16 +278,6 @@ void add_places(const DrivenProblem& problem, const OtherModels& models, const E
   }
 }
 
-/// Of a long record every so many lines: each costs all trials alike.
-void thin_out(RecordLines& part) {
-  constexpr Index most_numbers = 2000;
-  const Index stride = part.outputs.size() / most_numbers + 1, kept = part.omega.size() / stride;
-  const auto lines = Eigen::seqN(stride / 2, kept, stride);
-  part.omega = part.omega(lines).eval();
-  part.outputs = part.outputs(Eigen::all, lines).eval();
-  part.inputs = part.inputs(Eigen::all, lines).eval();
-}
-
 }  // namespace
 
 std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,
@@ -301,7 +287,9 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
   std::vector<DescriptionFault> faults;
   auto problem = driven_problem(model, measurements(record), prior);
   if (!problem) return faults;
-  thin_out(problem->parts.front());
+  constexpr Index most_numbers = 2000;  // of a long record every so many lines: each costs all trials alike
+  RecordLines& lines = problem->parts.front();
+  lines = thinned(lines, lines.outputs.size() / most_numbers + 1);
   try {
     problem->weights.setOnes(output_channels(record).size());
     const DrivenFit fit = evaluate_driven(*problem, theta);

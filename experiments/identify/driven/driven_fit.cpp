@@ -295,30 +295,39 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
   constexpr int draws = 6;
   constexpr double usual_left = 0.3, least_left = 1e-6;  // of what was read
   constexpr double draw_spread = 0.15;                   // of deviations known beforehand
+  constexpr Index enough_lines = 4096;                   // to find a valley; all of them find its bottom
   const Index q = problem.prior.mean.size();
   const VectorXd size = sizes(problem.parts);
   problem.weights = (usual_left * size).cwiseInverse();
+  DrivenProblem search = problem;
+  for (RecordLines& part : search.parts) {
+    const Index stride = std::max<Index>(part.omega.size() / enough_lines, 1);
+    part = thinned(part, stride);
+    search.weights = std::sqrt(static_cast<double>(stride)) * problem.weights;
+  }
   std::optional<DrivenFit> best;
-  const auto descend = [&](const VectorXd& start, int most_steps) {
+  const auto descend = [&](const DrivenProblem& lines, const VectorXd& start, int most_steps) {
     try {
-      DrivenFit fit = fit_driven_from(problem, start, most_steps);
+      DrivenFit fit = fit_driven_from(lines, start, most_steps);
       if (!best || fit.cost < best->cost) best = std::move(fit);
     } catch (const std::runtime_error&) {  // no motion there
     }
   };
-  const std::vector<VectorXd> starts = scaled_starts(problem, DrivenMotion(problem));
-  for (std::size_t i = 0; i < std::min(starts.size(), most_valleys); ++i) descend(starts[i], first_steps);
+  const std::vector<VectorXd> starts = scaled_starts(search, DrivenMotion(search));
+  for (std::size_t i = 0; i < std::min(starts.size(), most_valleys); ++i)
+    descend(search, starts[i], first_steps);
   if (!best) return best;
   const VectorXd middle = best->theta, known = problem.prior.covariance.diagonal().cwiseSqrt();
   for (int i = 0; i < draws; ++i)
-    descend(well_damped(*problem.model, middle + draw_spread * known.cwiseProduct(standard_normal(
+    descend(search,
+            well_damped(*problem.model, middle + draw_spread * known.cwiseProduct(standard_normal(
                                                                    q, 1, static_cast<std::uint64_t>(i)))),
             first_steps);
   for (int i = 0; i < 2; ++i) {
     problem.weights = best->left.cwiseMax(least_left * size).cwiseInverse();
     const VectorXd start = best->theta;
     best.reset();
-    descend(start, 60);
+    descend(problem, start, 60);
     if (!best) return best;
   }
   return best;

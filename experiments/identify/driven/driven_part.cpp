@@ -22,37 +22,46 @@ Complex path_gain(InputPath path, double omega, double interval) {
 
 }  // namespace
 
-PartLines part_lines(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part) {
-  const Index p = part.outputs.rows(), lines = part.omega.size(), l = response.motion_size();
-  PartLines found{MatrixXcd(p * lines, 1), MatrixXcd::Zero(p * lines, l + 2 * p)};
-  MatrixXcd transfer, free;
-  for (Index k = 0; k < lines; ++k) {
-    const double omega = part.omega[k];
-    response.line(omega, part.interval, transfer, free);
-    found.driven.col(0).segment(k * p, p) = path_gain(problem.path, omega, part.interval) *
-                                            (problem.weights.asDiagonal() * (transfer * part.inputs.col(k)));
-    found.added.block(k * p, 0, p, l) = problem.weights.asDiagonal() * free;
-    for (Index i = 0; i < p; ++i) {
-      found.added(k * p + i, l + i) = 1.0;
-      found.added(k * p + i, l + p + i) = Complex(0.0, std::sin(omega * part.interval));
-    }
-  }
-  return found;
+MatrixXcd part_motion(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part,
+                      const VectorXd& difference) {
+  MatrixXcd inputs = part.inputs;
+  for (Index k = 0; k < part.omega.size(); ++k)
+    inputs.col(k) *= path_gain(problem.path, part.omega[k], part.interval);
+  return problem.weights.asDiagonal() * response.motion(part.omega, part.interval, inputs, difference);
 }
 
-PartAt::PartAt(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part)
-    : lines(part_lines(problem, response, part)) {
+PartAt::PartAt(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part) {
+  const Index p = part.outputs.rows(), lines = part.omega.size(), l = response.motion_size();
+  driven = part_motion(problem, response, part, VectorXd::Zero(l));
+  MatrixXcd added = MatrixXcd::Zero(p * lines, l + 2 * p);
+  added.leftCols(l) = response.free_motions(part.omega, part.interval);
+  for (Index k = 0; k < lines; ++k)
+    for (Index i = 0; i < p; ++i) {
+      added.row(k * p + i).head(l) *= problem.weights[i];
+      added(k * p + i, l + i) = 1.0;
+      added(k * p + i, l + p + i) = Complex(0.0, std::sin(part.omega[k] * part.interval));
+    }
   MatrixXcd read = part.outputs;
-  read = problem.weights.asDiagonal() * read;
-  const VectorXd all = line_rows(Eigen::Map<VectorXcd>(read.data(), read.size()) - lines.driven.col(0));
-  MatrixXd columns = line_rows(lines.added);
-  scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  read = problem.weights.asDiagonal() * read - driven;
+  const VectorXd all = line_rows(read.reshaped());
+  MatrixXd columns = line_rows(added);
+  const VectorXd scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   columns = columns * scale.asDiagonal();
   ends.setThreshold(1e-10);
   ends.compute(columns);
   const VectorXd scaled = ends.solve(all);
   left = all - columns * scaled;
-  coefficients = scale.asDiagonal() * scaled;
+  difference = response.difference((scale.head(l).asDiagonal() * scaled.head(l)));
+  moved = part_motion(problem, response, part, difference);
+}
+
+RecordLines thinned(const RecordLines& part, Index stride) {
+  RecordLines found = part;
+  const auto lines = Eigen::seqN(stride / 2, part.omega.size() / stride, stride);
+  found.omega = part.omega(lines);
+  found.outputs = part.outputs(Eigen::all, lines);
+  found.inputs = part.inputs(Eigen::all, lines);
+  return found;
 }
 
 void PartAt::project(VectorXd& rows) const {
@@ -61,8 +70,11 @@ void PartAt::project(VectorXd& rows) const {
   rows.applyOnTheLeft(ends.householderQ());
 }
 
-VectorXd PartAt::change_to(const PartLines& others) const {
-  VectorXd rows = line_rows(others.driven - lines.driven + (others.added - lines.added) * coefficients);
+VectorXd PartAt::change_to(const DrivenProblem& problem, const LinearResponse& other,
+                           const RecordLines& part) const {
+  if (other.motion_size() != difference.size()) throw std::runtime_error("another number of coordinates");
+  const MatrixXcd change = part_motion(problem, other, part, difference) - moved;
+  VectorXd rows = line_rows(change.reshaped());
   project(rows);
   return rows;
 }
@@ -114,7 +126,7 @@ std::vector<MatrixXd> DrivenMotion::slopes(const std::vector<PartAt>& parts, con
     const double step = share * std::sqrt(problem_.prior.covariance(j, j));
     const LinearResponse moved = response(theta + step * VectorXd::Unit(q, j));
     for (std::size_t i = 0; i < parts.size(); ++i)
-      found[i].col(j) = parts[i].change_to(part_lines(problem_, moved, problem_.parts[i])) / step;
+      found[i].col(j) = parts[i].change_to(problem_, moved, problem_.parts[i]) / step;
   }
   return found;
 }

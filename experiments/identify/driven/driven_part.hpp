@@ -10,27 +10,31 @@
 
 namespace beamid::experiments {
 
-/// What a model makes of one part of a record, all p channels of one line, then those of the next (p L).
-struct PartLines {
-  Eigen::MatrixXcd driven;  ///< W G_k u_k (p L x 1)
-  Eigen::MatrixXcd added;   ///< W Z_k (p L x c)
-};
+/// What a model makes of one part of a record from a difference d = x_0 - x_N of its ends (l): W (G_k u_k +
+/// what d adds) (p x L).
+Eigen::MatrixXcd part_motion(const DrivenProblem& problem, const LinearResponse& response,
+                             const RecordLines& part, const Eigen::VectorXd& difference);
 
-PartLines part_lines(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part);
+/// Every so many lines of a part.
+RecordLines thinned(const RecordLines& part, Eigen::Index stride);
 
-/// The residual of one part, the ends of it projected out.
+/// The residual of one part, the ends of it projected out. Rows are all channels of one line, then those of
+/// the next, real parts before imaginary ones.
 struct PartAt {
-  PartLines lines;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> ends;
-  Eigen::VectorXd scale, coefficients;  ///< of the columns of Z
-  Eigen::VectorXd left;                 ///< (2 p L)
+  Eigen::MatrixXcd driven;                           ///< W G_k u_k (p x L)
+  Eigen::MatrixXcd moved;                            ///< the same with what d adds (p x L)
+  Eigen::VectorXd difference;                        ///< d, as the residual has it (l)
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> ends;  ///< of W Z, columns of one length
+  Eigen::VectorXd left;                              ///< (2 p L)
 
   PartAt(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part);
 
   /// Without what the ends of the part could make of it.
   void project(Eigen::VectorXd& rows) const;
-  /// How other lines differ from these, likewise (2 p L).
-  Eigen::VectorXd change_to(const PartLines& others) const;
+  /// How the lines of another response with the same d differ from these, likewise (2 p L).
+  /// @throws std::runtime_error where it has another number of coordinates.
+  Eigen::VectorXd change_to(const DrivenProblem& problem, const LinearResponse& other,
+                            const RecordLines& part) const;
 };
 
 /// The parts of a problem at any unknowns. The problem outlives it.

@@ -28,13 +28,13 @@ LinearResponse::LinearResponse(const filters::LinearMotion& motion, const Vector
     throw std::runtime_error("the equations of motion are not finite at these unknowns");
   const Eigen::EigenSolver<MatrixXd> solver(a);
   if (solver.info() != Eigen::Success) throw std::runtime_error("the motion has no eigenvalues");
-  const MatrixXcd shapes = solver.eigenvectors();
-  const Eigen::PartialPivLU<MatrixXcd> back(shapes);
+  shapes_ = solver.eigenvectors();
+  const Eigen::PartialPivLU<MatrixXcd> back(shapes_);
   if (!(back.rcond() > least_independence))
     throw std::runtime_error("the motion has no independent eigenvectors at these unknowns");
   poles_ = solver.eigenvalues();
   inverse_ = back.inverse();
-  sensors_ = c.leftCols(l) * shapes;
+  sensors_ = c.leftCols(l) * shapes_;
   inputs_ = inverse_ * b;
   direct_.resize(c.rows(), m);
   VectorXd without, with;
@@ -45,16 +45,66 @@ LinearResponse::LinearResponse(const filters::LinearMotion& motion, const Vector
   }
 }
 
-void LinearResponse::line(double omega, double interval, MatrixXcd& transfer, MatrixXcd& free) const {
-  const VectorXcd gains = (Complex(0.0, omega) - poles_.array()).inverse().matrix();
-  transfer.noalias() = sensors_ * gains.asDiagonal() * inputs_;
-  transfer += direct_;
-  const Complex back = std::exp(Complex(0.0, -omega * interval));
-  const VectorXcd sums = (1.0 - (interval * poles_).array().exp() * back).inverse().matrix();
-  free.noalias() = sensors_ * sums.asDiagonal() * inverse_;
+namespace {
+
+// 1 / z without the scaling that a complex division of the language does.
+Complex inverse(Complex z) {
+  return std::conj(z) / std::norm(z);
 }
 
-using Complex = std::complex<double>;
+// e^(lambda_k dt).
+VectorXcd decays(const VectorXcd& poles, double interval) {
+  return (interval * poles.array()).exp().matrix();
+}
+
+}  // namespace
+
+MatrixXcd LinearResponse::motion(const VectorXd& omega, double interval, const MatrixXcd& inputs,
+                                 const VectorXd& difference) const {
+  const Index l = poles_.size(), p = sensors_.rows();
+  const VectorXcd decay = decays(poles_, interval), free = inverse_ * difference;
+  MatrixXcd modal = inputs_ * inputs;
+  for (Index k = 0; k < omega.size(); ++k) {
+    const Complex back = std::polar(1.0, -omega[k] * interval);
+    for (Index j = 0; j < l; ++j)
+      modal(j, k) = modal(j, k) * inverse(Complex(0.0, omega[k]) - poles_[j]) +
+                    free[j] * inverse(1.0 - decay[j] * back);
+  }
+  MatrixXcd found(p, omega.size());
+  found.noalias() = sensors_ * modal;
+  found.noalias() += direct_ * inputs;
+  return found;
+}
+
+MatrixXcd LinearResponse::free_motions(const VectorXd& omega, double interval) const {
+  const Index l = poles_.size(), p = sensors_.rows(), count = omega.size();
+  const VectorXcd decay = decays(poles_, interval);
+  MatrixXcd found(p * count, l);
+  for (Index k = 0; k < count; ++k) {
+    const Complex back = std::polar(1.0, -omega[k] * interval);
+    for (Index j = 0; j < l; ++j)
+      found.col(j).segment(k * p, p) = sensors_.col(j) * inverse(1.0 - decay[j] * back);
+  }
+  for (Index j = 0; j + 1 < l; ++j) {
+    if (poles_[j].imag() == 0.0) continue;
+    const VectorXcd first = found.col(j);
+    found.col(j) += found.col(j + 1);
+    found.col(j + 1) = Complex(0.0, 1.0) * (first - found.col(j + 1));
+    ++j;
+  }
+  return found;
+}
+
+VectorXd LinearResponse::difference(const VectorXd& coefficients) const {
+  VectorXcd modal = coefficients.cast<Complex>();
+  for (Index j = 0; j + 1 < modal.size(); ++j) {
+    if (poles_[j].imag() == 0.0) continue;
+    modal[j] = Complex(coefficients[j], coefficients[j + 1]);
+    modal[j + 1] = std::conj(modal[j]);
+    ++j;
+  }
+  return (shapes_ * modal).real();
+}
 
 namespace {
 

@@ -26,17 +26,28 @@ class LinearResponse {
 
   Eigen::Index motion_size() const { return poles_.size(); }  ///< l
 
-  /// G(omega) (p x m), and what is added to G u at this line by motion that does not repeat itself after the
-  /// record, for a unit of each coordinate of d = x_0 - x_N (p x l): C (1 - e^((A - i omega) dt))^-1.
-  /// @param interval dt [s]
-  void line(double omega, double interval, Eigen::MatrixXcd& transfer, Eigen::MatrixXcd& free) const;
+  /// G u of every line, and what is added to it by motion that does not repeat itself after the record,
+  ///
+  ///     y_k = G(omega_k) u_k + C (1 - e^((A - i omega_k) dt))^-1 d,    d = x_0 - x_N
+  ///
+  /// @param omega [rad/s] (L); @param interval dt [s]; @param inputs u (m x L); @param difference d (l)
+  /// @returns (p x L)
+  Eigen::MatrixXcd motion(const Eigen::VectorXd& omega, double interval, const Eigen::MatrixXcd& inputs,
+                          const Eigen::VectorXd& difference) const;
+
+  /// What d adds to the lines: columns that span it, a real one for a real pole, two for a conjugate pair
+  /// (p L x l), all channels of one line, then those of the next.
+  Eigen::MatrixXcd free_motions(const Eigen::VectorXd& omega, double interval) const;
+
+  /// d from its coefficients in those columns (l).
+  Eigen::VectorXd difference(const Eigen::VectorXd& coefficients) const;
 
   const Eigen::VectorXcd& poles() const { return poles_; }  ///< lambda (l) [1/s]
 
  private:
   Eigen::VectorXcd poles_;
-  Eigen::MatrixXcd sensors_, inputs_, inverse_;  // C V (p x l), V^-1 B (l x m), V^-1 (l x l)
-  Eigen::MatrixXd direct_;                       // D (p x m)
+  Eigen::MatrixXcd shapes_, sensors_, inputs_, inverse_;  // V, C V (p x l), V^-1 B (l x m), V^-1 (l x l)
+  Eigen::MatrixXd direct_;                                // D (p x m)
 };
 
 /// A part between supports (supported_motion.hpp) at fixed unknowns, x inside, s its supports:
