@@ -79,7 +79,7 @@ DrawnAxis drawn_axis(char name, const Axis& axis, const AxisRange& range, double
                       gnuplot_text(typeset(axis.label)), range.first, range.second,
                       axis.logarithmic && !named ? fmt::format("  set logscale {}\n", name) : "") +
               ticks.commands,
-          ticks.widest};
+          ticks.widest, range};
 }
 
 AxisRange named_range(const Axis& axis, bool upright) {

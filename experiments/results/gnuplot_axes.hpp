@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "experiments/results/figure.hpp"
 
@@ -21,7 +22,8 @@ struct Extent {
 /// Label, range and ticks of an axis.
 struct DrawnAxis {
   std::string commands;
-  double widest = 0;  ///< [px] of its ticks' labels, in the SVG
+  double widest = 0;                         ///< [px] of its ticks' labels, in the SVG
+  std::pair<double, double> range = {0, 1};  ///< from left to right, from below upwards
 };
 
 /// @param length [px] of the frame along the axis, in the SVG: as many ticks as have room there.

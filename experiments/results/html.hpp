@@ -27,8 +27,9 @@ std::string html_table(const Table& table);
 
 /// An SVG file as a picture inside the page with its caption, so that the page needs no other file.
 /// @param caption typeset as text
+/// @param attributes further ones of the figure's element, as they stand: " name=\"value\""
 /// @throws std::runtime_error when the file cannot be read.
 std::string html_picture(const std::filesystem::path& svg, std::string_view description,
-                         std::string_view caption);
+                         std::string_view caption, std::string_view attributes = {});
 
 }  // namespace beamid::experiments
