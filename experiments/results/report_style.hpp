@@ -47,7 +47,7 @@ summary h2 { display: inline; margin: 0 }
 button, select { font: inherit; font-size: .8rem; color: var(--ink); background: var(--soft); border: 1px solid var(--line);
   border-radius: 4px; padding: .1rem .5rem; cursor: pointer }
 button[aria-pressed="true"] { border-color: var(--link) }
-.legend button[aria-pressed="false"] { opacity: .55; text-decoration: line-through }
+.legend button[aria-pressed="false"] { opacity: .75; text-decoration: line-through }
 :focus-visible { outline: 2px solid var(--link); outline-offset: 1px }
 .copy { float: right; margin: .4rem }
 .motion:not(.alive) { display: none }

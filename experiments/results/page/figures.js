@@ -185,7 +185,9 @@ class Panel {
   }
   frame(w, h) {
     const left = Math.min(Math.max(...this.figure.panels.map((panel) => panel.margin())), 0.6 * w);
-    const right = this.remarks ? Math.min(12 + Math.max(...this.remarks.map((text) => textWidth(text))), 0.4 * w) : 22;
+    const wanted = this.remarks ? 12 + Math.max(...this.remarks.map((text) => textWidth(text))) : 22;
+    this.remarked = this.remarks && w - left - wanted > 0.3 * w;  // on a narrow page the readings have them
+    const right = this.remarked ? wanted : 22;
     return {l: left, t: this.title ? 34 : 12, w: Math.max(20, w - left - right), h: Math.max(20, h - (this.title ? 34 : 12) - (this.x.label ? 46 : 26))};
   }
   draw() {
@@ -221,12 +223,16 @@ class Panel {
       pen.path([[l, y, l + f.w, y]], colours.grid, 0.7);
       pen.text(label, l - 7, y + 4.5, {anchor: 'end', colour: colours.ink});
     }
-    if (this.remarks) this.remarks.forEach((text, i) => {
+    if (this.remarked) this.remarks.forEach((text, i) => {
       const y = py(i + 1);
       if (y >= t && y <= bottom) pen.text(text, l + f.w + 8, y + 4.5, {anchor: 'start', colour: colours.ink});
     });
     pen.path([[l, t, l, bottom, l + f.w, bottom]], colours.ink, 1);
-    if (this.title) pen.text(this.title, l + f.w / 2, oy + 22, {size: 14, colour: colours.ink});
+    if (this.title) {
+      const length = textWidth(this.title, 14), size = Math.max(9, Math.min(14, 14 * (w - 8) / length));
+      const half = 0.5 * length * size / 14, middle = Math.max(ox + 4 + half, Math.min(ox + w - 4 - half, l + f.w / 2));
+      pen.text(this.title, middle, oy + 22, {size, colour: colours.ink});
+    }
     if (this.x.label) pen.text(this.x.label, l + f.w / 2, bottom + 39, {colour: colours.ink});
     if (this.y.label) pen.text(this.y.label, ox + 15, t + f.h / 2, {turn: -Math.PI / 2, colour: colours.ink});
     pen.clip(l, t, f.w, f.h);
