@@ -76,6 +76,7 @@ class CanvasPen {
 }
 const ruler = document.createElement('canvas').getContext('2d');
 const textWidth = (text, size = 13) => { ruler.font = `${size}px ${font}`; return ruler.measureText(plain(text)).width; };
+const fitted = (text, room, size) => Math.max(8, Math.min(size, size * room / Math.max(1, textWidth(text, size))));
 const escapes = {'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'};
 const escaped = (text) => text.replace(/[&<>"]/g, (c) => escapes[c]);
 class SvgPen {
@@ -211,17 +212,21 @@ class Panel {
     const px = (v) => l + f.w * part(this.x, this.view.x, v), py = (v) => t + f.h * (1 - part(this.y, this.view.y, v));
     pen.fill(ox, oy, w, h, colours.ground);
     const bottom = t + f.h;
+    let free = -Infinity;  // where the next label may begin
     for (const [at, label] of ticks(this.x, this.view.x, this.tickRoom(this.x, f.w, false))) {
       const x = px(at);
       if (x < l - 1 || x > l + f.w + 1) continue;
       pen.path([[x, t, x, bottom]], colours.grid, 0.7);
+      const half = 0.5 * textWidth(label);
+      if (x - half < free) continue;
       pen.text(label, x, bottom + 18, {colour: colours.ink});
+      free = x + half + 6;
     }
     for (const [at, label] of ticks(this.y, this.view.y, this.tickRoom(this.y, f.h, true))) {
       const y = py(at);
       if (y < t - 1 || y > bottom + 1) continue;
       pen.path([[l, y, l + f.w, y]], colours.grid, 0.7);
-      pen.text(label, l - 7, y + 4.5, {anchor: 'end', colour: colours.ink});
+      pen.text(label, l - 7, y + 4.5, {anchor: 'end', colour: colours.ink, size: fitted(label, f.l - 9 - (this.y.label ? 20 : 0), 13)});
     }
     if (this.remarked) this.remarks.forEach((text, i) => {
       const y = py(i + 1);
@@ -229,12 +234,15 @@ class Panel {
     });
     pen.path([[l, t, l, bottom, l + f.w, bottom]], colours.ink, 1);
     if (this.title) {
-      const length = textWidth(this.title, 14), size = Math.max(9, Math.min(14, 14 * (w - 8) / length));
-      const half = 0.5 * length * size / 14, middle = Math.max(ox + 4 + half, Math.min(ox + w - 4 - half, l + f.w / 2));
+      const size = fitted(this.title, w - 8, 14), half = 0.5 * textWidth(this.title, size);
+      const middle = Math.max(ox + 4 + half, Math.min(ox + w - 4 - half, l + f.w / 2));
       pen.text(this.title, middle, oy + 22, {size, colour: colours.ink});
     }
-    if (this.x.label) pen.text(this.x.label, l + f.w / 2, bottom + 39, {colour: colours.ink});
-    if (this.y.label) pen.text(this.y.label, ox + 15, t + f.h / 2, {turn: -Math.PI / 2, colour: colours.ink});
+    if (this.x.label) {
+      const size = fitted(this.x.label, w - 8, 13), half = 0.5 * textWidth(this.x.label, size);
+      pen.text(this.x.label, Math.min(l + f.w / 2, ox + w - 4 - half), bottom + 39, {colour: colours.ink, size});
+    }
+    if (this.y.label) pen.text(this.y.label, ox + 15, t + f.h / 2, {turn: -Math.PI / 2, colour: colours.ink, size: fitted(this.y.label, h - 8, 13)});
     pen.clip(l, t, f.w, f.h);
     for (const curve of this.curves) if (!this.figure.off.has(curve.label) || !curve.label) this.curve(pen, curve, px, py, l, f.w);
     pen.unclip();
