@@ -16,6 +16,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 import zlib
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -241,6 +242,27 @@ def check_values(browser, folder):
     check(browser.value(ink) == full, "and on again")
 
 
+def check_copies(browser, folder):
+    """What PNG, SVG and CSV save. Oracle: reproduction.csv; an XML parser; the signature of a PNG."""
+    browser.open(folder / "report.html")
+    saved = {}
+    for kind in ("CSV", "SVG", "PNG"):
+        saved[kind] = bytes(browser.value(
+            "new Promise(done => { beamid.save = async (name, blob) => done([...new Uint8Array(await blob.arrayBuffer())]);"
+            f" [...document.querySelectorAll('figure.plot.alive .bar button')].find(b => b.textContent === '{kind}').click(); }})"))
+    rows = list(csv.reader(saved["CSV"].decode().splitlines()))
+    wanted = list(csv.reader(open(folder / "reproduction.csv", encoding="utf-8")))
+    column, same = (next(i for i, head in enumerate(table[0]) if "| measured |" in head) for table in (rows, wanted))
+    found = {round(float(row[column]), 6): float(row[column + 1]) for row in rows[1:] if row[column]}
+    pairs = [(round(float(row[same]), 6), float(row[same + 1])) for row in wanted[1:] if row[same]]
+    known = [(time, reading) for time, reading in pairs if time in found]
+    close = all(abs(found[time] - reading) < 1e-6 for time, reading in known)
+    check(close and len(known) > 100, f"CSV saves the values of reproduction.csv, {len(known)} compared")
+    root = xml.etree.ElementTree.fromstring(saved["SVG"].decode())
+    check(root.tag.endswith("svg") and len(list(root.iter())) > 50, "SVG saves a picture")
+    check(saved["PNG"][:8] == b"\x89PNG\r\n\x1a\n" and len(saved["PNG"]) > 10000, "PNG saves a picture")
+
+
 def check_estimate(browser, folder):
     """A frequency on the page is that of results.json."""
     estimate = json.loads((folder / "results.json").read_text())["frequency_hz"]["estimate"]
@@ -323,6 +345,7 @@ def main():
                 check_page(browser, work / name, name, screenshots)
             check_values(browser, work / "identify")
             check_estimate(browser, work / "identify")
+            check_copies(browser, work / "identify")
             check_swing(browser, work / "modes")
             check_hostile(browser, beamid, work)
             browser.open(work / "identify" / "report.html")
