@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -174,17 +175,34 @@ std::string folded(const std::string& heading, const std::string& html, bool ope
          html + "</details>\n";
 }
 
+/// Bytes that the data of figures may take beside the static pictures in a page of 1.5 MB: 50 kB are its
+/// script and style, 60 kB its text.
+std::size_t room_for_data(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+  constexpr std::size_t page = 1'500'000 - 110'000, least = 100'000;
+  std::size_t pictures = 0;
+  for (const Figure& figure : figures) {
+    std::error_code missing;
+    const auto bytes = std::filesystem::file_size(folder / (figure.name + ".svg"), missing);
+    if (!missing) pictures += bytes / 3 * 4;  // as base64
+  }
+  return std::clamp(page - std::min(page, pictures), least, most_page_bytes);
+}
+
 /// Each figure as an element of the page.
 std::vector<std::string> figures_html(const Results& results, const std::filesystem::path& folder) {
   std::vector<std::string> all;
-  const std::vector<std::string> attributes = figure_attributes(results.figures);
+  const std::vector<std::string> attributes =
+      figure_attributes(results.figures, room_for_data(results.figures, folder));
   for (std::size_t i = 0; i < results.figures.size(); ++i) {
     const Figure& figure = results.figures[i];
     const std::filesystem::path svg = folder / (figure.name + ".svg");
+    std::string caption = figure.caption.empty() ? description(figure) : figure.caption;
+    if (const std::string thinned = thinning_text(figure); !thinned.empty()) {
+      if (!caption.ends_with('.')) caption += '.';
+      caption += ' ' + thinned;
+    }
     all.push_back(std::filesystem::exists(svg)
-                      ? html_picture(svg, description(figure),
-                                     figure.caption.empty() ? description(figure) : figure.caption,
-                                     attributes[i])
+                      ? html_picture(svg, description(figure), caption, attributes[i])
                       : "<p class=\"note\">Figure " + escaped(figure.name) +
                             " is not drawn (results.json says why): " + escaped(figure.name) +
                             ".csv holds its data, `gnuplot " + escaped(figure.name) + ".gp` draws it.</p>\n");

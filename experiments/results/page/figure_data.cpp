@@ -25,12 +25,6 @@ constexpr Index exact_values = 1000;  // of a column that keeps its 8 bytes
 constexpr const char* style_names[] = {"line",        "dashed", "dotted",    "thin",   "points",
                                        "open_points", "stems",  "intervals", "arrows", "band"};
 
-bool is_thinned(const Curve& curve) {
-  return curve.style == CurveStyle::line || curve.style == CurveStyle::dashed ||
-         curve.style == CurveStyle::dotted || curve.style == CurveStyle::thin ||
-         curve.style == CurveStyle::band;
-}
-
 /// The step of equally spaced values.
 std::optional<double> step_of(const VectorXd& values) {
   const Index last = values.size() - 1;
@@ -93,7 +87,7 @@ struct PageFigure {
 
 Json curve_json(const Panel& panel, const Curve& curve, Index limit, PageColumns& columns, Index& longest) {
   const VectorXd& decisive = curve.style == CurveStyle::band ? curve.upper : curve.y;
-  const bool thins = is_thinned(curve) && curve.x.size() > limit;
+  const bool thins = is_line(curve) && curve.x.size() > limit;
   if (thins) longest = std::max(longest, curve.x.size());
   const auto kept =
       thins ? envelope(curve.x, decisive, panel.x_axis.logarithmic, limit) : std::vector<Index>();

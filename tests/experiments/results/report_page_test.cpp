@@ -12,6 +12,7 @@
 #include "experiments/results/page/figure_data.hpp"
 #include "experiments/results/page/swing_model.hpp"
 #include "experiments/studies/report/report.hpp"
+#include "tests/experiments/results/temporary_folder.hpp"
 
 namespace beamid::experiments::report_page_test {
 namespace {
@@ -186,6 +187,39 @@ TEST(FigureAttributes, ThinAMillionSamplesToWhatThePageHolds) {
   EXPECT_LE(attributes.size(), most_page_bytes);
   EXPECT_GT(attributes.size(), most_page_bytes / 2);
   EXPECT_THAT(figure_json(attributes)["thinned"].get<std::string>(), HasSubstr("1000000 points"));
+}
+
+// What `identify` draws of a record: the whole, its reproduction, and what is left, thin lines among them.
+TEST(ReportPage, OfAMillionSamplesIsSmallAndStatesThatItShowsEnvelopes) {
+  const Eigen::Index samples = 1'000'000;
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(samples, 0, 1000);
+  const Eigen::VectorXd noise = Eigen::VectorXd::Random(samples),
+                        motion = (19 * time).array().sin() + 0.1 * noise.array();
+  Panel whole{"the whole window", {"time [s]"}, {"w [m]"}}, left{"residual", {"time [s]"}, {"w [m]"}};
+  whole.line("reproduced", time, motion - 0.1 * noise).thin("measured", time, motion);
+  left.thin("", time, 0.1 * noise);
+  Panel start = whole;
+  start.x_axis.range = {0.0, 2.0};
+  Results results = small_results(1.0);
+  results.figures = {{"reproduction", {start, whole, left}, 3}, {"convergence", {whole}}, {"noise", {left}}};
+  TemporaryFolder folder;
+  for (const Figure& figure : results.figures) write(figure, folder.path);
+  EXPECT_LE(contents(folder.path / "reproduction.csv").size(), 1'000'000u);
+  const std::string page = report_page({report_section(results, folder.path)});
+  EXPECT_LE(page.size(), 1'500'000u);
+  EXPECT_THAT(page, HasSubstr("The static picture and reproduction.csv show curves of up to 1000000 points "
+                              "by 4000: the lowest and the highest of each interval."));
+}
+
+// What the frame cannot show of a curve is no reason for a note.
+TEST(ThinningText, CountsWhatTheFrameShows) {
+  Figure figure = drawn_figure(100'001);
+  EXPECT_THAT(thinning_text(figure), HasSubstr("100001 points by 4000"));
+  figure.panels[0].x_axis.range = {0.0, 0.1};
+  EXPECT_EQ(thinning_text(figure), "");
+  figure.panels[0].x_axis.range.reset();
+  figure.panels[0].curves[0].style = CurveStyle::points;
+  EXPECT_EQ(thinning_text(figure), "");
 }
 
 std::uint32_t word_at(const std::string& bytes, std::size_t at) {
