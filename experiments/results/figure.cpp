@@ -122,11 +122,10 @@ Curve visible(const Curve& curve, const std::pair<double, double>& range) {
 
 void add_columns(const Panel& panel, const Curve& curve, std::vector<Fields>& columns) {
   const bool bounds = curve.lower.size() > 0, band = curve.style == CurveStyle::band;
-  const bool line = curve.style == CurveStyle::line || curve.style == CurveStyle::dashed ||
-                    curve.style == CurveStyle::dotted || band;
   const Eigen::VectorXd& thinned = band ? curve.upper : curve.y;
   // Points are never so many that they need thinning, and each of them counts.
-  const auto kept = envelope(curve.x, thinned, panel.x_axis.logarithmic, line ? 4000 : curve.x.size());
+  const auto kept = envelope(curve.x, thinned, panel.x_axis.logarithmic,
+                             is_line(curve) ? most_drawn_points : curve.x.size());
   const auto header = [&](const std::string& axis, const char* bound) {
     std::string text;
     for (const std::string& part : {panel.title, curve.label + bound})
@@ -140,14 +139,16 @@ void add_columns(const Panel& panel, const Curve& curve, std::vector<Fields>& co
   columns.push_back(column(header(panel.y_axis.label, " upper"), curve.upper, kept));
 }
 
+// What the frame can show of a curve.
+Curve shown(const Panel& panel, const Curve& curve) {
+  const bool ascending = curve.x.allFinite() && std::is_sorted(curve.x.begin(), curve.x.end());
+  return panel.x_axis.range && ascending ? visible(curve, *panel.x_axis.range) : curve;
+}
+
 std::string data_of(const Figure& figure) {
   std::vector<Fields> columns;
   for (const Panel& panel : figure.panels)
-    for (const Curve& curve : panel.curves) {
-      const bool ascending = curve.x.allFinite() && std::is_sorted(curve.x.begin(), curve.x.end());
-      const bool cut = panel.x_axis.range && ascending;
-      add_columns(panel, cut ? visible(curve, *panel.x_axis.range) : curve, columns);
-    }
+    for (const Curve& curve : panel.curves) add_columns(panel, shown(panel, curve), columns);
   std::size_t rows = 0;
   for (const Fields& fields : columns) rows = std::max(rows, fields.size());
   std::string csv;
@@ -162,6 +163,25 @@ std::string data_of(const Figure& figure) {
 }
 
 }  // namespace
+
+bool is_line(const Curve& curve) {
+  return curve.style == CurveStyle::line || curve.style == CurveStyle::dashed ||
+         curve.style == CurveStyle::dotted || curve.style == CurveStyle::thin ||
+         curve.style == CurveStyle::band;
+}
+
+std::string thinning_text(const Figure& figure) {
+  Eigen::Index longest = 0;
+  for (const Panel& panel : figure.panels)
+    for (const Curve& curve : panel.curves)
+      if (is_line(curve) && curve.x.size() > most_drawn_points)
+        longest = std::max(longest, shown(panel, curve).x.size());
+  if (longest <= most_drawn_points) return "";
+  return fmt::format(
+      "The static picture and {}.csv show curves of up to {} points by {}: the lowest and the highest of "
+      "each interval.",
+      figure.name, longest, most_drawn_points);
+}
 
 std::vector<std::string> files_of(const Figure& figure) {
   return {figure.name + ".csv", figure.name + ".gp", figure.name + ".svg", figure.name + ".png"};

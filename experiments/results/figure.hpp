@@ -13,6 +13,9 @@ namespace beamid::experiments {
 
 // A long curve thinned so that its picture stays the same.
 
+/// Most points of a line in the data of a figure, and so in its picture.
+inline constexpr Eigen::Index most_drawn_points = 4000;
+
 /// Indices of the points to keep, ascending, at most about `limit`: the first and the last, and the lowest
 /// and the highest of every interval, the intervals being equally wide on the axis. Points that are not
 /// finite leave a gap and keep it.
@@ -21,7 +24,7 @@ namespace beamid::experiments {
 /// @param y (N) ordinates.
 /// @param logarithmic whether x is drawn on a logarithmic axis.
 std::vector<Eigen::Index> envelope(const Eigen::VectorXd& x, const Eigen::VectorXd& y, bool logarithmic,
-                                   Eigen::Index limit = 4000);
+                                   Eigen::Index limit = most_drawn_points);
 
 /// How a curve is drawn. A band is a shaded area between `lower` and `upper`; points with `lower` and `upper`
 /// carry error bars; intervals are points with bars along x from `lower` to `upper`; arrows point along x
@@ -41,6 +44,9 @@ struct Curve {
   Eigen::VectorXd lower = {}, upper = {};  ///< (N) of a band or of error bars, else empty
   Colour colour = Colour::automatic;
 };
+
+/// Whether a curve is drawn through its points, or between them, so that its envelope may stand for it.
+bool is_line(const Curve& curve);
 
 /// One axis of a panel.
 struct Axis {
@@ -105,6 +111,10 @@ struct Figure {
 /// @throws std::runtime_error when a file cannot be written, or gnuplot is missing or fails, with its
 /// message.
 void write(const Figure& figure, const std::filesystem::path& folder);
+
+/// What the files of a figure show of its curves, in a sentence, where they show an envelope; empty where
+/// they show every point.
+std::string thinning_text(const Figure& figure);
 
 /// Names of the files write() makes: "NAME.csv", "NAME.gp", "NAME.svg", "NAME.png".
 std::vector<std::string> files_of(const Figure& figure);

@@ -177,13 +177,13 @@ std::string html_table(const Table& table) {
 }
 
 std::string html_picture(const std::filesystem::path& svg, std::string_view description,
-                         std::string_view caption) {
+                         std::string_view caption, std::string_view attributes) {
   std::ifstream file(svg, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (!file || content.empty()) throw std::runtime_error(svg.string() + " cannot be read");
-  return R"(<figure class="plot"><div class="scroll"><img alt=")" + escaped(description) +
-         R"(" src="data:image/svg+xml;base64,)" + base64(content) + "\"></div>\n<figcaption>" +
-         typeset_html(caption) + "</figcaption></figure>\n";
+  return "<figure class=\"plot\"" + std::string(attributes) + R"(><div class="scroll"><img alt=")" +
+         escaped(description) + R"(" src="data:image/svg+xml;base64,)" + base64(content) +
+         "\"></div>\n<figcaption>" + typeset_html(caption) + "</figcaption></figure>\n";
 }
 
 namespace {
@@ -328,7 +328,7 @@ DrawnAxis drawn_axis(char name, const Axis& axis, const AxisRange& range, double
                       gnuplot_text(typeset(axis.label)), range.first, range.second,
                       axis.logarithmic && !named ? fmt::format("  set logscale {}\n", name) : "") +
               ticks.commands,
-          ticks.widest};
+          ticks.widest, range};
 }
 
 AxisRange named_range(const Axis& axis, bool upright) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "experiments/results/figure.hpp"
 #include "experiments/results/table.hpp"
@@ -41,9 +42,10 @@ std::string html_table(const Table& table);
 
 /// An SVG file as a picture inside the page with its caption, so that the page needs no other file.
 /// @param caption typeset as text
+/// @param attributes further ones of the figure's element, as they stand: " name=\"value\""
 /// @throws std::runtime_error when the file cannot be read.
 std::string html_picture(const std::filesystem::path& svg, std::string_view description,
-                         std::string_view caption);
+                         std::string_view caption, std::string_view attributes = {});
 
 // Signs that a terminal is spared and a page or picture has.
 
@@ -65,7 +67,8 @@ struct Extent {
 /// Label, range and ticks of an axis.
 struct DrawnAxis {
   std::string commands;
-  double widest = 0;  ///< [px] of its ticks' labels, in the SVG
+  double widest = 0;                         ///< [px] of its ticks' labels, in the SVG
+  std::pair<double, double> range = {0, 1};  ///< from left to right, from below upwards
 };
 
 /// @param length [px] of the frame along the axis, in the SVG: as many ticks as have room there.

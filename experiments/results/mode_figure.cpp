@@ -149,6 +149,67 @@ void mark_supports(const fem::StructuralSystem& system, const Eigen::Matrix3Xd& 
   }
 }
 
+/// The axes of all elements as lines, and how each mode moves them.
+SwingModel::Part axis_part(const fem::StructuralSystem& system, const Eigen::Matrix3Xd& places,
+                           const std::vector<NodalMotion>& modes) {
+  const std::vector<fem::Mesh::Element>& elements = system.mesh.elements;
+  const auto count = static_cast<int>(elements.size());
+  const int steps = std::clamp(240 / std::max(count, 1), 1, 40);
+  SwingModel::Part part{SwingModel::Kind::lines, Eigen::Matrix3Xd(3, count * (steps + 1)), {}, {}};
+  for (const NodalMotion& motion : modes) {
+    Eigen::Matrix3Xd moved(3, part.points.cols());
+    for (int e = 0; e < count; ++e) {
+      const ElementPath path(elements[static_cast<std::size_t>(e)], places, motion);
+      for (int step = 0; step <= steps; ++step) {
+        const double s = static_cast<double>(step) / steps;
+        part.points.col(e * (steps + 1) + step) = path.place(s);
+        moved.col(e * (steps + 1) + step) = path.displacement(s);
+      }
+    }
+    part.motion.push_back(std::move(moved));
+  }
+  for (int e = 0; e < count; ++e)
+    for (int step = 0; step < steps; ++step)
+      for (const int end : {0, 1})
+        part.corners.push_back(static_cast<unsigned>(e * (steps + 1) + step + end));
+  return part;
+}
+
+/// Bodies and sections as triangles; too many sections are left out.
+SwingModel::Part solid_part(const Picture& picture, const std::vector<NodalMotion>& modes) {
+  constexpr std::size_t most_triangles = 4000;
+  Picture whole = picture;
+  whole.surface = picture.beam != nullptr || picture.space_frame != nullptr;
+  const BeamGrid grid = beam_grid(whole);
+  const auto triangles = [&](bool sections) {
+    std::vector<unsigned> corners;
+    for (const BeamGrid::Cell& cell : grid.cells)
+      for (int k = 1; k + 1 < cell.size && (sections || cell.section == 0); ++k)
+        for (const int corner : {0, k, k + 1})
+          corners.push_back(
+              static_cast<unsigned>(grid.corners[cell.first_corner + static_cast<std::size_t>(corner)]));
+    return corners;
+  };
+  SwingModel::Part part{SwingModel::Kind::triangles, {}, triangles(true), {}};
+  if (part.corners.size() > 3 * most_triangles) part.corners = triangles(false);
+  // Points of sections that are left out go too.
+  std::vector<int> number(grid.points.size(), -1);
+  std::vector<Eigen::Index> kept;
+  for (unsigned& corner : part.corners) {
+    if (number[corner] < 0) {
+      number[corner] = static_cast<int>(kept.size());
+      kept.push_back(static_cast<Eigen::Index>(corner));
+    }
+    corner = static_cast<unsigned>(number[corner]);
+  }
+  part.points.resize(3, static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    part.points.col(static_cast<Eigen::Index>(i)) = grid.place(static_cast<std::size_t>(kept[i]));
+  for (const NodalMotion& motion : modes)
+    part.motion.push_back(translation_of_points(grid, motion)(Eigen::all, kept));
+  return part;
+}
+
 void check_mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
                        const Eigen::VectorXd& frequencies_hz) {
   if (shapes.rows() != system.size() || shapes.cols() != frequencies_hz.size() || shapes.cols() == 0)
@@ -194,6 +255,24 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
   figure.caption =
       frame ? "Mode shapes." : "Mode shapes, largest deflection 1. Filled mark: clamped; open: supported.";
   return figure;
+}
+
+SwingModel mode_model(const Picture& picture, const Eigen::MatrixXd& shapes,
+                      const Eigen::VectorXd& frequencies_hz) {
+  const fem::StructuralSystem& system = picture.system;
+  check_mode_figure(system, shapes, frequencies_hz);
+  const Eigen::Matrix3Xd places = nodal_places(system);
+  std::vector<NodalMotion> motions;
+  SwingModel model;
+  for (int mode = 0; mode < std::min(shapes.cols(), most_drawn_modes); ++mode) {
+    motions.push_back(scaled_mode(system, shapes.col(mode)));
+    model.modes.push_back(
+        {mode_figure_title(mode, frequencies_hz[mode]), frequencies_hz[mode], {}, mode, {}});
+  }
+  if (SwingModel::Part solid = solid_part(picture, motions); !solid.corners.empty())
+    model.parts.push_back(std::move(solid));
+  model.parts.push_back(axis_part(system, places, motions));
+  return model;
 }
 
 Curve mode_curve(const fem::StructuralSystem& system, const Eigen::VectorXd& shape) {

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 
 #include "experiments/results/figure.hpp"
+#include "experiments/results/page/swing_model.hpp"
+#include "experiments/results/vtk/beam_grid.hpp"
 #include "fem/structural_system.hpp"
 
 namespace beamid::experiments {
@@ -23,6 +25,14 @@ inline constexpr Eigen::Index most_drawn_modes = 12;
 /// @throws std::invalid_argument on other sizes, without any mode, and when the system has no mesh.
 Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& shapes,
                    const Eigen::VectorXd& frequencies_hz);
+
+/// The same modes as a model that swings, with the bodies as cubes of steel and, where they take no more than
+/// 4000 triangles, the sections drawn to scale (vtk/beam_grid.hpp).
+///
+/// @param picture of a system of fem::assemble, with its structure where bodies and sections are to be drawn.
+/// @throws std::invalid_argument as mode_figure().
+SwingModel mode_model(const Picture& picture, const Eigen::MatrixXd& shapes,
+                      const Eigen::VectorXd& frequencies_hz);
 
 /// A beam's mode shape (n) along x, smooth between the nodes, largest deflection 1.
 Curve mode_curve(const fem::StructuralSystem& system, const Eigen::VectorXd& shape);

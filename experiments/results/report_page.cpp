@@ -1,18 +1,23 @@
 #include "experiments/results/report_page.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "experiments/results/gnuplot_axes.hpp"
+#include "experiments/results/page/figure_data.hpp"
 #include "experiments/results/process.hpp"
 
 namespace beamid::experiments {
@@ -103,74 +108,19 @@ void print_pdf(const fs::path& page, const fs::path& pdf) {
 
 namespace {
 
-// How a page looks: on a screen, bright or dark, wide or narrow, and on paper.
-
-inline constexpr std::string_view report_style = R"css(
-:root { --ink: #222; --ground: #fff; --soft: #f3f5f7; --stripe: rgba(0, 40, 80, .045); --line: #999; --note: #444;
-  --link: #005a91; --warning: #8a5a00; --warning-ground: #fff6e0; --failure: #a32000; --failure-ground: #ffe9e3 }
-@media screen and (prefers-color-scheme: dark) {
-  :root { color-scheme: dark; --ink: #ddd; --ground: #1a1a1a; --soft: #262a2e; --stripe: rgba(255, 255, 255, .05);
-    --line: #777; --note: #aaa; --link: #6cb8ee; --warning: #f0b849; --warning-ground: #33290f; --failure: #ff8a66;
-    --failure-ground: #3d1a10 }
-  .plot img { filter: invert(.9) hue-rotate(180deg) }
-}
-body { font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; color: var(--ink); background: var(--ground); max-width: 60rem;
-  margin: 2rem auto; padding: 0 1rem; counter-reset: plot }
-a { color: var(--link) }
-h1 { font-size: 1.5rem; line-height: 1.25; border-bottom: 2px solid #0072b2; padding-bottom: .3rem }
-h2 { font-size: 1.15rem; margin-top: 2rem }
-pre { background: var(--soft); padding: .6rem .8rem; white-space: pre-wrap; overflow-wrap: anywhere; font-size: .85rem }
-p { white-space: pre-line; overflow-wrap: break-word }
-nav { background: var(--soft); padding: .2rem 1rem; font-size: .9rem }
-nav p { font-weight: bold; margin: .5rem 0 0 }
-nav ol { margin: .3rem 0 .6rem; padding-left: 1.6rem }
-.warning, .failure { border-left: 5px solid var(--warning); background: var(--warning-ground); padding: .6rem .9rem }
-.failure { border-color: var(--failure); background: var(--failure-ground); font-weight: bold }
-figure { margin: 1.5rem 0 }
-.scroll { overflow-x: auto }
-figcaption { font-weight: bold; margin-bottom: .3rem }
-.plot figcaption { font-weight: normal; font-size: .9rem; margin-top: .3rem }
-.plot figcaption::before { counter-increment: plot; content: "Figure " counter(plot) ". "; font-weight: bold }
-img { max-width: 100%; min-width: 36rem; height: auto; display: block; margin: auto }
-table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums }
-th { text-align: left; vertical-align: bottom; border-bottom: 1px solid var(--ink) }
-th, td { padding: .15rem .8rem .15rem 0 }
-th:first-child, td:first-child { position: sticky; left: 0; background: var(--ground) }
-tbody tr:nth-child(odd) td { background-image: linear-gradient(var(--stripe), var(--stripe)) }
-.number { text-align: right; white-space: nowrap }
-.note { font-size: .85rem; color: var(--note); margin-top: .3rem }
-footer { margin-top: 3rem; border-top: 1px solid var(--line); font-size: .8rem; color: var(--note) }
-@media screen and (max-width: 40rem) {
-  body { font-size: 15px; margin: 1rem auto }
-  .scroll { padding-bottom: .2rem; border-right: 2px dotted var(--line) }
-  .plot figcaption::after { content: " (scrolls sideways)"; color: var(--note) }
-  td:not(.number):not(:first-child) { min-width: 8rem }
-  .table .scroll::after { content: "a wide table scrolls sideways"; display: block; position: sticky; left: 0;
-    width: max-content; font-size: .75rem; color: var(--note) }
-}
-@media print {
-  body { max-width: none; margin: 0; font-size: 10pt }
-  .scroll { overflow: visible }
-  img { min-width: 0 }
-  table { font-size: 7.5pt }
-  th, td { padding: .1rem .5rem .1rem 0 }
-  .number { white-space: normal }
-  .table { break-inside: auto }
-  .plot, tr, p { break-inside: avoid }
-  h1, h2, .table > figcaption { break-after: avoid }
-  .warning, .failure, pre, nav { print-color-adjust: exact; -webkit-print-color-adjust: exact }
-}
-)css";
-
 // A section's borders in the file, by which pages are joined again.
 constexpr std::string_view begin_mark = "<!-- beamid section -->\n";
 constexpr std::string_view end_mark = "<!-- end of beamid section -->\n";
+
+constexpr std::string_view command_mark = "<pre class=\"command\">";
 
 constexpr std::string_view head = R"(<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src )";
+
+constexpr std::string_view head_end = R"(">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="generator" content="beamid )" BEAMID_VERSION R"(">
 )";
@@ -190,6 +140,90 @@ std::string paragraph_html(const Paragraph& paragraph) {
                           : paragraph.severity == Severity::warning ? " class=\"warning\""
                                                                     : "";
   return "<p" + std::string(box) + ">" + typeset_html(paragraph.text) + "</p>\n";
+}
+
+/// The first thing to see after the title: a colour and a word, and what the word stands on.
+std::string verdict_html(const Results& results) {
+  std::size_t warnings = 0;
+  const Paragraph* first = nullptr;
+  for (const auto& part : results.report) {
+    const auto* said = std::get_if<Paragraph>(&part);
+    if (!said || (said->severity != Severity::warning && said->severity != Severity::failure)) continue;
+    ++warnings;
+    if (!first || (said->severity == Severity::failure && first->severity != Severity::failure)) first = said;
+  }
+  const std::string status = results.values.contains("status") && results.values["status"].is_string()
+                                 ? results.values["status"].get<std::string>()
+                                 : "";
+  const bool failed = first && first->severity == Severity::failure;
+  std::string word = failed ? "Not to be used" : first ? "With warnings" : "No warnings";
+  std::string text = !first ? "None of the messages is a warning or a failure." : first->text;
+  constexpr std::size_t longest = 300;
+  if (const std::size_t end = text.find('\n'); end != std::string::npos) text.resize(end);
+  if (text.size() > longest) text = text.substr(0, text.rfind(' ', longest)) + " ...";
+  return "<p class=\"verdict " +
+         std::string(failed  ? "bad"
+                     : first ? "doubtful"
+                             : "good") +
+         "\"><b>" + word + ".</b> " + typeset_html(text) +
+         (warnings > 1 ? " (" + std::to_string(warnings) + " messages, all below)" : "") +
+         (status.empty() ? "" : " <span class=\"status\">status: " + escaped(status) + "</span>") + "</p>\n";
+}
+
+std::string folded(const std::string& heading, const std::string& html, bool open) {
+  return "<details" + std::string(open ? " open" : "") + ">\n<summary><h2>" + heading + "</h2></summary>\n" +
+         html + "</details>\n";
+}
+
+/// Bytes that the data of figures may take beside the static pictures in a page of 1.5 MB: 50 kB are its
+/// script and style, 60 kB its text.
+std::size_t room_for_data(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+  constexpr std::size_t page = 1'500'000 - 110'000, least = 100'000;
+  std::size_t pictures = 0;
+  for (const Figure& figure : figures) {
+    std::error_code missing;
+    const auto bytes = std::filesystem::file_size(folder / (figure.name + ".svg"), missing);
+    if (!missing) pictures += bytes / 3 * 4;  // as base64
+  }
+  return std::clamp(page - std::min(page, pictures), least, most_page_bytes);
+}
+
+/// Each figure as an element of the page.
+std::vector<std::string> figures_html(const Results& results, const std::filesystem::path& folder) {
+  std::vector<std::string> all;
+  const std::vector<std::string> attributes =
+      figure_attributes(results.figures, room_for_data(results.figures, folder));
+  for (std::size_t i = 0; i < results.figures.size(); ++i) {
+    const Figure& figure = results.figures[i];
+    const std::filesystem::path svg = folder / (figure.name + ".svg");
+    std::string caption = figure.caption.empty() ? description(figure) : figure.caption;
+    if (const std::string thinned = thinning_text(figure); !thinned.empty()) {
+      if (!caption.ends_with('.')) caption += '.';
+      caption += ' ' + thinned;
+    }
+    all.push_back(std::filesystem::exists(svg)
+                      ? html_picture(svg, description(figure), caption, attributes[i])
+                      : "<p class=\"note\">Figure " + escaped(figure.name) +
+                            " is not drawn (results.json says why): " + escaped(figure.name) +
+                            ".csv holds its data, `gnuplot " + escaped(figure.name) + ".gp` draws it.</p>\n");
+  }
+  return all;
+}
+
+/// Models that swing: glTF files among the attachments.
+std::string models_html(const Results& results, const std::filesystem::path& folder) {
+  std::string html;
+  for (const Attachment& attachment : results.attachments)
+    for (const std::string& name : attachment.files) {
+      if (!name.ends_with(".glb")) continue;
+      std::ifstream file(folder / name, std::ios::binary);
+      const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+      if (bytes.empty()) continue;
+      html += "<figure class=\"motion\" data-name=\"" + escaped(name.substr(0, name.size() - 4)) +
+              "\" data-model=\"" + base64(bytes) + "\">\n<figcaption>" + escaped(name) +
+              ", which swings: glTF 2.0, one animation for each mode.</figcaption></figure>\n";
+    }
+  return html;
 }
 
 constexpr std::string_view plain_heading = "<h2>", named_heading = "<h2 id=\"";
@@ -234,46 +268,58 @@ std::string without_anchors(std::string html) {
 
 ReportSection report_section(const Results& results, const std::filesystem::path& folder) {
   ReportSection section{"beamid " + results.command, {}};
+  struct Part {
+    std::string heading, html;
+    bool open = false;
+  };
+  std::vector<Part> parts(1);  // the answer, then a part below each further heading
   bool titled = false;
-  std::string body;
-  for (const auto& part : results.report) {
-    if (const auto* heading = std::get_if<Heading>(&part)) {
+  for (const auto& piece : results.report) {
+    if (const auto* heading = std::get_if<Heading>(&piece)) {
       if (std::exchange(titled, true))
-        body += "<h2>" + typeset_html(heading->text) + "</h2>\n";
+        parts.push_back({typeset_html(heading->text), {}});
       else
         section.title = heading->text;
-    } else if (const auto* paragraph = std::get_if<Paragraph>(&part)) {
-      body += paragraph_html(*paragraph);
+    } else if (const auto* paragraph = std::get_if<Paragraph>(&piece)) {
+      parts.back().html += paragraph_html(*paragraph);
+      parts.back().open |=
+          paragraph->severity == Severity::warning || paragraph->severity == Severity::failure;
     } else {
-      body += html_table(std::get<Table>(part));
+      parts.back().html += html_table(std::get<Table>(piece));
     }
   }
-  if (!results.figures.empty()) body += "<h2>Figures</h2>\n";
-  for (const Figure& figure : results.figures) {
-    const std::filesystem::path svg = folder / (figure.name + ".svg");
-    body += std::filesystem::exists(svg)
-                ? html_picture(svg, description(figure),
-                               figure.caption.empty() ? description(figure) : figure.caption)
-                : "<p class=\"note\">Figure " + escaped(figure.name) +
-                      " is not drawn (results.json says why): " + escaped(figure.name) +
-                      ".csv holds its data, `gnuplot " + escaped(figure.name) + ".gp` draws it.</p>\n";
+  std::string body = parts[0].html;
+  constexpr std::size_t shown = 2;  // figures; the others are folded
+  const std::vector<std::string> figures = figures_html(results, folder);
+  const std::string models = models_html(results, folder);
+  if (!figures.empty() || !models.empty()) body += "<h2>Figures</h2>\n" + models;
+  for (std::size_t i = 0; i < std::min(shown, figures.size()); ++i) body += figures[i];
+  // What is short stays open: folding is for pages that are long.
+  const bool few = parts.size() <= 2;
+  for (std::size_t i = 1; i < parts.size(); ++i)
+    body += folded(parts[i].heading, parts[i].html, parts[i].open || few);
+  if (figures.size() > shown) {
+    std::string more;
+    for (std::size_t i = shown; i < figures.size(); ++i) more += figures[i];
+    body += folded("More figures", more, false);
   }
   body +=
       "<h2>How it was made</h2>\n<p>beamid " BEAMID_VERSION ", command " + escaped(results.command) + ". " +
       (results.seed ? "Seed " + std::to_string(*results.seed) + ": the same command gives the same numbers."
                     : "Nothing is random: the same command gives the same numbers.") +
       "</p>\n";
+  if (!results.command_line.empty())
+    body += std::string(command_mark) + escaped(results.command_line) + "</pre>\n";
   if (!results.experiment_file.empty())
-    body += "<h2>The experiment file</h2>\n<pre>" + escaped(results.experiment_file) + "</pre>\n";
-  section.html = "<h1>" + escaped(section.title) + "</h1>\n";
-  if (!results.command_line.empty()) section.html += "<pre>" + escaped(results.command_line) + "</pre>\n";
-  section.html += body;
+    body += folded("The experiment file", "<pre>" + escaped(results.experiment_file) + "</pre>\n", false);
+  section.html = "<h1>" + escaped(section.title) + "</h1>\n" + verdict_html(results) + body;
   return section;
 }
 
 std::string report_page(const std::vector<ReportSection>& sections) {
-  std::string page(head), contents, body;
-  page.append("<style>\n").append(report_style).append("</style>\n");
+  const PageScript script = page_script();
+  std::string page = std::string(head).append(script.policy).append(head_end), contents, body;
+  page.append("<style>\n").append(page_style()).append("</style>\n");
   page += "<title>" + escaped(sections.size() == 1 ? sections[0].title : "beamid report") +
           "</title>\n</head>\n<body>\n";
   std::size_t entries = 0;
@@ -290,10 +336,11 @@ std::string report_page(const std::vector<ReportSection>& sections) {
   }
   if (sections.size() > 1 || entries > 2)
     page += "<nav aria-label=\"contents\">\n<p>Contents</p>\n<ol>\n" + contents + "</ol>\n</nav>\n";
-  return page + body +
+  return page + "<main>\n" + body + "</main>\n" +
          "<footer>Made by beamid " BEAMID_VERSION
          ". Numbers, tables and figures of this page lie beside it as JSON, CSV and "
-         "SVG.</footer>\n</body>\n</html>\n";
+         "SVG.</footer>\n" +
+         script.element + "</body>\n</html>\n";
 }
 
 std::vector<ReportSection> sections_of(const std::string& page) {
@@ -313,9 +360,9 @@ std::vector<ReportSection> sections_of(const std::string& page) {
 }
 
 std::string foreign_tag(std::string_view html) {
-  static const std::set<std::string_view> own{"h1",         "h2",    "p",   "b",   "pre", "figure",
-                                              "figcaption", "table", "tr",  "th",  "td",  "img",
-                                              "thead",      "tbody", "div", "span"};
+  static const std::set<std::string_view> own{"h1",         "h2",    "p",   "b",    "pre",     "figure",
+                                              "figcaption", "table", "tr",  "th",   "td",      "img",
+                                              "thead",      "tbody", "div", "span", "details", "summary"};
   for (std::size_t at = html.find('<'); at != std::string_view::npos; at = html.find('<', at + 1)) {
     const std::size_t begin = at + (html.substr(at).starts_with("</") ? 2 : 1);
     const std::string_view name = html.substr(begin, html.find_first_of(" \t\r\n/>", begin) - begin);
@@ -325,10 +372,11 @@ std::string foreign_tag(std::string_view html) {
 }
 
 std::string command_of(const ReportSection& section) {
-  constexpr std::string_view before = "</h1>\n<pre>", after = "</pre>";
-  const std::size_t begin = section.html.find(before), end = section.html.find(after, begin);
+  constexpr std::string_view after = "</pre>";
+  const std::size_t begin = section.html.find(command_mark), end = section.html.find(after, begin);
   if (begin == std::string::npos || end == std::string::npos) return "";
-  return unescaped(std::string_view(section.html).substr(begin + before.size(), end - begin - before.size()));
+  return unescaped(
+      std::string_view(section.html).substr(begin + command_mark.size(), end - begin - command_mark.size()));
 }
 
 }  // namespace beamid::experiments

@@ -150,7 +150,7 @@ TEST_F(Hostile, PagesRunNoScriptsAndShowNoFiles) {
   std::string page = contents(place_.folder() / "r/report.html");
   EXPECT_THAT(page,
               HasSubstr("http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-                        "style-src 'unsafe-inline'\""));
+                        "style-src 'unsafe-inline'; script-src 'sha256-"));
   ASSERT_EQ(place_.run("report r --out fine.html").code, 0);
   EXPECT_THAT(contents(place_.folder() / "fine.html"), HasSubstr("Content-Security-Policy"));
   for (const std::string harm :

@@ -37,9 +37,11 @@ TEST(Modal, FindsTheModesOfADecayAndWritesTheirFigures) {
   place.write("decay.csv", decay(1, 1));
   const Outcome outcome = place.run("modal decay.csv --window 0 3.99 --out found");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* file :
-       {"results.json", "modes.csv", "stabilisation.png", "reproduction.png", "singular_values.svg"})
+  for (const char* file : {"results.json", "modes.csv", "stabilisation.png", "reproduction.png",
+                           "singular_values.svg", "modes.glb"})
     EXPECT_TRUE(fs::exists(place.folder() / "found" / file)) << file;
+  EXPECT_THAT(contents(place.folder() / "found" / "report.html"),
+              HasSubstr("class=\"motion\" data-name=\"modes\""));
   const json found = json::parse(contents(place.folder() / "found" / "results.json"))["records"][0];
   ASSERT_EQ(found["modes"].size(), 2u) << outcome.out;
   const double frequencies[] = {5, 8}, ratios[] = {0.01, 0.02}, amplitudes[][2] = {{1, 0.4}, {0.5, 1}};

@@ -21,7 +21,10 @@ class Report : public testing::Test {
 TEST_F(Report, RepeatsTheCommandAndShowsEveryFigure) {
   ASSERT_EQ(place_.run("identify tip_acceleration.csv --config cantilever.toml --out results").code, 0);
   const std::string page = contents(place_.folder() / "results/report.html");
-  EXPECT_THAT(page, HasSubstr("<pre>beamid identify tip_acceleration.csv --config cantilever.toml</pre>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "<pre class=\"command\">beamid identify tip_acceleration.csv --config cantilever.toml</pre>"));
   EXPECT_THAT(page, HasSubstr("stiffness K [N/m]"));
   std::size_t pictures = 0, drawn = 0;
   for (std::size_t at = page.find("<img "); at != std::string::npos; at = page.find("<img ", at + 1))

@@ -142,6 +142,22 @@ class Results(unittest.TestCase):
                 self.found.write("out")
             self.found.write("out", force=True)
 
+    def test_a_notebook_shows_verdict_estimates_and_the_report(self):
+        page = self.found._repr_html_()
+        self.assertIn("No warnings.", page)
+        one = self.found["bending_stiffness"]
+        self.assertIn(f"<td>bending_stiffness</td><td>{one.value:.6g}</td>", page)
+        self.assertIn("<details><summary>beamid identify", page)
+        self.assertLess(len(page), 200_000)
+        self.assertIn("<th>frequency_hz</th>", beamid.modes(modes=2)._repr_html_())
+
+    def test_a_notebook_runs_nothing_that_a_name_holds(self):
+        time = np.arange(1000) / 500.0
+        record = beamid.Record(time, acceleration_g=np.exp(-0.2 * time) * np.sin(40 * time), name="<script>x")
+        page = beamid.modal(record, band=(1, 20))._repr_html_()
+        self.assertIn("&lt;script&gt;", page)
+        self.assertNotIn("<script", page)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,5 +1,6 @@
 """What a command found."""
 import functools
+import html
 import json
 import math
 import os
@@ -244,6 +245,39 @@ class Results:
 
     def __repr__(self):
         return self.report.rstrip("\n")
+
+    def _repr_html_(self):
+        """For notebooks: a verdict, the estimates or the first table, and the report, folded."""
+        return _cell(self)
+
+
+def _cell(found, most_rows=30):
+    escaped = html.escape
+    heard = [one for one in found.messages if one["severity"] in ("warning", "failure")]
+    failed = [one for one in heard if one["severity"] == "failure"]
+    word, colour = ("Not to be used", "#a32000") if failed else ("With warnings", "#8a5a00") if heard else ("No warnings", "#00614a")
+    text = f'<p style="border-left: 6px solid {colour}; padding-left: .6em"><b style="color: {colour}">{word}.</b>'
+    text += "".join(f" {escaped(one['text'][:500])}" for one in (failed or heard)[:1]) + "</p>\n"
+    names = list(found.estimates)
+    if names:
+        head, rows = ["", "estimate", "95 % interval", "unit"], []
+        for name in names[:most_rows]:
+            one = found.estimates[name]
+            lower, upper = one.interval()
+            label = name if isinstance(name, str) else ", ".join(name)
+            rows.append([label, f"{one.value:.6g}", f"{lower:.6g} to {upper:.6g}", one.unit])
+    else:
+        columns = next(iter(found.tables.values()), {})
+        head = list(columns)
+        rows = [[f"{cell:.6g}" if isinstance(cell, float) else str(cell) for cell in row] for row in zip(*columns.values())]
+    if rows:
+        def row(cells, tag):
+            return "<tr>" + "".join(f"<{tag}>{escaped(str(cell)[:200])}</{tag}>" for cell in cells) + "</tr>\n"
+
+        text += "<table>\n" + row(head, "th") + "".join(row(cells, "td") for cells in rows[:most_rows]) + "</table>\n"
+        missing = max(len(names), len(rows)) - most_rows
+        text += f"<p>and {missing} more</p>\n" if missing > 0 else ""
+    return text + f"<details><summary>{escaped(found.command[:2000])}</summary><pre>{escaped(found.report[:100_000])}</pre></details>"
 
 
 def write_input(content, path):

@@ -16,6 +16,7 @@
 #include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/results/mode_figure.hpp"
+#include "experiments/results/page/swing_model.hpp"
 #include "experiments/results/result_directory.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
@@ -52,6 +53,11 @@ Results begin_modes_report(const Experiment& experiment, Eigen::Index modes, Eig
 /// The figure mode_shapes and meshes for ParaView. @param surface draw the real sections instead of lines
 void draw_modes(const std::shared_ptr<const ModeDrawing>& drawn, bool surface, Results& results) {
   results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
+  results.attachments.push_back({{"modes.glb"}, [drawn](const std::filesystem::path& folder) {
+                                   write_file(folder / "modes.glb",
+                                              binary_gltf(mode_model(Picture(drawn->structure, drawn->system),
+                                                                     drawn->shapes, drawn->frequencies_hz)));
+                                 }});
   results.attachments.push_back(
       {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {
          write_mode_shapes(folder, Picture(drawn->structure, drawn->system, surface), drawn->shapes,

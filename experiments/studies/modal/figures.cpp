@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "experiments/results/figure.hpp"
@@ -117,7 +118,58 @@ Figure singular_values(const RecordModes& found, const std::string& suffix) {
   return figure;
 }
 
+/// Where the channels stand in a sketch: at their positions along the beam, or one after the other.
+VectorXd sketched_places(const std::vector<Channel>& channels) {
+  const auto count = static_cast<Index>(channels.size());
+  VectorXd places = VectorXd::LinSpaced(count, 0.0, 1.0);
+  const bool stated = std::all_of(channels.begin(), channels.end(),
+                                  [](const Channel& channel) { return channel.position.has_value(); });
+  if (!stated) return places;
+  for (Index i = 0; i < count; ++i) places[i] = *channels[static_cast<std::size_t>(i)].position;
+  return places.maxCoeff() > places.minCoeff() ? places : VectorXd::LinSpaced(count, 0.0, 1.0);
+}
+
 }  // namespace
+
+std::optional<SwingModel> measured_shapes(const RecordModes& found) {
+  const std::vector<Channel>& channels = found.record.channels;
+  const auto count = static_cast<Index>(channels.size());
+  const auto alike = [&](const Channel& channel) {
+    return channel.quantity == channels.front().quantity && channel.quantity != Quantity::strain;
+  };
+  if (count < 2 || found.modes.empty() || !std::all_of(channels.begin(), channels.end(), alike))
+    return std::nullopt;
+  SwingModel model;
+  SwingModel::Part sensors{SwingModel::Kind::points, Eigen::Matrix3Xd::Zero(3, count), {}, {}};
+  sensors.points.row(0) = sketched_places(channels).transpose();
+  for (const ModeEstimate& mode : found.modes) {
+    if (mode.pole.shape.size() != count) return std::nullopt;
+    const double f = mode.pole.frequency_hz();
+    const auto motion = static_cast<int>(sensors.motion.size());
+    model.modes.push_back({fmt::format("mode {}, {:.5g} Hz", model.modes.size() + 1, f), f,
+                           mode.pole.damping_ratio(), motion, motion + 1});
+    // Turned so that the largest component is real, which leaves in quadrature what does not move in phase.
+    Index largest = 0;
+    mode.pole.shape.cwiseAbs().maxCoeff(&largest);
+    const Eigen::VectorXcd shape = mode.pole.shape / mode.pole.shape[largest];
+    for (const VectorXd& part : {VectorXd(shape.real()), VectorXd(shape.imag())}) {
+      sensors.motion.emplace_back(Eigen::Matrix3Xd::Zero(3, count));
+      sensors.motion.back().row(2) = part.transpose();
+    }
+  }
+  std::vector<unsigned> order(channels.size());
+  for (unsigned i = 0; i < order.size(); ++i) order[i] = i;
+  sensors.corners = order;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](unsigned a, unsigned b) { return sensors.points(0, a) < sensors.points(0, b); });
+  SwingModel::Part line = sensors;
+  line.kind = SwingModel::Kind::lines;
+  line.corners.clear();
+  for (std::size_t i = 0; i + 1 < order.size(); ++i)
+    line.corners.insert(line.corners.end(), {order[i], order[i + 1]});
+  model.parts = {std::move(line), std::move(sensors)};
+  return model;
+}
 
 std::vector<Figure> figures(const RecordModes& found, const std::string& suffix) {
   std::vector<Figure> result;

@@ -11,6 +11,7 @@
 #include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/gnuplot_axes.hpp"
+#include "experiments/results/result_directory.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -193,6 +194,11 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
     if (Table rejected = rejected_table(found, suffix); rejected.rows() > 0)
       results.table(std::move(rejected));
     for (Figure& figure : figures(found, suffix)) results.figures.push_back(std::move(figure));
+    if (const auto model = measured_shapes(found))
+      results.attachments.push_back(
+          {{"modes" + suffix + ".glb"}, [model, suffix](const std::filesystem::path& folder) {
+             write_file(folder / ("modes" + suffix + ".glb"), binary_gltf(*model));
+           }});
   }
   if (records.size() > 1) add_merged(records, merged, results);
   return results;

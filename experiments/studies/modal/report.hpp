@@ -11,6 +11,7 @@
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/modal/study/merged_modes.hpp"
 #include "experiments/record/record.hpp"
+#include "experiments/results/page/swing_model.hpp"
 #include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
@@ -51,6 +52,10 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
 
 /// Stabilisation diagram, measured and reproduced motion and spectrum, singular values; `suffix` of names.
 std::vector<Figure> figures(const RecordModes& found, const std::string& suffix);
+
+/// Measured mode shapes, with their phases, on a sketch: the sensors in a line, each moving across it. Absent
+/// for one channel, for strain, and where channels measure different quantities.
+std::optional<SwingModel> measured_shapes(const RecordModes& found);
 
 /// Poles that are no modes, and why.
 nlohmann::ordered_json rejected_values(const Stabilisation& stabilisation);

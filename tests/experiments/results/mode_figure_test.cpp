@@ -1,5 +1,6 @@
 #include "experiments/results/mode_figure.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +52,35 @@ TEST(ModeFigure, CurvesAreSmoothBetweenFewNodes) {
     for (Eigen::Index i = 0; i < curve.x.size(); ++i)
       EXPECT_NEAR(sign * curve.y[i], std::sin(mode * std::numbers::pi * curve.x[i] / 2.0), bound);
   }
+}
+
+// Oracle: the sine again, and the body's own place: a body that is rigidly fixed to the middle moves as the
+// middle.
+TEST(ModeModel, SwingsAsTheFigureIsDrawnAndCarriesBodies) {
+  fem::Beam beam;
+  beam.segments = {{2.0, {100.0, 3.0, 0.0, {}, {}, {}}}};
+  beam.supports = {{0.0, true, false}, {2.0, true, false}};
+  beam.bodies.emplace_back();
+  beam.bodies.back().position = 1.0;
+  beam.bodies.back().mass = 0.5;
+  const fem::StructuralSystem system = fem::assemble(beam, 6);
+  const SwingModel model = mode_model(Picture(beam, system), sines(system, 2), Eigen::Vector2d(4.1455, 26.0));
+  ASSERT_EQ(model.modes.size(), 2u);
+  EXPECT_EQ(model.modes[1].name, "mode 2, 26.000 Hz");
+  const SwingModel::Part& axis = model.parts.back();
+  EXPECT_EQ(axis.kind, SwingModel::Kind::lines);
+  ASSERT_EQ(axis.motion.size(), 2u);
+  for (Eigen::Index i = 0; i < axis.points.cols(); ++i) {
+    EXPECT_NEAR(axis.motion[0](2, i), std::sin(std::numbers::pi * axis.points(0, i) / 2.0), 1e-3);
+    EXPECT_EQ(axis.motion[0](1, i), 0);
+  }
+  const SwingModel::Part& solids = model.parts.front();
+  EXPECT_EQ(solids.kind, SwingModel::Kind::triangles);
+  double highest = 0;
+  for (Eigen::Index i = 0; i < solids.points.cols(); ++i)
+    if (std::abs(solids.points(0, i) - 1.0) < 0.1) highest = std::max(highest, solids.motion[0](2, i));
+  EXPECT_NEAR(highest, 1.0, 1e-9);
+  EXPECT_EQ(binary_gltf(model), binary_gltf(model));
 }
 
 TEST(ModeFigure, IsDrawnAsPngAndSvg) {

@@ -4,10 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "experiments/results/gnuplot_axes.hpp"
+#include "experiments/results/page/figure_data.hpp"
+#include "experiments/results/page/swing_model.hpp"
 #include "experiments/studies/report/report.hpp"
+#include "tests/experiments/results/temporary_folder.hpp"
 
 namespace beamid::experiments::report_page_test {
 namespace {
@@ -50,11 +55,11 @@ Results small_results(double stiffness) {
 TEST(ReportPage, HoldsAllThatWasPrintedAndNeedsNoNetwork) {
   const std::string page = report_page({report_section(small_results(509.394), ".")});
   for (const char* text : {"<h1>A beam &amp; its &lt;record&gt;</h1>",
-                           "<pre>beamid identify 'my record.csv' --config a.toml</pre>",
+                           "<pre class=\"command\">beamid identify 'my record.csv' --config a.toml</pre>",
                            "<p>First line\nand second</p>", "<th class=\"number\">K [N/m]</th>",
                            "<td class=\"number\">509.39</td>", "<td class=\"number\">-</td>"})
     EXPECT_THAT(page, HasSubstr(text));
-  for (const char* outside : {"http:", "https:", "src=\"/", "@import", "<script", "url("})
+  for (const char* outside : {"http:", "https:", "src=\"/", "@import", "url(\"", "url(h"})
     EXPECT_THAT(page, Not(HasSubstr(outside)));
 }
 
@@ -106,6 +111,158 @@ TEST(ReportPage, IsMadeForTheDarkForPaperAndForNarrowScreens) {
         "@media screen and (max-width: 40rem)", ".scroll { overflow: visible }", "position: sticky"})
     EXPECT_THAT(page, HasSubstr(rule));
   EXPECT_THAT(page, Not(HasSubstr("break-before: page")));
+}
+
+TEST(ReportPage, BeginsWithAVerdictOfColourAndWord) {
+  Results results = small_results(1.0);
+  EXPECT_THAT(report_section(results, ".").html, HasSubstr("<p class=\"verdict good\"><b>No warnings.</b>"));
+  results.warning("Two modes beat.");
+  EXPECT_THAT(report_section(results, ".").html,
+              HasSubstr("<p class=\"verdict doubtful\"><b>With warnings.</b> Two modes beat."));
+  results.warning("DIVERGED: <b>.", true);
+  results.values["status"] = "diverged";
+  EXPECT_THAT(report_section(results, ".").html,
+              HasSubstr("<p class=\"verdict bad\"><b>Not to be used.</b> DIVERGED: &lt;b&gt;."));
+  EXPECT_THAT(report_section(results, ".").html, HasSubstr("status: diverged"));
+  EXPECT_EQ(foreign_tag(report_section(results, ".").html), "");
+}
+
+TEST(ReportPage, FoldsWhatComesAfterTheAnswerUnlessItWarns) {
+  Results results = small_results(1.0);
+  for (const char* heading : {"Details", "Doubts"}) results.heading(heading);
+  results.warning("Two modes beat.");
+  const std::string html = report_section(results, ".").html;
+  EXPECT_THAT(html, HasSubstr("<details>\n<summary><h2>Details</h2>"));
+  EXPECT_THAT(html, HasSubstr("<details open>\n<summary><h2>Doubts</h2>"));
+}
+
+// The one script that may run is the one whose hash the policy names.
+TEST(ReportPage, LetsNoOtherScriptRun) {
+  const PageScript script = page_script();
+  const std::string page = report_page({report_section(small_results(1.0), ".")});
+  EXPECT_THAT(page, HasSubstr("script-src " + script.policy + "\""));
+  EXPECT_EQ(script.policy.size(), std::string("'sha256-'").size() + 44);
+  EXPECT_EQ(page.find("<script"), page.rfind("<script"));
+  EXPECT_THAT(page, HasSubstr(script.element));
+}
+
+Figure drawn_figure(Eigen::Index samples) {
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(samples, 0, 10);
+  const Eigen::VectorXd motion = (3 * time).array().sin();
+  return {"motion", {Panel{"</script>", {"time [s]"}, {"w [m]", true}}.line("\"<b>", time, motion)}};
+}
+
+/// The JSON in the first attribute. RFC 4648 by hand.
+nlohmann::json figure_json(const std::string& attributes) {
+  constexpr std::string_view before = " data-figure=\"",
+                             digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const std::string text =
+      attributes.substr(before.size(), attributes.find('"', before.size()) - before.size());
+  std::string bytes;
+  unsigned bits = 0, held = 0;
+  for (const char letter : text) {
+    if (letter == '=') break;
+    held = held << 6 | static_cast<unsigned>(digits.find(letter));
+    if ((bits += 6) >= 8) bytes += static_cast<char>(held >> (bits -= 8) & 255);
+  }
+  return nlohmann::json::parse(bytes);
+}
+
+TEST(FigureAttributes, KeepLogarithmicAxesAndStateEquallySpacedTimesByTheirStep) {
+  const std::string attributes = figure_attributes({drawn_figure(101)}).at(0);
+  EXPECT_EQ(attributes.find_first_of("<>"), std::string::npos);
+  const nlohmann::json figure = figure_json(attributes);
+  const nlohmann::json& panel = figure["panels"][0];
+  EXPECT_EQ(panel["title"], "</script>");
+  EXPECT_EQ(panel["x"]["log"], false);
+  EXPECT_EQ(panel["y"]["log"], true);
+  EXPECT_EQ(panel["curves"][0]["x"]["n"], 101);
+  EXPECT_DOUBLE_EQ(panel["curves"][0]["x"]["step"], 0.1);
+  EXPECT_EQ(panel["curves"][0]["y"]["size"], 8);
+  EXPECT_FALSE(figure.contains("thinned"));
+}
+
+TEST(FigureAttributes, ThinAMillionSamplesToWhatThePageHolds) {
+  const std::string attributes = figure_attributes({drawn_figure(1'000'000)}).at(0);
+  EXPECT_LE(attributes.size(), most_page_bytes);
+  EXPECT_GT(attributes.size(), most_page_bytes / 2);
+  EXPECT_THAT(figure_json(attributes)["thinned"].get<std::string>(), HasSubstr("1000000 points"));
+}
+
+// What `identify` draws of a record: the whole, its reproduction, and what is left, thin lines among them.
+TEST(ReportPage, OfAMillionSamplesIsSmallAndStatesThatItShowsEnvelopes) {
+  const Eigen::Index samples = 1'000'000;
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(samples, 0, 1000);
+  const Eigen::VectorXd noise = Eigen::VectorXd::Random(samples),
+                        motion = (19 * time).array().sin() + 0.1 * noise.array();
+  Panel whole{"the whole window", {"time [s]"}, {"w [m]"}}, left{"residual", {"time [s]"}, {"w [m]"}};
+  whole.line("reproduced", time, motion - 0.1 * noise).thin("measured", time, motion);
+  left.thin("", time, 0.1 * noise);
+  Panel start = whole;
+  start.x_axis.range = {0.0, 2.0};
+  Results results = small_results(1.0);
+  results.figures = {{"reproduction", {start, whole, left}, 3}, {"convergence", {whole}}, {"noise", {left}}};
+  TemporaryFolder folder;
+  for (const Figure& figure : results.figures) write(figure, folder.path);
+  EXPECT_LE(contents(folder.path / "reproduction.csv").size(), 1'000'000u);
+  const std::string page = report_page({report_section(results, folder.path)});
+  EXPECT_LE(page.size(), 1'500'000u);
+  EXPECT_THAT(page, HasSubstr("The static picture and reproduction.csv show curves of up to 1000000 points "
+                              "by 4000: the lowest and the highest of each interval."));
+}
+
+// What the frame cannot show of a curve is no reason for a note.
+TEST(ThinningText, CountsWhatTheFrameShows) {
+  Figure figure = drawn_figure(100'001);
+  EXPECT_THAT(thinning_text(figure), HasSubstr("100001 points by 4000"));
+  figure.panels[0].x_axis.range = {0.0, 0.1};
+  EXPECT_EQ(thinning_text(figure), "");
+  figure.panels[0].x_axis.range.reset();
+  figure.panels[0].curves[0].style = CurveStyle::points;
+  EXPECT_EQ(thinning_text(figure), "");
+}
+
+std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + at, 4);
+  return word;
+}
+
+// Oracle: the layout of the glTF 2.0 specification, read back.
+TEST(BinaryGltf, HoldsAnAnimationForEachModeAndPhasesOfComplexOnes) {
+  SwingModel model;
+  Eigen::Matrix3Xd points(3, 2), motion(3, 2);
+  points << 0, 2, 0, 0, 0, 0;
+  motion << 0, 0, 0, 0, 0, 1;
+  model.parts = {{SwingModel::Kind::lines, points, {0, 1}, {motion, -motion}}};
+  model.modes = {{"mode 1", 3.5, 0.01, 0, {}}, {"mode 2", 7.0, {}, 0, 1}};
+  const std::string bytes = binary_gltf(model);
+  EXPECT_EQ(bytes.substr(0, 4), "glTF");
+  EXPECT_EQ(word_at(bytes, 4), 2u);
+  EXPECT_EQ(word_at(bytes, 8), bytes.size());
+  const std::size_t length = word_at(bytes, 12), start = 20 + length + 8;
+  const nlohmann::json json = nlohmann::json::parse(bytes.substr(20, length));
+  EXPECT_EQ(json["animations"].size(), 2u);
+  EXPECT_EQ(json["buffers"][0]["byteLength"], bytes.size() - start);
+  const auto numbers = [&](std::size_t accessor) {
+    const nlohmann::json& view = json["bufferViews"][json["accessors"][accessor]["bufferView"].get<int>()];
+    std::vector<float> values(view["byteLength"].get<std::size_t>() / 4);
+    std::memcpy(values.data(), bytes.data() + start + view["byteOffset"].get<std::size_t>(),
+                4 * values.size());
+    return values;
+  };
+  // y is upwards; a tenth of the extent of 2 m.
+  const nlohmann::json& primitive = json["meshes"][0]["primitives"][0];
+  EXPECT_THAT(numbers(primitive["attributes"]["POSITION"]), testing::ElementsAre(0, 0, 0, 2, 0, 0));
+  EXPECT_THAT(numbers(primitive["targets"][0]["POSITION"]),
+              testing::ElementsAre(0, 0, 0, 0, testing::FloatEq(0.2f), 0));
+  // A quarter of a period later the mode that is complex stands at minus its imaginary part.
+  const std::vector<float> weights = numbers(json["animations"][1]["samplers"][0]["output"]);
+  EXPECT_FLOAT_EQ(weights[0], 1);
+  EXPECT_NEAR(weights[2 * 8], 0, 1e-6);
+  EXPECT_FLOAT_EQ(weights[2 * 8 + 1], -1);
+  model.parts[0].corners = {0, 2};
+  EXPECT_THROW(binary_gltf(model), std::invalid_argument);
 }
 
 // Oracle: the widths. A figure space is as wide as a digit, a punctuation space as a point.

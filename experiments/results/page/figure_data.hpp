@@ -1,0 +1,41 @@
+// The data of figures inside a page: what experiments/results/page/figures.js draws.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/results/figure.hpp"
+
+namespace beamid::experiments {
+
+/// Most bytes that the data of all figures of one page take.
+inline constexpr std::size_t most_page_bytes = 600'000;
+
+/// Attributes of each figure's element, in the order of the figures:
+///
+///     data-figure="..."  base64 of JSON: name, columns, row_height [px], panels with title, axes (label,
+///     log,
+///                        range as drawn in the static picture), curves (label, style, colour, mark, columns)
+///     data-values="..."  base64 of the columns, little-endian
+///
+/// A column is {n, from, step} where its values are equally spaced, to 1e-9 of its span; otherwise {n, at,
+/// size}, where `at` counts bytes: 8 bytes a value up to 1000 values, 4 beyond. Where the whole takes more
+/// than `most` bytes, lines are thinned to one limit that fits (envelope() of figure.hpp), and "thinned"
+/// states it in words.
+std::vector<std::string> figure_attributes(const std::vector<Figure>& figures,
+                                           std::size_t most = most_page_bytes);
+
+/// The scripts of a page, as one element, and its hash as a policy of the page's contents names it.
+/// @return "" in both where the page has nothing that moves.
+struct PageScript {
+  std::string element;  ///< "<script>...</script>"
+  std::string policy;   ///< "'sha256-...'"
+};
+PageScript page_script();
+
+/// How a page looks, as text of a <style> element.
+std::string_view page_style();
+
+}  // namespace beamid::experiments
