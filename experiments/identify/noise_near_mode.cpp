@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <vector>
 
 #include "experiments/identify/mode_residual.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/decimation.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -33,15 +33,6 @@ MatrixXd fitted_space(const DecimatedSignal& coarse, const ModalEstimate& modal)
   return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(n, columns.cols());
 }
 
-/// Periodograms |X_k|^2 / n of the columns of x (n x c) at line k.
-VectorXd periodogram(const MatrixXd& x, Index k) {
-  const auto n = static_cast<double>(x.rows());
-  Eigen::VectorXcd turns(x.rows());
-  for (Index j = 0; j < x.rows(); ++j)
-    turns[j] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>((j * k) % x.rows()) / n);
-  return (x.transpose() * turns).cwiseAbs2() / n;
-}
-
 /// Of the lines around the mode: what is left (P), the share of it that the fit does not take (w), and
 /// log(f_k / f).
 struct SpectralLines {
@@ -57,8 +48,13 @@ SpectralLines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal
              last = static_cast<Index>(modal.frequency_hz * line_band / line);
   SpectralLines lines;
   double sum = 0;
-  for (Index k = first; (k <= last || sum < least_weight) && 2 * k < space.rows(); ++k) {
-    const VectorXd power = periodogram(columns, k);
+  Eigen::MatrixXcd found;
+  for (Index k = first, begin = first; (k <= last || sum < least_weight) && 2 * k < space.rows(); ++k) {
+    if (k == begin + found.cols()) {
+      begin = k;
+      found = lines_between(columns, k, std::max<Index>(1, std::min(last, (space.rows() - 1) / 2) - k + 1));
+    }
+    const VectorXd power = found.col(k - begin).cwiseAbs2() / static_cast<double>(space.rows());
     lines.left.push_back(power[0]);
     lines.weight.push_back(std::max(0.0, 1 - power.tail(space.cols()).sum()));
     lines.log_frequency.push_back(std::log(static_cast<double>(k) * line / modal.frequency_hz));

@@ -54,13 +54,15 @@ void require_estimate_memory(const filters::Gaussian& initial, double samples, f
 
 filters::FilterRun filter_passes(filters::Filter& filter, const JointModel& model,
                                  const filters::Measurements& record, const IdentificationSettings& settings,
-                                 filters::Keep keep, const filters::NoisyInputs* noisy = nullptr) {
+                                 filters::Keep keep, const filters::Trace& trace,
+                                 const filters::NoisyInputs* noisy) {
   filters::Gaussian initial = settings.initial;
   filters::FilterRun run;
   for (int pass = 1; pass <= settings.passes; ++pass) {
     const bool last = pass == settings.passes;
     run = filters::run(filter, noisy ? noisy->with_errors(initial) : initial, record,
-                       {last ? keep : filters::Keep::last_estimate, settings.start, {}, settings.on_failure});
+                       {last ? keep : filters::Keep::last_estimate, settings.start,
+                        last ? trace : filters::Trace{}, settings.on_failure});
     if (noisy) {
       run.last = noisy->without_errors(run.last);
       for (auto* estimates : {&run.predicted, &run.filtered})
@@ -86,7 +88,8 @@ filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& i
 }
 
 filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
-                                 const IdentificationSettings& settings, filters::Keep keep) {
+                                 const IdentificationSettings& settings, filters::Keep keep,
+                                 const filters::Trace& trace) {
   std::unique_ptr<filters::DiscreteModel> discrete =
       filters::discretise(model.motion, record.interval(), settings.discretisation,
                           {settings.process_noise, settings.output_noise});
@@ -100,7 +103,7 @@ filters::FilterRun filter_record(const JointModel& model, const filters::Measure
       filters::filter_registry().make(settings.filter, settings.filter_options, std::move(discrete));
   require_sample_memory(settings, settings.initial.mean.size());
   require_estimate_memory(settings.initial, static_cast<double>(record.outputs.cols()), keep);
-  return filter_passes(*filter, model, record, settings, keep, noisy);
+  return filter_passes(*filter, model, record, settings, keep, trace, noisy);
 }
 
 bool is_oscillator(const JointModel& model) {

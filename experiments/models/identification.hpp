@@ -36,10 +36,12 @@ filters::Gaussian next_start(const JointModel& model, const filters::Gaussian& i
                              const filters::Gaussian& last);
 
 /// The record through the filter, pass after pass; the run of the last one, or of the first that failed.
+/// @param trace entries of the state whose history the last pass records, whatever else is kept
 /// @throws std::invalid_argument when the settings do not fit the model or the record.
 filters::FilterRun filter_record(const JointModel& model, const filters::Measurements& record,
                                  const IdentificationSettings& settings,
-                                 filters::Keep keep = filters::Keep::last_estimate);
+                                 filters::Keep keep = filters::Keep::last_estimate,
+                                 const filters::Trace& trace = {});
 
 /// What was found of one degree of freedom.
 struct Identification {

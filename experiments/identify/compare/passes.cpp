@@ -138,13 +138,24 @@ void Passes::begin_at(const VectorXd& state) {
   run_.noise_left = motion_.residual_deviation;
 }
 
+// A smoother needs the estimates at all samples; 16 n (n + 1) bytes a sample are kept for nothing else.
+filters::Keep Passes::kept_estimates() const {
+  return context_.experiment.smoother.empty() ? filters::Keep::last_estimate : settings_.keep;
+}
+
+// K and C of one oscillator, for the figure of their convergence.
+filters::Trace Passes::traced_states() const {
+  if (settings_.keep != filters::Keep::all_estimates || !is_oscillator(*run_.model)) return {};
+  return {run_.model->unknown_places};
+}
+
 bool Passes::filter_once() {
   const JointModel& model = *run_.model;
   run_.settings.initial = next_;
   run_.noise = assumed_noise(known_, noise_shown());
   run_.settings.output_noise = run_.noise.cwiseAbs2().asDiagonal();
   SteadyClock::time_point start = SteadyClock::now();
-  run_.run = filter_record(model, record_, run_.settings, settings_.keep);
+  run_.run = filter_record(model, record_, run_.settings, kept_estimates(), traced_states());
   run_.seconds += seconds_since(start);
   run_.remarks = run_.run.remarks;
   filters::Gaussian& initial = run_.settings.initial;

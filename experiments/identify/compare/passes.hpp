@@ -74,6 +74,8 @@ class Passes {
   std::optional<filters::Gaussian> output_error(Eigen::VectorXd state, Eigen::Index first_samples = 0);
   std::vector<Eigen::VectorXd> further_starts() const;
   void take_unknowns(const filters::Gaussian& unknowns);
+  filters::Keep kept_estimates() const;
+  filters::Trace traced_states() const;
   bool filter_once();
   void filter_from_there();
   void score(const Eigen::VectorXd& bound);

@@ -70,19 +70,17 @@ Panel history(const Record& record, const VectorXd& estimate, const VectorXd& de
 }
 
 Figure convergence(const Record& record, const RecordIdentification& found) {
-  const auto& filtered = found.identification.run.filtered;
-  const auto count = static_cast<Index>(filtered.size());
+  const filters::FilterRun& run = found.identification.run;
+  const Index count = run.means.cols();
   VectorXd frequency(count), frequency_deviation(count), ratio(count), ratio_deviation(count);
   const double frequency_factor = found.frequency_factor(), damping_factor = found.damping_factor();
   for (Index k = 0; k < count; ++k) {
-    const filters::Gaussian& state = filtered[static_cast<std::size_t>(k)];
-    const Oscillator now{found.identification.found.mass, state.mean[2], state.mean[3]};
+    const Oscillator now{found.identification.found.mass, run.means(0, k), run.means(1, k)};
     frequency[k] = now.frequency_hz();
-    frequency_deviation[k] =
-        frequency_factor * 0.5 * frequency[k] * std::sqrt(state.covariance(2, 2)) / now.stiffness;
+    frequency_deviation[k] = frequency_factor * 0.5 * frequency[k] * run.deviations(0, k) / now.stiffness;
     ratio[k] = 100.0 * now.damping_ratio();
-    ratio_deviation[k] = damping_factor * 100.0 * std::sqrt(state.covariance(3, 3)) /
-                         (2.0 * std::sqrt(now.stiffness * now.mass));
+    ratio_deviation[k] =
+        damping_factor * 100.0 * run.deviations(1, k) / (2.0 * std::sqrt(now.stiffness * now.mass));
   }
   const double last_ratio = ratio[count - 1], absent = found.modal_failure.empty() ? 0.0 : std::nan("");
   Figure figure{"convergence", {}, 2, 1};
@@ -102,7 +100,7 @@ std::vector<Figure> figures(const Record& record, const RecordIdentification& fo
     result.push_back(reproduction(record, found, row));
   if (found.reproduced.size() > 0)
     if (auto shown = spectrum(record, found)) result.push_back(std::move(*shown));
-  if (!found.identification.run.filtered.empty()) result.push_back(convergence(record, found));
+  if (found.identification.run.means.rows() == 2) result.push_back(convergence(record, found));
   return result;
 }
 
