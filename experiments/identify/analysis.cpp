@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "experiments/config/channel_places.hpp"
+#include "experiments/identify/mode_analysis.hpp"
 #include "experiments/identify/mode_residual.hpp"
 #include "experiments/identify/model_setting.hpp"
 #include "experiments/identify/recorded_frequency.hpp"
@@ -44,7 +45,9 @@ double beam_frequency_hz(const Experiment& experiment) {
   return fem::modes(fem::assemble(experiment.structure, experiment.elements), 1).frequency_hz()[0];
 }
 
-void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
+enum class Depth { mode, everything };
+
+void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysis& found) {
   constexpr double mostly_read = 0.7;  // what is filled in follows the mode, not its changes
   const Record& stamped = found.evenly_stamped();
   ModalAnalysisSettings settings;
@@ -55,6 +58,7 @@ void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
     found.mode = FoundMode{found.modal->frequency_hz, found.modal->damping_ratio};
     found.mode_noise = found.residual_noise(*found.modal);
     found.near_mode = found.noise_at(*found.modal);
+    if (depth == Depth::mode) return;
     const Index first = output_channels(stamped)[0];
     found.overtone = third_overtone(stamped.samples.row(first).transpose(), stamped.interval(), *found.modal);
     const double interval = found.even.record.interval();
@@ -148,7 +152,9 @@ NoiseNearMode RecordAnalysis::noise_at(const ModalEstimate& of) const {
   return near;
 }
 
-RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
+namespace {
+
+RecordAnalysis analyse_to(Depth depth, const Experiment& experiment, const Record& record) {
   RecordAnalysis found;
   found.record = with_places(record, experiment);
   if (output_channels(found.record).empty())
@@ -168,8 +174,8 @@ RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
     else
       find_driven_mode(found);
   } else {
-    find_decaying_mode(experiment, found);
-    found.channels = channel_amplitudes(experiment, found);
+    find_decaying_mode(experiment, depth, found);
+    if (depth == Depth::everything) found.channels = channel_amplitudes(experiment, found);
   }
   if (!found.mode)
     found.notes.push_back(fmt::format(
@@ -177,6 +183,16 @@ RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
         "first estimate, and runs are not checked against it.",
         found.modal_failure.empty() ? found.modal_refusal : found.modal_failure));
   return found;
+}
+
+}  // namespace
+
+RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
+  return analyse_to(Depth::everything, experiment, record);
+}
+
+RecordAnalysis analyse_mode(const Experiment& experiment, const Record& record) {
+  return analyse_to(Depth::mode, experiment, record);
 }
 
 }  // namespace beamid::experiments

@@ -8,7 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "experiments/identify/analysis.hpp"
+#include "experiments/identify/mode_analysis.hpp"
 #include "experiments/modal/shape_fit.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/signal/decimation.hpp"
@@ -40,7 +40,7 @@ double largest_line(const Record& record, const ModalEstimate& modal) {
 std::optional<Choice> step_against_higher_modes(const Experiment& experiment, const Record& record) {
   constexpr double too_large = 6, samples_per_cycle = 8;
   constexpr Eigen::Index enough = 50;  // samples to be left, as the modal analysis wants them
-  const RecordAnalysis found = analyse(experiment, record);
+  const RecordAnalysis found = analyse_mode(experiment, record);
   if (!found.modal_refusal.empty()) throw std::invalid_argument(found.modal_refusal);
   if (!found.modal ||
       !(largest_line(found.even.record, *found.modal) > too_large * found.near_mode->deviation))

@@ -11,9 +11,9 @@ std::vector<Eigen::Index> envelope(const Eigen::VectorXd& x, const Eigen::Vector
   const Eigen::Index size = x.size();
   std::vector<Eigen::Index> kept(static_cast<std::size_t>(size));
   std::iota(kept.begin(), kept.end(), Eigen::Index{0});
-  if (size <= limit) return kept;
+  const Eigen::Index intervals = std::max<Eigen::Index>(1, limit / 2), most = 3 * intervals + 2;
+  if (size <= most) return kept;  // what this gives is not thinned again
 
-  const Eigen::Index intervals = std::max<Eigen::Index>(1, limit / 2);
   const auto drawn = [&](Eigen::Index i) { return logarithmic ? std::log(x[i]) : x[i]; };
   Eigen::Index first = 0;
   while (first < size - 1 && !std::isfinite(drawn(first))) ++first;

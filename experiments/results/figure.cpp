@@ -11,6 +11,7 @@
 #include "experiments/results/file.hpp"
 #include "experiments/results/gnuplot.hpp"
 #include "experiments/results/process.hpp"
+#include "experiments/results/thinned_panel.hpp"
 #include "experiments/results/vtk/drawing.hpp"
 #include "experiments/text/clean_text.hpp"
 #include "experiments/text/fields.hpp"
@@ -69,25 +70,12 @@ Fields column(const std::string& header, const Eigen::VectorXd& values,
   return fields;
 }
 
-// The curve inside the horizontal range, with one point more on each side for the line to enter by.
-Curve visible(const Curve& curve, const std::pair<double, double>& range) {
-  const auto first = std::lower_bound(curve.x.begin(), curve.x.end(), range.first);
-  const auto last = std::upper_bound(curve.x.begin(), curve.x.end(), range.second);
-  const Eigen::Index begin = std::max<Eigen::Index>(first - curve.x.begin() - 1, 0),
-                     end = std::min<Eigen::Index>(last - curve.x.begin() + 1, curve.x.size());
-  Curve part = curve;
-  for (Eigen::VectorXd* values : {&part.x, &part.y, &part.lower, &part.upper})
-    if (values->size() > 0) *values = values->segment(begin, end - begin).eval();
-  return part;
-}
-
 void add_columns(const Panel& panel, const Curve& curve, std::vector<Fields>& columns) {
   const bool bounds = curve.lower.size() > 0, band = curve.style == CurveStyle::band;
-  const bool line = curve.style == CurveStyle::line || curve.style == CurveStyle::dashed ||
-                    curve.style == CurveStyle::dotted || band;
   const Eigen::VectorXd& thinned = band ? curve.upper : curve.y;
   // Points are never so many that they need thinning, and each of them counts.
-  const auto kept = envelope(curve.x, thinned, panel.x_axis.logarithmic, line ? 4000 : curve.x.size());
+  const auto kept =
+      envelope(curve.x, thinned, panel.x_axis.logarithmic, is_line(curve) ? 4000 : curve.x.size());
   const auto header = [&](const std::string& axis, const char* bound) {
     std::string text;
     for (const std::string& part : {panel.title, curve.label + bound})
@@ -107,7 +95,7 @@ std::string data_of(const Figure& figure) {
     for (const Curve& curve : panel.curves) {
       const bool ascending = curve.x.allFinite() && std::is_sorted(curve.x.begin(), curve.x.end());
       const bool cut = panel.x_axis.range && ascending;
-      add_columns(panel, cut ? visible(curve, *panel.x_axis.range) : curve, columns);
+      add_columns(panel, cut ? visible_part(curve, *panel.x_axis.range) : curve, columns);
     }
   std::size_t rows = 0;
   for (const Fields& fields : columns) rows = std::max(rows, fields.size());
