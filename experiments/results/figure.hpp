@@ -15,7 +15,7 @@ namespace beamid::experiments {
 
 /// Indices of the points to keep, ascending, at most about `limit`: the first and the last, and the lowest
 /// and the highest of every interval, the intervals being equally wide on the axis. Points that are not
-/// finite leave a gap and keep it.
+/// finite leave a gap and keep it. Of up to one and a half times as many, all are kept.
 ///
 /// @param x (N) abscissae. Where they do not ascend, the intervals hold equally many points instead.
 /// @param y (N) ordinates.
@@ -105,6 +105,12 @@ struct Figure {
 /// @throws std::runtime_error when a file cannot be written, or gnuplot is missing or fails, with its
 /// message.
 void write(const Figure& figure, const std::filesystem::path& folder);
+
+/// The panel with the points that write() would write, in the memory of these: a million samples take 16 MB a
+/// curve before and 60 kB after. Files and pictures are the same. The range of the x axis is set before;
+/// where the y axis has none and the visible part of a curve has not the extent of the whole, the panel stays
+/// as it is.
+Panel thinned(Panel panel);
 
 /// Names of the files write() makes: "NAME.csv", "NAME.gp", "NAME.svg", "NAME.png".
 std::vector<std::string> files_of(const Figure& figure);
