@@ -55,7 +55,7 @@ void require_estimate_memory(const filters::Gaussian& initial, double samples, f
 filters::FilterRun filter_passes(filters::Filter& filter, const JointModel& model,
                                  const filters::Measurements& record, const IdentificationSettings& settings,
                                  filters::Keep keep, const filters::Trace& trace,
-                                 const filters::NoisyInputs* noisy = nullptr) {
+                                 const filters::NoisyInputs* noisy) {
   filters::Gaussian initial = settings.initial;
   filters::FilterRun run;
   for (int pass = 1; pass <= settings.passes; ++pass) {

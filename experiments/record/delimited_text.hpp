@@ -1,9 +1,12 @@
 // Rows of numbers in a text file: separators, header, places.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "experiments/record/record_table.hpp"
@@ -13,7 +16,7 @@ namespace beamid::experiments {
 
 // Where the fields of rows of text stand, found again when a message needs it.
 
-/// Keeps a text and where its rows begin.
+/// Keeps a text and where its rows begin: 12 bytes a row, numbers of lines by their runs.
 class TextCells {
  public:
   TextCells(std::string file, std::shared_ptr<const std::string> text);
@@ -29,8 +32,14 @@ class TextCells {
   struct Rows {
     std::string file;
     std::shared_ptr<const std::string> text;
-    std::vector<std::string_view> lines;
-    std::vector<std::size_t> numbers;
+    std::vector<std::size_t> begins;
+    std::vector<std::uint32_t> lengths;
+    /// Of rows from the first of a pair on, the number of that row's line; each row a line until the next
+    /// pair.
+    std::vector<std::pair<std::size_t, std::size_t>> runs;
+
+    std::string_view line(std::size_t row) const;
+    std::size_t number(std::size_t row) const;
   };
   std::shared_ptr<Rows> rows_;
 };

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "experiments/results/gnuplot.hpp"
+#include "experiments/results/gnuplot_axes.hpp"
 #include "experiments/results/process.hpp"
 #include "experiments/results/result_directory.hpp"
 #include "experiments/results/vtk/drawing.hpp"
@@ -53,6 +54,63 @@ std::vector<Eigen::Index> envelope(const Eigen::VectorXd& x, const Eigen::Vector
   }
   if (kept.back() != size - 1) kept.push_back(size - 1);
   return kept;
+}
+
+namespace {
+
+// The curve inside the horizontal range, with one point more on each side for the line to enter by.
+Curve visible_part(const Curve& curve, const std::pair<double, double>& range) {
+  const auto first = std::lower_bound(curve.x.begin(), curve.x.end(), range.first);
+  const auto last = std::upper_bound(curve.x.begin(), curve.x.end(), range.second);
+  const Eigen::Index begin = std::max<Eigen::Index>(first - curve.x.begin() - 1, 0),
+                     end = std::min<Eigen::Index>(last - curve.x.begin() + 1, curve.x.size());
+  const auto cut = [&](const Eigen::VectorXd& values) {
+    return values.size() > 0 ? values.segment(begin, end - begin).eval() : Eigen::VectorXd();
+  };
+  Curve part = curve;
+  for (Eigen::VectorXd* values : {&part.x, &part.y, &part.lower, &part.upper}) *values = cut(*values);
+  return part;
+}
+
+constexpr Eigen::Index long_curve = 20000;  // points
+
+void keep_points(Curve& curve, const std::vector<Eigen::Index>& kept) {
+  for (Eigen::VectorXd* values : {&curve.x, &curve.y, &curve.lower, &curve.upper})
+    if (values->size() > 0) *values = (*values)(kept).eval();
+}
+
+Curve thinned_curve(const Curve& curve, const Axis& x_axis) {
+  const bool ascending = curve.x.allFinite() && std::is_sorted(curve.x.begin(), curve.x.end());
+  Curve part = x_axis.range && ascending ? visible_part(curve, *x_axis.range) : curve;
+  part.points = part.x.size();
+  if (is_line(part))
+    keep_points(part,
+                envelope(part.x, part.style == CurveStyle::band ? part.upper : part.y, x_axis.logarithmic));
+  return part;
+}
+
+Extent height(const Curve& curve, bool positive) {
+  Extent extent;
+  for (const Eigen::VectorXd* values : {&curve.y, &curve.lower, &curve.upper}) extent.add(*values, positive);
+  return extent;
+}
+
+bool is_as_high(const Curve& part, const Curve& whole, const Axis& y_axis) {
+  const Extent of_part = height(part, y_axis.logarithmic), of_whole = height(whole, y_axis.logarithmic);
+  if (y_axis.range) return of_part.empty() == of_whole.empty();
+  return of_part.low == of_whole.low && of_part.high == of_whole.high;
+}
+
+}  // namespace
+
+Panel thinned(Panel panel) {
+  if (!panel.x_axis.range) return panel;
+  for (Curve& curve : panel.curves) {
+    if (curve.x.size() < long_curve || !is_line(curve)) continue;
+    Curve part = thinned_curve(curve, panel.x_axis);
+    if (is_as_high(part, curve, panel.y_axis)) curve = std::move(part);
+  }
+  return panel;
 }
 
 namespace {
@@ -108,18 +166,6 @@ Fields column(const std::string& header, const Eigen::VectorXd& values,
   return fields;
 }
 
-// The curve inside the horizontal range, with one point more on each side for the line to enter by.
-Curve visible(const Curve& curve, const std::pair<double, double>& range) {
-  const auto first = std::lower_bound(curve.x.begin(), curve.x.end(), range.first);
-  const auto last = std::upper_bound(curve.x.begin(), curve.x.end(), range.second);
-  const Eigen::Index begin = std::max<Eigen::Index>(first - curve.x.begin() - 1, 0),
-                     end = std::min<Eigen::Index>(last - curve.x.begin() + 1, curve.x.size());
-  Curve part = curve;
-  for (Eigen::VectorXd* values : {&part.x, &part.y, &part.lower, &part.upper})
-    if (values->size() > 0) *values = values->segment(begin, end - begin).eval();
-  return part;
-}
-
 void add_columns(const Panel& panel, const Curve& curve, std::vector<Fields>& columns) {
   const bool bounds = curve.lower.size() > 0, band = curve.style == CurveStyle::band;
   const Eigen::VectorXd& thinned = band ? curve.upper : curve.y;
@@ -142,7 +188,7 @@ void add_columns(const Panel& panel, const Curve& curve, std::vector<Fields>& co
 // What the frame can show of a curve.
 Curve shown(const Panel& panel, const Curve& curve) {
   const bool ascending = curve.x.allFinite() && std::is_sorted(curve.x.begin(), curve.x.end());
-  return panel.x_axis.range && ascending ? visible(curve, *panel.x_axis.range) : curve;
+  return panel.x_axis.range && ascending ? visible_part(curve, *panel.x_axis.range) : curve;
 }
 
 std::string data_of(const Figure& figure) {
@@ -174,8 +220,7 @@ std::string thinning_text(const Figure& figure) {
   Eigen::Index longest = 0;
   for (const Panel& panel : figure.panels)
     for (const Curve& curve : panel.curves)
-      if (is_line(curve) && curve.x.size() > most_drawn_points)
-        longest = std::max(longest, shown(panel, curve).x.size());
+      if (is_line(curve)) longest = std::max({longest, curve.points, shown(panel, curve).x.size()});
   if (longest <= most_drawn_points) return "";
   return fmt::format(
       "The static picture and {}.csv show curves of up to {} points by {}: the lowest and the highest of "

@@ -12,6 +12,54 @@
 #include <unsupported/Eigen/FFT>
 
 namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+
+// exp(-2 pi i j / n), j = 0 ... n - 1.
+Eigen::VectorXcd unit_turns(Eigen::Index n) {
+  Eigen::VectorXcd turns(n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    turns[j] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(n));
+  return turns;
+}
+
+Eigen::MatrixXcd summed_lines(const Eigen::MatrixXd& columns, Eigen::Index first, Eigen::Index count) {
+  const Eigen::Index n = columns.rows();
+  const Eigen::VectorXcd turns = unit_turns(n);
+  Eigen::MatrixXcd lines(columns.cols(), count);
+  Eigen::VectorXcd turned(n);
+  for (Eigen::Index m = 0; m < count; ++m) {
+    for (Eigen::Index j = 0; j < n; ++j) turned[j] = turns[(j * (first + m)) % n];
+    lines.col(m) = columns.transpose() * turned;
+  }
+  return lines;
+}
+
+// j k = (j^2 + k^2 - (k - j)^2) / 2 makes of the sum a convolution with the chirp exp(pi i q^2 / n); the
+// squares are reduced modulo 2 n as whole numbers, so that phases have all their digits.
+Eigen::MatrixXcd chirped_lines(const Eigen::MatrixXd& columns, Eigen::Index first, Eigen::Index count) {
+  const Eigen::Index n = columns.rows();
+  const auto length = static_cast<Eigen::Index>(std::bit_ceil(static_cast<std::size_t>(n + count - 1)));
+  const Eigen::VectorXcd turns = unit_turns(2 * n);
+  const auto chirp = [&](Eigen::Index q) { return turns[(q * q) % (2 * n)]; };
+  Eigen::FFT<double> transform;
+  Eigen::VectorXcd kernel = Eigen::VectorXcd::Zero(length), spectrum, padded(length), product;
+  for (Eigen::Index q = 1 - n; q < count; ++q) kernel[(q + length) % length] = std::conj(chirp(first + q));
+  transform.fwd(spectrum, kernel);
+  Eigen::MatrixXcd lines(columns.cols(), count);
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    padded.setZero();
+    for (Eigen::Index j = 0; j < n; ++j) padded[j] = columns(j, c) * chirp(j);
+    transform.fwd(product, padded);
+    product.array() *= spectrum.array();
+    transform.inv(padded, product);
+    for (Eigen::Index m = 0; m < count; ++m) lines(c, m) = chirp(first + m) * padded[m];
+  }
+  return lines;
+}
+
+}  // namespace
 
 AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double interval) {
   const auto count = static_cast<std::size_t>(signal.size()), length = std::bit_ceil(2 * count);
@@ -61,6 +109,13 @@ Eigen::MatrixXcd spectrum_lines(const Eigen::MatrixXd& signals, Eigen::Index sam
       found(i, k) = spectrum[static_cast<std::size_t>(k + 1)] / std::sqrt(static_cast<double>(samples));
   }
   return found;
+}
+
+Eigen::MatrixXcd lines_between(const Eigen::MatrixXd& columns, Eigen::Index first, Eigen::Index count) {
+  constexpr Eigen::Index few = 1 << 20;  // products of a column
+  if (count < 1 || columns.rows() < 1) return Eigen::MatrixXcd(columns.cols(), 0);
+  return columns.rows() <= few / count ? summed_lines(columns, first, count)
+                                       : chirped_lines(columns, first, count);
 }
 
 Eigen::Index last_strong_line(const Eigen::MatrixXcd& lines) {

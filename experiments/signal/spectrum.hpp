@@ -28,6 +28,11 @@ double strongest_frequency(const Eigen::VectorXd& signal, double interval);
 /// ..., L (p x L): white noise of deviation sigma has E |X|^2 = sigma^2 at every line.
 Eigen::MatrixXcd spectrum_lines(const Eigen::MatrixXd& signals, Eigen::Index samples, Eigen::Index lines);
 
+/// Discrete Fourier transforms of the columns of x (N x c) at the lines first, ..., first + count - 1 (c x
+/// count): X_k = sum_j x_j exp(-2 pi i j k / N). Few products are summed directly; more of them take
+/// Bluestein's chirp transform, O((N + count) log(N + count)) for any N, prime ones included.
+Eigen::MatrixXcd lines_between(const Eigen::MatrixXd& columns, Eigen::Index first, Eigen::Index count);
+
 /// The last line up to which all but a thousandth of every row's squares lie. @param lines (p x L)
 Eigen::Index last_strong_line(const Eigen::MatrixXcd& lines);
 

@@ -120,6 +120,7 @@ std::string read_bytes(const std::filesystem::path& file, const std::string& exp
   const auto size = std::filesystem::file_size(file, unknown);
   if (!unknown) require_fitting(file, static_cast<double>(size));
   std::string bytes;
+  if (!unknown) bytes.reserve(static_cast<std::size_t>(size) + 1);
   for (std::vector<char> part(1 << 16); stream;) {
     stream.read(part.data(), static_cast<std::streamsize>(part.size()));
     bytes.append(part.data(), static_cast<std::size_t>(stream.gcount()));

@@ -88,7 +88,8 @@ inline const std::vector<Library>& libraries() {
       {"Boost.Program_options", {"boost/program_options"}, {"apps/values.cpp"}},
       {"POSIX",
        {"unistd.h", "dlfcn.h", "fcntl.h", "poll.h", "spawn.h", "signal.h", "sys/"},
-       {"experiments/", "apps/"}}};
+       {"experiments/", "apps/"}},
+      {"the C library's allocator", {"malloc.h"}, {"apps/main.cpp"}}};
   return known;
 }
 

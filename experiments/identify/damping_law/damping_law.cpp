@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -15,6 +14,7 @@
 #include "experiments/modal/study/decay_part.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/signal/decimation.hpp"
+#include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "experiments/text/spelling.hpp"
 #include "fem/modes.hpp"
@@ -69,15 +69,9 @@ VectorXd noise_near(const MatrixXd& left, double interval, double frequency_hz, 
              to = std::min<Index>(m / 2 - 1, static_cast<Index>(std::ceil(1.5 * frequency_hz / resolution)));
   const auto lines = static_cast<double>(to - from + 1);
   VectorXd noise(left.rows());
+  const Eigen::MatrixXcd found = lines_between(left.transpose(), from, std::max<Index>(0, to - from + 1));
   for (Index i = 0; i < left.rows(); ++i) {
-    double power = 0.0;
-    for (Index line = from; line <= to; ++line) {
-      std::complex<double> sum = 0.0;
-      for (Index k = 0; k < m; ++k)
-        sum += left(i, k) * std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>((line * k) % m) /
-                                                static_cast<double>(m));
-      power += std::norm(sum) / static_cast<double>(m);
-    }
+    const double power = found.row(i).squaredNorm() / static_cast<double>(m);
     // Two numbers a line; a fit makes as many of them vanish as it has unknowns.
     const double dense = power / std::max(0.25 * lines, lines - 0.5 * fitted);
     const double whole = left.row(i).squaredNorm() / std::max(1.0, static_cast<double>(m) - fitted);

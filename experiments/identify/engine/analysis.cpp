@@ -53,7 +53,7 @@ double largest_line(const Record& record, const ModalEstimate& modal) {
 std::optional<Choice> step_against_higher_modes(const Experiment& experiment, const Record& record) {
   constexpr double too_large = 6, samples_per_cycle = 8;
   constexpr Eigen::Index enough = 50;  // samples to be left, as the modal analysis wants them
-  const RecordAnalysis found = analyse(experiment, record);
+  const RecordAnalysis found = analyse_mode(experiment, record);
   if (!found.modal_refusal.empty()) throw std::invalid_argument(found.modal_refusal);
   if (!found.modal ||
       !(largest_line(found.even.record, *found.modal) > too_large * found.near_mode->deviation))
@@ -207,7 +207,9 @@ double beam_frequency_hz(const Experiment& experiment) {
   return fem::modes(fem::assemble(experiment.structure, experiment.elements), 1).frequency_hz()[0];
 }
 
-void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
+enum class Depth { mode, everything };
+
+void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysis& found) {
   constexpr double mostly_read = 0.7;  // what is filled in follows the mode, not its changes
   const Record& stamped = found.evenly_stamped();
   ModalAnalysisSettings settings;
@@ -218,6 +220,7 @@ void find_decaying_mode(const Experiment& experiment, RecordAnalysis& found) {
     found.mode = FoundMode{found.modal->frequency_hz, found.modal->damping_ratio};
     found.mode_noise = found.residual_noise(*found.modal);
     found.near_mode = found.noise_at(*found.modal);
+    if (depth == Depth::mode) return;
     const Index first = output_channels(stamped)[0];
     found.overtone = third_overtone(stamped.samples.row(first).transpose(), stamped.interval(), *found.modal);
     const double interval = found.even.record.interval();
@@ -311,7 +314,9 @@ NoiseNearMode RecordAnalysis::noise_at(const ModalEstimate& of) const {
   return near;
 }
 
-RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
+namespace {
+
+RecordAnalysis analyse_to(Depth depth, const Experiment& experiment, const Record& record) {
   RecordAnalysis found;
   found.record = with_places(record, experiment);
   if (output_channels(found.record).empty())
@@ -331,8 +336,8 @@ RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
     else
       find_driven_mode(found);
   } else {
-    find_decaying_mode(experiment, found);
-    found.channels = channel_amplitudes(experiment, found);
+    find_decaying_mode(experiment, depth, found);
+    if (depth == Depth::everything) found.channels = channel_amplitudes(experiment, found);
   }
   if (!found.mode)
     found.notes.push_back(fmt::format(
@@ -340,6 +345,16 @@ RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
         "first estimate, and runs are not checked against it.",
         found.modal_failure.empty() ? found.modal_refusal : found.modal_failure));
   return found;
+}
+
+}  // namespace
+
+RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
+  return analyse_to(Depth::everything, experiment, record);
+}
+
+RecordAnalysis analyse_mode(const Experiment& experiment, const Record& record) {
+  return analyse_to(Depth::mode, experiment, record);
 }
 
 namespace {

@@ -104,6 +104,10 @@ struct RecordAnalysis {
 /// @throws std::invalid_argument without a channel of motion, with a dead one or one at an unknown place
 RecordAnalysis analyse(const Experiment& experiment, const Record& record);
 
+/// As analyse(), for decisions before the identification: no overtone, no jump of the frequency, no sections,
+/// no comparison of the channels. @throws as analyse()
+RecordAnalysis analyse_mode(const Experiment& experiment, const Record& record);
+
 /// Whether K and C of a free decay are asked, which have a verdict and a report of their own.
 bool asks_free_oscillator(const Experiment& experiment, const Record& record);
 

@@ -100,12 +100,12 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
   ComparedRun& run = passes.run();
   if (context.compared.has_open_clocks()) {
     passes.follow_common_clock();
-    return run;
+    return std::move(run);
   }
   const auto refuse = [&](const std::string& reason) {
     run.status = Status::refused;
     run.reason = reason;
-    return run;
+    return std::move(run);
   };
   if (would_not_follow_held_forces(context, started.model))
     return refuse(
@@ -143,7 +143,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
   if (run.status == Status::converged) passes.judge_motion();
   run.step_cause =
       cause_in_step(run, context.analysis.mode, settings.discretisation, context.analysis.record.interval());
-  return run;
+  return std::move(run);
 }
 
 namespace {

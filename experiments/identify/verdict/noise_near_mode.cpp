@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -12,6 +11,7 @@
 #include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/decimation.hpp"
+#include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -91,25 +91,6 @@ MatrixXd fitted_space(const DecimatedSignal& coarse, const ModalEstimate& modal)
   return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(n, columns.cols());
 }
 
-/// e^(-2 pi i j / n), j = 0 ... n - 1: the turns of all lines, since line k at sample j has turn (j k) mod n.
-Eigen::VectorXcd turns_of(Index n) {
-  Eigen::VectorXcd turns(n);
-  for (Index j = 0; j < n; ++j)
-    turns[j] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(n));
-  return turns;
-}
-
-/// Periodograms |X_k|^2 / n of the columns of x (n x c) at line k. @param all turns_of(n)
-VectorXd periodogram(const MatrixXd& x, Index k, const Eigen::VectorXcd& all) {
-  const Index n = x.rows();
-  Eigen::VectorXcd turns(n);
-  for (Index j = 0, at = 0; j < n; ++j) {
-    turns[j] = all[at];
-    if ((at += k) >= n) at -= n;  // k < n
-  }
-  return (x.transpose() * turns).cwiseAbs2() / static_cast<double>(n);
-}
-
 /// Of the lines around the mode: what is left (P), the share of it that the fit does not take (w), and
 /// log(f_k / f).
 struct SpectralLines {
@@ -123,11 +104,15 @@ SpectralLines lines_of(const DecimatedSignal& coarse, const ModalEstimate& modal
   const double line = 1 / (static_cast<double>(space.rows()) * coarse.interval);  // [Hz]
   const auto first = std::max<Index>(1, static_cast<Index>(std::ceil(modal.frequency_hz / line_band / line))),
              last = static_cast<Index>(modal.frequency_hz * line_band / line);
-  const Eigen::VectorXcd turns = turns_of(space.rows());
   SpectralLines lines;
   double sum = 0;
-  for (Index k = first; (k <= last || sum < least_weight) && 2 * k < space.rows(); ++k) {
-    const VectorXd power = periodogram(columns, k, turns);
+  Eigen::MatrixXcd found;
+  for (Index k = first, begin = first; (k <= last || sum < least_weight) && 2 * k < space.rows(); ++k) {
+    if (k == begin + found.cols()) {
+      begin = k;
+      found = lines_between(columns, k, std::max<Index>(1, std::min(last, (space.rows() - 1) / 2) - k + 1));
+    }
+    const VectorXd power = found.col(k - begin).cwiseAbs2() / static_cast<double>(space.rows());
     lines.left.push_back(power[0]);
     lines.weight.push_back(std::max(0.0, 1 - power.tail(space.cols()).sum()));
     lines.log_frequency.push_back(std::log(static_cast<double>(k) * line / modal.frequency_hz));

@@ -286,6 +286,8 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
   }
   if (run.has_estimate()) run.status = found->judgement.verdict;
   run.oscillator = found;
+  for (Eigen::MatrixXd* history : {&run.run.means, &run.run.deviations, &run.run.whitened_innovations})
+    history->resize(0, 0);  // it holds them once more
   if (run.parameters.size() != 2) return;
   widen(run, 0, found->frequency_factor());
   widen(run, 1, found->damping_factor());

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 #include <unsupported/Eigen/FFT>
+#include <utility>
 #include <vector>
 
 namespace beamid::experiments {
@@ -20,26 +22,36 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// Variance of white noise with the periodogram that a window of the signal has.
-double white_variance(const VectorXd& window, Eigen::FFT<double>& transform) {
-  const Index size = window.size();
-  const VectorXd place = VectorXd::LinSpaced(size, -1, 1);
-  const double slope = place.dot(window) / place.squaredNorm();
-  const double turn = 2 * std::numbers::pi / static_cast<double>(size);
-  std::vector<double> tapered(static_cast<std::size_t>(size));
-  double taper_squares = 0.0;
-  for (Index k = 0; k < size; ++k) {
-    const double taper = 1 - std::cos(turn * (static_cast<double>(k) + 0.5));
-    tapered[static_cast<std::size_t>(k)] = taper * (window[k] - window.mean() - slope * place[k]);
-    taper_squares += taper * taper;
+/// Variances of white noise with the periodograms that windows of the signal have.
+class WhiteVariance {
+ public:
+  explicit WhiteVariance(Index size) : place_(VectorXd::LinSpaced(size, -1, 1)), taper_(size) {
+    const double turn = 2 * std::numbers::pi / static_cast<double>(size);
+    for (Index k = 0; k < size; ++k) {
+      taper_[k] = 1 - std::cos(turn * (static_cast<double>(k) + 0.5));
+      taper_squares_ += taper_[k] * taper_[k];
+    }
+    tapered_.resize(static_cast<std::size_t>(size));
   }
-  std::vector<std::complex<double>> spectrum;
-  transform.fwd(spectrum, tapered);
-  std::vector<double> powers;
-  for (Index k = size / 8; k < 3 * size / 8; ++k)
-    powers.push_back(std::norm(spectrum[static_cast<std::size_t>(k)]));
-  return quantile(powers, 0.5) / std::numbers::ln2 / taper_squares;
-}
+
+  double of(const VectorXd& window) {
+    const double slope = place_.dot(window) / place_.squaredNorm(), mean = window.mean();
+    for (Index k = 0; k < window.size(); ++k)
+      tapered_[static_cast<std::size_t>(k)] = taper_[k] * (window[k] - mean - slope * place_[k]);
+    transform_.fwd(spectrum_, tapered_);
+    std::vector<double> powers;
+    for (Index k = window.size() / 8; k < 3 * window.size() / 8; ++k)
+      powers.push_back(std::norm(spectrum_[static_cast<std::size_t>(k)]));
+    return quantile(std::move(powers), 0.5) / std::numbers::ln2 / taper_squares_;
+  }
+
+ private:
+  VectorXd place_, taper_;
+  double taper_squares_ = 0.0;
+  std::vector<double> tapered_;
+  std::vector<std::complex<double>> spectrum_;
+  Eigen::FFT<double> transform_;
+};
 
 }  // namespace
 
@@ -50,10 +62,10 @@ double noise_floor(const VectorXd& signal) {
                                 " samples; expected at least 64 to find its noise");
   Index size = longest;
   while (size > signal.size()) size /= 2;
-  Eigen::FFT<double> transform;
+  WhiteVariance white(size);
   std::vector<double> variances;
   for (Index begin = 0; begin + size <= signal.size(); begin += size)
-    variances.push_back(white_variance(signal.segment(begin, size), transform));
+    variances.push_back(white.of(signal.segment(begin, size)));
   return std::sqrt(quantile(variances, 0.25));
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -35,12 +36,14 @@ Figure reproduction(const Record& record, const RecordIdentification& found, Ind
                                    {{reproduced_label, again, Colour::sky}}, label);
   Figure figure{row == 0 ? "reproduction" : fmt::format("reproduction_{}", row + 1), {}, 0, 1};
   if (cycles < 0.8 * end + 0.2 * begin) {  // else both panels would show the same
-    figure.panels.push_back(whole);
-    figure.panels.back().title = "first six cycles";
-    figure.panels.back().across(begin, cycles).key(Legend::none);
+    Panel first = whole;
+    first.title = "first six cycles";
+    first.across(begin, cycles).key(Legend::none);
+    figure.panels.push_back(thinned(std::move(first)));
   }
-  figure.panels.push_back(whole);
-  figure.panels.push_back(residual_panel("measured minus reproduced", record.time, measured - again, label));
+  figure.panels.push_back(thinned(std::move(whole)));
+  figure.panels.push_back(
+      thinned(residual_panel("measured minus reproduced", record.time, measured - again, label)));
   figure.rows = static_cast<int>(figure.panels.size());
   figure.height = 60 + 250 * figure.rows;
   figure.caption = fmt::format("Record ({}), free decay with the identified K and C, and what it leaves.",
@@ -57,7 +60,7 @@ std::optional<Figure> spectrum(const Record& record, const RecordIdentification&
   if (!panel) return std::nullopt;
   panel->across(0,
                 std::min(panel->x_axis.range->second, multiples * found.identification.found.frequency_hz()));
-  Figure figure{"spectrum", {*panel}};
+  Figure figure{"spectrum", {thinned(std::move(*panel))}};
   figure.caption = fmt::format("Amplitude spectra of the record ({}) and of its reproduction.",
                                channel_title(record.channels[0]));
   return figure;
@@ -74,7 +77,7 @@ Panel history(const Record& record, const VectorXd& estimate, const VectorXd& de
   if (std::isfinite(modal)) panel.level("modal analysis", modal);
   // the last pass begins with a band of its own, which is to fill the panel
   const double last = estimate[estimate.size() - 1], shown = std::min(half_range, 1.3 * half.maxCoeff());
-  return panel.up(last - shown, last + shown);
+  return thinned(std::move(panel.up(last - shown, last + shown)));
 }
 
 Index samples_traced(const filters::FilterRun& run) {

@@ -29,7 +29,7 @@ void add_panels(const Inspection& found, const InspectedChannel& channel, Figure
     }
     history.open_points("event", at, value, Colour::vermillion);
   }
-  figure.panels.push_back(std::move(history));
+  figure.panels.push_back(thinned(std::move(history)));
 
   VectorXd filled = samples;
   for (Index k = 0; k < filled.size(); ++k)
@@ -38,7 +38,7 @@ void add_panels(const Inspection& found, const InspectedChannel& channel, Figure
   Panel spectrum = spectrum_panel({{"", filled}}, interval > 0 ? interval : 1.0, title(channel) + unit)
                        .value_or(Panel{"", {"frequency [Hz]"}, {"no motion"}});
   if (!found.has_time) spectrum.x_axis.label = "frequency [1/sample]";
-  figure.panels.push_back(std::move(spectrum));
+  figure.panels.push_back(thinned(std::move(spectrum)));
 }
 
 }  // namespace

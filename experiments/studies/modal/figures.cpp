@@ -97,8 +97,8 @@ Figure reproduction(const RecordModes& found, const std::string& suffix) {
       spectrum.curves[1].style = CurveStyle::thin;
     }
     spectrum.across(0, found.band_hz.second);
-    figure.panels.push_back(std::move(motion));
-    figure.panels.push_back(std::move(spectrum));
+    figure.panels.push_back(thinned(std::move(motion)));
+    figure.panels.push_back(thinned(std::move(spectrum)));
   }
   figure.caption = "The record and what the modes make of it, in time and as amplitude spectra.";
   return figure;

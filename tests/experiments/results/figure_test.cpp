@@ -228,6 +228,28 @@ TEST(Envelope, FollowsALogarithmicAxis) {
   EXPECT_LE(kept.size(), 4002u);
 }
 
+// Oracle: the files of the panel as it was. A million samples or ten, a picture needs a few thousand of them.
+TEST(ThinnedPanel, WritesTheSameFiles) {
+  constexpr Eigen::Index size = 50'000;
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(size, 0, 25);
+  const Eigen::VectorXd y = (-0.1 * x.array()).exp() * (x.array() * 25).cos();
+  Panel whole{"", {"time [s]"}, {"x [m]"}};
+  whole.band("95 %", x, y.array() - 0.1, y.array() + 0.1).thin("measured", x, y).across(0, 25);
+  Panel part = whole;
+  part.across(3, 5).up(-1, 1);
+  const auto files = [](const Panel& first, const Panel& second) {
+    const TemporaryFolder folder;
+    write_data({"long", {first, second}, 1, 2}, folder.path);
+    return contents(folder.path / "long.csv") + contents(folder.path / "long.gp");
+  };
+  const Panel thin = thinned(whole), thin_part = thinned(part);
+  EXPECT_EQ(files(thin, thin_part), files(whole, part));
+  EXPECT_LT(thin.curves[1].x.size(), 4003);
+  EXPECT_LT(thin_part.curves[1].x.size(), 4003);
+  part.y_axis.range.reset();  // its axis is as high as what is not shown
+  EXPECT_EQ(thinned(part).curves[1].x.size(), size);
+}
+
 TEST(Figure, RefusesTheImpossible) {
   TemporaryFolder folder;
   Figure figure = every_style();
