@@ -98,6 +98,18 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem);
 /// J^T J and J^T r of every part at a theta; no search.
 DrivenFit evaluate_driven(const DrivenProblem& problem, const Eigen::VectorXd& theta);
 
+/// What the lines of a record say for noise of its inputs, beside noise of its outputs of any smooth
+/// spectrum: with r_k the residual, G_k the responses to a unit of each input, and D_b the variances of the
+/// channels in bands of a third of an octave,
+///
+///     r_k ~ CN(0, D_b)    against    r_k ~ CN(0, D_b + G_k diag(q) G_k^H)
+///
+/// noise of an input makes channels coherent and resonances stand out; that of sensors does neither.
+/// @param theta of the unknowns (q); @param sizes of the inputs, all noisy in proportion (m)
+/// @returns the gain of the log-likelihood, at most what the likeliest q gains; 0 where none gains
+double input_noise_gain(const DrivenProblem& problem, const Eigen::VectorXd& theta,
+                        const Eigen::VectorXd& sizes);
+
 /// The whole state of a model at its unknowns, its motion at rest.
 Eigen::VectorXd state_of_unknowns(const JointModel& model, const Eigen::VectorXd& theta);
 

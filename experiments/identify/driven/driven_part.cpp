@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <stdexcept>
+#include <vector>
 
 #include "experiments/signal/spectrum.hpp"
 
@@ -129,6 +130,79 @@ std::vector<MatrixXd> DrivenMotion::slopes(const std::vector<PartAt>& parts, con
       found[i].col(j) = parts[i].change_to(problem_, moved, problem_.parts[i]) / step;
   }
   return found;
+}
+
+namespace {
+
+/// Lines from..to-1 of one band, a third of an octave wide and of eight lines at least.
+std::vector<Index> band_edges(const VectorXd& omega) {
+  constexpr Index fewest = 8;
+  const double width = std::cbrt(2.0);
+  std::vector<Index> edges{0};
+  for (Index k = 1; k < omega.size(); ++k)
+    if (k - edges.back() >= fewest && omega[k] > width * omega[edges.back()]) edges.push_back(k);
+  if (omega.size() - edges.back() < fewest && edges.size() > 1) edges.pop_back();
+  edges.push_back(omega.size());
+  return edges;
+}
+
+/// -ln of the likelihood of one band's lines, whose channels have the variances `noise` beside `share` of
+/// what the inputs make.
+double band_cost(const MatrixXcd& left, const std::vector<MatrixXcd>& by_inputs, Index from, Index to,
+                 const VectorXd& noise, double share) {
+  double cost = 0.0;
+  MatrixXcd covariance;
+  for (Index k = from; k < to; ++k) {
+    covariance = noise.cast<Complex>().asDiagonal();
+    for (const MatrixXcd& one : by_inputs)
+      covariance.noalias() += share * (one.col(k) * one.col(k).adjoint());
+    const Eigen::LLT<MatrixXcd> factor(covariance);
+    cost += 2.0 * factor.matrixLLT().diagonal().real().array().log().sum() +
+            factor.matrixL().solve(left.col(k)).squaredNorm();
+  }
+  return cost;
+}
+
+}  // namespace
+
+double input_noise_gain(const DrivenProblem& problem, const VectorXd& theta, const VectorXd& sizes) {
+  constexpr double least_share = 1e-8, finer = 2.0,
+                   floor = 0.05;  // of the inputs' squares; of the residual's
+  const DrivenMotion motion(problem);
+  const LinearResponse response = motion.response(theta);
+  const RecordLines& part = problem.parts.front();
+  const PartAt at(problem, response, part);
+  const Index p = part.outputs.rows(), count = part.omega.size();
+  MatrixXcd left(p, count);
+  left.reshaped() = at.left.head(p * count) + Complex(0.0, 1.0) * at.left.tail(p * count);
+  std::vector<MatrixXcd> by_inputs;
+  const VectorXd at_rest = VectorXd::Zero(response.motion_size());
+  for (Index j = 0; j < part.inputs.rows(); ++j) {
+    RecordLines unit = part;
+    unit.inputs.setZero();
+    unit.inputs.row(j).setConstant(sizes[j]);
+    by_inputs.push_back(part_motion(problem, response, unit, at_rest));
+  }
+  const std::vector<Index> edges = band_edges(part.omega);
+  const auto cost = [&](double share) {
+    double sum = 0.0;
+    for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+      const auto band = Eigen::seq(edges[b], edges[b + 1] - 1);
+      const VectorXd squares = left(Eigen::all, band).cwiseAbs2().rowwise().mean().cwiseMax(1e-300);
+      VectorXd noise = squares;
+      for (const MatrixXcd& one : by_inputs)
+        noise -= share * one(Eigen::all, band).cwiseAbs2().rowwise().mean();
+      sum += band_cost(left, by_inputs, edges[b], edges[b + 1], noise.cwiseMax(floor * squares), share);
+    }
+    return sum;
+  };
+  const double without = cost(0.0);
+  double gain = 0.0;
+  // A line of N samples of white noise of one unit has a mean square of 1 / N or N, as lines are scaled.
+  const double line = part.inputs.cwiseAbs2().rowwise().mean().cwiseQuotient(sizes.cwiseAbs2()).maxCoeff();
+  for (double share = least_share * line; share <= line; share *= finer)
+    gain = std::max(gain, without - cost(share));
+  return gain;
 }
 
 }  // namespace beamid::experiments

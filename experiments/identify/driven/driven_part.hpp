@@ -47,6 +47,8 @@ class DrivenMotion {
 
   /// @throws std::runtime_error where nothing moves, or a motion grows
   std::vector<PartAt> at(const Eigen::VectorXd& theta) const;
+  /// @throws std::runtime_error likewise
+  LinearResponse response(const Eigen::VectorXd& theta) const;
   /// Empty where there is no motion, or none that is finite.
   std::vector<PartAt> tried_at(const Eigen::VectorXd& theta) const;
   double cost(const std::vector<PartAt>& parts, const Eigen::VectorXd& theta) const;  ///< J
@@ -57,8 +59,6 @@ class DrivenMotion {
   const DrivenProblem& problem_;
   const filters::LinearMotion& motion_;
   Eigen::MatrixXd prior_;
-
-  LinearResponse response(const Eigen::VectorXd& theta) const;
 };
 
 }  // namespace beamid::experiments

@@ -42,7 +42,18 @@ void Passes::look_for_input_noise() {
   noisy.discretisation = finest_discretisation(*run_.model, dt_);
   run_.likeliest_input_noise =
       likeliest_input_noise(*run_.model, noisy, known_beforehand(), run_.run.last.mean, record_);
-  if (!run_.likeliest_input_noise || !(run_.likeliest_input_noise->gain > hardly)) return;
+  if (!run_.likeliest_input_noise) return;
+  const filters::Gaussian prior{
+      started_.guess.mean(started_.model.unknown_places), started_.guess.unknowns, {}};
+  if (auto lines = driven_problem(*run_.model, record_, prior)) try {
+      // Noise of the outputs need not be white.
+      lines->weights.setOnes(record_.outputs.rows());
+      const VectorXd sizes = root_mean_squares(record_.inputs.topRows(lines->parts.front().inputs.rows()));
+      run_.likeliest_input_noise->gain = std::min(run_.likeliest_input_noise->gain,
+                                                  input_noise_gain(*lines, run_.unknown_state.mean, sizes));
+    } catch (const std::runtime_error&) {  // no motion there
+    }
+  if (!(run_.likeliest_input_noise->gain > hardly)) return;
   noisy.input_noise = run_.likeliest_input_noise->deviation;
   const NoisyInputFit fit = fit_with_input_noise(noisy);
   const filters::Gaussian& found = run_.unknown_state;

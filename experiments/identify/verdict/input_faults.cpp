@@ -73,6 +73,7 @@ struct InputFault {
   Index unknown = 0;
   double moved = 0.0;      ///< in deviations as they are reported
   double explained = 0.0;  ///< of the squares that are left
+  double surely = 0.0;     ///< its size in its own standard deviations
   bool is_sure = true;     ///< neither chance nor of the size of what an interpolation does
 };
 
@@ -107,6 +108,7 @@ std::optional<InputFault> of_rates(const RunContext& context, const ComparedRun&
   fault.is_sure = fault.is_sure && std::abs(found.growth()) > sure_deviations * deviation &&
                   found.step.widening.maxCoeff() < apart;
   if (!fault.is_sure) fault.explained = 0.0;
+  fault.surely = std::abs(found.growth()) / deviation;
   fault.text = growth_text(record, found, deviation);
   fault.advice = "Expected channels that one clock stamps, or one of them alone (channels in [record]).";
   return fault;
@@ -121,6 +123,7 @@ std::optional<InputFault> of_lags(const RunContext& context, const ComparedRun& 
       !(phase_of(run, found.lag(), record.interval()) < small))
     return {};
   InputFault fault = clock_fault(context, run, found, found.lag());
+  fault.surely = std::abs(found.lag()) / deviation;
   fault.text = lag_text(record, found, deviation);
   fault.advice = advice(record, found, deviation);
   return fault;
@@ -158,8 +161,10 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   if (!fault) return;
   // What a model lacks looks like a clock or an input's noise; the cause of most of it is one all the same.
   const bool approximate = run.status == ComparedRun::Status::approximate;
-  const bool excluded =
-      (fault->moved > quantile_95 && fault->is_sure && !approximate) || fault->explained > mostly;
+  constexpr double beyond_doubt = 10.0, material_move = 1.0;  // deviations
+  const bool moves =
+      fault->moved > quantile_95 || (fault->moved > material_move && fault->surely > beyond_doubt);
+  const bool excluded = (moves && fault->is_sure && !approximate) || fault->explained > mostly;
   if (!excluded && (approximate || !(fault->moved > 1.0))) return;
   const std::string explained =
       fault->explained > mostly
