@@ -9,6 +9,7 @@
 #include "apps/record_options.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/structure_description.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/studies/steps/report.hpp"
@@ -32,7 +33,11 @@ OptionGroup steps_options() {
            .repeated(),
        whole("steps", "N", 1, 8,
              "how many: dt, 2 dt, 4 dt, ...; without it, as long as 8 samples a period and 100 in all are "
-             "left")}};
+             "left"),
+       flag(
+           "whole-model",
+           "all unknowns of the experiment's model, of many degrees of freedom and under a measured force or "
+           "base too, in place of K and C of one; by default where an input was measured")}};
 }
 
 OptionGroup published_options() {
@@ -92,6 +97,15 @@ StepsStudy studied(const StepsSettings& settings, const IdentificationRequest& o
   }
 }
 
+ModelSteps model_steps(const StepsSettings& settings, const IdentificationRequest& one,
+                       const fs::path& config, const Progress& progress) {
+  try {
+    return study_model_steps(settings, one, config.parent_path(), progress);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({config.string()}, error.what());
+  }
+}
+
 int run_record(const Values& values) {
   const fs::path config = values.text("config");
   if (config.empty()) throw UsageError("--config FILE is missing");
@@ -99,9 +113,11 @@ int run_record(const Values& values) {
     if (values.has(name)) throw UsageError(fmt::format("--{} goes with --published-xi", name));
   const IdentificationRequest one = steps_request(values, config);
   const StepsSettings settings = steps_settings(values, one.experiment);
+  const bool whole_model = values.has("whole-model") || !input_channels(one.prepared.record).empty();
   return deliver(values, [&] {
-    const StepsStudy study = studied(settings, one, config, show_progress(values));
-    Results results = report(one.experiment, study);
+    Results results = whole_model
+                          ? report(one.experiment, model_steps(settings, one, config, show_progress(values)))
+                          : report(one.experiment, studied(settings, one, config, show_progress(values)));
     for (const std::string& text : one.decisions()) results.paragraph(text);
     add_preparation(results, one.prepared, one.experiment.format);
     warn(results, one.experiment);
@@ -169,6 +185,7 @@ Command steps_command() {
       "  beamid steps tip_acceleration.csv --config cantilever.toml --out results\n"
       "  beamid steps --config cantilever.toml --discretisation forward_euler --discretisation "
       "runge_kutta_2\n"
+      "  beamid steps --config tower.toml --whole-model --discretisation forward_euler\n"
       "  beamid steps --published-xi 0.0342 --scheme forward_euler --interval 0.000605 --frequency 11.22\n"
       "  beamid steps --published-xi 0.0479 --scheme forward_euler --config cantilever.toml\n",
       run_steps,

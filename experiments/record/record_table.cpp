@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <regex>
 #include <utility>
 
 #include <fmt/format.h>

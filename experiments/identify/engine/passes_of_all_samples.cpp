@@ -10,6 +10,7 @@
 #include "experiments/identify/engine/passes.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "experiments/signal/missing_samples.hpp"
 #include "filters/batch_estimator.hpp"
 
 namespace beamid::experiments {

@@ -48,6 +48,10 @@ Results report(const BehindPublished& found);
 /// `extrapolation`, figure `step_size`, results.json keys.
 Results report(const Experiment& experiment, const StepsStudy& study);
 
+/// First the damping ratios that each discretisation finds at the record's own step beside those of the exact
+/// one. Tables `modes`, `parameters`.
+Results report(const Experiment& experiment, const ModelSteps& study);
+
 /// Damping ratio and frequency found, on the curves that the closed form predicts.
 Figure steps_figure(const StepsStudy& study);
 

@@ -6,14 +6,17 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
+#include "filters/scheme_bias.hpp"
 
 namespace beamid::experiments {
-namespace {
+
+using Eigen::Index;
 
 std::optional<FoundMode> predicted_mode(const std::string& scheme, const FoundMode& exact, double interval) {
   try {
@@ -28,6 +31,8 @@ std::optional<FoundMode> predicted_mode(const std::string& scheme, const FoundMo
     return {};
   }
 }
+
+namespace {
 
 // The closed form holds for a record without noise; with noise, scheme and exact motion weigh it alike but
 // for a small part.
@@ -97,15 +102,14 @@ RecordAtStep record_at_step(const Comparison& comparison, int factor) {
 
 namespace {
 
-using Eigen::Index;
-
 /// What a step must leave of the record.
 struct StepLimits {
   double samples_per_period;
   Index samples;
 };
 
-// Every `factor`-th sample of the record behind its preparation, before its window.
+}  // namespace
+
 Record at_step(const IdentificationRequest& one, const Record& whole, int factor) {
   const Record& own = one.prepared.record;
   if (factor == 1) return own;
@@ -124,6 +128,8 @@ Record at_step(const IdentificationRequest& one, const Record& whole, int factor
   const double more = 0.5 * rest.interval() - slack;
   return rest.window(std::max(from, rest.time[0]) + more, std::min(to, rest.time[rest.size() - 1]) - more);
 }
+
+namespace {
 
 void refuse_what_no_closed_form_knows(const Record& record) {
   for (const Index i : input_channels(record))
@@ -254,6 +260,66 @@ StepsStudy study_steps(const StepsSettings& settings, const IdentificationReques
         "extrapolated.");
   judge_steps(study);
   return study;
+}
+
+// Carried on to a step of zero.
+
+namespace {
+
+FoundMode at_zero(const std::vector<double>& intervals, const std::vector<FoundMode>& found, int order) {
+  std::vector<Eigen::VectorXd> values;
+  for (const FoundMode& mode : found)
+    values.push_back(Eigen::Vector2d(mode.frequency_hz, mode.damping_ratio));
+  const Eigen::VectorXd limit = carried_to_zero(intervals, values, order);
+  return FoundMode{limit[0], limit[1]};
+}
+
+}  // namespace
+
+Eigen::VectorXd carried_to_zero(const std::vector<double>& intervals,
+                                const std::vector<Eigen::VectorXd>& found, int order) {
+  const auto n = static_cast<Index>(found.size());
+  Eigen::MatrixXd powers(n, n), values(n, found.front().size());
+  for (Index i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double step = intervals[at] / intervals.back();
+    for (Index j = 0; j < n; ++j)
+      powers(i, j) = j == 0 ? 1.0 : std::pow(step, static_cast<double>(order + j - 1));
+    values.row(i) = found[at].transpose();
+  }
+  return powers.fullPivLu().solve(values).row(0).transpose();
+}
+
+int order_of(const std::string& scheme) {
+  constexpr int highest = 8;
+  const std::vector<double> series =
+      filters::bias_series(*filters::scheme_registry().make(scheme, {}), highest);
+  for (std::size_t k = 0; k < series.size(); ++k)
+    if (series[k] != 0.0) return static_cast<int>(k) + 1;
+  return 0;
+}
+
+std::optional<Extrapolation> StepsStudy::extrapolated(std::size_t discretisation) const {
+  constexpr std::size_t most = 4;
+  constexpr double largest_step = 1.0;  // [rad]: beyond, the series is no help
+  std::vector<double> intervals;
+  std::vector<FoundMode> found;
+  for (const RecordAtStep& step : steps) {
+    const SchemeAtStep& one = step.found.at(discretisation);
+    if (!one.is_valid() || found.size() == most ||
+        2.0 * std::numbers::pi * one.found->frequency_hz * step.interval > largest_step)
+      continue;
+    intervals.push_back(step.interval);
+    found.push_back(*one.found);
+  }
+  const int order = order_of(discretisations.at(discretisation));
+  if (found.size() < 2 || order == 0) return {};
+  const FoundMode limit = at_zero(intervals, found, order);
+  intervals.pop_back();
+  found.pop_back();
+  const double without_longest = at_zero(intervals, found, order).damping_ratio;
+  return Extrapolation{order, static_cast<int>(found.size()) + 1, limit.frequency_hz, limit.damping_ratio,
+                       std::abs(limit.damping_ratio - without_longest)};
 }
 
 }  // namespace beamid::experiments

@@ -94,6 +94,50 @@ int order_of(const std::string& scheme);
 StepsStudy study_steps(const StepsSettings& settings, const IdentificationRequest& one,
                        const std::filesystem::path& folder, const Progress& progress);
 
+/// What the closed form of a scheme makes of one mode; absent where no motion of the scheme is like it.
+std::optional<FoundMode> predicted_mode(const std::string& scheme, const FoundMode& exact, double interval);
+
+/// Every `factor`-th sample of the record's window behind a low-pass. @param whole the record behind its
+/// preparation, before its window
+Record at_step(const IdentificationRequest& one, const Record& whole, int factor);
+
+/// f0 of f0 + a dt^p + b dt^(p+1) + ... through all of them, entry by entry.
+Eigen::VectorXd carried_to_zero(const std::vector<double>& intervals,
+                                const std::vector<Eigen::VectorXd>& found, int order);
+
+// The same of all unknowns of a model of many degrees of freedom.
+
+/// What one filter makes of the model's unknowns and modes at one step.
+struct ModelAtStep {
+  std::string discretisation;
+  int factor = 1;
+  double interval = 0.0;  ///< [s]
+  ComparedRun::Status status = ComparedRun::Status::diverged;
+  std::string reason;                ///< of one without an estimate
+  std::vector<Estimate> parameters;  ///< empty without an estimate
+  std::vector<FoundMode> modes;      ///< ascending, undamped frequency
+  std::vector<FoundMode> behind;     ///< the motion that the law finds behind them: log(g(lambda dt)) / dt
+};
+
+/// A step of every discretisation, the exact one first.
+struct ModelSteps {
+  std::string record;
+  std::vector<std::string> discretisations;
+  std::vector<std::vector<ModelAtStep>> steps;  ///< by factor, then discretisation
+  std::vector<std::string> notes;
+
+  /// The parameters of one discretisation at a step of zero, of the steps below 1 rad of its highest mode,
+  /// four at most (q); absent of fewer than two, and of a scheme without an error.
+  std::optional<Eigen::VectorXd> extrapolated(std::size_t discretisation) const;
+  const ModelAtStep& reference() const { return steps.front().front(); }
+};
+
+/// Identifies the model of the experiment, under whatever was measured, at dt, 2 dt, ... as far as its
+/// highest mode keeps 10 / 3 samples a period and the record 100; settings.steps at most.
+/// @throws InputError, std::invalid_argument as compare()
+ModelSteps study_model_steps(const StepsSettings& settings, const IdentificationRequest& one,
+                             const std::filesystem::path& folder, const Progress& progress);
+
 /// The experiment with its model in the place of what it asks: K and C of one degree of freedom.
 Experiment as_oscillator(Experiment experiment);
 
