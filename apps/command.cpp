@@ -229,7 +229,7 @@ std::string exit_codes(const Command& command) {
 void print_overview(std::ostream& stream, std::size_t width) {
   constexpr std::size_t column = 19;
   print_text(stream,
-             "beamid " BEAMID_VERSION ": what a vibration record tells about a beam, and how far to trust it",
+             "beamid " BEAMID_VERSION ": what a vibration record shows about a beam, and how far to trust it",
              width);
   stream << "\n  beamid COMMAND [OPTIONS]\n";
   for (const CommandGroup& group : command_groups()) {

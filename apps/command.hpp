@@ -28,7 +28,7 @@ class Receiver;
 
 /// What is said where memory ends.
 inline constexpr char no_memory[] =
-    "beamid: more memory was asked for than there is; expected a smaller record, mesh or ensemble";
+    "beamid: more memory was requested than there is; expected a smaller record, mesh or ensemble";
 
 /// The whole of `beamid`, with every method that is registered in the program that calls it; its exit code:
 ///

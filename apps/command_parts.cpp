@@ -83,7 +83,7 @@ std::string promise(std::string contract) {
        "agrees with the Kalman filter on linear models within the error of its own sampling"},
       {filter::consistent, "its covariance is that of its errors"},
       {filter::identifies, "finds stiffness and damping from a record without noise to six digits"},
-      {filter::robust, "outlying readings move its estimate by a few of its deviations at most"},
+      {filter::robust, "outlying readings move its estimate by a few of its standard deviations at most"},
       {filter::linear_models_only, "refuses models that are not linear"},
       {experiments::contract::free_decay, "takes the record for a free decay; its modes can be polished"},
       {reduced::static_exact, "exact deflection under a static tip force"},
@@ -165,10 +165,9 @@ void warn_of_undrawn(const experiments::Results& results, const std::filesystem:
         return !std::filesystem::exists(folder / (figure.name + ".svg"));
       });
   if (undrawn > 0)
-    std::cerr
-        << "beamid: warning: " << undrawn << " of " << results.figures.size()
-        << " figures are not drawn: gnuplot is missing, failed or did not end ('warnings' of results.json "
-           "says which; the Debian package gnuplot-nox has it). All else is written.\n";
+    std::cerr << "beamid: warning: " << undrawn << " of " << results.figures.size()
+              << " figures are not drawn: gnuplot is missing, failed or did not end ('warnings' of "
+                 "results.json states which; the Debian package gnuplot-nox has it). All else is written.\n";
   const auto is_missing = [&](const std::string& file) { return !std::filesystem::exists(folder / file); };
   const auto incomplete = [&](const experiments::Attachment& one) {
     return std::any_of(one.files.begin(), one.files.end(), is_missing);
@@ -298,7 +297,7 @@ Option smoother_option(const std::string& help) {
 }
 
 Option model_option() {
-  return text("model", "NAME", "what is asked: beamid list models")
+  return text("model", "NAME", "what is to be determined: beamid list models")
       .by_default("beam")
       .such_as(names_in(experiments::model_registry()));
 }

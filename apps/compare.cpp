@@ -111,7 +111,7 @@ Command compare_command() {
           "  beamid compare --config described.toml --truth damaged.toml --filter ekf --filter ukf\n",
           run_compare,
           "",
-          "3  no run has an estimate to rely on, and \"status\" in results.json says why: the first one "
+          "3  no run has an estimate to rely on, and \"status\" in results.json states why: the first one "
           "\"diverged\" "
           "or is \"contradicted\".\n"};
 }

@@ -35,7 +35,7 @@ std::string bash_script() {
         if (option.letter)
           (names.emplace_back("-") += option.letter, pattern += "|" + command.name + ":-" + option.letter);
         if (!option.choices.empty())
-          values << "    " << pattern << ") words='" << words_of(option.choices) << "' ;;\n";
+          values << "    " << pattern << ") values='" << words_of(option.choices) << "' ;;\n";
         else if (option.values != 0)
           files.push_back(pattern);
       }
@@ -43,16 +43,16 @@ std::string bash_script() {
       options << "    " << command.name << ") options='" << words_of(names) << "' ;;\n";
       const bool names_commands = !command.words.empty() && command.words[0].name == "command";
       if (names_commands)
-        words << "    " << command.name << ") words=$commands ;;\n";
+        words << "    " << command.name << ") values=$commands ;;\n";
       else if (!command.words.empty() && !command.words[0].choices.empty())
-        words << "    " << command.name << ") words='" << words_of(command.words[0].choices) << "' ;;\n";
+        words << "    " << command.name << ") values='" << words_of(command.words[0].choices) << "' ;;\n";
     }
   return R"(# bash completion of beamid, written by `beamid completion bash`
 _beamid() {
   local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
   local commands=')" +
          words_of(command_names()) + R"('
-  local options= words=
+  local options= values=
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
     COMPREPLY=($(compgen -W "$commands --help --version" -- "$current"))
@@ -63,12 +63,12 @@ _beamid() {
   case $command:$before in
 )" + values.str() +
          R"(  esac
-  if [[ -z $words ]]; then
+  if [[ -z $values ]]; then
     case $command in
 )" + words.str() +
          R"(    esac
   else
-    COMPREPLY=($(compgen -W "$words" -- "$current"))
+    COMPREPLY=($(compgen -W "$values" -- "$current"))
     return
   fi
   case $command in
@@ -76,8 +76,8 @@ _beamid() {
          R"(  esac
   if [[ $current == -* ]]; then
     COMPREPLY=($(compgen -W "$options" -- "$current"))
-  elif [[ -n $words ]]; then
-    COMPREPLY=($(compgen -W "$words" -- "$current"))
+  elif [[ -n $values ]]; then
+    COMPREPLY=($(compgen -W "$values" -- "$current"))
   fi
 }
 complete -o default -F _beamid beamid

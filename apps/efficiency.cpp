@@ -23,7 +23,7 @@ OptionGroup efficiency_options() {
             "filters: against the bound; coverage: how often the intervals of identify hold the truth, with "
             "higher modes and coloured noise (uses --runs, --seed, --noise and one --damping-ratio); decays: "
             "whether identify ends well on clean decays of all lengths and dampings (uses --runs, --seed); "
-            "records: what identify makes of laboratory records when given nothing but the beam (uses "
+            "records: what identify makes of laboratory records with only the beam specified (uses "
             "--runs, of which 100 are enough, --seed and --only)")
            .one_of({"filters", "coverage", "decays", "records"})
            .by_default("filters"),
@@ -49,7 +49,7 @@ OptionGroup efficiency_options() {
        whole("sampled-runs", "N", 2, 1e6, "of filters that draw samples (enkf, particle), which are slow")
            .by_default("100"),
        whole("seed", "N", 0, largest_seed, "of the first run").by_default("1"),
-       number("noise", "SHARE", "deviation of the readings as a share of the amplitude")
+       number("noise", "SHARE", "standard deviation of the readings as a share of the amplitude")
            .greater_than(0)
            .up_to(1)
            .by_default("0.02")}};

@@ -42,7 +42,7 @@ Command identifiability_command() {
                            .by_default("modal_truncation:modes=3")});
   return {"identifiability",
           "[--config FILE] [BEAM OPTIONS] [--model NAME] [--reduction NAME] [--out DIR]",
-          "what a test can tell at best of which parameter, and what would change that",
+          "what a test can determine at best of which parameter, and what would change that",
           {},
           {own, beam_options(), output_options()},
           "  beamid identifiability\n"

@@ -168,28 +168,29 @@ int run_identify(const Values& values) {
 }  // namespace
 
 Command identify_command() {
-  return {"identify",
-          "[RECORD...] [--config FILE] [--window FROM TO]... [--out DIR]",
-          "stiffness, damping, frequency and damping ratio from vibration records",
-          {record_argument(true)},
-          {identify_options(), column_options(), output_options()},
-          "  beamid identify phone.csv\n"
-          "  beamid identify phone.csv --mass 2.5\n"
-          "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
-          "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
-          "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"
-          "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
-          "  beamid identify --config cantilever.toml --estimator both\n"
-          "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
-          "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
-          "  beamid identify hard.csv soft.csv --config cantilever.toml --damping-law auto\n"
-          "  logger | beamid identify - --config cantilever.toml\n",
-          run_identify,
-          "",
-          "3  no estimate to rely on, and \"status\" in results.json says which: the filter \"diverged\", or "
-          "the modal "
-          "analysis \"contradicted\" it, with less than half or more than twice the damping. The first lines "
-          "say why.\n"};
+  return {
+      "identify",
+      "[RECORD...] [--config FILE] [--window FROM TO]... [--out DIR]",
+      "stiffness, damping, frequency and damping ratio from vibration records",
+      {record_argument(true)},
+      {identify_options(), column_options(), output_options()},
+      "  beamid identify phone.csv\n"
+      "  beamid identify phone.csv --mass 2.5\n"
+      "  beamid identify tip_acceleration.csv --config cantilever.toml --out results\n"
+      "  beamid identify --config cantilever.toml --window 0.8 1.6\n"
+      "  beamid identify run1.csv run2.csv run3.csv --config cantilever.toml --out together\n"
+      "  beamid identify run1.csv run2.csv --config cantilever.toml --window 0.8 1.6 0.5 2.1\n"
+      "  beamid identify --config cantilever.toml --estimator both\n"
+      "  beamid identify --config cantilever.toml --on-failure inflate --smoother rts --out results\n"
+      "  beamid identify --config cantilever.toml --damping-law auto --out results\n"
+      "  beamid identify hard.csv soft.csv --config cantilever.toml --damping-law auto\n"
+      "  logger | beamid identify - --config cantilever.toml\n",
+      run_identify,
+      "",
+      "3  no estimate to rely on, and \"status\" in results.json states which: the filter \"diverged\", or "
+      "the modal "
+      "analysis \"contradicted\" it, with less than half or more than twice the damping. The first lines "
+      "state why.\n"};
 }
 
 }  // namespace beamid::apps

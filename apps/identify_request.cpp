@@ -92,21 +92,22 @@ OptionGroup identify_options() {
       from_to("window",
               "part of the record to use [s], instead of the experiment file's; of several records, once "
               "for all or once for each; without any, the decay behind the last hit or release");
-  return {"Options",
-          {config_option(
-               "experiment file: beam, columns, units, window, filter (docs/configuration.md); once for "
-               "each record: beams that share the [[parameters]] of one name, as lengths of one strip "
-               "share its stiffness")
-               .repeated(),
-           number("mass", "KG", "without --config: the mass that moves, for stiffness and damping")
-               .greater_than(0),
-           window.several().repeated(), on_failure_option(),
-           smoother_option("what the whole record says of every instant, in smoothed.csv and a figure"),
-           text("estimator", "WHICH", "filter, or both: beside it the batch estimate, all samples at once")
-               .one_of({"filter", "both"})
-               .by_default("filter"),
-           text("damping-law", "LAW", "fit these laws to a free decay, with the evidence for each")
-               .one_of(laws)}};
+  return {
+      "Options",
+      {config_option(
+           "experiment file: beam, columns, units, window, filter (docs/configuration.md); once for "
+           "each record: beams that share the [[parameters]] of one name, as lengths of one strip "
+           "share its stiffness")
+           .repeated(),
+       number("mass", "KG", "without --config: the mass that moves, for stiffness and damping")
+           .greater_than(0),
+       window.several().repeated(), on_failure_option(),
+       smoother_option("the estimates of every instant from the whole record, in smoothed.csv and a figure"),
+       text("estimator", "WHICH", "filter, or both: beside it the batch estimate, all samples at once")
+           .one_of({"filter", "both"})
+           .by_default("filter"),
+       text("damping-law", "LAW", "fit these laws to a free decay, with the evidence for each")
+           .one_of(laws)}};
 }
 
 std::string damping_law(const Values& values) {
@@ -127,7 +128,7 @@ Experiment one_mode(const fs::path& file, const Record& record, const RecordForm
   const auto refuse = [&](const std::string& what) {
     return InputError({file.string()},
                       what + "; `beamid modal " + file.string() +
-                          "` says what modes it has, and --config FILE describes a structure "
+                          "` lists the modes it has, and --config FILE describes a structure "
                           "to identify (beamid new)");
   };
   if (std::ranges::any_of(record.channels, [](const Channel& one) { return is_input(one.quantity); }))

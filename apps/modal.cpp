@@ -240,7 +240,7 @@ Command modal_command() {
           run_modal,
           "",
           "3  --events: a sign, the order or the clocks of base and response are not as described; the first "
-          "lines say which. Of frf_lscf and frf_half_power: hits of so few samples that no mass stands.\n"};
+          "lines state which. Of frf_lscf and frf_half_power: hits of so few samples that no mass stands.\n"};
 }
 
 }  // namespace beamid::apps

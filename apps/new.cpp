@@ -45,7 +45,7 @@ noise_m_per_s2 = 0.01
 position_m = 9
 noise_m_per_s2 = 0.01
 
-[[parameters]]                      # what is asked: the storey between two floors
+[[parameters]]                      # to be determined: the storey between two floors
 quantity = "storey_stiffness"
 from_m = 0
 to_m = 3
@@ -106,7 +106,7 @@ noise_m_per_s2 = 0.01
 at = "left.y"
 noise_m_per_s2 = 0.01
 
-[[parameters]]                      # what is asked: the factors of groups
+[[parameters]]                      # to be determined: the factors of groups
 quantity = "factor"
 name = "columns"
 [[parameters]]
@@ -166,7 +166,7 @@ noise_m_per_s2 = 0.01
 at = "d.x"
 noise_m_per_s2 = 0.01
 
-[[parameters]]                      # what is asked: the factors of groups
+[[parameters]]                      # to be determined: the factors of groups
 quantity = "factor"
 name = "columns"
 [[parameters]]
@@ -177,7 +177,7 @@ method = "modal_truncation"
 modes = 6
 )toml";
 
-constexpr const char* system_starter = R"toml(title = "matrices of one's own"
+constexpr const char* system_starter = R"toml(title = "user-supplied matrices"
 
 # Matrix Market files beside this one; from Python:
 #   from scipy.io import mmwrite
@@ -197,7 +197,7 @@ stiffness = "K1.mtx"
 at = "2"
 noise_m_per_s2 = 0.01
 
-[[parameters]]                      # what is asked
+[[parameters]]                      # to be determined
 quantity = "factor"
 name = "k1"
 [[parameters]]
@@ -277,7 +277,7 @@ discretisation = "exponential"      # beamid list discretisations; this one is e
 # [reduction]
 # method = "rayleigh"
 
-# [prior]                           # known beforehand; what is left out is worked out from beam and record
+# [prior]                           # known beforehand; what is omitted is worked out from beam and record
 # stiffness_n_per_m = 510.0
 # stiffness_deviation_n_per_m = 150.0
 # damping_ratio = 0.01

@@ -128,7 +128,7 @@ OptionGroup output_options() {
        flag("force", "replace the results that DIR holds").unrecorded(),
        flag("json", "print results.json instead of text").unrecorded(),
        flag("quiet", "print the first lines and the first table only, and no progress").as('q').unrecorded(),
-       flag("verbose", "say on standard error what is done and when, a line each, to a file too")
+       flag("verbose", "report on standard error what is done and when, a line each, to a file too")
            .as('v')
            .unrecorded(),
        flag("no-progress", "do not show on standard error what is being done").unrecorded()}};

@@ -85,19 +85,19 @@ Command posterior_command() {
       "MODES|RECORD --config FILE [--draws N] [--seed N] [--out DIR]",
       "the whole posterior of parameters from modes or a record: humps, evidence, draws",
       {{"modes", false, true,
-        "a TOML file of [[modes]], or the results.json of beamid modal; any other file is a record, read as "
-        "[record] says"}},
+        "a TOML file of [[modes]], or the results.json of beamid modal; any other file is a record, read "
+        "as [record] states"}},
       {update_options(), posterior_options(), output_options()},
       "  beamid posterior modes.toml --config building.toml\n"
       "  beamid posterior modes.toml --config building.toml --draws 10000 --out drawn\n"
       "  beamid posterior hit.csv --config beam.toml --particles 300\n",
       run_posterior,
-      "Priors are what [[parameters]] states: a deviation (normal; lognormal of form \"logarithmic\"), "
-      "bounds "
-      "(uniform). Where\nnothing is stated, log-uniform within a factor of 10 of the initial estimate is "
+      "Priors are what [[parameters]] states: a standard deviation (normal; lognormal of form "
+      "\"logarithmic\"), "
+      "bounds (uniform).\nWhere none is stated, log-uniform within a factor of 10 of the initial estimate is "
       "assumed.\n",
       "3  the temperings, the humps or the chains disagree, no values explain the modes, or the record "
-      "contradicts the structure: the first lines say by how much.\n"};
+      "contradicts the structure: the first lines state by how much.\n"};
 }
 
 }  // namespace beamid::apps

@@ -208,7 +208,7 @@ OptionGroup column_options() {
            .one_of(names_of_separators()),
        text("decimal", "SIGN", "of its numbers; else what its rows show").one_of({"auto", "point", "comma"}),
        whole("header-lines", "N", 0, 1e6, "lines before its first row; else found"),
-       flag("skip-malformed", "leave malformed lines out, counted and located"),
+       flag("skip-malformed", "omit malformed lines, counted and located"),
        text("reader", "NAME", "kind of file, where its beginning does not show it (beamid list readers)")
            .one_of(names_in(record_reader_registry()))}};
 }

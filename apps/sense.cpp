@@ -80,7 +80,7 @@ int run_sense(const Values& values) {
 Command sense_command() {
   return {"sense",
           "[RECORD] --config FILE [--at POSITION...] [--filter NAME] [--out DIR]",
-          "displacement, strain, moment and force where no sensor was, under forces nobody measured",
+          "displacement, strain, moment and force where no sensor was, under unmeasured forces",
           {record_argument()},
           {{"Options",
             {config_option("experiment file with [[unknown_forces]] (docs/configuration.md)"),
@@ -89,7 +89,7 @@ Command sense_command() {
                   "bending moment; more by [[virtual_sensors]]")
                  .several(),
              filter_option("histories sample after sample by this filter, in place of the smoother: "
-                           "gillijns_de_moor and dual_kf take nothing for known of the forces")}},
+                           "gillijns_de_moor and dual_kf assume no knowledge of the forces")}},
            column_options(),
            output_options()},
           "  beamid sense record.csv --config mast.toml --at 0 --out sensed\n"
@@ -97,7 +97,8 @@ Command sense_command() {
           "  beamid sense --config mast.toml --filter gillijns_de_moor\n",
           run_sense,
           "",
-          "3  nothing to rely on, and \"status\" in results.json says why: constants \"not converged\", the "
+          "3  no estimate to rely on, and \"status\" in results.json states why: constants \"not "
+          "converged\", the "
           "structure \"contradicted\", or innovations \"correlated\"\n"};
 }
 

@@ -32,8 +32,8 @@ OptionGroup steps_options() {
            "forward_euler (beamid list discretisations)")
            .repeated(),
        whole("steps", "N", 1, 8,
-             "how many: dt, 2 dt, 4 dt, ...; without it, as long as 8 samples a period and 100 in all are "
-             "left"),
+             "how many: dt, 2 dt, 4 dt, ...; without it, as long as 8 samples a period and 100 in all "
+             "remain"),
        flag(
            "whole-model",
            "all unknowns of the experiment's model, of many degrees of freedom and under a measured force or "
@@ -192,7 +192,7 @@ Command steps_command() {
       "",
       "3  the exact discretisation has no estimate to compare with, or no damped structure gives the "
       "published "
-      "value; the first lines say why.\n"};
+      "value; the first lines state why.\n"};
 }
 
 }  // namespace beamid::apps

@@ -36,7 +36,7 @@ Record earlier_record(const Values& values, const Experiment& experiment, const 
   if (experiment.record_file)
     return prepared_record(config.parent_path() / *experiment.record_file, experiment.format);
   throw UsageError(
-      "an earlier record of the rig tells noise, amplitude and sampling interval: --like "
+      "an earlier record of the rig determines noise, amplitude and sampling interval: --like "
       "RECORD, or 'file' under [record] in " +
       config.string());
 }
@@ -95,12 +95,13 @@ bool follow(StreamedIdentification& stream, SampleSource& source) {
 /// What a reader of the last line has to know.
 void print_end(const StreamedIdentification& stream, bool failed) {
   const Eigen::Index left_out = stream.watch().left_out();
-  if (left_out > 0) std::cerr << fmt::format("Outliers left out: {}.\n", left_out);
+  if (left_out > 0) std::cerr << fmt::format("Outliers omitted: {}.\n", left_out);
   if (failed)
     std::cerr << "The filter failed and the stream ended there; --on-failure inflate goes on.\n";
   else if (!stream.saw_motion())
     std::cerr
-        << "Nothing was determined: no motion stood out of the noise of the sensors, and the unknowns are "
+        << "No parameter was determined: no motion stood out of the noise of the sensors, and the unknowns "
+           "are "
            "as uncertain as at first. Excite the structure, or take the samples of a time when it moves.\n";
   else if (stream.status() == StreamedIdentification::Status::undetermined)
     std::cerr << "At the end no motion stood out of the noise: what was known before is no longer, and the "
@@ -182,12 +183,12 @@ Command stream_command() {
       "the "
       "record's channels; an output that is empty or nan was not measured. One line of estimates and "
       "standard deviations follows each, from one pass of the filter. Its last fields are the mean "
-      "normalised square of the innovations over 50 outputs (1 where the filter is right) and the status: "
-      "settling, settled, undetermined (no motion stands out of the noise: the unknowns are as at first), "
-      "left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
+      "normalised square of the innovations over 50 outputs (1 where the filter is right) and the status. "
+      "The status is settling, settled, undetermined (no motion stands out of the noise: the unknowns are as "
+      "at first), left_out (an outlier) or begun_anew. Use estimates that have settled only: in the "
       "first example the higher modes of the release keep the filter from it until 2.4 s.\n"
       "--column, --unit and the like describe the earlier record. [[record.prepare]] prepares it; samples "
-      "are expected to arrive as it leaves them.\n",
+      "are expected to arrive as it yields them.\n",
       "1  the filter failed as well\n3  the earlier record, identified with this experiment, has no estimate "
       "to rely on: nor has the stream; or no motion stood out of the noise\n"};
 }

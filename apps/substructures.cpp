@@ -23,7 +23,7 @@ int run_substructures(const Values& values) {
   if (experiment.parts.empty())
     throw InputError({config.string()}, "no [[substructures]]; expected the parts to be identified");
   if (experiment.parameters.empty())
-    throw InputError({config.string()}, "no [[parameters]]; expected what is asked of the parts");
+    throw InputError({config.string()}, "no [[parameters]]; expected what is to be determined of the parts");
   const std::vector<fs::path> file = record_files(values, config, experiment.record_file, experiment.format);
   return deliver(values, [&] {
     const Progress progress = show_progress(values);
@@ -58,7 +58,7 @@ Command substructures_command() {
           {record_argument()},
           {{"Options",
             {config_option("experiment file with [[substructures]] (docs/configuration.md)"),
-             flag("no-whole", "leave out the identification of the whole structure beside its parts")}},
+             flag("no-whole", "omit the identification of the whole structure beside its parts")}},
            column_options(),
            output_options()},
           "  beamid substructures --config building.toml --out parts\n"

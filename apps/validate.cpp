@@ -76,7 +76,7 @@ std::string parameters_text(const Experiment& experiment) {
     text += (text.empty() ? "" : ", ") + value_text(choice.name.empty() ? choice.quantity : choice.name,
                                                     choice.guess, choice.deviation,
                                                     parameter_quantity(choice.quantity).unit);
-  return text.empty() ? "what model " + experiment.model.name + " asks about by itself" : text;
+  return text.empty() ? "what model " + experiment.model.name + " determines by itself" : text;
 }
 
 // What the model says of the record's channels, and what it asks about, shows only when it is made.
@@ -159,7 +159,7 @@ int run_validate(const Values& values) {
   print_line("methods",
              fmt::format("reduction {}, model {}, filter {}, discretisation {}", experiment.reduction.name,
                          experiment.model.name, experiment.filter.name, experiment.discretisation));
-  print_line("asks for", parameters);
+  print_line("unknowns", parameters);
   return 0;
 }
 

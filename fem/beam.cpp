@@ -89,7 +89,7 @@ void validate(const Beam& beam) {
   const auto carried = [&](double x, const char* what) {
     on_beam(x, what);
     require(!(sharp_root && x == 0.0) && !(sharp_tip && x == length), what, x,
-            "a place off the sharp end, which can carry nothing");
+            "a place off the sharp end, which carries no load");
   };
   const auto stretch = [&](double from, double to, const char* what) {
     on_beam(from, what), on_beam(to, what);

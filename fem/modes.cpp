@@ -183,7 +183,7 @@ Modes modes(const StructuralSystem& system, Index count) {
         few ? lowest_shapes(system, solver, complement, flexible) : all_shapes(system, solver, complement);
     if (result.shape.cols() < flexible)
       throw std::runtime_error("modes: only " + std::to_string(rigid + result.shape.cols()) + " of the " +
-                               std::to_string(count) + " modes asked for have mass");
+                               std::to_string(count) + " modes requested have mass");
   }
   if (rigid > 0 || result.shape.cols() > flexible) {
     MatrixXd shapes(n, count);

@@ -186,7 +186,7 @@ void check_latent(const LatentInput& one, Index inputs) {
                                 " is not measured");
   for (const double number : {one.deviation, one.correlation_time})
     if (!(number > 0.0 && std::isfinite(number)))
-      throw std::invalid_argument("an unknown input of deviation or correlation time " +
+      throw std::invalid_argument("an unknown input of standard deviation or correlation time " +
                                   std::to_string(number) + "; expected a positive number");
 }
 

@@ -19,7 +19,7 @@ void check_deviations(const Measurements& measurements) {
     for (Index i = 0; i < measurements.outputs.rows(); ++i)
       if (const double deviation = measurements.output_deviations(i, k);
           !std::isnan(measurements.outputs(i, k)) && !(deviation >= 0.0 && std::isfinite(deviation)))
-        throw std::invalid_argument("deviation of output " + std::to_string(i) + " at sample " +
+        throw std::invalid_argument("standard deviation of output " + std::to_string(i) + " at sample " +
                                     std::to_string(k) + " is " + std::to_string(deviation) +
                                     "; expected at least 0");
 }
@@ -36,8 +36,8 @@ void check_measurements(const Measurements& measurements, Index outputs) {
     throw std::invalid_argument("inputs have " + std::to_string(u.cols()) + " columns; expected " +
                                 std::to_string(samples));
   if (s.size() > 0 && (s.rows() != outputs || s.cols() != samples))
-    throw std::invalid_argument("output deviations are " + shape(s.rows(), s.cols()) + "; expected " +
-                                shape(outputs, samples));
+    throw std::invalid_argument("output standard deviations are " + shape(s.rows(), s.cols()) +
+                                "; expected " + shape(outputs, samples));
   for (Index k = 0; k < samples; ++k)
     if (!std::isfinite(measurements.time[k]) || (k > 0 && !(measurements.time[k] > measurements.time[k - 1])))
       throw std::invalid_argument("time stamp " + std::to_string(k) + " is " +

@@ -253,12 +253,12 @@ void RunningFilter::check(const Sample& sample) const {
                                 " outputs; expected " + std::to_string(outputs));
   if (sample.deviations.size() == 0) return;
   if (sample.deviations.size() != outputs)
-    throw std::invalid_argument("deviations of " + std::to_string(sample.deviations.size()) +
+    throw std::invalid_argument("standard deviations of " + std::to_string(sample.deviations.size()) +
                                 " outputs; expected " + std::to_string(outputs));
   for (Index i = 0; i < outputs; ++i)
     if (!std::isnan(sample.output[i]) &&
         !(sample.deviations[i] >= 0.0 && std::isfinite(sample.deviations[i])))
-      throw std::invalid_argument("the deviation of output " + std::to_string(i) + " is " +
+      throw std::invalid_argument("the standard deviation of output " + std::to_string(i) + " is " +
                                   std::to_string(sample.deviations[i]) + "; expected at least 0");
 }
 

@@ -83,8 +83,8 @@ std::vector<int> master_coordinates(const fem::StructuralSystem& system, const s
   require_mesh(system, owner);
   if (is_frame(system))
     throw std::invalid_argument(owner +
-                                ": a position does not tell a joint of a frame; expected none, which means "
-                                "where the outputs are");
+                                ": a position does not determine a joint of a frame; expected none, which "
+                                "means where the outputs are");
   std::vector<int> masters;
   for (const double position : positions) {
     const int coordinate = deflection_at(system, position, owner);

@@ -43,7 +43,8 @@ void check(const fem::StructuralSystem& system, const Training& training, const 
   if ((training.deflections.array() == 0.0).all()) refuse(owner, "all deflections are zero");
   if (system.mesh.nodes.empty()) refuse(owner, "needs a mesh; this system is a reduced one");
   for (const fem::Coordinate& coordinate : system.coordinates)
-    if (coordinate.kind == Kind::axial) refuse(owner, "positions along a beam do not tell points of a frame");
+    if (coordinate.kind == Kind::axial)
+      refuse(owner, "positions along a beam do not determine points of a frame");
 }
 
 // Rows that read the deflection anywhere on the beam.

@@ -137,7 +137,7 @@ std::string Outcome::report() const {
 
 void Outcome::write(const std::string& folder, bool force, const std::string& command_line,
                     const std::string& experiment_file) {
-  if (!results) throw std::invalid_argument("a command that only prints has nothing to write");
+  if (!results) throw std::invalid_argument("a command that only prints has no files to write");
   results->command_line = command_line;
   results->experiment_file = experiment_file;
   experiments::ResultDirectory directory(folder, force);

@@ -128,9 +128,10 @@ std::vector<Excitation> read_simultaneous_excitations(const TomlTable& root,
   for (const TomlTable& table : tables) {
     all.push_back(read_with(simultaneous_excitation_keys(), table, structure));
     if (all.size() > 1 && is_start(all.back()))
-      throw InputError(table.place(),
-                       "only the first of [[excitations]] may say how the motion starts; expected a force or "
-                       "the motion of the base");
+      throw InputError(
+          table.place(),
+          "only the first of [[excitations]] may state how the motion starts; expected a force or "
+          "the motion of the base");
   }
   return all;
 }

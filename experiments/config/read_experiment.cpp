@@ -54,7 +54,7 @@ const Schema<FrequencyResponseSettings>& frequency_response_keys() {
           .fallback("all, at most 200")
           .key(
               "residual_modes", [](F& f) -> bool& { return f.method.residual_modes; },
-              "modal: the static deflection of the modes left out is added", "false")
+              "modal: the static deflection of the omitted modes is added", "false")
           .fallback("`true`")
           .tables({"pairs"});
   return keys;

@@ -202,8 +202,7 @@ ModalData read_modes_toml(const std::filesystem::path& file, const Experiment& e
   const TomlTable root = TomlTable::read(file);
   for (const std::string& key : root.keys())
     if (key != "modes")
-      throw InputError(root.key_place(key),
-                       fmt::format("unknown key {}; expected [[modes]] and nothing else", key));
+      throw InputError(root.key_place(key), fmt::format("unknown key {}; expected [[modes]] alone", key));
   ModalData data;
   data.source = file.string();
   for (const TomlTable& table : root.find_tables("modes"))

@@ -24,7 +24,7 @@ const Schema<IdentifiabilitySettings>& identifiability_keys() {
                "parts of the beam between the places to which a sensor is moved, nodes of the mesh at most",
                "20")
           .key("more_sensors", &I::more_sensors, {0, most_sensors},
-               "further sensors, added one by one where they tell most", "2");
+               "further sensors, added one by one where they add most information", "2");
   return keys;
 }
 
@@ -62,13 +62,12 @@ const Schema<NoiseValues>& noise_keys() {
   using N = NoiseValues;
   static const Schema<N> keys =
       Schema<N>("noise")
-          .key(
-              "method", &N::method,
-              "where the absent ones come from: what the modal analysis, or the nearest motion of the model, "
-              "leaves of the record; the level that makes the filter's innovations likeliest, given with "
-              "its standard error; the quiet part of the file before the first hit, refused where there is "
-              "none of 32 samples",
-              "\"likelihood\"")
+          .key("method", &N::method,
+               "where the absent ones come from: the residual of the modal analysis, or of the nearest "
+               "motion of the model; the level that makes the filter's innovations likeliest, given with "
+               "its standard error; the quiet part of the file before the first hit, refused where there is "
+               "none of 32 samples",
+               "\"likelihood\"")
           .one_of({"residual", "likelihood", "before_event"})
           .key("displacement_m", &N::displacement, positive, "noise of displacement channels", "1e-6")
           .fallback("estimated")
@@ -147,7 +146,7 @@ struct ParameterNumber {
 
 constexpr ParameterNumber parameter_numbers[] = {
     {"guess", &ParameterChoice::guess, any_number, "initial estimate of ", "",
-     "as described, or as the model says", 1.0},
+     "as described, or as the model states", 1.0},
     {"deviation", &ParameterChoice::deviation, positive, "standard deviation of ",
      " before the record is seen", "`relative_deviation` of the guess", 0.3},
     {"lower", &ParameterChoice::lower, any_number, "`form = \"bounded\"`: ", " is above it", "none", 0.1},
@@ -191,7 +190,8 @@ Schema<DescribedParameter> make_parameter_keys() {
            "members or the parameter that `name` names), `\"damping_ratio\"`, `\"mass_damping\"` and "
            "`\"stiffness_damping\"` (alpha and beta of C = alpha M + beta K); `modal`: `\"frequency\"`, "
            "`\"damping_ratio\"`; `sdof`: `\"stiffness\"`, `\"damping\"`, and `\"mass\"` where a force was "
-           "measured; the same and, only where named here or nothing is, `duffing`: `\"cubic_stiffness\"`; "
+           "measured; the same and, only where named here or no parameter is, `duffing`: "
+           "`\"cubic_stiffness\"`; "
            "`damped`: `\"coulomb_friction\"`, `\"quadratic_damping\"` (and `\"cubic_stiffness\"`, only where "
            "named); `bouc_wen`: `\"post_yield_ratio\"` (alpha), `\"hysteresis_beta\"`, "
            "`\"hysteresis_gamma\"`; "
@@ -224,8 +224,8 @@ Schema<DescribedParameter> make_parameter_keys() {
           "\"logarithmic\"")
       .fallback("`\"linear\"`; `\"bounded\"` with bounds")
       .key("known", &P::known,
-           "not asked about but not known exactly either: its deviation is carried along into the others' "
-           "intervals",
+           "not requested but not known exactly either: its standard deviation is carried along into the "
+           "others' intervals",
            "true")
       .key("relative_deviation", &P::relative_deviation, positive,
            "standard deviation beforehand, as a part of the guess", "0.02")

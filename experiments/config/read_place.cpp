@@ -101,7 +101,7 @@ const Schema<DescribedRecord>& record_keys() {
           .key("files", &R::files,
                "in place of `file`: several files of one record, joined by their stamps; a channel names its "
                "own "
-               "by `file`. As many words RECORD on the command line take their place",
+               "by `file`. As many arguments RECORD on the command line take their place",
                "[\"ground.csv\", \"floor_1.csv\"]")
           .key("reader", &R::reader, "a name from `beamid list readers`", "\"lvm\"")
           .fallback("what the file shows to be")
@@ -124,25 +124,27 @@ const Schema<DescribedRecord>& record_keys() {
                "lines before the first row of numbers, the last non-blank of which names the columns; with 0 "
                "one line of names is found by itself",
                "23")
-          .choice("malformed", &R::malformed,
-                  {std::pair{"refuse", MalformedRows::refuse},
-                   {"skip", MalformedRows::skip},
-                   {"missing", MalformedRows::as_missing}},
-                  "rows with text among the numbers or of another length: refused at their place, or left "
-                  "out, counted and located; `\"missing\"` takes cells that are empty, `nan`, `na` or `null` "
-                  "for samples that were not read, and refuses the rest",
-                  "\"skip\"")
-          .choice("missing_input", &R::missing_input,
-                  {std::pair{"refuse", MissingInput::refuse},
-                   {"leave_out", MissingInput::leave_out},
-                   {"zero", MissingInput::zero}},
-                  "samples that a measured force or base acceleration lacks: refused by what needs them; the "
-                  "longest stretch in which every input is known is used, and said; or 0, a force that does "
-                  "not act where it was not recorded",
-                  "\"leave_out\"")
+          .choice(
+              "malformed", &R::malformed,
+              {std::pair{"refuse", MalformedRows::refuse},
+               {"skip", MalformedRows::skip},
+               {"missing", MalformedRows::as_missing}},
+              "rows with text among the numbers or of another length: refused at their place, or omitted, "
+              "counted and located; `\"missing\"` takes cells that are empty, `nan`, `na` or `null` "
+              "for samples that were not read, and refuses the rest",
+              "\"skip\"")
+          .choice(
+              "missing_input", &R::missing_input,
+              {std::pair{"refuse", MissingInput::refuse},
+               {"leave_out", MissingInput::leave_out},
+               {"zero", MissingInput::zero}},
+              "samples that a measured force or base acceleration lacks: refused by what needs them; the "
+              "longest stretch in which every input is known is used, and reported; or 0, a force that does "
+              "not act where it was not recorded",
+              "\"leave_out\"")
           .choice("stamps", &R::irregular, {std::pair{"even", false}, {"as_they_are", true}},
                   "whether the times must have equal intervals or may only increase. Filters take unequal "
-                  "ones as they are, what needs even samples resamples the record and says so "
+                  "ones as they are, what needs even samples resamples the record and reports it "
                   "([Preparation](theory/preparation.md))",
                   "\"even\"")
           .choice("input", &R::input,

@@ -124,12 +124,13 @@ const Schema<Experiment>& filter_keys() {
                   {std::pair{to_string(OnFailure::stop), OnFailure::stop},
                    {to_string(OnFailure::inflate), OnFailure::inflate},
                    {to_string(OnFailure::report), OnFailure::report}},
-                  "when the filter fails: end there; go on from the last good estimate with deviations ten "
+                  "when the filter fails: end there; go on from the last good estimate with standard "
+                  "deviations ten "
                   "times as large, also where innovations diverge; or go on without the sample that it could "
                   "not take. All that happened is listed in `results.json` under `events`",
                   "\"inflate\"")
           .key("smoother", &E::smoother,
-               "`beamid identify` also writes what the whole record says of each instant: "
+               "`beamid identify` also writes the estimates of each instant from the whole record: "
                "Rauch-Tung-Striebel smoother, linearised or unscented",
                "\"rts\"")
           .fallback("none")
@@ -161,8 +162,8 @@ const Schema<Experiment>& compare_keys() {
                "[\"exponential\", \"forward_euler\"]")
           .fallback("that of `[filter]`")
           .key("passes", &E::passes, {1, most_passes},
-               "times the record is filtered; each starts from the parameters, and with the noise, that the "
-               "one before left",
+               "times the record is filtered; each starts from the parameters, and with the noise, of the "
+               "one before",
                "2");
   return keys;
 }

@@ -64,7 +64,7 @@ Schema<DescribedSensor> make_sensor_keys() {
            "standard deviation of the white noise of a loose contact, a share", "0.2")
       .key("rattle_above", &S::rattle_above, {0.0, 1.0},
            "it rattles where the true reading is beyond plus or minus this share", "0.6")
-      .key("dead", &S::dead, "nothing but the offset, whatever moves", "true");
+      .key("dead", &S::dead, "only the offset, whatever moves", "true");
   return keys;
 }
 

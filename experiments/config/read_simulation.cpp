@@ -163,7 +163,7 @@ double gauge_distance(const TomlTable& table, const fem::Structure& structure, Q
   const SectionPlace there = section_at(structure.beam(), position.value_or(0.0));
   if (there.section && there.section->outline.shape != fem::Outline::Shape::none)
     return 0.5 * there.section->outline.height(there.along);
-  table.miss("distance_m", expected + "; the section there has no height that would tell");
+  table.miss("distance_m", expected + "; the section there has no height that determines it");
 }
 
 namespace {

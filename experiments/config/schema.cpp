@@ -316,7 +316,7 @@ void KeyTable::read_into(const TomlTable& table, void* object, double length) co
     if (given.size() != 1)
       throw InputError(table.place(),
                        fmt::format("{} is given by {}; expected exactly one of {}", group.what,
-                                   given.empty() ? "nothing" : joined(given), joined(group.keys)));
+                                   given.empty() ? "no key" : joined(given), joined(group.keys)));
   }
   if (!at_least_one_.empty() && given_keys(table, at_least_one_).empty())
     throw InputError(table.place(), fmt::format("{} has no effect; expected at least one of {}", table.name(),

@@ -263,7 +263,7 @@ const Schema<GivenMember>& common_member_keys() {
           .key("stiffness_factor", &M::stiffness_factor, positive,
                "of E I, E A, kappa G A and in space G J: `0.8` for a member that has lost a fifth", "0.8")
           .key("group", &M::group,
-               "members of one group share a factor that `[[parameters]]` can ask about, `quantity = "
+               "members of one group share a factor that `[[parameters]]` can request, `quantity = "
                "\"factor\"` with the group as `name`",
                "\"columns\"")
           .fallback("none")

@@ -209,8 +209,8 @@ BaseResponse base_response(const VectorXd& base, const VectorXd& response, doubl
   if (!(found.left_percent < no_mode) || found.frequency_hz < found.band_hz.first ||
       found.frequency_hz > found.band_hz.second)
     throw std::invalid_argument(
-        fmt::format("one mode near {:.3g} Hz leaves {:.0f} % of the motion between {:.3g} and {:.3g} "
-                    "Hz; expected less than {:.0f} %: another band, or no such mode",
+        fmt::format("one mode near {:.3g} Hz does not explain {:.0f} % of the motion between {:.3g} and "
+                    "{:.3g} Hz; expected less than {:.0f} %: another band, or no such mode",
                     peak, found.left_percent, found.band_hz.first, found.band_hz.second, no_mode));
   return found;
 }

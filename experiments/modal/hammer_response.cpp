@@ -200,10 +200,10 @@ void leave_out_moving(std::vector<ForceBlock>& blocks, HammerResponses& found) {
   if (moving == blocks.begin()) {
     found.warnings.push_back(met +
                              "the modal masses are off by as much, frequencies and damping ratios by more "
-                             "than their deviations. Expected hits from rest.");
+                             "than their standard deviations. Expected hits from rest.");
     return;
   }
-  found.remarks.push_back(met + "left out.");
+  found.remarks.push_back(met + "excluded.");
   blocks.erase(moving, blocks.end());
 }
 
@@ -289,10 +289,8 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
   const std::size_t all = blocks.size();
   std::erase_if(blocks, [&](const ForceBlock& block) { return 3 * block.length < longest; });
   if (blocks.size() < all)
-    found.remarks.push_back(
-        fmt::format("{} hits with less than a third of the longest one's record were left "
-                    "out.",
-                    all - blocks.size()));
+    found.remarks.push_back(fmt::format(
+        "{} hits with less than a third of the longest one's record were excluded.", all - blocks.size()));
   leave_out_moving(blocks, found);
   Index length = longest;
   for (const ForceBlock& block : blocks) length = std::min(length, block.length);

@@ -115,13 +115,13 @@ std::string coarse_hits(const std::vector<HitSampling>& hits, double interval) {
   double longest = 0;
   for (const HitSampling& hit : hits) longest = std::max(longest, hit.above_half);
   return fmt::format(
-      "At most {:.0f} sample{} of a hit lie{} above half of its largest force, and nothing beside the pulse "
-      "shows an anti-alias filter: without one the momentum of each hit, and with it the mass, is off by "
-      "about {:.2g} %; with one that does not ring, or whose ringing the noise hides, it is right. {} A "
+      "At most {:.0f} sample{} of a hit lie{} above half of its largest force, and the record beside the "
+      "pulse shows no anti-alias filter. Without one the momentum of each hit, and with it the mass, is off "
+      "by about {:.2g} %. With one that does not ring, or whose ringing the noise hides, it is right. {} A "
       "softer tip, a filter or more than {:.3g} samples per second make it certain.",
       longest, longest > 1 ? "s" : "", longest > 1 ? "" : "s", 100 * off,
       off > lost_momentum ? "No mass is given; frequencies and damping do not depend on it."
-                          : "The deviations of the masses hold that.",
+                          : "The standard deviations of the masses hold that.",
       8 / std::max(1.0, 1.5 * longest) / interval);
 }
 

@@ -36,7 +36,7 @@ Measured measured_of(const VectorXd& signal, double interval) {
 
 std::string ThirdOvertone::words() const {
   return fmt::format(
-      "An overtone at three times the frequency, {} it, has {:.2g} % of the amplitude at first: a sensor "
+      "An overtone at three times the frequency, {} it, has {:.2g} % of the amplitude at first. A sensor "
       "near the end of its range {} its largest readings by {:.2g} %, or the stiffness is not linear.",
       compression > 0 ? "against" : "in phase with", 100 * share, compression > 0 ? "lowers" : "raises",
       100 * std::abs(compression));

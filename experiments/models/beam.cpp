@@ -267,7 +267,7 @@ std::vector<filters::OptionSpec> beam_model_options() {
   std::vector<filters::OptionSpec> specs = sensor_options();
   specs.push_back(
       {"coordinates", std::string("modes"), "",
-       "of a mesh that is not reduced: modes, its lowest ones, where nothing couples them; or mesh"});
+       "of a mesh that is not reduced: modes, its lowest ones, where no parameter couples them; or mesh"});
   specs.push_back(
       {"modes", 8.0, "", "of a mesh that is not reduced: how many modes its start is in, and are damped"});
   return specs;
@@ -276,7 +276,7 @@ std::vector<filters::OptionSpec> beam_model_options() {
 const bool beam_registered = model_registry().add(
     {"beam",
      "the structure itself, beam, chain, frame or system: stiffness, masses, root, axial "
-     "load, factors and damping unknown, as [[parameters]] asks",
+     "load, factors and damping unknown, as [[parameters]] requests",
      "[rayleigh1877]",
      beam_model_options(),
      {},

@@ -33,7 +33,7 @@ const bool bouc_wen_registered = model_registry().add(
      {{"sensor_bias", true, "", "estimate the constant offset of every accelerometer too"},
       {"exponent", 1.0, "", "n, at least 1"},
       {"reference_length_m", 1e-3, "m", "l, of no effect at n = 1"},
-      {"post_yield_ratio", 0.5, "", "alpha where [[parameters]] do not ask about it"},
+      {"post_yield_ratio", 0.5, "", "alpha where [[parameters]] do not request it"},
       {"hysteresis_beta_per_m", 0.0, "1/m", "beta, likewise"},
       {"hysteresis_gamma_per_m", 0.0, "1/m", "gamma, likewise"}},
      {},

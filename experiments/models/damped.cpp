@@ -60,11 +60,11 @@ std::unique_ptr<JointModel> make_damped(const ModelSetting& setting, const filte
 
 const bool damped_registered = model_registry().add(
     {"damped",
-     "one degree of freedom with viscous, Coulomb and quadratic damping, and a cubic spring where asked",
+     "one degree of freedom with viscous, Coulomb and quadratic damping, and a cubic spring where requested",
      "[jacobsen1930]",
      {{"sensor_bias", true, "", "estimate the constant offset of every accelerometer too"},
       {"friction_velocity_m_per_s", 1e-3, "m/s", "over which the sign of the velocity is smoothed"},
-      {"coulomb_friction_n", 0.0, "N", "where [[parameters]] do not ask about it"},
+      {"coulomb_friction_n", 0.0, "N", "where [[parameters]] do not request it"},
       {"quadratic_damping_n_s2_per_m2", 0.0, "N s2/m2", "likewise"},
       {"cubic_stiffness_n_per_m3", 0.0, "N/m3", "likewise"}},
      {},

@@ -27,7 +27,7 @@ const bool duffing_registered = model_registry().add(
      "one degree of freedom with a cubic spring: K, C and K3 unknown, mass too where a force was measured",
      "[kovacic2011]",
      {{"sensor_bias", true, "", "estimate the constant offset of every accelerometer too"},
-      {"cubic_stiffness_n_per_m3", 0.0, "N/m3", "where [[parameters]] do not ask about it"}},
+      {"cubic_stiffness_n_per_m3", 0.0, "N/m3", "where [[parameters]] do not request it"}},
      {},
      make_duffing});
 

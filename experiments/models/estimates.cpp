@@ -36,7 +36,7 @@ VectorXd unknown_values(const JointModel& model, const VectorXd& state) {
 
 std::string divergence(const FoundMode& found, std::optional<double> record_hz) {
   if (!(found.frequency_hz > 0.0) || !std::isfinite(found.frequency_hz))
-    return "its stiffness is not positive: nothing oscillates";
+    return "its stiffness is not positive: there is no oscillation";
   constexpr double rounding = 1e-9;  // of a ratio: an undamped motion does not grow
   if (!(found.damping_ratio + quantile_95 * found.damping_ratio_deviation >= -rounding))
     return fmt::format("its damping ratio is {:.3g} %: the motion would grow", 100.0 * found.damping_ratio);

@@ -154,7 +154,7 @@ std::vector<Unknown> unknowns(const Known& known, double stiffness, const ModelS
     const auto same = [&](const Unknown& unknown) { return unknown.quantity == choice.quantity; };
     const auto unknown = std::find_if(unknowns.begin(), unknowns.end(), same);
     if (unknown == unknowns.end())
-      refuse(choice, "model 'sdof' asks about its mass where a force was measured; this record has none");
+      refuse(choice, "model 'sdof' determines its mass where a force was measured; this record has none");
     *unknown = unknown_of(choice, {unknown->guess, unknown->deviation / unknown->guess});
     if (unknown->form != Form::linear)
       refuse(choice,

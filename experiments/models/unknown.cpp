@@ -117,8 +117,8 @@ void refuse(const ParameterChoice& choice, const std::string& message) {
 void require_quantity(const ParameterChoice& choice, const std::vector<std::string>& known,
                       const std::string& model) {
   if (std::find(known.begin(), known.end(), choice.quantity) == known.end())
-    refuse(choice, fmt::format("model '{}' has no parameter '{}'; it asks about {}", model, choice.quantity,
-                               joined(known)));
+    refuse(choice, fmt::format("model '{}' has no parameter '{}'; its parameters are {}", model,
+                               choice.quantity, joined(known)));
   const std::string& asked = choice.quantity;
   if (choice.region && asked != "bending_stiffness" && asked != "body_mass" && asked != "storey_stiffness" &&
       asked != "storey_damping")
@@ -145,10 +145,9 @@ Unknown unknown_of(const ParameterChoice& choice, const ParameterDefault& by_mod
   const double relative = choice.relative_deviation.value_or(by_model.relative_deviation);
   unknown.deviation = choice.deviation.value_or(relative * std::abs(unknown.guess));
   if (!(unknown.deviation > 0.0 && std::isfinite(unknown.deviation)))
-    refuse(choice,
-           fmt::format("{} is guessed as {:g}, which leaves no measure of how uncertain it is; expected "
-                       "deviation{} or another guess{}",
-                       unknown.name, unknown.guess, end, end));
+    refuse(choice, fmt::format("{} is guessed as {:g}, which gives no measure of how uncertain it is; "
+                               "expected deviation{} or another guess{}",
+                               unknown.name, unknown.guess, end, end));
   if (choice.lower.has_value() != choice.upper.has_value())
     refuse(choice, fmt::format("{} has one bound; expected both lower{} and upper{}, or none", unknown.name,
                                end, end));
@@ -184,7 +183,7 @@ std::vector<Unknown> unknowns_of(const std::vector<ParameterChoice>& choices,
     ++count[unknowns[j].name];
     for (std::size_t i = 0; i < j; ++i)
       if (meet(choices[i], choices[j]))
-        refuse(choices[j], fmt::format("{} is asked about twice{}", choices[j].quantity,
+        refuse(choices[j], fmt::format("{} is requested twice{}", choices[j].quantity,
                                        choices[j].region ? ": its regions overlap" : ""));
   }
   for (std::size_t j = 0; j < choices.size(); ++j) {

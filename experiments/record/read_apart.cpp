@@ -166,7 +166,7 @@ RecordTable CollectedSignals::table(const RecordFormat& format) const {
   for (std::size_t i = 0; i < table.width(); ++i) units = units || stated(i);
   if (!units) table.units.clear();
   if (!others.empty())
-    table.remarks.push_back(fmt::format("Left out, as not of {} samples: {}.", length, others));
+    table.remarks.push_back(fmt::format("Omitted, as not of {} samples: {}.", length, others));
   return table;
 }
 

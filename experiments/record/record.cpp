@@ -201,7 +201,7 @@ void take_places(const std::filesystem::path& file, const std::vector<std::strin
 
 std::string places_text(const Record& record, const std::string& file_name) {
   std::string text =
-      "# What the header of the record does not say: where its channels were measured. Commands that read "
+      "# What the header of the record does not state: where its channels were measured. Commands that read "
       "the\n"
       "# record read this file with it; it may also stand in an experiment file.\n\n[record]\nfile = \"" +
       file_name + "\"\n";

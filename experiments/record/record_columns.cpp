@@ -47,8 +47,8 @@ RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
     if (!meaning || !meaning->quantity)
       throw InputError(
           Place{table.file, table.header_line, 0},
-          fmt::format("column {} does not say what it measures, and in which unit; expected that "
-                      "in words beside it: a quantity and its unit",
+          fmt::format("column {} does not state what it measures, and in which unit; expected that as text "
+                      "beside it: a quantity and its unit",
                       wanted.name.empty() ? std::to_string(wanted.number) : "'" + wanted.name + "'"));
     column.channel.quantity = *meaning->quantity, column.factor = meaning->factor;
   }
@@ -196,8 +196,8 @@ class Recognition {
                                    ? "'" + column_name_of(table, *table.time) + "' as dates or times of day, "
                                    : "";
     if (!read_.empty()) table.remarks.push_back("Read: " + stamps + read_ + ".");
-    if (!words_.empty()) table.remarks.push_back("Words in place of numbers, left out: " + words_ + ".");
-    if (!other_.empty()) table.remarks.push_back("No channels of motion, left out: " + other_ + ".");
+    if (!words_.empty()) table.remarks.push_back("Text in place of numbers, omitted: " + words_ + ".");
+    if (!other_.empty()) table.remarks.push_back("No channels of motion, omitted: " + other_ + ".");
     if (!columns.time && !table.time) columns.counted = counted_;
     drop_first_zeros(table, columns);
   }
@@ -230,7 +230,7 @@ class Recognition {
     std::vector<bool> kept(table.rows(), true);
     kept[0] = false;
     table.keep(kept);
-    table.remarks.emplace_back("The first sample, zero in every channel, is left out.");
+    table.remarks.emplace_back("The first sample, zero in every channel, is omitted.");
   }
 };
 
@@ -310,10 +310,11 @@ RecordColumns columns_of_header(RecordTable& table, bool stamped) {
   recognition.report(table, columns, stamped);
   if (columns.channels.empty() && !unknown.empty())
     throw InputError(
-        header, fmt::format("no unit says what is measured: {}; expected {}", unknown, in_configuration));
+        header, fmt::format("no unit states what is measured: {}; expected {}", unknown, in_configuration));
   if (columns.channels.empty()) throw InputError(header, "no column but time; expected a measured quantity");
   if (!unknown.empty())
-    table.remarks.push_back(fmt::format("Left out, as the unit does not tell the quantity: {}.", unknown));
+    table.remarks.push_back(
+        fmt::format("Omitted, as the unit does not determine the quantity: {}.", unknown));
   return columns;
 }
 
@@ -345,7 +346,7 @@ std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted
   if (wanted.name.empty()) {
     const auto index = static_cast<std::size_t>(wanted.number) - 1;
     if (index >= table.width())
-      throw InputError(table.row_place(0), fmt::format("{}; expected at least {}, the column asked for",
+      throw InputError(table.row_place(0), fmt::format("{}; expected at least {}, the column requested",
                                                        count_of_columns(table.width()), wanted.number));
     return index;
   }
@@ -424,7 +425,7 @@ void leave_out_dead(RecordTable& table, RecordColumns& columns) {
   }
   if (alive.empty() || dead.empty()) return;
   columns.channels = std::move(alive);
-  table.remarks.push_back("Without any motion, left out: " + dead + ".");
+  table.remarks.push_back("Without any motion, omitted: " + dead + ".");
 }
 
 }  // namespace beamid::experiments

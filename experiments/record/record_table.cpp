@@ -95,7 +95,7 @@ std::string count_of_columns(std::size_t count) {
 InputError number_fault(const TextField& found, std::size_t column) {
   constexpr std::size_t longest = 40;
   const std::string shown =
-      found.text.empty() ? "nothing" : fmt::format("'{}'", found.text.substr(0, longest));
+      found.text.empty() ? "no entry" : fmt::format("'{}'", found.text.substr(0, longest));
   static const std::regex thousands(R"([-+]?[0-9]{1,3}([,.' ][0-9]{3})+([.,][0-9]+)?)");
   const char* expected = std::regex_match(found.text.substr(0, longest), thousands)
                              ? "a number without separators of thousands"
@@ -146,8 +146,8 @@ std::string skipped_text(const std::vector<std::size_t>& lines, const std::strin
     places += (i ? ", " : "") + std::to_string(lines[i]);
   if (lines.size() > most) places += ", ...";
   return lines.size() == 1
-             ? fmt::format("1 line is left out, as it {}: line {}.", why, places)
-             : fmt::format("{} lines are left out, as each {}: lines {}.", lines.size(), why, places);
+             ? fmt::format("1 line is omitted, as it {}: line {}.", why, places)
+             : fmt::format("{} lines are omitted, as each {}: lines {}.", lines.size(), why, places);
 }
 
 namespace {

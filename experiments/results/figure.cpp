@@ -277,7 +277,7 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
   for (const char* ending : {".svg", ".png"}) {
     const auto picture = folder / (figure.name + ending);
     if (!is_whole(picture))
-      throw std::runtime_error("figure '" + figure.name + "': gnuplot left no whole " +
+      throw std::runtime_error("figure '" + figure.name + "': gnuplot wrote no whole " +
                                picture.filename().string() + "; is the disk full? " + gnuplot.output);
   }
 }

@@ -322,7 +322,7 @@ set encoding utf8
 set datafile separator comma
 data = '{name}.csv'
 
-# Colours that colour-blind readers tell apart (Okabe and Ito).
+# Colours that colour-blind readers distinguish (Okabe and Ito).
 blue = '#0072b2'; vermillion = '#d55e00'; green = '#009e73'; purple = '#cc79a7'; orange = '#e69f00'
 sky = '#56b4e9'; black = '#000000'; grey = '#7f7f7f'
 

@@ -100,7 +100,7 @@ void print_pdf(const fs::path& page, const fs::path& pdf) {
   const ProcessResult result = run_process(words, profile.folder());
   if (result.exit_code != 0 || !is_pdf(printed))
     throw std::runtime_error(
-        fmt::format("{} has printed nothing (exit code {}): {}", browser, result.exit_code, result.output));
+        fmt::format("{} has printed no text (exit code {}): {}", browser, result.exit_code, result.output));
   const fs::path beside = pdf.string() + ".partial-" + std::to_string(getpid());
   fs::copy_file(printed, beside, fs::copy_options::overwrite_existing);
   fs::rename(beside, pdf);
@@ -204,7 +204,7 @@ std::vector<std::string> figures_html(const Results& results, const std::filesys
     all.push_back(std::filesystem::exists(svg)
                       ? html_picture(svg, description(figure), caption, attributes[i])
                       : "<p class=\"note\">Figure " + escaped(figure.name) +
-                            " is not drawn (results.json says why): " + escaped(figure.name) +
+                            " is not drawn (results.json states why): " + escaped(figure.name) +
                             ".csv holds its data, `gnuplot " + escaped(figure.name) + ".gp` draws it.</p>\n");
   }
   return all;
@@ -306,7 +306,7 @@ ReportSection report_section(const Results& results, const std::filesystem::path
   body +=
       "<h2>How it was made</h2>\n<p>beamid " BEAMID_VERSION ", command " + escaped(results.command) + ". " +
       (results.seed ? "Seed " + std::to_string(*results.seed) + ": the same command gives the same numbers."
-                    : "Nothing is random: the same command gives the same numbers.") +
+                    : "No input is random: the same command gives the same numbers.") +
       "</p>\n";
   if (!results.command_line.empty())
     body += std::string(command_mark) + escaped(results.command_line) + "</pre>\n";

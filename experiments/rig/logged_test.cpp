@@ -25,7 +25,7 @@ SimulatedTest logged_test(const Experiment& experiment, const std::filesystem::p
   const std::vector<RecordDefect> defects = mark_defects(record, name);
   if (test.event > 0.0) {
     leave_out_before(record, test.event);
-    test.notes.push_back(fmt::format("The {:g} s recorded before the excitation are left out.", test.event));
+    test.notes.push_back(fmt::format("The {:g} s recorded before the excitation are omitted.", test.event));
   }
   record.warnings = warnings_of(defects, record);
   record.warnings.insert(record.warnings.begin(), own.begin(), own.end());

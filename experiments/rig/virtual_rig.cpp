@@ -326,7 +326,7 @@ ExcitationHistory excite(const Excitation& excitation, const fem::StructuralSyst
       if (excitation.deflection.value_or(0.0) == 0.0 && excitation.velocity == 0.0)
         throw InputError(
             excitation.place,
-            "an excitation of kind \"none\" moves nothing; expected deflection_m or velocity_m_per_s");
+            "an excitation of kind \"none\" causes no motion; expected deflection_m or velocity_m_per_s");
       const VectorXd unit = shape(c);
       result.loading.initial_displacement = excitation.deflection.value_or(0.0) * unit;
       result.loading.initial_velocity = excitation.velocity * unit;

@@ -225,7 +225,7 @@ Panel hold_panel(const HoldPage& page, double Bias::*of, const char* label) {
 std::string hold_text(const HoldPage& page) {
   std::string text =
       "A measured force is known at samples only. A filter that holds it until the next one applies it half "
-      "a step late, and takes the delay for stiffness; one that runs it straight loses a part of it, and "
+      "a step late, and takes the delay for stiffness. One that runs it straight loses a part of it, and "
       "takes that for less damping (with the mass unknown: for less of everything). Steady motion at the "
       "resonance, mass known, exact discretisation.";
   for (const HoldPoint& p : page.own)
@@ -311,7 +311,7 @@ const bool atlas_registered = study_registry().add(
     {"atlas",
      "what every discretisation does to stiffness and damping, in closed form and measured",
      "[hairer1996]",
-     {{"frequency", 3.4555, "Hz", "of the mode that is asked about; by default that of the beam S(11.8)"},
+     {{"frequency", 3.4555, "Hz", "of the mode in question; by default that of the beam S(11.8)"},
       {"damping_ratio", 0.0045, "", "of it"},
       {"interval", 0.004, "s", "between samples"},
       {"config", std::string(), "",

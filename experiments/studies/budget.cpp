@@ -185,7 +185,7 @@ Results report(const std::vector<Budget>& budgets, int orders) {
   results.heading("Error budget: what each cause costs");
   results.paragraph(fmt::format(
       "A beam is pulled by {:g} mm and released; its acceleration, {:g} s at {:g} Hz, becomes K and C. "
-      "Assumed: noise {:g} m/s2, bias {:g} m/s2, {:g} g of sensor that nobody counted, damping {:g} % "
+      "Assumed: noise {:g} m/s2, bias {:g} m/s2, {:g} g of sensor that was not counted, damping {:g} % "
       "larger at the release's amplitude. The truth is the first mode.",
       1e3 * settings.deflection, settings.duration, settings.sampling_rate, settings.sensor_noise,
       settings.sensor_bias, 1e3 * settings.sensor_mass, 100.0 * settings.amplitude_damping));

@@ -120,7 +120,8 @@ std::string verdicts(const NoiseStudy& study, Blow blow) {
     }
     text += fmt::format(
         "- {} observed: harmless on {} of {} beams when R is the sensor's alone (errors up to {:.2g} times "
-        "the deviation reported), on {} when R takes the modes in as white noise (C up to {:.2g} % off), on "
+        "the standard deviation reported), on {} when R takes the modes in as white noise (C up to {:.2g} % "
+        "off), on "
         "{} when they are filtered away (up to {:.2g} %).\n",
         to_string(observed), ignored, all, overconfident, white, worst, filtered, worst_filtered);
   }
@@ -171,9 +172,10 @@ Results report(const NoiseStudy& study) {
   results.values["modes_kept"] = json_of(study, study.kept);
   results.heading("May a filter of one mode take the others for noise?");
   results.paragraph(fmt::format(
-      "{} modes of each beam, pulled and released or struck by a half sine of {:g} ms; {:g} s at {:g} Hz, "
-      "sensor noise {:g} % of the first mode's amplitude; {} seeded trials that differ in noise and in the "
-      "phases of the modes. Harmless: C within 1 % (rms), and not more than three of its deviations off.",
+      "{} modes of each beam, pulled and released or struck by a half sine of {:g} ms. {:g} s at {:g} Hz, "
+      "sensor noise {:g} % of the first mode's amplitude. {} seeded trials that differ in noise and in the "
+      "phases of the modes. Harmless: C within 1 % (rms), and not more than three of its standard deviations "
+      "off.",
       s.modes, 1e3 * s.blow, s.duration, 1.0 / s.interval, 100.0 * s.noise, s.trials));
   results.paragraph(
       "sensor: R is the sensor's alone. white: R takes in their mean square. coloured: a shaping filter of "
@@ -196,7 +198,7 @@ Results report(const NoiseStudy& study) {
                                 &NoiseStatistics::stiffness_rms_percent, "stiffness_rms_error_percent",
                                 "{:.3g}"));
   results.table(treatment_table(study, study.cases, "damping_consistency",
-                                "C: rms error over the deviation reported (1 is honest)",
+                                "C: rms error over the standard deviation reported (1 is honest)",
                                 &NoiseStatistics::damping_ratio, "damping_error_over_deviation", "{:.3g}"));
   results.table(treatment_table(
       study, study.cases, "innovations", "Innovations: mean square over their variance (1 is consistent)",

@@ -45,7 +45,8 @@ void read_law(VariedKey& varied, const std::vector<std::string>& parts) {
                                                         : fmt::format("KEY={}:FROM:TO", parts[0]));
   varied.first = number_in(varied.text, parts[1]);
   varied.second = number_in(varied.text, parts[2]);
-  if (varied.law == Law::normal && !(varied.second > 0.0)) refuse_value(varied.text, "a positive deviation");
+  if (varied.law == Law::normal && !(varied.second > 0.0))
+    refuse_value(varied.text, "a positive standard deviation");
   if (varied.law != Law::normal && !(varied.first < varied.second))
     refuse_value(varied.text, "FROM below TO");
   if (varied.law == Law::log_uniform && !(varied.first > 0.0))

@@ -105,7 +105,7 @@ Matrix read_entries(MarketLines& lines, const MarketHeader& header) {
     const std::size_t expected = header.coordinate ? 3 : 1;
     if (words.empty()) lines.refuse(fmt::format("the file ends after {} of {} entries", k, count));
     if (words.size() != expected)
-      lines.refuse(fmt::format("{} words; expected {}", words.size(),
+      lines.refuse(fmt::format("{} fields; expected {}", words.size(),
                                header.coordinate ? "row, column and value" : "one value"));
     if (header.coordinate) {
       row = lines.whole(words[0], "row", 1, rows) - 1;

@@ -46,8 +46,8 @@ void Countdown::show() {
   if (done_ > 0) {
     const double rate = static_cast<double>(done_) / std::max(shown_ - started_, 1e-9);
     const std::size_t left = all_ - std::min(all_, before_ + done_);
-    text +=
-        fmt::format(", {:.3g} per second, {} left", rate, duration_text(static_cast<double>(left) / rate));
+    text += fmt::format(", {:.3g} per second, {} remaining", rate,
+                        duration_text(static_cast<double>(left) / rate));
   }
   progress_(text);
 }

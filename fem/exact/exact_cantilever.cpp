@@ -48,7 +48,7 @@ double find_root(double mu, double kappa, int wanted) {
 ExactMode::ExactMode(const Cantilever& beam, int i) : beam_(beam) {
   validate(beam);
   if (beam.tip_eccentricity != 0.0)
-    throw std::invalid_argument("the exact cantilever knows no tip eccentricity; expected 0");
+    throw std::invalid_argument("the exact cantilever has no tip eccentricity; expected 0");
   if (i < 1) throw std::invalid_argument("mode is " + std::to_string(i) + "; expected 1 or more");
   const double mu = beam.tip_mass / beam.mass();
   const double kappa = beam.tip_rotary_inertia / (beam.mass() * beam.length * beam.length);

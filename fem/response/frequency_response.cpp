@@ -21,7 +21,7 @@ ModalBasis modal_basis(const StructuralSystem& system, const DampingLaw& damping
   const Index n = system.size();
   if (count < 0 || count > n)
     throw std::invalid_argument("modal method: " + std::to_string(count) + " modes; expected 1 to " +
-                                std::to_string(n) + ", or 0 to leave the choice");
+                                std::to_string(n) + ", or 0 for an automatic choice");
   ModalBasis basis;
   basis.modes = modes(system, count > 0 ? count : (n <= 200 ? n : Index{100}));
   const MatrixXd& shape = basis.modes.shape;

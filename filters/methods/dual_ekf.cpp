@@ -151,7 +151,7 @@ const bool dual_ekf_registered = filter_registry().add(
      "separate extended Kalman filters for states and parameters",
      "[wan2001], [friedland1969]",
      {{"parameters", std::vector<double>{}, "",
-       "entries of the state that are parameters, counted from 0; empty: those the transition leaves "
+       "entries of the state that are parameters, counted from 0; empty: those the transition keeps "
        "constant"},
       {"coupled", true, "", "whether the states move along with the parameters; false: as published"}},
      {contract::exact_on_linear_gaussian, contract::consistent, contract::identifies},

@@ -89,7 +89,8 @@ class DualKalmanFilter final : public Filter {
   std::vector<std::string> remarks() const override {
     if (unknown_.empty()) return {"no unknown input: this is the extended Kalman filter"};
     std::vector<std::string> all{
-        "that errors of inputs and state are correlated counts in neither: deviations are too small"};
+        "that errors of inputs and state are correlated counts in neither: standard deviations are too "
+        "small"};
     if (!seen_) all.push_back("no sensor reads the unknown inputs directly: they are not estimated at all");
     return all;
   }

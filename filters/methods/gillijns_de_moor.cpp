@@ -151,7 +151,7 @@ class UnbiasedMinimumVarianceFilter final : public Filter {
 
 const bool gillijns_de_moor_registered = filter_registry().add(
     {"gillijns_de_moor",
-     "unbiased minimum-variance filter for inputs nothing is known of",
+     "unbiased minimum-variance filter for inputs that are entirely unknown",
      "[gillijns2007a], [gillijns2007b]",
      {unknown_inputs_option()},
      {contract::exact_on_linear_gaussian, contract::consistent, contract::identifies,

@@ -147,10 +147,11 @@ class ParticleFilter final : public Filter {
         std::to_string(corrections_) + " corrections"};
     if (cloud_.distinct() < few_)
       result.push_back("the particles have become copies of " + std::to_string(cloud_.distinct()) +
-                       ": without process noise nothing but the kernel makes them differ");
+                       ": without process noise only the kernel makes them differ");
     if (starved_ > 0)
-      result.push_back("after " + std::to_string(starved_) +
-                       " corrections fewer than 10 particles counted: the deviations there are too small");
+      result.push_back(
+          "after " + std::to_string(starved_) +
+          " corrections fewer than 10 particles counted: the standard deviations there are too small");
     if (powers_ > 0)
       result.push_back("readings sharper than the cloud of particles were worked in by powers of their " +
                        ("likelihood, " + std::to_string(powers_)) + " more than there are readings");
@@ -244,7 +245,7 @@ const bool particle_registered = filter_registry().add(
      "[gordon1993], [kitagawa1996], [musso2001], [liu2001]",
      {{"particles", 2000.0, "", "how many"},
       {"resample_below", 0.5, "",
-       "share of the particles below which the effective size asks for resampling"},
+       "share of the particles below which the effective size triggers resampling"},
       {"regularise", true, "", "whether a kernel moves entries without process noise after resampling"},
       {"seed", 1.0, "", "of the random draws: a whole number"}},
      {contract::sampled_on_linear_gaussian},

@@ -46,7 +46,7 @@ class ImprovedReducedSystem final : public Reduction {
 
 const bool irs_registered = reduction_registry().add(
     {"irs",
-     "as guyan, the rest following inertia forces too; iterated, if asked",
+     "as guyan, the rest following inertia forces too; iterated, if requested",
      "[ocallahan1989], [friswell1995]",
      {{"masters_m", std::vector<double>{}, "m", "positions of the masters; none: where the outputs are"},
       {"iterations", 1.0, "", "0: Guyan's shapes, 1: improved, more: iterated"}},

@@ -57,10 +57,10 @@ class ModalTruncation final : public Reduction {
 
 const bool modal_truncation_registered = reduction_registry().add(
     {"modal_truncation",
-     "the lowest mode shapes, with static correction if asked",
+     "the lowest mode shapes, with static correction if requested",
      "[craig2006, ch. 11], [dickens1997]",
      {{"modes", 1.0, "", "number of modes kept"},
-      {"static_correction", false, "", "whether to add the static deflection that the modes leave out"}},
+      {"static_correction", false, "", "whether to add the static deflection that the modes omit"}},
      {contract::modes_exact, contract::rigid_exact, contract::grows},
      [](const filters::Options& options) { return std::make_unique<ModalTruncation>(options); }});
 

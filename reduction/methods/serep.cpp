@@ -36,8 +36,8 @@ class Serep final : public Reduction {
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(seen * largest.cwiseInverse().asDiagonal());
     if (!(qr.matrixQR().diagonal().cwiseAbs().minCoeff() > told_apart))
       throw std::invalid_argument("reduction 'serep': the " + std::to_string(m) +
-                                  " masters do not tell the " + std::to_string(k) +
-                                  " modes apart; expected masters where they move differently");
+                                  " masters do not distinguish the " + std::to_string(k) +
+                                  " modes; expected masters where they move differently");
     if (k < m) return {shapes};
     return {seen.transpose().colPivHouseholderQr().solve(shapes.transpose()).transpose()};
   }

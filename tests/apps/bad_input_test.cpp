@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Text", record, "\n0\\.4,[^\n]*", "\n0.4,fault",
               "tip_acceleration.csv:102:5: column 2 holds 'fault'; expected a number"},
         Fault{"EmptyField", record, "\n0\\.4,[^\n]*", "\n0.4,",
-              "tip_acceleration.csv:102:5: column 2 holds nothing; expected a number"},
+              "tip_acceleration.csv:102:5: column 2 holds no entry; expected a number"},
         Fault{"MissingSample", record, "\n0\\.4,[^\n]*", "",
               "tip_acceleration.csv:102:1: time 0.404 after 0.396, an interval of 0.008; expected the median "
               "interval 0.004 within 5 %"},

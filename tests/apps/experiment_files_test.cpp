@@ -88,7 +88,7 @@ TEST(Validate, ReadsTheRecordToo) {
       "  record   tip_acceleration.csv: 2001 samples from 2 to 10 s at 250 Hz; tip: acceleration at 1.1 m\n"
       "           up to 4.581 m/s2\n"
       "  methods  reduction rayleigh, model sdof, filter ekf, discretisation exponential\n"
-      "  asks for stiffness, damping ratio (initial estimates from the record)\n");
+      "  unknowns stiffness, damping ratio (initial estimates from the record)\n");
 }
 
 // Oracle: what the file says.
@@ -99,7 +99,7 @@ TEST(Validate, ShowsSensorsPriorsAndParameters) {
   place.write("prior.toml", file + "\n[prior]\nstiffness_n_per_m = 510\nstiffness_deviation_n_per_m = 150\n");
   EXPECT_THAT(
       place.run("validate prior.toml").out,
-      HasSubstr("  asks for stiffness 510 +- 150 N/m, damping ratio (initial estimates; the others from "
+      HasSubstr("  unknowns stiffness 510 +- 150 N/m, damping ratio (initial estimates; the others from "
                 "the record)\n"));
   place.write("beam.toml",
               file +
@@ -119,7 +119,7 @@ TEST(Validate, RefusesARecordThatDoesNotFit) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(outcome.first_error_line(),
-            "one_column.csv:1:1: 1 column; expected at least 2, the column asked for");
+            "one_column.csv:1:1: 1 column; expected at least 2, the column requested");
   EXPECT_EQ(place.run("validate mine.toml --record no.csv").first_error_line(),
             "no.csv: no such file; expected a record of numbers in columns");
 }

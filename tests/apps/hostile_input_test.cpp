@@ -207,7 +207,7 @@ TEST_F(Hostile, NumbersOutOfAllProportionAreRefusedByName) {
   EXPECT_THAT(error("method = \"ekf\"", "method = \"enkf\"\nmembers = 1000000000", "identify"),
               HasSubstr("members is 1e+09; expected a whole number of at least 2 and at most 1000000"));
   EXPECT_THAT(error("length_m = 1.10", "length_m = 1100", "identifiability"),
-              HasSubstr("samples at 1000 Hz; expected at most 200000: lower simulation.sampling_rate_hz"));
+              HasSubstr("samples at 1000 Hz; expected at most 200000. Lower simulation.sampling_rate_hz"));
   EXPECT_THAT(
       error("length_m = 1.10", "length_m = 1.10\nroot_rotational_stiffness_n_m_per_rad = 1e200", "modes"),
       HasSubstr("root_rotational_stiffness_n_m_per_rad is 1e+200; expected"));

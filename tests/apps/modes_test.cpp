@@ -226,7 +226,7 @@ TEST(Modes, SayWhereTheBeamBuckles) {
 TEST(Modes, AreAsManyAsTheMeshHas) {
   const Outcome outcome = Workplace().run("modes --elements 3 --modes 50");
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.out, HasSubstr("50 modes asked for; the mesh of 3 elements has 6 coordinates"));
+  EXPECT_THAT(outcome.out, HasSubstr("50 modes requested; the mesh of 3 elements has 6 coordinates"));
 }
 
 }  // namespace

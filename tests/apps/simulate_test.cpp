@@ -176,7 +176,7 @@ TEST(Simulate, RefusesWhatItCannotFollow) {
   const Refused cases[] = {
       {"support = \"free-free\"\n", nullptr},
       {"[excitation]\nkind = \"none\"\n",
-       "bad.toml:7:1: an excitation of kind \"none\" moves nothing; expected deflection_m or "
+       "bad.toml:7:1: an excitation of kind \"none\" causes no motion; expected deflection_m or "
        "velocity_m_per_s"},
       {"[excitation]\nkind = \"impulse\"\nmomentum_n_s = 1\nduration_s = 0.002\n",
        "bad.toml:7:1: excitation.duration_s is 0.002, 2 steps of 0.001 s; expected at least 4 (raise "

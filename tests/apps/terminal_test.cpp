@@ -74,7 +74,7 @@ TEST_F(Terminal, LongWorkSaysHowFarItIsAndHowLongItTakes) {
   const std::string seen =
       seen_in_terminal(place_, "efficiency --filter ekf --damping-ratio 0.1 --runs 300", 100);
   EXPECT_THAT(seen, HasSubstr("\r\033[Kekf, lengthening passes, damping ratio 10 %: 0 of 600 runs ..."));
-  EXPECT_THAT(seen, ContainsRegex("of 600 runs, [0-9.e+]+ per second, [0-9]+ s left"));
+  EXPECT_THAT(seen, ContainsRegex("of 600 runs, [0-9.e+]+ per second, [0-9]+ s remaining"));
 }
 
 TEST_F(Terminal, ProgressIsSilencedByAnOption) {

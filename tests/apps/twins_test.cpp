@@ -37,7 +37,7 @@ TEST_F(TwoHalves, AreFoundEitherWayRound) {
 TEST_F(TwoHalves, AreNotClaimedToBeTheOnlySetAfterOneSearch) {
   const Outcome outcome = run("--starts 1");
   EXPECT_THAT(outcome.out, testing::StartsWith(
-                               "One set of parameters explains the modes, as far as so few starts can tell"));
+                               "One set of parameters explains the modes, as far as so few starts can show"));
   const json found = json_of(run("--starts 1 --json"));
   EXPECT_EQ(found["messages"][0]["severity"], "warning");
 }

@@ -1,8 +1,9 @@
-// Pages are written in plain technical English: a record shows, a user states, a residual remains. Outside
-// code, outputs and quotations the words of the list below are not used, and spelling is British.
+// Pages and messages are written in plain technical English: a record shows, a user states, a residual
+// remains. Outside code, outputs and quotations of pages, and in the texts of sources, the words of the list
+// below are not used, and spelling is British.
 #include <gmock/gmock.h>
 
-#include "tests/docs/prose.hpp"
+#include "tests/docs/literals.hpp"
 
 namespace beamid::docs::english_test {
 namespace {
@@ -83,6 +84,73 @@ TEST(English, IsPlainOnEveryPage) {
            breaches(prose(lines_of(contents(page)), page.filename() == "configuration.md")))
         report += page.lexically_relative(source(".")).string() + ", " + breach + "\n";
   EXPECT_EQ(report, "");
+}
+
+/// What the texts of a source may have nevertheless; in lower case.
+struct Allowed {
+  const char* file;     ///< below the project's folder; "" is every file
+  const char* pattern;  ///< taken out before the text is read
+  const char* reason;
+};
+
+const std::vector<Allowed> allowed{
+    {"", R"(\b95 % from\b)", "heading of the first of two columns, from and to"},
+    {"", R"(\bdeviations?( \[| / bound)|/ deviation\b|cramer-rao, 1 deviation)", "heading of a column"},
+    {"", R"(\bdeviation: standard deviation\b)", "explains such a heading"},
+    {"", R"(`deviation`|normal:mean:deviation|\bdeviation\{)", "a key or an argument"},
+    {"experiments/record/steps/event.cpp", R"(\blargest deviation\b)", "of a signal from its mean"},
+    {"experiments/results/gnuplot.cpp", R"(\bleft\b|\bcenter\b|\bpointsize\b)", "gnuplot's key words"},
+    {"experiments/results/report_page.cpp", R"(:root \{[^]*)", "style sheet: CSS has its own spelling"},
+    {"experiments/studies/reduce/figures.cpp", R"(\bdisplacement left\b)", "the side of a figure"},
+    {"apps/new.cpp", R"("left"|"left\.)", "name of a joint on the left"},
+};
+
+std::vector<Paragraph> without_allowed(const std::string& file, std::vector<Paragraph> texts) {
+  for (Paragraph& one : texts) {
+    one.text = lower(one.text);
+    for (const Allowed& exception : allowed)
+      if (!*exception.file || file == exception.file)
+        one.text = std::regex_replace(one.text, std::regex(exception.pattern), "...");
+  }
+  return texts;
+}
+
+/// Texts also avoid `left` without a verb before it, but for the side.
+std::vector<std::string> breaches_of_source(const std::string& file, const std::string& code) {
+  static const std::regex left(R"(\bleft\b)");
+  const std::vector<Paragraph> texts = without_allowed(file, messages(code));
+  std::vector<std::string> found = breaches(texts);
+  for (const Paragraph& one : texts)
+    if (std::regex_search(one.text, left))
+      found.push_back(fmt::format("line {}: left (remain, omit, residual)", one.line));
+  return found;
+}
+
+// Oracle: the same list.
+TEST(English, IsPlainInEveryMessage) {
+  std::string report;
+  for (const char* folder : {"fem", "reduction", "filters", "experiments", "apps"})
+    for (const auto& entry : fs::recursive_directory_iterator(source(folder))) {
+      if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
+      const std::string file = entry.path().lexically_relative(source(".")).generic_string();
+      for (const std::string& breach : breaches_of_source(file, contents(entry.path())))
+        report += file + ", " + breach + "\n";
+    }
+  EXPECT_EQ(report, "");
+}
+
+TEST(English, ReadsTheTextsOfASource) {
+  const auto read = messages(
+      "#include \"a tells.hpp\"\n// \"says it\"\nchar c = '\"'; int n = 10'000;\n"
+      "f(\"one \"\n  \"two\\nthree\", \"key\", R\"x(raw \"left\")x\");\n/* \"ask it\" */");
+  ASSERT_THAT(read, SizeIs(2));
+  EXPECT_EQ(read[0].line, 4);
+  EXPECT_EQ(read[0].text, "one two\nthree");
+  EXPECT_EQ(read[1].line, 5);
+  EXPECT_EQ(read[1].text, "raw \"left\"");
+  EXPECT_THAT(breaches_of_source("a.cpp", "\"it\\nasks\\n and is left\""),
+              ElementsAre(HasSubstr("asks"), HasSubstr("is left"), HasSubstr("left (")));
+  EXPECT_THAT(breaches_of_source("apps/new.cpp", "R\"(at = \"left.x\")\""), IsEmpty());
 }
 
 TEST(English, IsCheckedInProseAlone) {

@@ -20,7 +20,8 @@ class Countdowns : public testing::Test {
 TEST_F(Countdowns, SayHowManyOfHowManyHowFastAndHowLong) {
   Countdown countdown(progress_, 1000, "cases", 100);
   countdown.count(37);
-  EXPECT_THAT(shown_, ElementsAre(MatchesRegex("137 of 1000 cases, [0-9.e+]+ per second, [0-9]+ s left")));
+  EXPECT_THAT(shown_,
+              ElementsAre(MatchesRegex("137 of 1000 cases, [0-9.e+]+ per second, [0-9]+ s remaining")));
 }
 
 TEST_F(Countdowns, NameThePartOfTheWork) {
@@ -30,7 +31,7 @@ TEST_F(Countdowns, NameThePartOfTheWork) {
   countdown.begin("beam B");
   ASSERT_THAT(shown_, SizeIs(2));  // counting shows itself a few times a second only
   EXPECT_EQ(shown_[0], "beam A: 0 of 20 trials");
-  EXPECT_THAT(shown_[1], MatchesRegex("beam B: 5 of 20 trials, .* left"));
+  EXPECT_THAT(shown_[1], MatchesRegex("beam B: 5 of 20 trials, .* remaining"));
 }
 
 TEST_F(Countdowns, DoNotCountToOne) {
@@ -48,7 +49,7 @@ TEST_F(Countdowns, LoseNoCountFromManyThreads) {
     });
   for (std::thread& thread : threads) thread.join();
   countdown.begin("end");
-  EXPECT_THAT(shown_.back(), MatchesRegex("end: 8000 of 8000 runs, .*, 0 s left"));
+  EXPECT_THAT(shown_.back(), MatchesRegex("end: 8000 of 8000 runs, .*, 0 s remaining"));
 }
 
 TEST(DurationText, TakesTheUnitsThatSuit) {

@@ -116,7 +116,7 @@ class SpaceFrame(Table):
 
 
 class System(Table):
-    """Mass, stiffness and damping matrices of one's own, as [system] describes them: K = K_0 + sum theta_j K_j, likewise
+    """User-supplied mass, stiffness and damping matrices, as [system] describes them: K = K_0 + sum theta_j K_j, likewise
     M and C. A matrix is a numpy array, a sparse matrix of scipy, or the name of a Matrix Market file.
 
     >>> import beamid, numpy as np

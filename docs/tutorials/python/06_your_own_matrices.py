@@ -79,7 +79,7 @@ print(found.report)
 #> likelihood / best            1      1   0.97253  0.00092549  0.00092549
 #> starts                     151    131         1          10           7
 #>
-#> What would tell the sets apart
+#> What would distinguish the sets
 #> measurement                                                         kind         least distance [+-]
 #> ------------------------------------------------------------------  -----------  -------------------
 #> motion at x4 over that at x5 in mode 4: -6.63e+12 to 6.5            shape ratio                  3.6

@@ -167,9 +167,10 @@ std::string backbone_verdict(const BackboneStudy& study) {
     if (seen)
       return fmt::format("Nearly linear {}: {}: a change that the record shows, but below the limit.", span,
                          change);
-    return fmt::format(
-        "Linear {}: {}{}.", span, change,
-        study.law() && study.linear_bic() < strong_bic ? ", and no other model says more of the record" : "");
+    return fmt::format("Linear {}: {}{}.", span, change,
+                       study.law() && study.linear_bic() < strong_bic
+                           ? ", and no other model explains more of the record"
+                           : "");
   }
   const double x = study.largest();
   std::string text = fmt::format(

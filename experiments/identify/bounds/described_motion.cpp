@@ -156,11 +156,10 @@ VectorXd model_start(const ObservedMotion& motion, Experiment experiment, const 
   constexpr double most_samples = 2e5;
   const double period = slowest_period(motion.model), needed = std::ceil(start_periods * period * rate);
   if (!(needed < most_samples))
-    throw std::invalid_argument(
-        fmt::format("{:g} periods of the first mode, of {:.3g} s each, are {:.3g} samples at {:g} Hz; "
-                    "expected at most {:g}: lower "
-                    "simulation.sampling_rate_hz, or check that the beam is described in SI units",
-                    start_periods, period, needed, rate, most_samples));
+    throw std::invalid_argument(fmt::format(
+        "{:g} periods of the first mode, of {:.3g} s each, are {:.3g} samples at {:g} Hz; expected at most "
+        "{:g}. Lower simulation.sampling_rate_hz, or check that the beam is described in SI units",
+        start_periods, period, needed, rate, most_samples));
   const Index samples = std::max(fewest_start_samples, static_cast<Index>(needed));
   if (experiment.simulation.method.name == "modal")
     experiment.simulation.method.options["modes"] = static_cast<double>(motion.model.mode_shapes.cols());
@@ -307,7 +306,7 @@ DescribedMotion described_motion(const Experiment& experiment, const std::filesy
     }
     if (begin >= view.samples)
       throw InputError(histories.last->place,
-                       "the force acts until the record ends; a record without it has nothing to show");
+                       "the force acts until the record ends; a record without it shows no motion");
   }
   result.begin = static_cast<double>(begin) / rate;
 

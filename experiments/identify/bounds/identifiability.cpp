@@ -169,8 +169,8 @@ std::vector<UnknownSize> unknown_sizes(const ObservedMotion& motion) {
     const double direction = motion.directions.unknowns(place, static_cast<Index>(j));
     size.per_direction = std::abs(unknown.slope(state) * direction) / size.size;
     if (!(size.per_direction > 0.0 && std::isfinite(size.per_direction)))
-      throw std::invalid_argument(fmt::format("{} has the deviation {:g}; expected a positive number",
-                                              unknown.name, unknown.deviation));
+      throw std::invalid_argument(fmt::format(
+          "{} has the standard deviation {:g}; expected a positive number", unknown.name, unknown.deviation));
     sizes.push_back(size);
   }
   return sizes;
@@ -282,7 +282,7 @@ std::vector<NoisyChannel> noisy_channels(const Experiment& experiment, const Des
       assumed += (assumed.empty() ? "" : ", ") + sensor.name;
     }
     if (silent)
-      result.notes.push_back(sensor.name + " shows no motion at all and is left out.");
+      result.notes.push_back(sensor.name + " shows no motion at all and is excluded.");
     else
       channels.push_back({static_cast<Index>(i), sensor.noise});
     result.sensors.push_back({sensor, assume});
@@ -316,7 +316,7 @@ void describe_test(const Experiment& complete, const DescribedMotion& test, Inde
   const Index left = samples - static_cast<Index>(std::llround(test.begin * rate));
   if (left < fewest_test_samples)
     throw InputError(complete.excitation.place,
-                     "the force acts until the record ends; a record without it has nothing to show");
+                     "the force acts until the record ends; a record without it shows no motion");
   result.duration = static_cast<double>(left - 1) / rate;
   const auto shown = std::count_if(result.frequencies_hz.begin(), result.frequencies_hz.end(),
                                    [&](double frequency) { return frequency < 0.5 * rate; });
@@ -373,7 +373,7 @@ Identifiability find_identifiability(const Experiment& experiment, const std::fi
   sweep_in_time(test.motion, channels, result);
   progress("places of sensors");
   if (complete.model.name == "sdof")
-    result.notes.emplace_back("The model knows one point only: places of sensors make no difference to it.");
+    result.notes.emplace_back("The model has one point only: places of sensors make no difference to it.");
   else
     sweep_in_place(complete, folder, channels, result, progress);
   return result;

@@ -73,7 +73,8 @@ std::vector<OwnClock> own_clocks(const Record& record) {
     }
   if (!clocks.empty() && inputs.size() > 1)
     throw std::invalid_argument(
-        "own_clock names one of several inputs, whose lags the motion does not tell apart; expected channels "
+        "own_clock names one of several inputs, whose lags the motion does not distinguish; expected "
+        "channels "
         "of motion, or a record of one input");
   std::size_t common = outputs.size();
   for (std::size_t i = 0; i < outputs.size(); ++i)

@@ -177,7 +177,7 @@ ChannelAmplitudes channel_amplitudes(const Experiment& experiment, const RecordA
       result.text =
           "The channels do not agree on the motion: " + result.text +
           ". A unit, gain, sign or place is likely wrong in [record], and the estimates make up for it: "
-          "correct it, or leave the channel out (--channel).";
+          "correct it, or omit the channel (--channel).";
     return result;
   } catch (const std::exception&) {  // no such shape, or a channel with gaps too long to fill
     return {};
@@ -233,7 +233,7 @@ void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysi
     found.modal_refusal = fmt::format(
         "modal analysis: {} (looked for near {:.6g} Hz of {})", error.what(), found.expected_hz,
         experiment.prior.stiffness ? "prior.stiffness_n_per_m"
-                                   : "the beam as described; prior.stiffness_n_per_m says it better");
+                                   : "the beam as described; prior.stiffness_n_per_m states it better");
   } catch (const std::runtime_error& error) {
     found.modal_failure = error.what();
   }
@@ -266,7 +266,7 @@ std::string aliased_text(double beam_hz, double rate, double shown) {
   return fmt::format(
       "ALIASED: the beam's first mode, at {:.5g} Hz, lies above half the sampling rate, {:.5g} Hz. The "
       "record shows it at {:.5g} Hz, as it would show any mode at a multiple of {:.5g} Hz plus or minus "
-      "that: which of them it is only the initial estimates say.",
+      "that. Only the initial estimates determine which of them it is.",
       beam_hz, 0.5 * rate, shown, rate);
 }
 

@@ -109,7 +109,7 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
   };
   if (would_not_follow_held_forces(context, started.model))
     return refuse(
-        "the modes of a mesh far above the sampling rate do not follow forces that are held, and its "
+        "the modes of a mesh far above the sampling rate do not follow forces that are held. Its "
         "accelerations come out wrong; expected input = \"band_limited\" or \"linear\", or a reduction");
   // `identify` answers; a comparison shows what each filter does.
   const bool answers = settings.keep == filters::Keep::all_estimates;
@@ -157,8 +157,8 @@ std::string innovations_text(const filters::InnovationConsistency& c, double mis
                       1.0 - c.windows.minCoeff() <= surely_unsteady * (1.0 - c.window_lower_95);
   if (white && steady) return {};
   const char* const what = white    ? "white, but their size changes along the record"
-                           : steady ? "of steady size, but not white"
-                                    : "neither white nor of steady size";
+                           : steady ? "stationary, but not white"
+                                    : "neither white nor stationary";
   const std::string motion = misfit_percent > 0.0 ? fmt::format("{:.2g} % of the record is", misfit_percent)
                                                   : std::string("the record holds");
   const std::string size = steady ? fmt::format("mean normalised square {:.3g}", c.mean_normalised_square)
@@ -215,17 +215,17 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
     return;
   }
   run.status = ComparedRun::Status::contradicted;
-  run.reason = fmt::format(
-      "{}: {:.3g} % of it is left, and is no noise. {}",
-      forced ? "the measured input does not make the record's motion of this model"
-             : "no start of this model makes the record's motion",
-      run.misfit_percent,
-      run.step_cause.empty()
-          ? fmt::format("The record holds modes that the model lacks, a sensor's place, a sign, a unit or a "
-                        "clock is wrong, an input is missing, a mass or the damping is not as described, or "
-                        "the {} on a wrong answer",
-                        forced ? "filter has settled" : "search has ended")
-          : run.step_cause);
+  run.reason =
+      fmt::format("{}: the residual is {:.3g} % of it, and is no noise. {}",
+                  forced ? "the measured input does not make the record's motion of this model"
+                         : "no start of this model makes the record's motion",
+                  run.misfit_percent,
+                  run.step_cause.empty()
+                      ? fmt::format("The record may hold modes that the model lacks. A sensor's place, a "
+                                    "sign, a unit or a clock may be wrong. An input may be missing, a mass "
+                                    "or the damping may not be as described, or the {} on a wrong answer",
+                                    forced ? "filter has settled" : "search has ended")
+                      : run.step_cause);
   if (run.reason.ends_with('.')) run.reason.pop_back();
   run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
 }
@@ -234,7 +234,7 @@ bool judge_faults(ComparedRun& run) {
   constexpr double mostly = 0.5, surely = 5.0;
   constexpr std::size_t most_named = 3;
   const auto share = [](const DescriptionFault& fault) {
-    return fmt::format("{} ({:.0f} % of what is left, in squares)", fault.sentence, 100.0 * fault.explained);
+    return fmt::format("{} ({:.0f} % of the residual, in squares)", fault.sentence, 100.0 * fault.explained);
   };
   // By how much a change moves the unknown that it moves most, in deviations as they are reported.
   const auto farthest = [&](const DescriptionFault& fault) {
@@ -257,7 +257,7 @@ bool judge_faults(ComparedRun& run) {
     for (const DescriptionFault& fault : run.faults) {
       const auto [moved, unknown] = farthest(fault);
       if (!(fault.score > surely) || !(moved > quantile_95)) continue;
-      named = fmt::format("{}; allowed for, it moves {} by {:.2g} of its deviations", share(fault),
+      named = fmt::format("{}; allowed for, it moves {} by {:.2g} of its standard deviations", share(fault),
                           run.parameters[unknown].estimate.name, moved);
       break;
     }

@@ -285,7 +285,7 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
   });
   if (any) return comparison;
   if (comparison.runs.empty())
-    throw std::invalid_argument("nothing to compare; expected a reduction, a filter and a discretisation");
+    throw std::invalid_argument("no run to compare; expected a reduction, a filter and a discretisation");
   const ComparedRun& first = comparison.runs.front();
   if (first.refused_at.file.empty()) throw std::invalid_argument(first.reason);
   throw InputError(first.refused_at, first.reason);

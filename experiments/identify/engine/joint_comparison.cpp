@@ -74,7 +74,7 @@ JointEstimate joint_estimate(const std::vector<RecordEstimate>& records) {
   const VectorXd scale = records[0].prior.diagonal().cwiseSqrt();
   const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * (sum + nuisance) * scale.asDiagonal());
   if (factor.info() != Eigen::Success)
-    throw std::invalid_argument("joint estimate: the records say nothing of a combination of the unknowns");
+    throw std::invalid_argument("joint estimate: the records do not determine a combination of the unknowns");
   JointEstimate joint;
   joint.scatter = VectorXd::Ones(q);
   joint.unknowns.mean = scale.cwiseProduct(factor.solve(scale.cwiseProduct(weighted)));
@@ -94,12 +94,12 @@ JointEstimate joint_estimate(const std::vector<RecordEstimate>& records) {
 }
 
 std::string agreement_words(const JointEstimate& estimate, const std::vector<std::string>& names) {
-  if (estimate.freedom == 0) return "One record is left: nothing to agree with.";
+  if (estimate.freedom == 0) return "One record remains: no other to agree with.";
   const std::string measured =
       fmt::format("chi-squared {:.3g} about the joint estimate, {:g} degrees of freedom, probability {:.2g}",
                   estimate.chi_squared, estimate.freedom, estimate.probability);
   if (estimate.agree())
-    return fmt::format("The records agree within their noise ({}): what they tell adds up.", measured);
+    return fmt::format("The records agree within their noise ({}): their information adds up.", measured);
   std::string widened;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (const double ratio = estimate.scatter[static_cast<Eigen::Index>(i)]; ratio > 1)

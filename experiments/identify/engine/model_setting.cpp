@@ -63,8 +63,8 @@ RecordInputs take_inputs(const MatrixXd& samples, std::optional<InputPath> state
                          const std::vector<Index>& imposed) {
   if (const Index missing = samples.size() - samples.array().isFinite().count(); missing > 0)
     throw std::invalid_argument(
-        fmt::format("{} readings of measured inputs are missing or not finite; expected all of them, for the "
-                    "motion depends on every one, or [record] missing_input = \"leave_out\" or \"zero\"",
+        fmt::format("{} readings of measured inputs are missing or not finite. The motion depends on every "
+                    "one; expected all of them, or [record] missing_input = \"leave_out\" or \"zero\"",
                     missing));
   RecordInputs result{stated.value_or(InputPath::linear), stated.has_value(), to.size() - 1, 0};
   const bool held = stated == InputPath::held;

@@ -163,23 +163,19 @@ void Passes::mend_by_output_error() {
     if (driven && astray && run_.diagnostics)
       run_.diagnostics->consistency.reset();  // of a filter gone astray
     run_.remarks.push_back(
-        laws ? std::string(
-                   "The estimates are those of all samples at once (output error): a filter is surer of the "
-                   "laws of storeys than the record allows.")
-        : free ? std::string(
-                     "So few cycles stand above the noise that the filter, linearised from sample to sample, "
-                     "ended surer than the record allows or where all samples at once do not: the estimates "
-                     "are those of all samples at once (output error).")
+        laws   ? std::string("The estimates are those of all samples at once (output error): a filter is "
+                               "overconfident of the laws of storeys.")
+        : free ? std::string("Few cycles stand above the noise. The filter, linearised from sample to "
+                             "sample, ended overconfident or where all samples at once do not. The estimates "
+                             "are those of all samples at once (output error).")
         : astray
-            ? fmt::format(
-                  "The filter had not settled, was surer than the record allows, or ended where all samples "
-                  "at once do not, and left {:.4g} %; the estimates are those of all samples at once (output "
-                  "error), which leave {:.4g} %.",
-                  left, now_left)
-            : fmt::format(
-                  "The filter settled where {:.3g} % of the record was left; the estimates are those of "
-                  "all samples at once (output error), which leave {:.2g} %.",
-                  left, now_left));
+            ? fmt::format("The filter had not settled, was overconfident, or ended where all samples at once "
+                          "do not, with a residual of {:.4g} %. The estimates are those of all samples at "
+                          "once (output error), with a residual of {:.4g} %.",
+                          left, now_left)
+            : fmt::format("The filter settled with a residual of {:.3g} % of the record. The estimates are "
+                          "those of all samples at once (output error), with a residual of {:.2g} %.",
+                          left, now_left));
   }
   run_.seconds += seconds_since(start);
 }

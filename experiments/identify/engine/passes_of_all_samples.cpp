@@ -78,11 +78,11 @@ void Passes::fit_inputs_noise() {
   input_bounds_ = fit.bounds;
   constexpr double mostly = 0.5;
   if (fit.noise_scale < mostly)
-    run_.remarks.push_back(fmt::format(
-        "Most of what the motion leaves of the record is its answer to the noise of the inputs: the noise of "
-        "the outputs is taken for {:.2g} times as much as is left, so that the innovations are as large as "
-        "both make them.",
-        std::sqrt(fit.noise_scale)));
+    run_.remarks.push_back(
+        fmt::format("Most of the residual is the answer of the motion to the noise of the inputs. The noise "
+                    "of the outputs is taken for {:.2g} times the residual, so that the innovations are as "
+                    "large as both make them.",
+                    std::sqrt(fit.noise_scale)));
 }
 
 // In place of the filter's.

@@ -221,8 +221,8 @@ std::string undetermined_text(const RecordIdentification& found) {
   const double ratio = filter.found.damping_ratio(),
                half = quantile_95 * found.damping_factor() * filter.damping_ratio_deviation;
   if (!(half > wide * std::abs(ratio))) return {};
-  std::string text = fmt::format("The record hardly determines the damping ratio, {:.2g} +- {:.2g} %",
-                                 100.0 * ratio, 100.0 * half);
+  std::string text =
+      fmt::format("The damping ratio is poorly determined, {:.2g} +- {:.2g} %", 100.0 * ratio, 100.0 * half);
   for (const std::string& cause : {by_unsteady_noise(found), by_companion(found), by_amplitude(found)})
     if (!cause.empty()) return text + ": " + cause + ".";
   return text + ": noise, or too short a decay.";
@@ -238,7 +238,7 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   if (alone)
     judgement.messages.push_back(
         fmt::format("No modal analysis stands beside this result: {}. The filter was started from {}, and "
-                    "takes for noise what its own motion leaves of the record.",
+                    "takes for noise the residual of its own motion.",
                     found.modal_failure, experiment.prior.stiffness ? "[prior]" : "the beam"));
   const Identification& identification = found.identification;
   const std::string condition =
@@ -250,12 +250,11 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   if (alone) {
     if (!(found.response_error_percent(record) > most_of_it)) return judgement;
     judgement.verdict = ComparedRun::Status::diverged;
-    judgement.messages.insert(
-        judgement.messages.begin(),
-        fmt::format(
-            "DIVERGED: its motion leaves {:.0f} % of the record. The record is no free decay of this beam, "
-            "or [prior] is far from it.",
-            found.response_error_percent(record)));
+    judgement.messages.insert(judgement.messages.begin(),
+                              fmt::format("DIVERGED: the residual of its motion is {:.0f} % of the record. "
+                                          "The record is no free decay of this beam, "
+                                          "or [prior] is far from it.",
+                                          found.response_error_percent(record)));
     return judgement;
   }
   const Oscillator& filter = identification.found;
@@ -274,7 +273,7 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   const bool doubtful = by_discretisation(record, found).empty() &&
                         by_prior(experiment.prior, found).empty() && modal_analysis_is_worse(record, found);
   if (doubtful)
-    text += ". The modal analysis is the doubtful one: its modes leave more of the record than the filter's";
+    text += ". The modal analysis is the doubtful one: the residual of its modes is larger than the filter's";
   else if (damping && !(ratio < twice * modal_ratio && twice * ratio > modal_ratio))
     judgement.verdict = ComparedRun::Status::contradicted;
   if (!cause.empty())

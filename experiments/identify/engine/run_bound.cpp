@@ -30,7 +30,7 @@ std::vector<double> by_mode(const RunContext& context, ComparedRun& run) {
     run.interval_factor = factor;
     run.remarks.push_back(fmt::format(
         "Near the mode the noise density, from {} spectral lines, is {:.3g} times that of white noise of the "
-        "deviation assumed: intervals are widened by {:.3g}.",
+        "standard deviation assumed: intervals are widened by {:.3g}.",
         near.lines, density, factor));
   }
   std::vector<double> factors(run.parameters.size(), run.interval_factor);
@@ -55,7 +55,8 @@ std::vector<double> by_influence(ComparedRun& run) {
   }
   if (!widened.empty())
     run.remarks.push_back(
-        "The record's noise is denser where these are determined than white noise of the deviation assumed: "
+        "The record's noise is denser where these are determined than white noise of the standard deviation "
+        "assumed: "
         "intervals are widened, " +
         widened + ".");
   return factors;
@@ -80,7 +81,7 @@ void by_sections(ComparedRun& run, std::vector<double>& factors) {
   run.remarks.push_back(
       fmt::format("Over {} sections of {:.3g} periods the estimates vary by more than noise makes them: {}. "
                   "Intervals are "
-                  "widened to hold this; in brackets, over the formal deviation.",
+                  "widened to hold this; in brackets, over the formal standard deviation.",
                   run.sections->sections, run.sections->periods, widened));
 }
 

@@ -94,7 +94,7 @@ void set_far_structures_aside(ModelCheck& check) {
   for (const CheckedMode& mode : check.modes)
     if (mode.far)
       check.contradictions.push_back(fmt::format(
-          "{} contradicts the others and is left out: mode {} predicted at {:.4g} Hz and found at {:.4g} "
+          "{} contradicts the others and is excluded: mode {} predicted at {:.4g} Hz and found at {:.4g} "
           "Hz{}.",
           check.structures[mode.structure].name, mode.number, mode.predicted_hz, mode.identified.frequency_hz,
           predicted_by(mode.identified.frequency_hz, check, mode.structure)));

@@ -130,7 +130,7 @@ void widen_by_innovations(ComparedRun& run) {
         run.warnings.begin(),
         fmt::format(
             "The innovations are {:.3g} times as large as the stated noise makes them (mean normalised "
-            "square {:.3g}): deviations are widened by as much.",
+            "square {:.3g}): standard deviations are widened by as much.",
             factor, found.mean_normalised_square));
 }
 

@@ -143,7 +143,7 @@ void judge_span(const LinesLeft& left, ComparedRun& run) {
   const bool stands_out = left.strong > many * left.weak && left.motion_percent > too_much;
   if (!stands_out && !(left.motion_percent > whatever)) {
     run.warnings.push_back(
-        fmt::format("{:.2g} % of the motion inside is left that the sections do not make: lines are {:.3g} "
+        fmt::format("The sections do not explain {:.2g} % of the motion inside: lines are {:.3g} "
                     "times the noise stated where motion is strong, {:.3g} times where it is weak. "
                     "Estimates may be off by more than their intervals: a place, a gain, a mass, a force "
                     "inside, or a simulation cut to few modes",
@@ -152,8 +152,9 @@ void judge_span(const LinesLeft& left, ComparedRun& run) {
   }
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format(
-      "the measured motion of its sections does not make the motion inside: {:.3g} % of it is left, and is "
-      "no noise. A sensor's place, a sign, a unit or a clock is wrong, a force inside is missing, or a mass "
+      "the measured motion of its sections does not make the motion inside: the residual is {:.3g} % of it, "
+      "and is no noise. A sensor's place, a sign, a unit or a clock is wrong, a force inside is missing, or "
+      "a mass "
       "is not as described",
       left.motion_percent);
   run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");

@@ -353,10 +353,9 @@ std::vector<std::string> Posterior::complaints() const {
         fmt::format("tempering finds {:.1f} nat more evidence than the humps hold, expected at most {}",
                     tempered.log_evidence - importance.log_evidence, most_above));
   if (importance.poor() && tempered_apart > most_apart)
-    list.push_back(
-        fmt::format("two independent temperings differ by {:.1f} nat, expected at most {}: ask for "
-                    "more particles",
-                    tempered_apart, most_apart));
+    list.push_back(fmt::format(
+        "two independent temperings differ by {:.1f} nat, expected at most {}: request more particles",
+        tempered_apart, most_apart));
   for (std::size_t h = 0; h < share.size(); ++h)
     if (const double spread = std::sqrt(std::max(share[h] * (1.0 - share[h]), 1e-6) / fewest_effective());
         std::abs(share[h] - chain_share[h]) > 5.0 * spread + 0.01) {

@@ -394,7 +394,7 @@ PosteriorStudy study_posterior(const Experiment& experiment, SensingRecord recor
                                const PosteriorSettings& settings, const std::filesystem::path& folder,
                                const Place& place, const Progress& progress) {
   if (experiment.parameters.empty())
-    throw InputError(place, "no [[parameters]]; expected what of the structure is asked about");
+    throw InputError(place, "no [[parameters]]; expected what of the structure is to be determined");
   auto source = std::make_unique<RecordSource>();
   source->record = std::move(record);
   source->reduction = sensing_reduction(experiment, source->record.record.interval());

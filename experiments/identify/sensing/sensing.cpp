@@ -311,7 +311,7 @@ SensingStudy sensed(const Experiment& experiment, const SensingRecord& record, c
     for (const ParameterChoice& parameter : experiment.parameters)
       if (sensor.bending_moment && parameter.quantity == "bending_stiffness")
         throw std::invalid_argument(
-            "the bending moment is E I w'' with E I as described, which [[parameters]] asks for; expected "
+            "the bending moment is E I w'' with E I as described, which [[parameters]] requests; expected "
             "quantity = \"strain\", or no bending_stiffness among the unknowns");
   auto found_in = std::make_unique<SensingModel>(experiment, record, reduction, folder);
   SensingStudy study;

@@ -34,8 +34,8 @@ filters::Sample read_sample(const std::string& line, Eigen::Index outputs, const
     const ParsedNumber parsed = parse_number(field);
     const bool out_of_range = parsed.number && !parsed.finite && std::isfinite(parsed.value);
     if (!field.empty() && (!parsed.number || out_of_range))
-      throw InputError(here,
-                       fmt::format("'{}'; expected a number, or nothing where none was measured", field));
+      throw InputError(
+          here, fmt::format("'{}'; expected a number, or an empty field where none was measured", field));
     if (i == 0 && !parsed.finite) throw InputError(here, "no time; expected seconds");
     (i == 0 ? sample.time : sample.output[i - 1]) =
         field.empty() ? std::numeric_limits<double>::quiet_NaN() : parsed.value;

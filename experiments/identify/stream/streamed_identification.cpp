@@ -263,7 +263,7 @@ void StreamedIdentification::heed(const filters::Sample& sample, const filters::
     status_ = Status::left_out;
     if (watch_.left_out() <= outliers_reported)
       news_.push_back(
-          fmt::format("Sample {} at {:.6g} s is left out: its normalised innovation square is {:.3g}"
+          fmt::format("Sample {} at {:.6g} s is omitted: its normalised innovation square is {:.3g}"
                       "; expected {}.{}",
                       running_->step(), running_->time(), correction.normalised_square, outputs,
                       watch_.left_out() < outliers_reported ? "" : " Others are counted only."));

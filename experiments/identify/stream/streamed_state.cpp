@@ -44,7 +44,7 @@ MatrixXd matrix(const nlohmann::json& saved, const char* key, Index rows, Index 
 void check_deviations(const char* of, const VectorXd& deviations) {
   if (!(deviations.array() > 0.0).all())
     throw std::invalid_argument(
-        fmt::format("a deviation of {} is {:g}; expected more than 0", of, deviations.minCoeff()));
+        fmt::format("a standard deviation of {} is {:g}; expected more than 0", of, deviations.minCoeff()));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void StreamedIdentification::check_can_be_saved() const {
 
 nlohmann::ordered_json StreamedIdentification::save() const {
   check_can_be_saved();
-  if (good_.step == 0) throw std::invalid_argument("no sample has been taken in; nothing to save");
+  if (good_.step == 0) throw std::invalid_argument("no sample has been taken in; there is no state to save");
   auto known = nlohmann::ordered_json::array();
   for (const std::optional<Known>* one : {&older_, &newer_})
     if (*one) known.push_back({{"mean", numbers((*one)->mean)}, {"covariance", numbers((*one)->covariance)}});

@@ -352,10 +352,10 @@ std::string objection_to_paths(const ModalModel& model, const ModalData& data) {
         "the structure has {} degrees of freedom, and {} are the most for which all solutions "
         "are computed",
         n, most_paths_order);
-  if (q != n) return fmt::format("{} parameters are asked about and there are {} degrees of freedom", q, n);
+  if (q != n) return fmt::format("{} parameters are requested and there are {} degrees of freedom", q, n);
   if (given != n) return fmt::format("{} of {} frequencies were measured", given, n);
   for (const auto& slope : model.described().derivatives)
-    if (slope.mass.nonZeros() > 0) return "a mass is asked about";
+    if (slope.mass.nonZeros() > 0) return "a mass is requested";
   return "";
 }
 
@@ -381,7 +381,7 @@ TwinSearch exact_twins(const ModalModel& model, const ModalData& data, const Pro
     left -= model.described().values[j] * slope;
   }
   if (left.cwiseAbs().maxCoeff() > 1e-9 * stiffness.cwiseAbs().maxCoeff()) {
-    search.reason = "part of the stiffness is not asked about";
+    search.reason = "part of the stiffness is not requested";
     return search;
   }
   VectorXd spectrum(n);

@@ -14,7 +14,7 @@ std::vector<ParameterChoice> natural_choices(const Experiment& experiment) {
       choices.push_back({"factor", name});
     if (choices.empty())
       throw std::invalid_argument(std::string("the ") + experiment.structure.kind() +
-                                  " has nothing that may be unknown; expected groups of members, or "
+                                  " has no parameter that may be unknown; expected groups of members, or "
                                   "parameters of matrices");
     return choices;
   }

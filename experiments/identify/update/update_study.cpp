@@ -50,7 +50,7 @@ void with_a_mode_missing(const RemedyRequest& request, std::vector<Remedied>& al
     if (mode.number || request.model.modes() <= count) return;
   for (Index missing = 0; missing < count; ++missing) {
     all.push_back({fmt::format("Were mode {} missing in the file, then", missing + 1), request.data,
-                   request.model.points(), "if it was not found, say so by the key 'mode' of [[modes]]."});
+                   request.model.points(), "if it was not found, state so by the key 'mode' of [[modes]]."});
     for (Index i = 0; i < count; ++i)
       all.back().data.modes[static_cast<std::size_t>(i)].number =
           static_cast<int>(i < missing ? i + 1 : i + 2);
@@ -79,7 +79,7 @@ void with_sensors_exchanged(const RemedyRequest& request, std::vector<Remedied>&
     for (std::size_t b = a + 1; b < sensors; ++b) {
       all.push_back({fmt::format("With sensors {} and {} exchanged", sensor_name(request.experiment, a),
                                  sensor_name(request.experiment, b)),
-                     request.data, request.model.points(), "does each sit where the file says?"});
+                     request.data, request.model.points(), "does each sit where the file states?"});
       for (MeasuredMode& mode : all.back().data.modes)
         if (mode.shape.size() > 1)
           std::swap(mode.shape[static_cast<Index>(a)], mode.shape[static_cast<Index>(b)]);
@@ -189,11 +189,10 @@ void add_missing(const UpdateStudy& study, std::vector<std::string>& warnings) {
       least = spread, missing = skipped;
   }
   if (missing < 0 || in_order < 0.05 || least > 0.4 * in_order) return;
-  warnings.push_back(
-      fmt::format("The frequencies are taken for modes 1 to {0}. Without mode {1} among them they "
-                  "would be nearer to those described: if it was not found, say so by the key "
-                  "'mode' of [[modes]].",
-                  count, missing + 1));
+  warnings.push_back(fmt::format(
+      "The frequencies are taken for modes 1 to {0}. Without mode {1} among them they "
+      "would be nearer to those described: if it was not found, state so by the key 'mode' of [[modes]].",
+      count, missing + 1));
 }
 
 double mean_assurance(const ModalData& data, const PredictedModes& modes) {
@@ -238,9 +237,8 @@ void add_common_factor(const UpdateStudy& study, std::vector<std::string>& warni
   const LogRatios factor = mean_and_spread(x);
   if (std::abs(factor.mean) < 0.35 || factor.spread > 0.3 * std::abs(factor.mean)) return;
   warnings.push_back(
-      fmt::format("All parameters changed alike, by a factor of {:.3g} in the mean: a mass or a "
-                  "unit that is wrong does that, too. Frequencies know only the ratio of "
-                  "stiffness to mass.",
+      fmt::format("All parameters changed alike, by a factor of {:.3g} in the mean: a mass or a unit that is "
+                  "wrong does that, too. Frequencies determine only the ratio of stiffness to mass.",
                   std::exp(factor.mean)));
 }
 

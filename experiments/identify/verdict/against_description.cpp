@@ -103,9 +103,9 @@ std::string scale_text(const CommonFactor& found, bool contradicts) {
 std::string prior_text(const Estimate& e, double deviations) {
   const double ratio = e.value / e.prior_value;
   return fmt::format(
-      "{} comes out as {:.5g}{}{}, {:.2g} deviations from the prior, {:.5g} +- {:.2g}{}: prior and "
+      "{} comes out as {:.5g}{}{}, {:.2g} standard deviations from the prior, {:.5g} +- {:.2g}{}: prior and "
       "record exclude each other. A wrong unit, gain, place or description does this to estimates; check "
-      "them, or state a larger deviation.",
+      "them, or state a larger standard deviation.",
       e.name, e.value, e.unit.empty() ? "" : " ", e.unit, deviations, e.prior_value, e.prior_deviation,
       std::isfinite(ratio) && e.prior_value != 0.0 ? fmt::format(" ({:.3g} times)", ratio) : "");
 }

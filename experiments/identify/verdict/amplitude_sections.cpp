@@ -133,7 +133,7 @@ AmplitudeLaw fit_amplitude_law(const VectorXd& signal, double interval, const Am
   law.shape = shape_at(instants, interval, shape, p, log_amplitude);
   if (!law.shape.allFinite() || !(law.frequency_hz.slope_deviation > 0) ||
       !(law.damping_ratio.slope_deviation > 0))
-    throw std::runtime_error("the fit of a decay that follows its amplitude determines nothing");
+    throw std::runtime_error("the fit of a decay that follows its amplitude determines no parameter");
   return law;
 }
 

@@ -142,7 +142,7 @@ std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun&
                               si_unit(channel.quantity), channel.name);
     fault.advice += fmt::format("{}{} = {:.2g}", j > 0 ? ", " : "", quantity_key(channel.quantity), noise);
   }
-  fault.text += " would leave motion as it is left here";
+  fault.text += " would explain the residual";
   fault.advice = "State it: [noise] " + fault.advice + ".";
   const VectorXd moved = run.likeliest_input_noise->moved;
   if (moved.size() > 0) fault.moved = moved.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
@@ -168,16 +168,15 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   if (!excluded && (approximate || !(fault->moved > 1.0))) return;
   const std::string explained =
       fault->explained > mostly
-          ? fmt::format(" and makes {:.0f} % of what is left, in squares", 100.0 * fault->explained)
+          ? fmt::format(" and makes {:.0f} % of the residual, in squares", 100.0 * fault->explained)
           : "";
   const bool said = run.status == ComparedRun::Status::contradicted;  // by all that is left
-  run.warnings.insert(
-      run.warnings.begin() + (said ? 1 : 0),
-      fmt::format("{}{}, or the model lacks what looks so: allowed for, it moves {} by {:.2g} of its "
-                  "deviations{}. {}",
-                  excluded && !said ? "CONTRADICTED: " : "", fault->text,
-                  run.parameters[static_cast<std::size_t>(fault->unknown)].estimate.name, fault->moved,
-                  explained, fault->advice));
+  run.warnings.insert(run.warnings.begin() + (said ? 1 : 0),
+                      fmt::format("{}{}, or the model lacks what looks so: allowed for, it moves {} by "
+                                  "{:.2g} of its standard deviations{}. {}",
+                                  excluded && !said ? "CONTRADICTED: " : "", fault->text,
+                                  run.parameters[static_cast<std::size_t>(fault->unknown)].estimate.name,
+                                  fault->moved, explained, fault->advice));
   if (!excluded || said) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fault->text;

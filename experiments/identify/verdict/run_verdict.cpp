@@ -162,7 +162,7 @@ std::string difference_text(const ModalEstimate& modal, const ComparedRun& run) 
                  modal.damping_ratio, modal.damping_ratio_standard_deviation, 100.0, "%", text);
   if (text.empty()) return {};
   return "The model and the modal analysis of the first channel DISAGREE: " + text +
-         ". The modal analysis knows no model: trust it, or give the model the modes that it lacks.";
+         ". The modal analysis assumes no model: trust it, or give the model the modes that it lacks.";
 }
 
 // As K and C of one degree of freedom are judged (record_identification.cpp): damping that is not the
@@ -248,7 +248,7 @@ void judge_certainty(ComparedRun& run) {
                       "CONTRADICTED: " + run.reason +
                           ", so that the truth may lie many of its intervals away. Expected nearer initial "
                           "estimates, more passes ([compare] passes), a reduction in place of the mesh, or "
-                          "`identify` in place of `compare`, which asks all samples at once.");
+                          "`identify` in place of `compare`, which uses all samples at once.");
 }
 
 // Of the general model: its lowest mode beside the modal analysis, its innovations.
@@ -316,7 +316,7 @@ void judge_what_is_said(ComparedRun& run) {
         !p.estimate.nuisance && share > next_to_nothing)
       text += fmt::format("{}{} ({:.2g})", text.empty() ? "" : ", ", p.estimate.name, share);
   if (!text.empty())
-    run.warnings.push_back("NOT DETERMINED: the record says next to nothing of " + text +
+    run.warnings.push_back("NOT DETERMINED: the record shows almost no effect of " + text +
                            "; what is printed is the prior, in brackets the standard deviation "
                            "over the prior one.");
 }

@@ -115,7 +115,7 @@ std::string step_error(const RunContext& context, const ComparedRun& run) {
   if (!(std::abs(worst) > std::max(rounding, narrowest_interval(run)))) return of_damping;
   const std::string of_stiffness = fmt::format(
       "WRONG BY THE STEP: at {:.3g} ms {} makes the stiffness of the mode at {:.4g} Hz {:.2g} % too {}, more "
-      "than the narrowest interval here; what that mode determines comes out wrong by as much. Expected a "
+      "than the narrowest interval here. What that mode determines comes out wrong by as much. Expected a "
       "reduction, such as modal_truncation, with the discretisation exponential, or a higher sampling rate.",
       1e3 * interval, run.discretisation, at_hz, 100 * std::abs(worst), worst > 0 ? "large" : "small");
   if (of_damping.empty()) return of_stiffness;

@@ -45,7 +45,7 @@ std::string lines_sentence(const AmbientMode& mode, Index in_band, std::vector<d
   }
   return fmt::format(
       "At {} Hz, beside the mode at {:.5g} Hz, the record is stronger than this mode and noise can be: a "
-      "machine, or another mode. {} of the {} frequencies of its band were left out.",
+      "machine, or another mode. {} of the {} frequencies of its band were excluded.",
       text, mode.frequency_hz, static_cast<Index>(3 * lines.size()), in_band);
 }
 

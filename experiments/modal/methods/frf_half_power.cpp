@@ -32,7 +32,7 @@ const bool frf_half_power_registered = modal_method_registry().add(
      "each mode from the lines above half of its peak's power in hammer hits' responses; needs a force",
      "[ewins2000]",
      {{"estimator", std::string("h1"), "", "h1: noise in the response; h2: noise in the force"},
-      {"window_end", 0.001, "", "what the exponential window leaves at the end of a hit; 1: no window"},
+      {"window_end", 0.001, "", "the value of the exponential window at the end of a hit; 1: no window"},
       {"smallest_peak", 0.05, "", "of the mobility, over the largest"}},
      {contract::frequency_response, contract::mode_by_mode},
      [](const filters::Options& options) {

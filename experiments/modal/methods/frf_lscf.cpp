@@ -11,7 +11,7 @@ const bool frf_lscf_registered = modal_method_registry().add(
      "least-squares complex frequency estimation from hammer hits, with modal masses; needs a force",
      "[guillaume1998], [verboven2002], [cauberghe2004], [cauberghe2005]",
      {{"estimator", std::string("h1"), "", "h1: noise in the response; h2: noise in the force"},
-      {"window_end", 0.001, "", "what the exponential window leaves at the end of a hit; 1: no window"}},
+      {"window_end", 0.001, "", "the value of the exponential window at the end of a hit; 1: no window"}},
      {contract::frequency_response},
      [](const filters::Options& options) {
        if (const std::string& word = options.text("estimator"); word != "h1" && word != "h2")

@@ -55,7 +55,7 @@ class HalfPower final : public ModeByModeMethod {
         Complex(-rate, w), deviation(points.centre_slope),
         deviation(points.distance_slope) / distance_per_rate,
         fmt::format("Half power at {:.4g} Hz: the width alone of {:.3g} s of this decay, {:.3g} Hz, would "
-                    "make its damping ratio {:.4g} %, {:.3g} % too large; the correction leaves {:.4g} %.",
+                    "make its damping ratio {:.4g} %, {:.3g} % too large; the corrected one is {:.4g} %.",
                     size / (2 * std::numbers::pi), length, textbook / std::numbers::pi, 100 * textbook / size,
                     100 * (textbook / rate - 1), 100 * rate / size)};
   }

@@ -55,7 +55,7 @@ const bool logarithmic_decrement_registered = modal_method_registry().add(
     {"logarithmic_decrement",
      "how fast the peaks of each isolated mode shrink, for free decays",
      "[rao2018]",
-     {{"smallest_swing", 0.1, "", "swings below this part of the largest one are left out"}},
+     {{"smallest_swing", 0.1, "", "swings below this part of the largest one are omitted"}},
      {contract::free_decay, contract::mode_by_mode},
      [](const filters::Options& options) {
        const double least = options.number("smallest_swing");

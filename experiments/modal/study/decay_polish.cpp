@@ -178,9 +178,10 @@ void compare_clocks(const JointDecayFit& fit, RecordModes& found) {
     deviation =
         std::hypot(deviation, scatter->farthest[static_cast<Eigen::Index>(m)] / (2.0 * std::numbers::pi));
   }
-  found.warnings.push_back(scatter->sentence(found.record.channel_names()) +
-                           " A frequency cannot say which is right; its deviations are widened by how far "
-                           "its channels are from it.");
+  found.warnings.push_back(
+      scatter->sentence(found.record.channel_names()) +
+      " A frequency cannot show which is right; its standard deviations are widened by how far "
+      "its channels are from it.");
 }
 
 using Modes = std::vector<ModeEstimate>;

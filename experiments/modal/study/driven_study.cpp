@@ -213,7 +213,8 @@ void judge(DrivenStudy& study) {
   if (explained < healthy)
     study.warnings.push_back(fmt::format(
         "The measured input{} only {:.0f} % of the motion through these modes. Something else moves the "
-        "structure, a mode is missing, or frequencies and damping are not constant: deviations may be too "
+        "structure, a mode is missing, or frequencies and damping are not constant: standard deviations may "
+        "be too "
         "small.",
         study.inputs.size() > 1 ? "s make" : " makes", 100.0 * explained));
   for (std::size_t k = 0; k < study.modes.size(); ++k)

@@ -216,14 +216,15 @@ bool refine(const VectorXd& lines, const MatrixXcd& measured, HammerStudy& study
       const HammerMode& lost = study.modes[worst];
       const std::string why = fmt::format("the pole at {:.4g} Hz runs away", lost.pole.frequency_hz());
       if (rates.size() == 1) throw std::runtime_error(why);
-      study.warnings.push_back("Least squares of all poles: " + why + " and was left out.");
+      study.warnings.push_back("Least squares of all poles: " + why + " and was excluded.");
       study.stabilisation.rejected.push_back({lost.pole, lost.orders, "runs away in the least squares"});
       study.modes.erase(study.modes.begin() + static_cast<std::ptrdiff_t>(worst));
     }
   } catch (const std::runtime_error& error) {
     study = before;
-    study.warnings.push_back(std::string("Poles are as they were found at first, without deviations: ") +
-                             error.what() + ".");
+    study.warnings.push_back(
+        std::string("Poles are as they were found at first, without standard deviations: ") + error.what() +
+        ".");
     return false;
   }
 }

@@ -152,17 +152,18 @@ std::vector<std::string> decay_warnings(const RecordModes& found) {
   const ModalEstimate mode = strongest_of(found.modes, strongest, channel);
   std::vector<std::string> warnings;
   if (const auto jump = decay_jump(signal, record.interval(), mode))
-    warnings.push_back(jump->sentence(record.time[0]) +
-                       " Modes across it are wrong by more than their deviations. Expected a --window on one "
-                       "side of it.");
+    warnings.push_back(
+        jump->sentence(record.time[0]) +
+        " Modes across it are wrong by more than their standard deviations. Expected a --window on one "
+        "side of it.");
   constexpr double many = 2;
   const auto overtone = third_overtone(signal, record.interval(), mode);
   if (overtone && std::abs(overtone->damping_error()) * mode.damping_ratio >
                       many * strongest.pole.damping_ratio_deviation)
-    warnings.push_back(
-        fmt::format("{} The damping ratio of the mode at {:.4g} Hz is wrong by about {:.2g} % through it, "
-                    "more than its deviation. Expected a later --window, or a sensor of larger range.",
-                    overtone->words(), mode.frequency_hz, 100 * std::abs(overtone->damping_error())));
+    warnings.push_back(fmt::format(
+        "{} The damping ratio of the mode at {:.4g} Hz is wrong by about {:.2g} % through it, "
+        "more than its standard deviation. Expected a later --window, or a sensor of larger range.",
+        overtone->words(), mode.frequency_hz, 100 * std::abs(overtone->damping_error())));
   return warnings;
 }
 
@@ -224,7 +225,7 @@ void leave_out_weak(const ModalStudySettings& settings, RecordModes& found) {
     std::sort(strengths.rbegin(), strengths.rend());
     if (strengths[settings.modes - 1] > floor) {
       floor = strengths[settings.modes - 1];
-      why = fmt::format("weaker than the {} asked for", settings.modes);
+      why = fmt::format("weaker than the {} requested", settings.modes);
     }
   }
   for (const ModeEstimate& mode : found.modes)
@@ -250,7 +251,8 @@ void take_modes(RecordModes& found) {
 /// over a record, and two near modes can be stronger late: what decaying modes reproduce is a decay.
 void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found) {
   constexpr const char* no_decay =
-      "Deviations are too small. For random vibration take --method ssi_cov or bayoma and a record of many "
+      "Standard deviations are too small. For random vibration take --method ssi_cov or bayoma and a record "
+      "of many "
       "decay times; for a decay, a --window of it alone.";
   constexpr double reproduced = 0.5;  // of the motion's size
   const MatrixXd motion = samples.colwise() - samples.rowwise().mean();
@@ -267,12 +269,12 @@ void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found
         "record, --window.");
   else if (found.free_decay && motion_goes_on(found))
     found.warnings.push_back(
-        fmt::format("The motion goes on: the modes leave {:.2g} % of it, at their own frequencies and to the "
-                    "end, which no decay does. {}",
+        fmt::format("The motion goes on: the modes do not explain {:.2g} % of it, at their own frequencies "
+                    "and to the end, which no decay does. {}",
                     100.0 * (found.target - found.reproduced).norm() / motion.norm(), no_decay));
   else if (found.free_decay && moved_before(whole, found))
     found.warnings.push_back(
-        fmt::format("Nothing was released: the record moves as much before its largest reading, at {:.4g} s, "
+        fmt::format("No release was found: the record moves as much before its largest reading, at {:.4g} s, "
                     "as after. {}",
                     found.record.time[0], no_decay));
   found.decays = found.warnings.size() == before;

@@ -132,7 +132,7 @@ void set_overtones_aside(RecordModes& found) {
   if (kept.size() < found.modes.size())
     found.warnings.emplace_back(
         "Multiples of a mode's frequency that share its damping ratio or its phase are listed as its "
-        "overtones, not as modes: stiffness, clamp or sensor are not linear at these amplitudes.");
+        "overtones, not as modes. Stiffness, clamp or sensor are not linear at these amplitudes.");
   found.modes = std::move(kept);
 }
 

@@ -231,9 +231,9 @@ void follow_phases(const JointDecayFit& fit, RecordModes& found) {
   }
   if (!(all.squares > chi_square_limit(all.freedom, 1.0 - worth_saying))) return;
   found.warnings.push_back(fmt::format(
-      "The modes do not keep their phases (chi^2 = {:.3g} of {:.0f} in {} sections of the record): they "
+      "The modes do not keep their phases (chi^2 = {:.3g} of {:.0f} in {} sections of the record). They "
       "wander as under a clock that is {:.2g} ms off after {:.3g} s of intervals that scatter, or under "
-      "frequencies that change. Deviations allow for such a walk.",
+      "frequencies that change. Standard deviations allow for such a walk.",
       all.squares, all.freedom, sections, 1e3 * std::sqrt(walk * duration), duration));
 }
 

@@ -240,11 +240,10 @@ std::unique_ptr<filters::DiscreteModel> ContinuumMotion::structured(double dt, c
   if (scheme == "pade") return continuum_step(parts_, dt, noise);
   const Index n = parts_->layout.coordinates;
   if (n <= dense_limit && scheme != "exponential") return nullptr;
-  const std::string instead =
-      keeps_mode_shapes(parts_->system, parts_->description)
-          ? "'pade', or the reduction modal_truncation: these unknowns leave the mode "
-            "shapes as they are, so that it is exact for motion in the modes it keeps"
-          : "'pade', or a reduction";
+  const std::string instead = keeps_mode_shapes(parts_->system, parts_->description)
+                                  ? "'pade', or the reduction modal_truncation: these unknowns do not change "
+                                    "the mode shapes, so that it is exact for motion in the modes it keeps"
+                                  : "'pade', or a reduction";
   throw std::invalid_argument("discretisation '" + scheme +
                               "' would take dense matrices of the whole mesh, " + std::to_string(n) +
                               " coordinates; expected " + instead);

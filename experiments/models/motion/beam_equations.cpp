@@ -167,7 +167,7 @@ std::vector<ParameterDefault> beam_defaults(const fem::Structure& structure,
 fem::ParametricSystem beam_equations(const ModelSetting& setting, const std::vector<Unknown>& unknowns) {
   if (!setting.continuum)
     throw std::invalid_argument(
-        "model 'beam' asks about the beam itself; the system was given without the beam it was made from");
+        "model 'beam' determines the beam itself; the system was given without the beam it was made from");
   if (!setting.system.nonlinear_forces.empty())
     throw std::invalid_argument(
         fmt::format("model 'beam' is linear; found {} springs or dashpots that are not",

@@ -172,7 +172,7 @@ void take_terms(const std::string& model, const ModelSetting& setting,
   for (std::size_t i = 0; i < setting.parameters.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (setting.parameters[i].quantity == setting.parameters[j].quantity)
-        refuse(setting.parameters[i], setting.parameters[i].quantity + " is asked about twice");
+        refuse(setting.parameters[i], setting.parameters[i].quantity + " is requested twice");
   parts.unknowns = unknowns_of(choices, defaults);
 }
 
@@ -228,7 +228,7 @@ std::unique_ptr<JointModel> make_oscillator(const std::string& name, const Model
   for (const ParameterChoice& choice : setting.parameters)
     if (choice.quantity == "mass" && !pushed)
       refuse(choice,
-             "model '" + name + "' asks about its mass where a force was measured; this record has none");
+             "model '" + name + "' determines its mass where a force was measured; this record has none");
   take_terms(name, setting, terms, parts);
 
   auto model = std::make_unique<JointModel>();

@@ -13,10 +13,9 @@ ModeDamping damping_at(const DampedMode& mode, const VectorXd& change, double ra
   const double mass = 1.0 + mode.mass_slopes.dot(change);
   const double stiffness = mode.stiffness + mode.stiffness_slopes.dot(change);
   if (!(mass > 0.0 && stiffness > 0.0))
-    throw std::runtime_error(
-        fmt::format("the parameters leave a damped mode {:g} of its mass and {:g} of its "
-                    "stiffness; expected both above 0",
-                    mass, stiffness / mode.stiffness));
+    throw std::runtime_error(fmt::format(
+        "the parameters give a damped mode {:g} of its mass and {:g} of its stiffness; expected both above 0",
+        mass, stiffness / mode.stiffness));
   // c = 2 xi sqrt(kappa) mu^(-3/2)
   ModeDamping at;
   at.by_ratio = 2.0 * std::sqrt(stiffness / mass) / mass;
@@ -152,7 +151,7 @@ MotionDescription describe_sensors(const std::string& model, const ModelSetting&
   for (Eigen::Index i = 0; i < rows; ++i)
     if (Eigen::MatrixXd(setting.system.outputs.row(i)).isZero(0.0))
       throw std::invalid_argument(fmt::format(
-          "observation {} of {} reads nothing of the motion; expected a place that moves, and of a "
+          "observation {} of {} reads no part of the motion; expected a place that moves, and of a "
           "strain gauge its place and its distance from the axis",
           i + 1, to_string(setting.observations[static_cast<std::size_t>(i)].quantity)));
   description.forces = setting.forces;

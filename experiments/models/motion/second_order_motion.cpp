@@ -237,7 +237,7 @@ class Evaluation {
       if (slope.damping.size() > 0) damping_ += change * slope.damping;
     }
     if (decoupled && !(mass_.minCoeff() > 0.0))
-      throw std::runtime_error("the parameters leave a mode without mass");
+      throw std::runtime_error("the parameters make a mode without mass");
     damping_ += at_.mass_damping * mass_ + at_.stiffness_damping * stiffness_;
     for (std::size_t i = 0; i < given.damped_modes.size(); ++i) {
       const ModeDamping& mode = modes_.emplace_back(

@@ -38,7 +38,7 @@ void SupportedMotion::evaluate(const VectorXd& state, SecondOrderForm& form,
     damping.topLeftCorner(inside, inside).noalias() += (modes.back().factor * g) * g.transpose();
   }
   const Eigen::PartialPivLU<MatrixXd> factor(mass);
-  if (!(factor.rcond() > 1e-14)) throw std::runtime_error("the parameters leave a place without mass");
+  if (!(factor.rcond() > 1e-14)) throw std::runtime_error("the parameters make a place without mass");
   form.stiffness = factor.solve(stiffness);
   form.damping = factor.solve(damping);
   form.inputs = factor.solve(inputs);

@@ -32,7 +32,7 @@ class BoucWenSpring final : public SpringLaw {
     require(values.beta >= 0.0, "hysteresis_beta", values.beta,
             "zero or more: below it the spring gives energy");
     require(values.beta + values.gamma >= 0.0, "hysteresis_gamma", values.gamma,
-            "at least -hysteresis_beta: below it nothing ends the slip");
+            "at least -hysteresis_beta: below it the slip does not end");
     require(values.exponent >= 1.0, "exponent", values.exponent, "at least 1");
     require(values.length > 0.0, "reference_length_m", values.length, "more than 0");
   }
@@ -64,7 +64,7 @@ class BoucWenSpring final : public SpringLaw {
 
 const bool bouc_wen_spring_registered = spring_law_registry().add(
     {"bouc_wen",
-     "hysteresis: a part of the spring slips, and stays where it is left",
+     "hysteresis: a part of the spring slips, and stays where it stops",
      "[wen1976]",
      {{"post_yield_ratio", 0.5, "", "alpha, the part of k that does not slip"},
       {"hysteresis_beta_per_m", 0.0, "1/m", "beta; 1 / (beta + gamma) is the drift at which it yields"},

@@ -43,7 +43,7 @@ const bool hyperbolic_spring_registered = spring_law_registry().add(
     {"hyperbolic",
      "k d / (1 + |d| / d_r), elastic: soil that softens",
      "[hardin1972]",
-     {{"reference_drift_m", 0.01, "m", "d_r, at which half the stiffness is left"}},
+     {{"reference_drift_m", 0.01, "m", "d_r, at which half the stiffness remains"}},
      {},
      [](const filters::Options& options) {
        return std::make_unique<HyperbolicSpring>(options.number("reference_drift_m"));

@@ -155,7 +155,7 @@ class NiedReader final : public RecordReader {
       Component other = ComponentFile(*beside).read();
       if (other.station != one.station || other.begin != one.begin || other.rate != one.rate)
         table.warnings.push_back(
-            fmt::format("{} is of another record (station, time or sampling frequency) and is left out.",
+            fmt::format("{} is of another record (station, time or sampling frequency) and is omitted.",
                         beside->filename().string()));
       else
         return both(one, std::move(other), *beside, std::move(table));

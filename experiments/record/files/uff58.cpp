@@ -166,7 +166,8 @@ std::vector<double> read_binary_numbers(UniversalLines& lines, const UniversalFu
   const std::string_view ahead = lines.ahead();
   const std::size_t width = function.single() ? 4 : 8, count = function.numbers(), bytes = width * count;
   if (bytes > ahead.size())
-    lines.fail(fmt::format("{} bytes left; expected {} for {} points", ahead.size(), bytes, function.points));
+    lines.fail(
+        fmt::format("{} bytes remain; expected {} for {} points", ahead.size(), bytes, function.points));
   std::vector<double> numbers(count);
   for (std::size_t i = 0; i < count; ++i) {
     unsigned char raw[8];

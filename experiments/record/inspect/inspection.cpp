@@ -196,8 +196,8 @@ std::optional<RecordColumn> find_time(const RecordTable& table, const RecordForm
       if (!looks_like_time(table.columns[index])) continue;
       if (!named && index > 0) return std::nullopt;  // a column further on may rise for other reasons
       text = fmt::format(
-          "Nothing states which column is time: {} rises throughout and is taken for seconds "
-          "(--time {} confirms it, --time {}:ms says otherwise).",
+          "The file does not state which column is time: {} rises throughout and is taken for seconds "
+          "(--time {} confirms it, --time {}:ms overrides it).",
           titled(index), index + 1, index + 1);
       key = time_key({index, 1, {}});
       return RecordColumn{index, 1, {}};
@@ -223,7 +223,7 @@ void set_time(const RecordTable& table, const RecordFormat& format, const std::o
   } else if (!format.sampling_rate) {
     found.has_time = false;
     found.time_text =
-        "Nothing tells the time: samples are counted, frequencies are per sample (--rate HZ states it).";
+        "The file states no time: samples are counted, frequencies are per sample (--rate HZ states it).";
   }
   if (format.sampling_rate) {
     found.time_key += fmt::format("{}sampling_rate_hz = {:.12g}", found.time_key.empty() ? "" : "\n",

@@ -76,7 +76,7 @@ FilterStep::FilterStep(const filters::Options& options)
 std::vector<filters::OptionSpec> FilterStep::with_common_options(std::vector<filters::OptionSpec> own) {
   own.push_back({"zero_phase", false, "", "forwards and backwards: no phase shift, the square of the gain"});
   own.push_back({"start", std::string("steady"), "",
-                 "causal: before the record lies its first sample (steady) or nothing (rest)"});
+                 "causal: before the record lies its first sample (steady) or zero (rest)"});
   own.push_back({"trim", false, "", "cut off the ends, until transients are down to 1e-3"});
   own.push_back(channels_option());
   return own;

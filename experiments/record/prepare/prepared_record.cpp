@@ -95,8 +95,8 @@ void mark_gaps(const Record& record, std::vector<RecordDefect>& all) {
       gaps.spans.emplace_back(record.time[k], record.time[k + 1]);
   if (gaps.spans.empty()) return;
   gaps.text = fmt::format(
-      "{} gap{} between the stamps, up to {:.4g} s long, the first behind {:.6g} s: nothing is made up in "
-      "between.",
+      "{} gap{} between the stamps, up to {:.4g} s long, the first behind {:.6g} s: gaps are not "
+      "interpolated.",
       gaps.spans.size(), gaps.spans.size() == 1 ? "" : "s", longest, gaps.spans.front().first);
   all.push_back(std::move(gaps));
 }
@@ -107,7 +107,7 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
   std::vector<RecordDefect> all;
   if (record.size() < 2) return all;
   mark_gaps(record, all);
-  constexpr const char* left_out = "; they are left out.";
+  constexpr const char* left_out = "; they are omitted.";
   // Under a moving base broadband noise that comes and goes with the motion is the base's.
   const bool shaken = std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& one) {
     return is_input(one.quantity) && one.quantity != Quantity::force;
@@ -134,10 +134,10 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
     }
     if (!found.spikes.empty())
       channel.add(fmt::format("spikes, the first {:.3g} {}", found.spikes.front().value, channel.unit()),
-                  found.spikes, found.spikes.size() > 1 ? left_out : "; it is left out.");
+                  found.spikes, found.spikes.size() > 1 ? left_out : "; it is omitted.");
     channel.add("clipped at " + channel.levels(found.clipped), found.clipped,
                 noise_decides(signal, found.clipped)
-                    ? "; they are left out, but noise decides which readings beside them are not: amplitudes "
+                    ? "; they are omitted, but noise decides which readings beside them are not. Amplitudes "
                       "near the limit come out too small, and the damping ratio of a decay with them. A "
                       "--window behind them avoids that."
                     : left_out,
@@ -221,7 +221,7 @@ std::string take_known_inputs(Record& record, MissingInput how) {
       text += fmt::format("{}{} of {} samples of '{}'", text.empty() ? "" : ", ", missing, record.size(),
                           record.channels[static_cast<std::size_t>(row)].name);
     }
-    return "Inputs are taken as 0 where they were not recorded, as missing_input says: " + text + ".";
+    return "Inputs are taken as 0 where they were not recorded, as missing_input states: " + text + ".";
   }
   constexpr Index fewest = 16;
   const std::vector<Stretch> all = known_stretches(record, rows);
@@ -235,7 +235,7 @@ std::string take_known_inputs(Record& record, MissingInput how) {
   const Index samples = record.size();
   record = record.window(record.time[longest.first], record.time[longest.first + longest.second - 1]);
   return fmt::format(
-      "Every input is known from {:.6g} to {:.6g} s: {:.0f} % of the record{}. The rest is left out.",
+      "Every input is known from {:.6g} to {:.6g} s: {:.0f} % of the record{}. The rest is omitted.",
       record.time[0], record.time[record.size() - 1],
       100.0 * static_cast<double>(longest.second) / static_cast<double>(samples),
       all.size() > 1 ? fmt::format(", the longest of {} such stretches", all.size()) : "");

@@ -27,7 +27,7 @@ class Integrate final : public ChannelStep {
   static std::vector<filters::OptionSpec> options() {
     return {{"in", std::string("time"), "", "time: trapezoidal rule; frequency: division by i w"},
             {"times", 1.0, "", "1, or 2 from acceleration to displacement"},
-            {"corner_hz", 0.0, "Hz", "in frequency, where it must be given: what lies below is left out"},
+            {"corner_hz", 0.0, "Hz", "in frequency, where it must be given: what lies below is omitted"},
             {"start", std::string("mean"), "",
              "in time: the constant that makes the integral's mean zero, or starts it from rest"},
             {"keep", false, "", "keep what was integrated, and what lies between, beside the integral"},
@@ -50,7 +50,7 @@ class Integrate final : public ChannelStep {
         (in_frequency_ ? fmt::format("frequency above {:g} Hz", corner_) : std::string("time")) +
         (times_ == 2 ? ", twice: " : ": ") + words(record, chosen);
     if (!in_frequency_)
-      text += fmt::format("; a mean of up to {:.3g} that was left in it drifts",
+      text += fmt::format("; a mean of up to {:.3g} that remained in it drifts",
                           record.samples(chosen, Eigen::all).rowwise().mean().cwiseAbs().maxCoeff());
     for (const Eigen::Index row : chosen) {
       const Eigen::VectorXd signal = record.samples.row(row).transpose();

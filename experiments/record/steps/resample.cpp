@@ -132,14 +132,14 @@ class Resample final : public PreparationStep {
     if (spline_)
       return how + fmt::format(
                        "through every second sample alone it misses the others by up to {:.2g} % of the "
-                       "signal (noise included), through all of them by about a sixteenth of that in a "
+                       "signal (noise included). Through all of them by about a sixteenth of that in a "
                        "smooth signal.",
                        100 * quality.error);
     return how +
            fmt::format(
                "at the strongest frequency, {:.4g} Hz, the kernel errs by {:.1g} of the amplitude (straight "
-               "lines by up to {:.2g}), and by less than 1e-4 up to {:.4g} Hz; what lies higher is not "
-               "kept. {} samples at either end rest on a linear prediction. It misses the samples "
+               "lines by up to {:.2g}), and by less than 1e-4 up to {:.4g} Hz. What lies higher is not kept. "
+               "{} samples at either end rest on a linear prediction. It misses the samples "
                "themselves by {:.1g} % of the signal.",
                frequency, BandLimited::kernel_error(std::min(relative, 0.5)),
                linear_interpolation_error(std::min(relative, 0.5)), 0.4 * quality.rate,

@@ -48,7 +48,7 @@ void* opened_library() {
 }
 
 VtuText* loaded_function() {
-  constexpr const char* remedy = "; meshes for ParaView are left out (Debian package beamid-paraview)";
+  constexpr const char* remedy = "; meshes for ParaView are omitted (Debian package beamid-paraview)";
   void* const library = opened_library();
   if (library == nullptr) throw NotDrawn(std::string(dlerror()) + remedy, true);
   const auto* const version = static_cast<const char* const*>(dlsym(library, "beamid_vtk_made_for"));

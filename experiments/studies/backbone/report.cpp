@@ -84,7 +84,7 @@ Table model_table(const RecordFits& record) {
       .column({"unknowns", "unknowns", "{:.0f}"})
       .column({"log-likelihood", "log_likelihood", "{:.2f}"})
       .column({"BIC above the least", "bic_above", "{:.2f}"})
-      .column({"left [%]", "left_percent", "{:.3g}"})
+      .column({"residual [%]", "left_percent", "{:.3g}"})
       .column({"remark", "remark"});
   const double least = record.best >= 0 ? record.fits[static_cast<std::size_t>(record.best)].bic : 0;
   for (std::size_t i = 0; i < record.fits.size(); ++i) {
@@ -96,7 +96,8 @@ Table model_table(const RecordFits& record) {
   }
   table.note = fmt::format(
       "Gaussian output-error likelihood, all samples at once, no prior, one noise of {:.3g} (SI) for all: "
-      "what the best of them leaves. Elastic, masing and between have a spring of any shape: mu is the part "
+      "the residual of the best of them. Elastic, masing and between have a spring of any shape: mu is the "
+      "part "
       "of it that is Masing's loop.",
       record.noise);
   return table;

@@ -68,8 +68,7 @@ std::string test_text(const Experiment& experiment, const Identifiability& found
   }
   if (found.inputs) text += ". " + words(*found.inputs);
   return text + (found.inputs ? "" : ".") +
-         " The start is unknown, nothing is known beforehand of the parameters asked about, the noise is "
-         "white.";
+         " The start is unknown, the parameters requested have no prior, the noise is white.";
 }
 
 Attachment place_file(const Identifiability& found) {

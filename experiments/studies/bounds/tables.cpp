@@ -25,7 +25,7 @@ Eigen::VectorXd weights(const filters::InformationReport& report, Index k) {
 }  // namespace
 
 Table bound_table(const Identifiability& found) {
-  Table table{"parameters", "The least deviation with which each parameter can be known"};
+  Table table{"parameters", "The least standard deviation with which each parameter can be known"};
   table.column({"parameter", "parameter"})
       .column({"unit", "unit"})
       .column({"value", "value", "{:.5g}"})
@@ -45,7 +45,8 @@ Table bound_table(const Identifiability& found) {
   table.note =
       "Bound: Cramer-Rao, on the standard deviation of any unbiased estimate. Others known: the same were "
       "all other parameters known. 95 %: what an interval from the best estimate would be.";
-  if (of_deviation) table.note += " Of a parameter that is zero per cent are of its deviation beforehand.";
+  if (of_deviation)
+    table.note += " Of a parameter that is zero per cent are of its prior standard deviation.";
   return table;
 }
 
@@ -65,8 +66,8 @@ Table combination_table(const Identifiability& found) {
   const Eigen::MatrixXd silent = silent_combinations(found.report);
   for (const auto& change : silent.colwise()) add(std::nan(""), change);
   table.note =
-      "Each row: the sum of the parameters' relative changes with these weights. \"-\": such a change leaves "
-      "the record as it is.";
+      "Each row: the sum of the parameters' relative changes with these weights. \"-\": such a change does "
+      "not alter the record.";
   return table;
 }
 

@@ -27,7 +27,7 @@ std::vector<std::string> named(const Identifiability& found, BoundVerdict verdic
 }
 
 std::string identifiability_percent(const ParameterBound& p, double value) {
-  return fmt::format("{:.2g} %{}", value, p.of_value ? "" : " of its deviation beforehand");
+  return fmt::format("{:.2g} %{}", value, p.of_value ? "" : " of its prior standard deviation");
 }
 
 std::string determined_text(const Identifiability& found) {
@@ -63,7 +63,7 @@ std::string silent_text(const Identifiability& found) {
       names.push_back(found.parameters[j].name);
     }
     if (names.size() < 2) continue;
-    text += fmt::format("{}Only in combination: {}. To change {} leaves the record as it is.",
+    text += fmt::format("{}Only in combination: {}. To change {} does not alter the record.",
                         text.empty() ? "" : " ", list_of(names), list_of(changes));
   }
   return text;
@@ -87,8 +87,8 @@ std::string correlation_text(const Identifiability& found) {
   const ParameterBound &a = found.parameters[static_cast<std::size_t>(one)],
                        &b = found.parameters[static_cast<std::size_t>(other)];
   return fmt::format(
-      "{} and {} are hard to tell apart (correlation {:+.4f}): were all others known, they would be known to "
-      "{:.2g} % and {:.2g} % instead of {:.2g} % and {:.2g} %.",
+      "{} and {} are hard to distinguish (correlation {:+.4f}). Were all others known, they would be known "
+      "to {:.2g} % and {:.2g} % instead of {:.2g} % and {:.2g} %.",
       a.name, b.name, found.report.correlations(one, other), a.conditional_percent(), b.conditional_percent(),
       a.bound_percent(), b.bound_percent());
 }
@@ -128,14 +128,14 @@ std::string length_text(const Identifiability& found) {
         fmt::format("A record of {:.4g} s instead of {:.4g} s would", found.lengths.at[last], found.duration);
     if (!longer.parts.empty())
       text = fmt::format("{} bring {}{}.", would, list_of(longer.parts),
-                         longer.all ? "" : ", and next to nothing of the rest");
+                         longer.all ? "" : ", and almost no improvement of the rest");
     else if (longer.most > 0.0)
-      text = would + " bring next to nothing.";
+      text = would + " bring almost no improvement.";
   }
   if (found.slowest_decay > 0.0)
     text += fmt::format(
-        "{}Mode 1 decays with a time constant of {:.3g} s: of what a free decay can ever tell of its "
-        "damping, 91 % is there after three of them; this record has {:.2g}.",
+        "{}Mode 1 decays with a time constant of {:.3g} s: after three of them 91 % of what a free decay can "
+        "ever show of its damping is there; this record has {:.2g}.",
         text.empty() ? "" : " ", found.slowest_decay, found.duration / found.slowest_decay);
   return text;
 }
@@ -153,8 +153,8 @@ std::string rate_text(const Identifiability& found) {
     text += "bounds change: " + list_of(slower.parts) + ".";
   if (found.rates.beside.minCoeff() < static_cast<double>(found.frequencies_hz.size()))
     text +=
-        " Modes above half the rate appear at other frequencies. The bounds count what they tell, for the "
-        "model knows where they appear; an anti-aliasing filter would take them away.";
+        " Modes above half the rate appear at other frequencies. The bounds count their information, as the "
+        "model contains where they appear. An anti-aliasing filter would take them away.";
   return text;
 }
 

@@ -49,11 +49,11 @@ using Causes = std::bitset<cause_count>;  ///< those that are on
 inline constexpr std::array<CauseText, cause_count> causes{
     {{"amplitude_damping", "amplitude", "a small quadratic damping", "linear damping"},
      {"higher_modes", "modes", "all modes in the record", "the first mode alone"},
-     {"sensor_mass", "mass", "a sensor whose mass nobody counted", "a weightless sensor"},
+     {"sensor_mass", "mass", "a sensor whose mass was not counted", "a weightless sensor"},
      {"sensor_noise", "noise", "white noise of the sensor", "none"},
      {"sensor_bias", "bias", "a constant offset of the sensor", "none"},
      {"sampling", "sampling", "the stated rate", "twice that rate"},
-     {"high_pass", "high-pass", "causal high-pass, its transient kept", "none, or its transient left out"},
+     {"high_pass", "high-pass", "causal high-pass, its transient kept", "none, or its transient omitted"},
      {"integration", "integration", "displacement and velocity by integration", "acceleration observed"},
      {"reduction", "reduction", "Rayleigh's mass", "the first mode's own mass"},
      {"discretisation", "discretisation", "forward Euler", "the exact discretisation"},

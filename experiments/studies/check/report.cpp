@@ -115,7 +115,7 @@ Table single_table(const ModelCheck& check) {
   add_change_columns(table);
   if (check.structures.size() == 1) table.column({"would be", "value"});
   if (!check.right)
-    table.column({"left [%]", "left_percent", "{:.2f}"})
+    table.column({"residual [%]", "left_percent", "{:.2f}"})
         .column({"chi^2", "chi_square", "{:.3g}"})
         .column({"verdict", "verdict"});
   for (const Explanation& e : check.single) {
@@ -127,8 +127,9 @@ Table single_table(const ModelCheck& check) {
     if (!check.right) row.insert(row.end(), {left_percent(e), e.chi_square, verdict_text(e)});
     table.row(std::move(row));
   }
-  table.note = fmt::format("{}on its bound: the best fit lies at the edge of what is possible.",
-                           check.right ? "" : "left: root mean square of what remains of the frequencies; ");
+  table.note =
+      fmt::format("{}on its bound: the best fit lies at the edge of what is possible.",
+                  check.right ? "" : "residual: root mean square of what remains of the frequencies; ");
   return table;
 }
 
@@ -136,7 +137,7 @@ Table pair_table(const ModelCheck& check) {
   Table table{"pairs", "Two changes together"};
   table.column({"pair", "pair", "{:.0f}"});
   add_change_columns(table)
-      .column({"left [%]", "left_percent", "{:.2f}"})
+      .column({"residual [%]", "left_percent", "{:.2f}"})
       .column({"correlation", "correlation", "{:+.3f}"})
       .column({"verdict", "verdict"});
   for (std::size_t k = 0; k < std::min(most_pairs, check.pairs.size()); ++k) {
@@ -233,12 +234,12 @@ Results report(const ModelCheck& check) {
     for (const auto& [structure, mode] : check.strays)
       text += fmt::format("{}{:.4g} Hz{}", text.empty() ? "" : ", ", mode.frequency_hz,
                           check.structures.size() > 1 ? " of " + check.structures[structure].name : "");
-    results.paragraph("Identified modes without a predicted counterpart, left out: " + text +
+    results.paragraph("Identified modes without a predicted counterpart, excluded: " + text +
                       ". A neighbour of the structure, motion in another plane, or no mode at all.");
   }
   results.paragraph(
       fmt::format("Each predicted frequency is trusted to {:.2g} % (one standard deviation, --model-error) "
-                  "beside what the record leaves open{}.",
+                  "beside what the record does not determine{}.",
                   100 * check.settings.model_error, shapes_text(check)));
   results.heading("What would explain the difference");
   results.table(single_table(check));

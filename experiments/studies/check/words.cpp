@@ -16,7 +16,7 @@ using ExplanationVerdict = Explanation::Verdict;
 using Explanations = std::vector<const Explanation*>;
 
 constexpr const char* alike_note =
-    "Another mode, another sensor, or the same structure with another mass on it, may tell more.";
+    "Another mode, another sensor, or the same structure with another mass on it, may show more.";
 
 const Candidate& candidate_in(const ModelCheck& check, const Explanation& e, std::size_t i = 0) {
   return check.candidates[e.candidates[i]];
@@ -82,10 +82,10 @@ bool add_conclusions(const ModelCheck& check, const std::vector<Explanation>& al
       values += (i > 0 ? "; " : "") + change_text(check, *best[i]);
     if (best.size() > most_with_values)
       values += "; also " + names_of(check, Explanations(best.begin() + most_with_values, best.end()));
-    sentences.push_back(fmt::format(
-        "Each of {} {} explains the difference equally well, and these modes cannot tell which is true: {}. "
-        "{}",
-        best.size(), kinds, values, alike_note));
+    sentences.push_back(
+        fmt::format("Each of {} {} explains the difference equally well, and these modes cannot show which "
+                    "is true: {}. {}",
+                    best.size(), kinds, values, alike_note));
   } else {
     sentences.push_back(fmt::format("No plausible {} explains the difference.", kind));
   }
@@ -117,9 +117,10 @@ void add_best(const ModelCheck& check, const std::vector<Explanation>& all, cons
     if (one.plausible && !plausible) plausible = &one;
   }
   const auto text = [&](const Explanation& e, const char* which) {
-    return fmt::format(
-        "The best {} leaves {:.2g} % (root mean square): {}.", fmt::format(fmt::runtime(which), kind),
-        100 * e.left.norm() / std::sqrt(static_cast<double>(e.left.size())), change_text(check, e));
+    return fmt::format("The best {} has a residual of {:.2g} % (root mean square): {}.",
+                       fmt::format(fmt::runtime(which), kind),
+                       100 * e.left.norm() / std::sqrt(static_cast<double>(e.left.size())),
+                       change_text(check, e));
   };
   if (plausible) sentences.push_back(text(*plausible, "plausible {}"));
   if (best && best != plausible) sentences.push_back(text(*best, "{} of all, with implausible values,"));
@@ -182,7 +183,7 @@ std::vector<std::vector<std::size_t>> indistinguishable(const ModelCheck& check)
 void add_twins(const ModelCheck& check, std::vector<std::string>& sentences) {
   if (check.numbers < 2) {
     sentences.emplace_back(
-        "One frequency cannot tell candidates apart: any of them can be chosen to reproduce it.");
+        "One frequency cannot distinguish candidates: any of them can be chosen to reproduce it.");
     return;
   }
   std::string groups;

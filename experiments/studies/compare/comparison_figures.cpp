@@ -95,7 +95,7 @@ Figure motion_figure(const Comparison& comparison, const Runs& runs, Index chann
   }
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     figure.panels.push_back(
-        residual_panel(fmt::format("{} leaves {:.3g} {} (rms)", name_of(comparison, *runs[i]),
+        residual_panel(fmt::format("{}: residual {:.3g} {} (rms)", name_of(comparison, *runs[i]),
                                    root_mean_squares(residuals[i].transpose())[0], si_unit(shown.quantity)),
                        record.time, residuals[i], label, largest)
             .across(begin, last));
@@ -106,7 +106,7 @@ Figure motion_figure(const Comparison& comparison, const Runs& runs, Index chann
   figure.rows = static_cast<int>(figure.panels.size());
   figure.height = 340 + 120 * (figure.rows - 1);
   figure.caption =
-      fmt::format("{}: record, its nearest and farthest reproduction, and what each run leaves of it.",
+      fmt::format("{}: record, its nearest and farthest reproduction, and the residual of each run.",
                   channel_title(shown));
   return figure;
 }
@@ -193,14 +193,14 @@ std::string misfit_text(const Comparison& comparison) {
   }
   std::string text;
   if (!poor.empty())
-    text = "Large residual: much of the record is left by " + poor +
-           ". The model lacks modes that the record has, or the filter has settled on a wrong answer. If a "
-           "larger model leaves as much, start from nearer initial estimates or smaller deviations.";
+    text = "Large residual: " + poor +
+           ". The model lacks modes that the record has, or the filter has settled on a wrong answer. If the "
+           "residual of a larger model is as large, start from nearer initial estimates or smaller standard "
+           "deviations.";
   if (!wrong.empty())
-    text += (text.empty() ? "" : " ") + std::string("More of the record than a smaller model is left by ") +
-            wrong +
-            ": the filter has settled on a wrong answer. Start from nearer initial estimates or smaller "
-            "deviations.";
+    text += (text.empty() ? "" : " ") + std::string("Larger residual than a smaller model: ") + wrong +
+            ". The filter has settled on a wrong answer. Start from nearer initial estimates or smaller "
+            "standard deviations.";
   return text;
 }
 
@@ -208,13 +208,14 @@ std::string misfit_text(const Comparison& comparison) {
 std::string why_surer(const Comparison& comparison, const ComparedRun& run) {
   constexpr double clearly = 0.8;
   if (run.filter.starts_with("particle"))
-    return "its particles have collapsed onto a few values, so that neither estimate nor deviation counts: "
+    return "its particles have collapsed onto a few values, so that neither estimate nor standard deviation "
+           "counts: "
            "use a filter of the Kalman family";
   if (run.last_move > settled_move) return "its estimate has not settled";
   if (comparison.compared.sensor_noise.size() > 0)
     for (Eigen::Index i = 0; i < run.noise.size(); ++i)
       if (run.noise[i] < clearly * run.noise_left[i])
-        return fmt::format("[noise] assumes {:.2g} of what the motion leaves of the record",
+        return fmt::format("[noise] assumes {:.2g} of the residual of the motion",
                            run.noise[i] / run.noise_left[i]);
   return "the filter was linearised too far from its estimate: filter more often ([compare] passes), or "
          "start from nearer initial estimates";
@@ -297,8 +298,8 @@ std::string excess_text(const Comparison& comparison, const ComparedRun& referen
       excess = std::max(excess, reference.noise[static_cast<Eigen::Index>(i)] / own);
   if (excess < far) return {};
   return fmt::format(
-      "Even the reference leaves {:.3g} times the noise of a sensor: there is motion in the record "
-      "that no model of this comparison has, or the reference is wrong.",
+      "Even the residual of the reference is {:.3g} times the noise of a sensor. The record has motion that "
+      "no model of this comparison has, or the reference is wrong.",
       excess);
 }
 

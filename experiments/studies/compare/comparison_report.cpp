@@ -40,7 +40,8 @@ void add_clocks(Results& results, const Comparison& comparison) {
         {{"channel", name}, {"lag_s", clock.lag}, {"standard_deviation_s", clock.deviation}});
   }
   table.note =
-      "Behind the other channels; below 0 ahead of them. Found with the parameters, whose deviations allow "
+      "Behind the other channels; below 0 ahead of them. Found with the parameters, whose standard "
+      "deviations allow "
       "for them. The record is used and drawn on one clock.";
   results.table(table);
 }
@@ -216,7 +217,7 @@ Table run_table(const Comparison& comparison) {
   }
   table.note =
       "r: coordinates of the model. O/F: observed histories per degree of freedom. Response error: "
-      "what the best motion of the model with these parameters leaves of the record.";
+      "the residual of the record after the best motion of the model with these parameters.";
   return table;
 }
 

@@ -145,7 +145,7 @@ ModalSummary summarise_modes(const Experiment& experiment, Index count, const Pr
   summary.total_mass = total_mass(experiment.structure);
   if (count > summary.system.size())
     summary.notes.push_back(fmt::format(
-        "{} modes asked for; the {} has {} coordinates, and as many modes.{}", count,
+        "{} modes requested; the {} has {} coordinates, and as many modes.{}", count,
         experiment.structure.matrices()
             ? "system"
             : fmt::format("mesh of {} element{}", summary.elements, summary.elements == 1 ? "" : "s"),

@@ -199,7 +199,7 @@ FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Pr
   const Index rigid = modes.rigid;
   if (rigid > 0 && settings.from_hz == 0.0 && experiment.file)
     throw InputError(experiment.file->table("frequency_response").value_place("from_hz"),
-                     "frequency_response.from_hz is 0, where a structure that nothing holds follows a force "
+                     "frequency_response.from_hz is 0, where a structure without supports follows a force "
                      "without bound; expected a frequency above 0");
   all.frequency_hz = grid(settings, modes.frequency_hz(), rigid);
   const double end = all.frequency_hz[all.frequency_hz.size() - 1];

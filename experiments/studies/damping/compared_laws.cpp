@@ -38,7 +38,7 @@ Table law_table(const DampingLawStudy& study) {
   for (const FittedLaw& law : study.laws)
     if (law.possible) aic = std::min(aic, law.aic);
   for (const FittedLaw& law : study.laws) {
-    const std::string remark = &law == &study.supported() ? (study.named ? "as asked" : "supported")
+    const std::string remark = &law == &study.supported() ? (study.named ? "as specified" : "supported")
                                : law.possible             ? ""
                                                           : law.reason;
     table.row({law_title(law.name), static_cast<double>(law.unknowns), law.log_likelihood, law.aic - aic,
@@ -132,8 +132,7 @@ Figure figure(const Record& record, const DampingLawStudy& study) {
   Figure both{"damping_law", {ratios, left}, 2, 1};
   both.height = 720;
   both.caption =
-      "Damping ratio by amplitude for each law and for sections of the decay, and what the laws leave of the "
-      "record.";
+      "Damping ratio by amplitude for each law and for sections of the decay, and the residual of the laws.";
   return both;
 }
 
@@ -202,7 +201,8 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   results.table(amplitude_table(study));
   const Channel& channel = record.channels[output_channels(record)[0]];
   results.paragraph(fmt::format(
-      "Noise assumed of {}: {:.4g} {}, as dense as what the richest law leaves near the mode. The sign of "
+      "Noise assumed of {}: {:.4g} {}, as dense as the residual of the richest law near the mode. The sign "
+      "of "
       "the velocity is smoothed over {:.3g} m/s.",
       to_string(channel.quantity), study.noise[0], si_unit(channel.quantity), study.friction_velocity));
   for (const CompanionMode& mode : study.modal.companions)
@@ -280,9 +280,10 @@ std::string conclusion(const std::vector<StudiedRecord>& records, const std::vec
       worst = &one;
   }
   if (!tested)
-    return "The records have no sections at the same amplitudes: nothing says whether one law holds for all.";
+    return "The records have no sections at the same amplitudes: whether one law holds for all is not "
+           "determined.";
   if (!worst)
-    return "One law holds: what each record says of its damping, the others show at the same amplitudes.";
+    return "One law holds: what each record shows of its damping, the others show at the same amplitudes.";
   return fmt::format(
       "The records disagree at the same amplitude: the law of {} is {:+.2g} % off in {} at {:.3g} mm. "
       "Damping is not a function of amplitude alone here; temperature, clamping or time have changed it, "

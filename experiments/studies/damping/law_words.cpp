@@ -13,7 +13,7 @@ const char* strength(double difference) {
   return difference > 10.0  ? "very strong"
          : difference > 6.0 ? "strong"
          : difference > 2.0 ? "positive"
-                            : "hardly any";
+                            : "almost no";
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ const char* law_title(const std::string& law) {
 std::string law_verdict(const DampingLawStudy& study) {
   const FittedLaw& best = study.supported();
   if (study.named)
-    return fmt::format("As asked: {} damping{}.", law_title(best.name),
+    return fmt::format("As specified: {} damping{}.", law_title(best.name),
                        best.possible ? "" : ", which this record does not support: " + best.reason);
   if (!best.possible) return "The record determines none of the laws: " + best.reason + ".";
   double second = std::nan("");
@@ -78,9 +78,9 @@ std::string law_fit_words(const DampingLawStudy& study) {
       misfit.chi_square, misfit.freedom, misfit.sections, 100.0 * misfit.largest, 1e3 * misfit.at_amplitude);
   if (!misfit.lacks) return "The law fits sections of the decay: " + size + " at most.";
   return fmt::format(
-      "Lack of fit: {} damping does not describe this decay ({}). It is the nearest of these laws, its "
-      "intervals are {:.2g} times too narrow for what is left, and nothing follows from it beyond {:.3g} to "
-      "{:.3g} mm.",
+      "Lack of fit: {} damping does not describe this decay ({}). It is the nearest of these laws. Its "
+      "intervals are {:.2g} times too narrow for the residual. No conclusion follows from it beyond {:.3g} "
+      "to {:.3g} mm.",
       law_title(study.supported().name), size,
       std::sqrt(misfit.chi_square / static_cast<double>(misfit.freedom)), 1e3 * study.last_amplitude,
       1e3 * study.first_amplitude);

@@ -65,7 +65,8 @@ Table table_of(const Coverage& coverage) {
     }
   table.note =
       "From, to: where the probability lies with 95 %, after so many runs. A run that failed counts as "
-      "outside. Deviations are those that the intervals are made of, not knowing the noise exactly included.";
+      "outside. Standard deviations are those that the intervals are made of, not knowing the noise exactly "
+      "included.";
   return table;
 }
 

@@ -29,7 +29,7 @@ double count(const LaboratoryRecords& all, LaboratoryOutcome outcome) {
 }
 
 Table kind_table(const LaboratoryRecords& all) {
-  Table table{"kinds", "What came out of records given nothing but the beam"};
+  Table table{"kinds", "What came out of records with only the beam specified"};
   table.column({"first kind", "first_kind"}).column({"records", "records", "{:.0f}"});
   for (const LaboratoryOutcome outcome : outcomes)
     table.column({to_string(outcome), to_string(outcome), "{:.0f}"});
@@ -50,7 +50,7 @@ Table kind_table(const LaboratoryRecords& all) {
       "right: frequency within 0.5 % or 1.5 half widths of its interval (5 % at most), damping ratio within "
       "15 % or 1.5 half widths (itself at most) of what it was over the window. refused: no number, or one "
       "that is off under a first line that names the cause. unexplained: the same without the cause. wrong: "
-      "off, and nothing said.";
+      "off, without any remark.";
   return table;
 }
 
@@ -79,7 +79,7 @@ Table record_table(const LaboratoryRecords& all, bool every) {
       .column({"to", "greatest_damping_percent", "{:.3f}"})
       .column({"found", "damping_percent", "{:.3f}"})
       .column({"+-", "damping_half_width_percent", "{:.3f}"})
-      .column({"said", "said"});
+      .column({"reported", "said"});
   for (const IdentifiedTest& one : all.tests) {
     if (!every && one.outcome == LaboratoryOutcome::right) continue;
     const double f = one.test.frequency_hz;
@@ -140,12 +140,12 @@ Results report(const LaboratoryRecords& all) {
     results.values[to_string(outcome)] = static_cast<int>(count(all, outcome));
   results.values["records"] = Json::array();
   for (const IdentifiedTest& one : all.tests) results.values["records"].push_back(value_of(one));
-  results.heading("Told nothing but the beam");
+  results.heading("With only the beam specified");
   results.paragraph(fmt::format(
       "{} simulated laboratory records: cantilevers of 0.25 to 1.2 m with tip masses, released, hit or let "
       "go by hand, damping ratio 0.2 to 2 %, 50 to 2000 Hz, noise of 0.05 to 2 % of the first mode, what "
       "cheap sensors do on top. Each written to a file and identified as `beamid identify` does with an "
-      "experiment file that says nothing but the beam, whose stiffness there is up to 12 % wrong.",
+      "experiment file that specifies only the beam, whose stiffness there is up to 12 % wrong.",
       all.settings.records));
   results.table(kind_table(all));
   results.paragraph(coverage_text(all));
@@ -174,7 +174,7 @@ Results examine(const LaboratorySettings& settings, int number) {
                             100 * found.least_damping, 100 * found.greatest_damping, found.from, found.to)
               : fmt::format(", damping ratio from {:.4g} %.", 100 * found.test.least_damping);
   results.paragraph(text);
-  if (!found.said.empty()) results.paragraph("Said: " + found.said);
+  if (!found.said.empty()) results.paragraph("Reported: " + found.said);
   results.attachments.push_back(text_file("rig.toml", found.test.rig));
   results.attachments.push_back(text_file("beam.toml", found.test.beam));
   results.attachments.push_back(

@@ -138,7 +138,7 @@ Results report(const DecayOutcomes& outcomes) {
   results.heading("`beamid identify` on clean free decays");
   results.paragraph(fmt::format(
       "{} simulated decays of a cantilever's first mode, {:g} to {:g} periods, damping ratio {:g} to {:g} %, "
-      "noise of {:g} to {:g} % of the amplitude, {:g} to {:g} samples a period; the beam as described is up "
+      "noise of {:g} to {:g} % of the amplitude, {:g} to {:g} samples a period. The beam as described is up "
       "to {:.0f} % off in frequency. Failed: the command ended, the filter diverged, or the modal analysis "
       "contradicted it.",
       s.runs, s.periods.first, s.periods.second, 100 * s.damping_ratio.first, 100 * s.damping_ratio.second,

@@ -49,12 +49,12 @@ Table efficiency_table(const Efficiency& all) {
     }
     table.row(std::move(row));
   }
-  table.note = "From, to: 95 % interval, 1.96 / sqrt(2 runs). Runs that were lost are left out.";
+  table.note = "From, to: 95 % interval, 1.96 / sqrt(2 runs). Runs that were lost are excluded.";
   return table;
 }
 
 Table consistency_table(const Efficiency& all) {
-  Table table{"consistency", "What the filters say of their errors"};
+  Table table{"consistency", "What the filters report of their errors"};
   start_columns(table);
   table.column({"NEES", "nees", "{:.3f}"})
       .column({"band from", "nees_lower_999", "{:.3f}"})

@@ -41,7 +41,7 @@ Table table_of(const JointComparison& joint, std::size_t which) {
           one.runs[0].parameters.at(which).estimate);
   }
   row("all together", "", all);
-  if (all.nuisance) table.note = "Not asked about: known beforehand to some accuracy, which counts once.";
+  if (all.nuisance) table.note = "Not requested: known beforehand to some accuracy, which counts once.";
   return table;
 }
 
@@ -106,7 +106,7 @@ Results report(const Experiment& experiment, const JointComparison& joint) {
   const auto lost = [&] {
     for (const Comparison& one : joint.records)
       if (!converged(one))
-        results.warning(fmt::format("{} is left out: {}.", one.compared.name, one.runs[0].reason));
+        results.warning(fmt::format("{} is excluded: {}.", one.compared.name, one.runs[0].reason));
   };
   if (joint.none_converged()) {
     results.warning("No joint estimate: no record was identified.", true);
@@ -140,7 +140,7 @@ Table parameter_table(const BeamFamily& family) {
       .column({"estimate", "estimate"})
       .column({"95 % from", "lower_95"})
       .column({"to", "upper_95"})
-      .column({"asked about in", "files"});
+      .column({"requested in", "files"});
   for (std::size_t j = 0; j < family.parameters.size(); ++j) {
     const Estimate& e = family.parameters[j];
     const double half = 0.5 * (e.upper_95 - e.lower_95);
@@ -175,7 +175,8 @@ std::string agreement(const BeamFamily& family) {
   if (e.scatter == 1.0)
     return fmt::format("The beams agree on what they share within their noise ({}).", measured);
   return fmt::format(
-      "THE BEAMS DISAGREE by more than their noise ({}): a clamp that gives way, a length or a mass that is "
+      "THE BEAMS DISAGREE by more than their noise ({}). Possible causes: a clamp that gives way, a length "
+      "or a mass that is "
       "not as described, or motion that the models do not have. All intervals are widened by {:.3g} "
       "(Birge's ratio), which is itself known from few records only.",
       measured, e.scatter);
@@ -289,7 +290,7 @@ std::string lost_text(const JointIdentification& joint) {
   std::string text;
   for (const IdentifiedRecord& one : joint.records)
     if (one.lost())
-      text += fmt::format("{}{} is left out: the filter lost its motion. Identify it alone to see why.",
+      text += fmt::format("{}{} is excluded: the filter lost its motion. Identify it alone to see why.",
                           text.empty() ? "" : " ", one.name);
   return text;
 }

@@ -46,7 +46,7 @@ Figure reproduction(const Record& record, const RecordIdentification& found, Ind
       thinned(residual_panel("measured minus reproduced", record.time, measured - again, label)));
   figure.rows = static_cast<int>(figure.panels.size());
   figure.height = 60 + 250 * figure.rows;
-  figure.caption = fmt::format("Record ({}), free decay with the identified K and C, and what it leaves.",
+  figure.caption = fmt::format("Record ({}), free decay with the identified K and C, and the residual.",
                                channel_title(channel));
   return figure;
 }
@@ -179,7 +179,7 @@ std::string unmodelled_text(const RecordIdentification& found) {
   const AmplitudeSections& by = found.sections;
   if (by.damping.varies() || by.frequency.varies())
     return fmt::format(
-        ". With the amplitude {} (fits in {} sections): the filter's intervals are too short for that, and "
+        ". With the amplitude {} (fits in {} sections). The filter's intervals are too short for that, and "
         "are widened to hold the values of 95 % of the decay, by {:.3g} for frequency and K, {:.3g} for "
         "damping",
         variation_text(by), by.sections.size(), found.frequency_factor(), found.damping_factor());
@@ -199,14 +199,14 @@ std::string verdict(const RecordIdentification& found) {
   const filters::InnovationConsistency& c = *found.consistency;
   if (c.white() && c.size_is_steady())
     return found.judgement.messages.empty()
-               ? "white and of steady size, as they should be"
-               : "white and of steady size, as they also are with a wrong discretisation or mass";
+               ? "white and stationary: consistent"
+               : "white and stationary, as they also are with a wrong discretisation or mass";
   if (c.windows.maxCoeff() < c.window_lower_95)
     return "smaller all along than they should be. The noise assumed is larger than the record's, and the "
            "intervals are too wide";
   const char* what = c.white()            ? "white, but their size changes along the record"
-                     : c.size_is_steady() ? "of steady size, but not white"
-                                          : "neither white nor of steady size";
+                     : c.size_is_steady() ? "stationary, but not white"
+                                          : "neither white nor stationary";
   return what + unmodelled_text(found);
 }
 
@@ -324,7 +324,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   const std::vector<std::string> names = record.channel_names();
   if (found.diagnostics) results.paragraph(words(*found.diagnostics, names));
   if (const std::string text = failure_sentences(found.identification.run.events); !text.empty())
-    results.paragraph("The filter had trouble (--on-failure says what it then does). " + text);
+    results.paragraph("The filter had trouble (--on-failure states what it then does). " + text);
   results.paragraph(noise_text(record, found));
   if (experiment.is_described)
     results.paragraph(fmt::format(

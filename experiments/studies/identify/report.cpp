@@ -251,7 +251,7 @@ Results identification_report(const Experiment& experiment, const Comparison& fo
   for (const Eigen::Index i : output_channels(record))
     outputs.push_back(record.channels[static_cast<std::size_t>(i)].name);
   if (const std::string text = failure_sentences(run.run.events); !text.empty())
-    results.paragraph("The filter had trouble (--on-failure says what it then does). " + text);
+    results.paragraph("The filter had trouble (--on-failure states what it then does). " + text);
   if (run.batch) results.table(batch_table(run));
   if (run.diagnostics) {
     results.paragraph(words(*run.diagnostics, outputs));
@@ -311,7 +311,9 @@ std::string words(const filters::Diagnostics& found, const std::vector<std::stri
   text += fmt::format(" Information about {} unknown{}: rank {}", told.ratios.size(),
                       told.ratios.size() == 1 ? "" : "s", told.rank);
   if (std::isfinite(told.condition)) text += fmt::format(", condition {:.3g}", told.condition);
-  return text + (told.rank < told.ratios.size() ? "; of the rest the record says less than the prior." : ".");
+  return text + (told.rank < told.ratios.size()
+                     ? "; on the rest the record has less information than the prior."
+                     : ".");
 }
 
 Json values(const std::vector<filters::Failure>& events) {

@@ -259,7 +259,7 @@ std::vector<std::string> inspection_warnings(const Inspection& found) {
   if (std::none_of(found.channels.begin(), found.channels.end(),
                    [](const auto& c) { return c.quantity.has_value(); }))
     all.emplace_back(
-        "Nothing says what the channels measure. State it for other commands: "
+        "The file does not state what the channels measure. State it for other commands: "
         "--column N --quantity acceleration --unit g, or [record] in an experiment file.");
   return all;
 }

@@ -59,7 +59,8 @@ void add_masses(const std::vector<std::string>& names, const std::vector<Record>
     }
   if (table.rows() == 0) return;
   table.note =
-      "The first motion counts, taken to be where the hammer hits. The deviation is that of the amplitude "
+      "The first motion counts, taken to be where the hammer hits. The standard deviation is that of the "
+      "amplitude "
       "taken back to the hit and of the hit's sampling; calibration is not in it.";
   results.values["hammer_mass"] = std::move(json);
   results.table(std::move(table));
@@ -180,7 +181,8 @@ std::string driven_introduction(const ModalStudySettings& settings, const Driven
   if (!study.modes.empty())
     text += fmt::format(" The modes explain {:.3g} % of the motion.", 100.0 * study.explained());
   if (study.sections > 0)
-    text += fmt::format(" Deviations hold the scatter of {} sections of the record.", study.sections);
+    text +=
+        fmt::format(" Standard deviations hold the scatter of {} sections of the record.", study.sections);
   return text;
 }
 

@@ -31,11 +31,11 @@ constexpr double much_left = 30.0, much_damped = 0.3;  // [%], [-]
 std::string fault_sentence(const Event& event) {
   const ChannelFault& fault = event.fault;
   const std::string then = fmt::format(
-      "leaves {:.3g} % of the motion instead of {}: f1 {:.4g} Hz, damping ratio {:.3g} %",
+      "has a residual of {:.3g} % of the motion instead of {}: f1 {:.4g} Hz, damping ratio {:.3g} %",
       fault.instead.left_percent,
       std::isfinite(fault.left_percent) ? fmt::format("{:.3g} %", fault.left_percent) : "more than half",
       fault.instead.frequency_hz, 100.0 * fault.instead.damping_ratio);
-  const std::string wrong = event.response ? " What the table says of it is wrong." : "";
+  const std::string wrong = event.response ? " What the table states of it is wrong." : "";
   switch (fault.kind) {
     case ChannelFault::Kind::reversed:
       return fmt::format("The sign of one channel is turned: so changed, one mode {}.{}", then, wrong);
@@ -56,8 +56,8 @@ std::string fault_sentence(const Event& event) {
         100.0 * event.response->damping_ratio);
   if (event.response->left_percent > much_left)
     return fmt::format(
-        "One mode leaves {:.3g} % of the motion in its band: another cause moves the response, or "
-        "several modes do. f1 and the damping ratio may be further off than their deviations say.",
+        "One mode does not explain {:.3g} % of the motion in its band: another cause moves the response, or "
+        "several modes do. f1 and the damping ratio may be further off than their standard deviations.",
         event.response->left_percent);
   return {};
 }
@@ -99,7 +99,7 @@ Table events_table(const std::vector<Event>& events) {
       .column({"deviation", "frequency_standard_deviation_hz", "{:.2g}"})
       .column({"damping ratio [%]", "damping_ratio_percent", "{:.3g}"})
       .column({"deviation", "damping_ratio_standard_deviation_percent", "{:.2g}"})
-      .column({"left [%]", "left_percent", "{:.3g}"});
+      .column({"residual [%]", "left_percent", "{:.3g}"});
   for (const Event& one : events) {
     const BaseResponse none{std::nan(""), std::nan(""), std::nan(""), std::nan(""), 0.0, std::nan(""), {}};
     const BaseResponse& found = one.response ? *one.response : none;
@@ -107,8 +107,8 @@ Table events_table(const std::vector<Event>& events) {
                100.0 * found.damping_ratio, 100.0 * found.damping_ratio_deviation, found.left_percent});
   }
   table.note =
-      "PGA: the largest acceleration at the surface. Left: of the motion relative to the base in the band "
-      "fitted, what one mode does not explain.";
+      "PGA: the largest acceleration at the surface. Residual: of the motion relative to the base in the "
+      "band fitted, what one mode does not explain.";
   return table;
 }
 
@@ -155,7 +155,8 @@ std::string change_sentence(const std::vector<Event>& events) {
                                       low.frequency_deviation_hz / low.frequency_hz);
   const std::string peaks = fmt::format("from {:.3g} to {:.3g} m/s2", weakest->peak, strongest->peak);
   if (std::abs(change) < quantile_95 * deviation)
-    return fmt::format("{}, f1 does not change beyond its deviation, {:.2g} %.", peaks, 100.0 * deviation);
+    return fmt::format("{}, f1 does not change beyond its standard deviation, {:.2g} %.", peaks,
+                       100.0 * deviation);
   return fmt::format(
       "{}, f1 goes from {:.4g} to {:.4g} Hz ({:+.1f} %): as if the stiffness changed by {:+.0f} %.", peaks,
       low.frequency_hz, high.frequency_hz, 100.0 * change, 100.0 * ((1.0 + change) * (1.0 + change) - 1.0));

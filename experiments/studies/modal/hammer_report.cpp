@@ -63,8 +63,8 @@ Table mode_table(const HammerStudy& study) {
   table.note =
       "The modal mass is 1 / phi^2 where the sensor sits at the point that is struck; elsewhere it is "
       "1 / (phi_sensor phi_hammer). Phases near 0 or 180 degrees belong to real modes, 180 to a sensor that "
-      "points against the force. Deviations know neither the calibration nor damping that depends on "
-      "amplitude.";
+      "points against the force. Standard deviations include neither the calibration nor damping that "
+      "depends on amplitude.";
   return table;
 }
 
@@ -218,7 +218,7 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
         study.modes.empty() ? 0 : 100 * study.responses.window_rate / std::abs(study.modes[0].pole.rate),
         study.modes.empty() ? 0 : study.modes[0].pole.frequency_hz());
   if (!study.modes.empty())
-    text += fmt::format(". The modes leave {:.2g} % of the responses", 100 * study.misfit);
+    text += fmt::format(". The modes do not explain {:.2g} % of the responses", 100 * study.misfit);
   results.paragraph(text + ".");
   results.notes(study.remarks);
   results.notes(study.responses.remarks);

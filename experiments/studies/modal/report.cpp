@@ -39,7 +39,7 @@ std::string introduction(const ModalStudySettings& settings, const RecordModes& 
                         found.search.orders.empty() ? 0 : found.search.orders.back().order);
   text += found.polished ? ", all modes polished together by least squares." : ".";
   if (found.reproduced.size() > 0)
-    text += fmt::format(" The modes leave {:.2g} % of the {}.", 100 * found.left(),
+    text += fmt::format(" The modes do not explain {:.2g} % of the {}.", 100 * found.left(),
                         found.free_decay ? "motion in the band" : "autocorrelations");
   return text;
 }
@@ -142,7 +142,7 @@ Table merged_table(const std::vector<MergedMode>& merged, std::size_t records) {
                fmt::format("{} of {}", merged[m].records(), records)});
   }
   table.note =
-      "Both deviations are those of the mean: what the records' own leave, and what their spread leaves.";
+      "Both standard deviations are those of the mean: from the records' own, and from their spread.";
   return table;
 }
 
@@ -161,10 +161,10 @@ void add_merged(const std::vector<RecordModes>& records, const std::vector<Merge
                                m + 1);
   }
   if (!differing.empty())
-    results.paragraph("The records differ by more than their standard deviations allow (at 5 %) in " +
-                      differing +
-                      ". There the deviation between records is the one to trust; amplitude, temperature or "
-                      "clamping may have changed.");
+    results.paragraph(
+        "The records differ by more than their standard deviations allow (at 5 %) in " + differing +
+        ". There the standard deviation between records is the one to trust; amplitude, temperature or "
+        "clamping may have changed.");
 }
 
 }  // namespace
@@ -296,7 +296,7 @@ std::string sentence(const Dependence& one, const RecordModes& found) {
       ratio ? fmt::format("goes from {} to {} %",
                           rounded_text({100 * first.damping_ratio, 100 * first.damping_ratio_deviation}),
                           rounded_text({100 * last.damping_ratio, 100 * last.damping_ratio_deviation}))
-            : "does not change beyond its deviations",
+            : "does not change beyond its standard deviations",
       f ? fmt::format("from {} to {} Hz", rounded_text({first.frequency_hz, first.frequency_deviation_hz}),
                       rounded_text({last.frequency_hz, last.frequency_deviation_hz}))
         : "does not");

@@ -26,8 +26,9 @@ Table table_1(const Outcome& outcome) {
                o.analysis.mode.frequency_hz, 100.0 * o.beam.test.first_damping_ratio,
                100.0 * o.analysis.mode.damping_ratio, 100.0 * o.analysis.decrement.damping_ratio});
   table.note =
-      "Damping ratios are assumed (the paper's own table is not available; its text says all are below 0.5 "
-      "%). f1 and xi1: eigensystem realisation polished by least squares; by decrement: logarithmic "
+      "Damping ratios are assumed (the paper's own table is not available; its text states that all are "
+      "below 0.5 %). f1 and xi1: eigensystem realisation polished by least squares; by decrement: "
+      "logarithmic "
       "decrement.";
   return table;
 }
@@ -57,7 +58,7 @@ Table table_3(const Outcome& outcome) {
   table.note =
       "Reference: Rayleigh's mass (static shape) with the exact first mode, K = Meq w1^2, C = 2 xi1 w1 "
       "Meq. +-: one standard deviation as the filter reports it; on integrated channels, whose noise is "
-      "coloured, it is only a rough guide (the trials below tell the real spread).";
+      "coloured, it is only a rough guide (the trials below show the real spread).";
   return table;
 }
 
@@ -116,7 +117,7 @@ Table trials_table(const Outcome& outcome) {
   }
   table.note =
       "The bound: white noise of 0.05 m/s2 on the acceleration itself, all 25 s, initial state unknown, no "
-      "prior. The distance to it is the price of filtering and of the three cycles left out.";
+      "prior. The distance to it is the price of filtering and of the three cycles omitted.";
   return table;
 }
 
@@ -133,7 +134,8 @@ Table reduction_table(const Outcome& outcome) {
                percent(o.beam.reference.stiffness, tip_stiffness)});
   }
   table.note =
-      "From free decay only K/M and C/M can be told. Rayleigh's mass is too small for the true first mode; "
+      "From free decay only K/M and C/M can be determined. Rayleigh's mass is too small for the true first "
+      "mode; "
       "an identified K is too small against 3EI/L^3 by as much. This is kept apart from the errors above.";
   return table;
 }

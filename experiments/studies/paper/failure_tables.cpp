@@ -24,7 +24,7 @@ Table second_cause_table(const Outcome& outcome) {
   }
   table.note =
       "First four columns: R = 1e-5 I, P0 = diag(1, 1, 1e5, 1e5) from the release on, eight modes in the "
-      "motion. The paper's processing: high-pass at 0.5 Hz, no low-pass, its transient not left out. "
+      "motion. The paper's processing: high-pass at 0.5 Hz, no low-pass, its transient not omitted. "
       "Mode 2: its amplitude of velocity after the release, which R = 1e-5 (3.2 mm/s) covers on two beams.";
   return table;
 }
@@ -44,16 +44,16 @@ Table chain_table(const Outcome& outcome) {
     table.row(row);
   }
   table.note =
-      "2009: high-pass at 0.5 Hz, no low-pass, nothing left out, R = 1e-5 I, P0 = diag(1, 1, 1e5, 1e5). "
+      "2009: high-pass at 0.5 Hz, no low-pass, no sample omitted, R = 1e-5 I, P0 = diag(1, 1, 1e5, 1e5). "
       "Tuned: the settings above table 3. One seed; the records are the same.";
   return table;
 }
 
 Table zero_phase_table(const Outcome& outcome) {
-  Table table{"zero_phase", "Zero-phase processing: its end transients left out, and kept (EKF, exact)"};
+  Table table{"zero_phase", "Zero-phase processing: its end transients omitted, and kept (EKF, exact)"};
   table.column({"beam", "beam"})
-      .column({"ends left out, K [%]", "ends_left_out_stiffness_error_percent", "{:+.4f}"})
-      .column({"ends left out, C [%]", "ends_left_out_damping_error_percent", "{:+.3f}"})
+      .column({"ends omitted, K [%]", "ends_left_out_stiffness_error_percent", "{:+.4f}"})
+      .column({"ends omitted, C [%]", "ends_left_out_damping_error_percent", "{:+.3f}"})
       .column({"ends kept, K [%]", "ends_kept_stiffness_error_percent", "{:+.4g}"})
       .column({"ends kept, C [%]", "ends_kept_damping_error_percent", "{:+.4g}"})
       .column({"ends kept, filter", "ends_kept_status"});
@@ -66,9 +66,9 @@ Table zero_phase_table(const Outcome& outcome) {
                lost(o.wide_zero_phase, o.analysis.mode.frequency_hz) ? "lost the motion" : "keeps it"});
   }
   table.note =
-      "Left out: the tuned filters run forwards and backwards, three cycles cut at both ends. Kept: the "
-      "paper's 0.5 Hz high-pass run so, with its wide prior. 'Lost' is told without the truth: no damping "
-      "left, or K/M more than 5 % from the modal analysis.";
+      "Omitted: the tuned filters run forwards and backwards, three cycles cut at both ends. Kept: the "
+      "paper's 0.5 Hz high-pass run so, with its wide prior. 'Lost' is determined without the truth: no "
+      "damping remains, or K/M more than 5 % from the modal analysis.";
   return table;
 }
 

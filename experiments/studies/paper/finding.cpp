@@ -31,9 +31,9 @@ std::string cause(const Outcome& outcome) {
                                      [](const DigitCase& one) { return one.prints_the_published_digits(); });
   return fmt::format(
       "The paper printed errors of {:.2f} % in K and {:.2f} % in C for a noise-free oscillator. The closed "
-      "form of forward Euler predicts {:+.5f} % and {:+.5f} %; the paper's filter, repeated here with "
+      "form of forward Euler predicts {:+.5f} % and {:+.5f} %. The paper's filter, repeated here with "
       "displacement and velocity observed, finds {:+.5f} % and {:+.5f} %, and with displacement alone and "
-      "hardly any noise {:+.5f} % and {:+.5f} %. Of {} combinations of data generator, filter and observed "
+      "almost no noise {:+.5f} % and {:+.5f} %. Of {} combinations of data generator, filter and observed "
       "channels {} print the published digits. On this oscillator the error in damping is the first-order "
       "bias of the filter's time step: proven.",
       published_stiffness_error_percent, published_damping_error_percent,
@@ -72,9 +72,9 @@ std::string cure(const Outcome& outcome) {
       range(outcome, [](const BeamOutcome& o) { return o.trials.damping_bound_ratio(); });
   return fmt::format(
       "The cure: move the filter by the exact matrix exponential, with its exact tangent. On the "
-      "oscillator the bias is then {:.0e} % in K and {:.0e} % in C; on the five beams, through sensor "
-      "noise and processing, C is within {:.2f} % in the runs printed here, and over {} seeded trials per "
-      "beam its rms error is {:.2f} to {:.2f} times the Cramer-Rao bound, a ratio known to {:.2f} (one "
+      "oscillator the bias is then {:.0e} % in K and {:.0e} % in C. On the five beams, through sensor noise "
+      "and processing, C is within {:.2f} % in the runs printed here. Over {} seeded trials per beam its rms "
+      "error is {:.2f} to {:.2f} times the Cramer-Rao bound, a ratio known to {:.2f} (one "
       "standard error) from so many.",
       std::abs(stiffness_error(exact.displacement_only.found, outcome.truth)),
       std::abs(damping_error(exact.displacement_only.found, outcome.truth)), range(outcome, error).second,
@@ -84,8 +84,8 @@ std::string cure(const Outcome& outcome) {
 
 std::string variance(const Outcome& outcome) {
   return fmt::format(
-      "The text gives the initial variance of the parameters as 10^-5. With that value the "
-      "stiffness hardly moves: started at K = {:g} N/m it ends at {:.4f} N/m after a release of 12 mm (and "
+      "The text gives the initial variance of the parameters as 10^-5. With that value the stiffness almost "
+      "does not move. Started at K = {:g} N/m it ends at {:.4f} N/m after a release of 12 mm (and "
       "at {:.1f} N/m after one of 1 m). 10^+5 reproduces the printed errors, as any value from 10^4 up does.",
       ValidationSettings{}.first_stiffness, outcome.literal_variance.found.stiffness,
       outcome.literal_variance_large.found.stiffness);
@@ -103,13 +103,13 @@ double worst_kept(const std::vector<StartCase>& starts) {
 std::string second_cause(const Outcome& outcome) {
   const BeamOutcome& light = outcome.beams.front();
   return fmt::format(
-      "A second cause: with so wide a prior the higher modes that the release excites, and the model does "
-      "not have, are taken for stiffness and damping in the first milliseconds, and the filter grows sure "
-      "of them. On {} the exact EKF then errs by {:+.1f} % in C and {:+.2f} % in K on the true, noise-free "
-      "tip motion from the release on; of {} other starts within half a second it loses the motion from {}, "
+      "A second cause is the wide prior. The higher modes that the release excites, and the model does not "
+      "have, are taken for stiffness and damping in the first milliseconds. The filter grows sure of them. "
+      "On {} the exact EKF then errs by {:+.1f} % in C and {:+.2f} % in K on the true, noise-free "
+      "tip motion from the release on. Of {} other starts within half a second it loses the motion from {}, "
       "and the worst of the rest errs by {:+.0f} %. Through the paper's processing the high-pass's own "
       "transient costs up to {:+.1f} % in "
-      "C. A low-pass at 2.5 f1, a high-pass at f1/2 and three cycles left out remove both.",
+      "C. A low-pass at 2.5 f1, a high-pass at f1/2 and three cycles omitted remove both.",
       light.beam.test.name, damping_error(light.wide_true.found, light.beam.reference),
       stiffness_error(light.wide_true.found, light.beam.reference), outcome.start.curve.size() - 1,
       std::count_if(outcome.start.curve.begin() + 1, outcome.start.curve.end(),
@@ -124,7 +124,7 @@ std::string settings(const Outcome& outcome) {
   return fmt::format(
       "Window, x0, P0, K0 and R of the identifications: tip acceleration of 25 s at 1 kHz with white noise "
       "of {:g} m/s2 (seed {}), causal second-order high-pass at f1/2 and low-pass at 2.5 f1, trapezoidal "
-      "integration to velocity and displacement, from the third cycle (3/f1) to the end; x0 the first "
+      "integration to velocity and displacement, from the third cycle (3/f1) to the end. x0 the first "
       "processed displacement and velocity, K0 = 0.8 K, C0 = {:g} N s/m, P0 = diag({:g} m2, {:g} m2/s2, "
       "{:g}^2, {:g}^2), R = diag({:g} m2, {:g} m2/s2).",
       sensor_noise, outcome.seed, s.first_damping, s.initial_variance[0], s.initial_variance[1],

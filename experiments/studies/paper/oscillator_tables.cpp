@@ -45,7 +45,8 @@ Table bias_table(const Outcome& outcome) {
                stiffness_error(o.displacement_only.found, outcome.truth),
                damping_error(o.predicted, outcome.truth),
                damping_error(o.displacement_only.found, outcome.truth)});
-  table.note = "As table 2, but displacement alone observed, R = 1e-12 and two passes: nothing else is left.";
+  table.note =
+      "As table 2, but displacement alone observed, R = 1e-12 and two passes: no other cause remains.";
   return table;
 }
 

@@ -105,7 +105,7 @@ Table start_table(const StartOutcome& outcome) {
   errors_of(table, outcome.starts, [](const StartCase& one) { return static_cast<double>(one.sample); })
       .note =
       "R = 1e-5 I, P0 of K and C 1e5, K0 = 0.8 K; true displacement and velocity of the tip, eight modes, no "
-      "noise, no processing. Lost: no damping left, or K more than 5 % from the first mode's.";
+      "noise, no processing. Lost: no damping remains, or K more than 5 % from the first mode's.";
   return table;
 }
 
@@ -123,7 +123,7 @@ Table mode_count_table(const StartOutcome& outcome) {
               fmt::format("The same: how many modes the simulated motion has ({})", outcome.beam)};
   table.column({"modes", "modes", "{:.0f}"});
   errors_of(table, outcome.counts, [](const StartCase& one) { return static_cast<double>(one.modes); }).note =
-      "One mode: nothing is left unmodelled. Every further one draws another lot.";
+      "One mode: no motion remains unmodelled. Every further one draws another lot.";
   return table;
 }
 
@@ -218,7 +218,7 @@ Table channel_table(const std::vector<ChannelCase>& cases) {
                one.euler_correlation, one.exact_correlation});
   table.note =
       "Released from 12 mm, two passes, K0 = 0.95 K, C0 = C: 5 s of the oscillator of table 2, 25 s of the "
-      "beam's first mode. 1: as large as R says. The motion dies out and the fault with it: a shorter "
+      "beam's first mode. 1: as large as R states. The motion dies out and the fault with it: a shorter "
       "record shows it more.";
   return table;
 }
@@ -274,7 +274,7 @@ Table fourth_cycle_table(const std::vector<Prediction>& predictions) {
                p.reproduced_drop / p.measured_drop});
   table.note =
       "The article finds the error smaller for S(11.8) than for S(119.3), in the fourth cycle. By amplitudes "
-      "forward Euler says the opposite, whatever the damping; by falls it agrees, under the assumed ratios.";
+      "forward Euler shows the opposite, whatever the damping; by falls it agrees, under the assumed ratios.";
   return table;
 }
 

@@ -185,7 +185,7 @@ CleanMode clean_mode(const BeamCase& beam) {
 
 const std::vector<Alternative>& compared_alternatives() {
   static const std::vector<Alternative> alternatives{
-      {"high-pass, its transient left out", [](const CleanMode& mode) { return integrated(mode, true); }},
+      {"high-pass, its transient omitted", [](const CleanMode& mode) { return integrated(mode, true); }},
       {"high-pass, its transient kept",
        [](const CleanMode& mode) {
          ChainMotion motion = integrated(mode, true);

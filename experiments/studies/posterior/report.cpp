@@ -29,7 +29,7 @@ std::string mass_sentence(const Experiment& experiment, const PosteriorStudy& st
     if (one.quantity.find("mass") != std::string::npos || one.quantity == "factor") return "";
   if (study.source && measures_force(study.source->record.record)) return "";
   return (study.source ? "No force was measured: "
-                       : "Frequencies know the ratio of stiffness to mass alone: ") +
+                       : "Frequencies determine the ratio of stiffness to mass alone: ") +
          std::string(of_unweighed_masses);
 }
 

@@ -79,8 +79,9 @@ std::vector<std::string> posterior_sentences(const PosteriorStudy& study) {
     const PosteriorParameter& one = study.parameters[j];
     if (is_assumed) assumed.push_back(name);
     if (one.share_of_prior > hardly_narrower && posterior.humps.size() == 1)
-      sentences.push_back(fmt::format("{}: hardly narrower than its {} prior, which these numbers repeat.",
-                                      name, is_assumed ? "assumed" : "stated"));
+      sentences.push_back(
+          fmt::format("{}: only little narrower than its {} prior, which these numbers repeat.", name,
+                      is_assumed ? "assumed" : "stated"));
     else if (is_assumed && one.beyond > often_at_the_edge)
       sentences.push_back(
           fmt::format("{} reaches the edge of its assumed prior in {:.0f} % of the draws: state one.", name,
@@ -89,7 +90,7 @@ std::vector<std::string> posterior_sentences(const PosteriorStudy& study) {
   if (!assumed.empty())
     sentences.push_back(fmt::format(
         "No prior is stated of {}: log-uniform within a factor of {:.0f} of the initial estimate is "
-        "assumed. [[parameters]] states one: bounds, or a deviation.",
+        "assumed. [[parameters]] states one: bounds, or a standard deviation.",
         joined(assumed), PriorLaw::assumed_factor));
   const ImportanceSample& importance = posterior.importance;
   sentences.push_back(

@@ -130,7 +130,7 @@ std::string cost_words(const DominantCost& found) {
   const ModalChange& change = found.cost->together.front().whole;
   return fmt::format(
       "a clean decay of its dominant mode, {:.4g} Hz, all steps together change the frequency by {:+.4f} % "
-      "and the damping ratio by {:+.3f} %; `beamid prepare` tells of each.",
+      "and the damping ratio by {:+.3f} %; `beamid prepare` lists each.",
       found.cost->frequency_hz, std::abs(change.frequency) < 5e-7 ? 0 : 100 * change.frequency,
       std::abs(change.damping_ratio) < 5e-6 ? 0 : 100 * change.damping_ratio);
 }
@@ -195,8 +195,8 @@ Table cost_table(const PreparationCost& cost) {
   table.note = fmt::format(
       "What the steps make of a clean decay at {:.4f} Hz with a damping ratio of {:.4f} %, the mode that "
       "dominates the prepared record, begun abruptly. Gain and phase: closed form. Changes of frequency and "
-      "damping ratio: a least-squares fit where transients are below 1e-3 (settled) and over all that is "
-      "left (whole), and the logarithmic decrement over the whole.",
+      "damping ratio: a least-squares fit where transients are below 1e-3 (settled) and over all that "
+      "remains (whole), and the logarithmic decrement over the whole.",
       cost.frequency_hz, 100 * cost.damping_ratio);
   return table;
 }

@@ -245,7 +245,7 @@ std::vector<ReductionCandidate> reduce_all(const Experiment& experiment, const s
     } catch (const std::runtime_error& error) {
       if (!choice.place.file.empty()) throw;
       const std::string what = error.what();
-      all.notes.push_back(names[i] + " is left out" + (what.starts_with(": ") ? what : ": " + what));
+      all.notes.push_back(names[i] + " is excluded" + (what.starts_with(": ") ? what : ": " + what));
       continue;
     }
     candidate.one.choice = choice;
@@ -276,7 +276,7 @@ ReductionComparison compare_reductions(const Experiment& experiment, const std::
   if (!all.system.nonlinear_forces.empty()) {
     all.system.nonlinear_forces.clear();
     all.notes.emplace_back(
-        "Cubic springs and quadratic dashpots are left out: modes are those of small motions.");
+        "Cubic springs and quadratic dashpots are omitted: modes are those of small motions.");
   }
   all.damping = damping_in_force(experiment, all);
   progress("modes of the mesh");
@@ -297,7 +297,7 @@ ReductionComparison compare_reductions(const Experiment& experiment, const std::
 
   std::vector<ReductionCandidate> candidates =
       reduce_all(experiment, choices, folder, below_hz, progress, all);
-  if (candidates.empty()) throw std::invalid_argument("no reduction is left to be compared");
+  if (candidates.empty()) throw std::invalid_argument("no reduction remains to be compared");
   std::vector<VectorXd> resonances{all.modes.modes.angular_frequency};
   for (const ReductionCandidate& candidate : candidates)
     resonances.push_back(candidate.modes.modes.angular_frequency);
@@ -360,7 +360,7 @@ std::string text_of(const ReductionComparison& all) {
                                  all.damping_assumed ? ", assumed" : "", all.observed.name);
   if (all.release.samples > 0)
     text += fmt::format(
-        " Released from {:g} m at the {}, the static deflection projected on the modes of each model; seen "
+        " Released from {:g} m at the {}, the static deflection projected on the modes of each model. Seen "
         "for ten periods of mode 1 at {:g} Hz, with the modes below {:g} Hz that such a record can hold.",
         all.release.deflection, all.release.point.name, all.release.sampling_rate_hz, all.release.limit_hz());
   return text;

@@ -177,8 +177,8 @@ Results sensing_report(const Experiment& experiment, const SensingStudy& study, 
   add_what_is_unchecked(experiment, results);
   if (experiment.fatigue && study.damages.empty())
     results.warning(
-        "[fatigue] asks for the damage of strains, and no [[virtual_sensors]] has quantity = \"strain\": "
-        "nothing is worked out.");
+        "[fatigue] requests the damage of strains, and no [[virtual_sensors]] has quantity = \"strain\": no "
+        "damage is worked out.");
   results.table(history_table(study));
   if (!study.left_out.empty()) results.table(left_out_table(study));
   if (!study.constants.empty()) results.table(constant_table(study));

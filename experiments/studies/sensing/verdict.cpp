@@ -23,7 +23,7 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
   for (const SensorNoise& one : study.noise)
     if (one.explains_too_much())
       results.warning(
-          fmt::format("{}: {} of what it read is left to noise that nobody stated, {:.3g} {}. The "
+          fmt::format("{}: {} of what it read is taken for noise that is not stated, {:.3g} {}. The "
                       "structure, a sensor's place or unit, or the places of the unknown forces are not "
                       "as described.",
                       one.name, share(one.deviation, one.root_mean_square), one.deviation, one.unit),
@@ -42,26 +42,27 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
     results.warning(
         study.forces.empty()
             ? "One sensor alone: no other checks it, its place or its unit."
-            : "One sensor alone: nothing checks the structure as described, and its errors become "
+            : "One sensor alone: no other checks the structure as described, and its errors become "
               "force.");
   else if (free == study.left_out.size())
     results.warning(
-        "No sensor can be predicted from the others: any record would fit, and nothing checks the structure "
+        "No sensor can be predicted from the others: any record would fit, and no sensor checks the "
+        "structure "
         "as described. A sensor more would.");
   else if (study.is_to_rely_on())
-    results.paragraph(
-        fmt::format("{} of {} sensors are predicted by the others as well as their deviations say.",
-                    study.left_out.size() - free, study.left_out.size()));
+    results.paragraph(fmt::format(
+        "{} of {} sensors are predicted by the others as well as their standard deviations state.",
+        study.left_out.size() - free, study.left_out.size()));
   if (study.unseen_constants > 0)
-    results.warning(
-        fmt::format("{} cannot be seen: these sensors read the same of {} as of rest. Means of forces, "
-                    "displacements and strains are not known, and no error below holds them; what changes "
-                    "slowly is known from the correlation time only. One displacement or strain would tell.",
-                    study.forces.size() == 1 ? "A constant force"
-                    : study.unseen_constants == 1
-                        ? "One combination of constant forces"
-                        : std::to_string(study.unseen_constants) + " combinations of constant forces",
-                    study.unseen_constants == 1 ? "it" : "them"));
+    results.warning(fmt::format(
+        "{} cannot be seen: these sensors read the same of {} as of rest. Means of forces, "
+        "displacements and strains are not known, and no error below holds them; what changes "
+        "slowly is known from the correlation time only. One displacement or strain would determine them.",
+        study.forces.size() == 1 ? "A constant force"
+        : study.unseen_constants == 1
+            ? "One combination of constant forces"
+            : std::to_string(study.unseen_constants) + " combinations of constant forces",
+        study.unseen_constants == 1 ? "it" : "them"));
   for (const SoleZero& zero : study.sole_zeros) {
     std::string moved;
     for (std::size_t j = 0; j < zero.shifts.size() && j < study.histories.size(); ++j)
@@ -69,7 +70,7 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
         moved += fmt::format("{}{} by {:.3g} {}", moved.empty() ? "" : ", ", study.histories[j].name,
                              zero.shifts[j], study.histories[j].unit);
     results.warning(fmt::format(
-        "Means rest on the zero of {} alone, which is taken for exact: no other sensor tells an "
+        "Means rest on the zero of {} alone, which is taken for exact: no other sensor distinguishes an "
         "offset of it from a constant force. Off by {:g} {} it shifts {}. The errors below do not "
         "hold it.",
         zero.name, zero.off, zero.unit, moved));
@@ -102,15 +103,16 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
             "Innovations are correlated from sample to sample, {:.2f}: the force is not such a process, "
             "or the structure not quite as described. {}.",
             correlation,
-            study.correlated() ? "Deviations, and intervals of parameters above all, are too small"
-                               : "Deviations may be too small"),
+            study.correlated() ? "Standard deviations, and intervals of parameters above all, are too small"
+                               : "Standard deviations may be too small"),
         study.correlated());
   if (square <= SensingStudy::largest_square && study.noisier_than_stated())
-    results.warning(fmt::format(
-        "From sample to sample the sensors read {:.2f} times as far from what is expected of them as they "
-        "should: the noise is larger than stated, or forces are; deviations and intervals are too small by "
-        "as much.",
-        std::sqrt(square)));
+    results.warning(
+        fmt::format("From sample to sample the sensors read {:.2f} times as far from what is expected of "
+                    "them as they should. The noise is larger than stated, or forces are. Standard "
+                    "deviations and intervals are too small by "
+                    "as much.",
+                    std::sqrt(square)));
 }
 
 }  // namespace beamid::experiments

@@ -81,7 +81,8 @@ Figure steps_figure(const StepsStudy& study) {
   Figure figure{"step_size", {damping, frequency}, 1, 2};
   figure.width = 1000;
   figure.caption =
-      "One record, every sample of it and fewer: what filters of each discretisation find (points), on the "
+      "One record, every sample of it and fewer. Shown: what filters of each discretisation find (points), "
+      "on the "
       "curves that the closed form predicts from what the exact one finds at the record's own step.";
   return figure;
 }

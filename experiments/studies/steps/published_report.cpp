@@ -24,11 +24,10 @@ std::string possible_text(const BehindPublished& found) {
   text += std::abs(times - 1.0) < 0.005
               ? fmt::format("the discretisation changed it by {:+.2g} %", 100.0 * (times - 1.0))
               : fmt::format("the published value is {:.3g} times the true one", times);
-  return text +
-         fmt::format(
-             ". The published value's last digit leaves {:.4g} to {:.4g} %: what the discretisation adds "
-             "to a damping ratio hardly depends on it, so that its error is passed on whole.",
-             100.0 * found.lower, 100.0 * found.upper);
+  return text + fmt::format(
+                    ". The published value's last digit allows {:.4g} to {:.4g} %. What the discretisation "
+                    "adds to a damping ratio depends little on it, so that its error is passed on whole.",
+                    100.0 * found.lower, 100.0 * found.upper);
 }
 
 std::string impossible_text(const BehindPublished& found) {
@@ -112,7 +111,8 @@ Results report(const BehindPublished& found) {
   } else {
     results.paragraph(possible_text(found));
     if (found.lower <= 0.0)
-      results.warning("The published value's last digit does not tell the true damping ratio from zero.");
+      results.warning(
+          "The published value's last digit does not distinguish the true damping ratio from zero.");
   }
   results.table(published_table(found));
   if (p.of_record) {
@@ -132,7 +132,7 @@ Results report(const BehindPublished& found) {
     values["damping_ratio"]["behind_it_with_process_noise"] = *found.with_process_noise;
     limits += fmt::format(
         " With displacement and velocity observed and process noise on the motion far above theirs, forward "
-        "Euler adds half as much (K dt / 2 to C), and {:.4g} % would lie behind the value.",
+        "Euler adds half as much (K dt / 2 to C). Then {:.4g} % would lie behind the value.",
         100.0 * *found.with_process_noise);
   }
   results.paragraph(limits);

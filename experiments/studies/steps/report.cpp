@@ -34,7 +34,7 @@ std::string scheme_text(const StepsStudy& study, std::size_t d) {
   const FoundMode& exact = study.reference();
   if (!one.is_valid())
     return fmt::format(
-        "On {} a {} filter at steps of {:.4g} ms finds nothing valid: {}. The exact "
+        "On {} a {} filter at steps of {:.4g} ms finds no valid estimate: {}. The exact "
         "discretisation finds a damping ratio of {:.4g} +- {:.2g} % at {:.6g} Hz.",
         study.record, one.discretisation, 1e3 * own.interval, one.reason, 100.0 * exact.damping_ratio,
         100.0 * half_interval(exact), exact.frequency_hz);
@@ -66,10 +66,11 @@ std::string innovations_note(const StepsStudy& study) {
   if (most > clearly)
     return fmt::format(
         "The innovations show the bias: their mean normalised square (NIS) is up to {:.3g} times that of the "
-        "exact discretisation, as no motion of the scheme has all that is observed; intervals do not.",
+        "exact discretisation, as no motion of the scheme has all that is observed. Intervals do not show "
+        "it.",
         most);
   return "Intervals and innovations (mean NIS, 1 of a consistent filter) are a filter's own and do not show "
-         "a bias: a biased value is no estimate of the structure's damping, however narrow its interval.";
+         "a bias. A biased value is no estimate of the structure's damping, however narrow its interval.";
 }
 
 Table steps_table(const StepsStudy& study) {

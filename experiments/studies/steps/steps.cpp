@@ -135,7 +135,7 @@ void refuse_what_no_closed_form_knows(const Record& record) {
   for (const Index i : input_channels(record))
     throw std::invalid_argument(
         fmt::format("channel '{}' is a measured force; expected a free decay: what a discretisation does to "
-                    "it is known in closed form, under a force it is not. Leave the channel out of "
+                    "it is known in closed form, under a force it is not. Omit the channel from "
                     "record.channels and take a window behind the force",
                     record.channels[static_cast<std::size_t>(i)].name));
 }
@@ -163,7 +163,7 @@ void judge_steps(StepsStudy& study) {
     if (apart <= half) continue;
     study.warnings.push_back(fmt::format(
         "The exact discretisation finds a damping ratio of {:.4g} % at steps of {:.4g} ms and {:.4g} % at "
-        "those of the record, further apart than its interval: not the step alone has changed. Higher modes, "
+        "those of the record, further apart than its interval. More than the step has changed. Higher modes, "
         "which decimation takes out, or too short a window do that; a low-pass ([[record.prepare]]) or a "
         "later window helps.",
         100.0 * exact.found->damping_ratio, 1e3 * step.interval, 100.0 * reference.damping_ratio));
@@ -176,7 +176,7 @@ void judge_steps(StepsStudy& study) {
                                              one.discretisation, 1e3 * step.interval, one.reason));
       if (one.verdict == SchemeAtStep::Verdict::unexplained)
         study.warnings.push_back(fmt::format(
-            "{} at steps of {:.4g} ms finds a damping ratio of {:.5g} %, where {}: the closed form, of one "
+            "{} at steps of {:.4g} ms finds a damping ratio of {:.5g} %, where {}. The closed form, of one "
             "mode in one channel without process noise, does not describe this record.",
             one.discretisation, 1e3 * step.interval, 100.0 * one.found->damping_ratio,
             one.predicted ? fmt::format("{:.5g} % was predicted", 100.0 * one.predicted->damping_ratio)
@@ -239,7 +239,7 @@ StepsStudy study_steps(const StepsSettings& settings, const IdentificationReques
     if (coarse || is_short) {
       if (settings.steps)
         study.notes.push_back(
-            fmt::format("{} of {} steps: the next would leave {}.", study.steps.size(), wanted,
+            fmt::format("{} of {} steps: with the next there would be {}.", study.steps.size(), wanted,
                         coarse ? fmt::format("{:.3g} samples a period", per_period / factor)
                                : fmt::format("{} samples", one.prepared.record.size() / factor)));
       break;
@@ -256,8 +256,7 @@ StepsStudy study_steps(const StepsSettings& settings, const IdentificationReques
   }
   if (study.steps.size() < 2)
     study.notes.emplace_back(
-        "The record is too short, or sampled too seldom, for a longer step: nothing is "
-        "extrapolated.");
+        "The record is too short, or sampled too seldom, for a longer step: errors are not extrapolated.");
   judge_steps(study);
   return study;
 }

@@ -94,7 +94,7 @@ void add_verdict(const PartedIdentification& found, Results& results) {
                                       [](const auto& one) { return one.disagreement > 0.0; });
   if (compared > 0 && worst->disagreement > disagreement_limit(static_cast<std::size_t>(compared)))
     results.warning(
-        fmt::format("The parts disagree about {}: by {:.2g} of the deviations of their difference. "
+        fmt::format("The parts disagree about {}: by {:.2g} of the standard deviations of their difference. "
                     "Something between them, or a sensor they share, is not as described.",
                     worst->name, worst->disagreement));
   if (good > 0)
@@ -103,15 +103,15 @@ void add_verdict(const PartedIdentification& found, Results& results) {
                     "several have are joined below.",
                     good, found.parts.size()));
   else
-    results.warning("No part was identified: nothing is joined.", true);
+    results.warning("No part was identified: there is no joint result.", true);
   const ExactSections exact = exact_sections(found);
   if (good == 0 || exact.count == 0) return;
-  results.paragraph(
-      fmt::format("Were the motion at the sections taken for exact, {} would be {:.3g} of its own deviations "
-                  "{}; mean square of all {}: {:.3g} (1 where deviations are right).",
-                  exact.parameter, exact.largest,
-                  is_simulated(found) ? "off the truth" : "off what is found with its noise", exact.count,
-                  exact.mean_square));
+  results.paragraph(fmt::format(
+      "Were the motion at the sections taken for exact, {} would be {:.3g} of its own standard deviations "
+      "{}; mean square of all {}: {:.3g} (1 where standard deviations are right).",
+      exact.parameter, exact.largest,
+      is_simulated(found) ? "off the truth" : "off what is found with its noise", exact.count,
+      exact.mean_square));
 }
 
 // Motion alone knows ratios: M, C and K of a part times any factor move alike.
@@ -123,8 +123,8 @@ std::string without_forces(const PartedIdentification& found) {
   }
   if (names.empty()) return {};
   return fmt::format(
-      "No measured force acts inside {}, and motion alone knows the ratios of stiffness and damping to mass: "
-      "{}",
+      "No measured force acts inside {}, and motion alone determines the ratios of stiffness and damping to "
+      "mass: {}",
       names, of_unweighed_masses);
 }
 
@@ -184,7 +184,7 @@ Table part_table(const PartedIdentification& found) {
   table.note =
       "Bound: what no unbiased estimate from this part's channels falls below, their noise at the sections "
       "counted. Sections exact: the same part as if the motion there were known without noise, "
-      "and the deviation that the filter then reports.";
+      "and the standard deviation that the filter then reports.";
   return table;
 }
 

@@ -171,8 +171,8 @@ std::string below_bound_text(const SweepPlan& plan, const std::vector<PointStati
   if (count > shown) beyond += fmt::format(" and {} more", count - shown);
   return fmt::format(
       "{}{}Errors below the Cramer-Rao bound, rms / bound: {}. No unbiased estimate from the records alone "
-      "can do that: the initial estimates, which are information that the bound leaves out, are at or near "
-      "the truth. Such rows say nothing of how good the filter is.",
+      "can do that: the initial estimates, which are information that the bound omits, are at or near the "
+      "truth. Such rows do not show how good the filter is.",
       chance, chance.empty() ? "" : " ", beyond);
 }
 
@@ -184,7 +184,7 @@ std::string plan_text(const SweepPlan& plan) {
                      plan.points() == 1 ? "point" : "points",
                      plan.samples > 1 ? fmt::format(" x {} samples", plan.samples) : "", plan.seeds,
                      plan.seeds == 1 ? "seed" : "seeds", plan.seed,
-                     keys.empty() ? "Nothing varies but the noise." : "Varied: " + keys);
+                     keys.empty() ? "Only the noise varies." : "Varied: " + keys);
 }
 
 }  // namespace

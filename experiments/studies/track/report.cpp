@@ -104,7 +104,7 @@ Figure tracking_figure(const Tracking& found, const Channel& channel) {
   for (Panel& panel : figure.panels) panel.across(begin, end);
   figure.caption =
       "Signal, frequency and damping ratio in time. Where the record holds no information about the damping "
-      "ratio its curve is left out.";
+      "ratio its curve is omitted.";
   return figure;
 }
 
@@ -133,8 +133,9 @@ Table plateau_table(const Tracking& found) {
                100 * p.modal_damping_ratio, p.walk});
   }
   table.note =
-      "Frequency and damping ratio are means over the plateau; intervals include the drift within it "
-      "and, where it exceeds three standard deviations or another mode rings beside, the difference from the "
+      "Frequency and damping ratio are means over the plateau. Intervals include the drift within it. Where "
+      "it exceeds three standard deviations or another mode rings beside, they include the difference from "
+      "the "
       "modal analysis, which takes the plateau for a free decay. A damping ratio below zero: the motion "
       "grew. K1 is the stiffness on the "
       "first plateau, the mass being the same.";
@@ -283,7 +284,7 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
       "{} alarms: the squares of {} innovations in succession above {:.1f}, which in a record without "
       "changes and with white noise of {:.3g} {} happens with a probability below {:g}. Alarms nearer to "
       "each other than {:g} cycles belong to one change; while it lasts the band of history.csv is what so "
-      "few samples tell.",
+      "few samples determine.",
       found.alarms.size(), found.test_samples, found.threshold, found.noise, si_unit(channel.quantity),
       settings.false_alarms, settings.shortest_cycles));
   results.figures.push_back(tracking_figure(found, channel));

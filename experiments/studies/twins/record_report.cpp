@@ -18,7 +18,7 @@ bool hardly_searched(const UpdateStudy& study) {
 
 std::string one_set_text(const UpdateStudy& study) {
   if (hardly_searched(study))
-    return fmt::format("One set of parameters explains the modes, as far as so few starts can tell ({}).",
+    return fmt::format("One set of parameters explains the modes, as far as so few starts can show ({}).",
                        study.updating.starts);
   if (study.twins.method == TwinSearch::Method::all_solutions && !study.complete())
     return "One set of parameters explains the modes, as far as was found.";
@@ -58,7 +58,7 @@ Results twins_report(const Experiment& experiment, const UpdateStudy& study) {
   for (const std::string& sentence : update_sentences(study)) results.paragraph(sentence);
   results.notes(study.data().remarks);
   if (study.updating.as_well() > 1 && !study.deciding.empty()) {
-    results.paragraph("Best to tell them apart: " + deciding_text(study.deciding.front()) + ".");
+    results.paragraph("Best to distinguish them: " + deciding_text(study.deciding.front()) + ".");
     results.table(deciding_table(study.deciding));
   }
   results.heading("Modes");
@@ -125,7 +125,7 @@ void add_twins(Results& results, const ComparedRun& run, const RecordTwins& twin
         "likely than the one found.");
   results.table(twin_table(run, twins));
   if (!twins.deciding.empty()) {
-    results.paragraph("Best to tell them apart: " + deciding_text(twins.deciding.front()) + ".");
+    results.paragraph("Best to distinguish them: " + deciding_text(twins.deciding.front()) + ".");
     results.table(deciding_table(twins.deciding));
   }
 }

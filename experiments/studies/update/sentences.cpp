@@ -50,7 +50,7 @@ std::pair<std::string, bool> update_verdict(const UpdateStudy& study) {
   const std::string numbers = numbers_text(updating);
   if (updating.refuted)
     return {"No values of these parameters explain the modes: " + numbers +
-                ". Something else than the parameters asked about is wrong, or the modes are.",
+                ". Something other than the parameters requested is wrong, or the modes are.",
             false};
   if (!updating.open.empty()) {
     const auto names = undetermined(study);
@@ -60,7 +60,7 @@ std::pair<std::string, bool> update_verdict(const UpdateStudy& study) {
             false};
   }
   if (updating.as_well() > 1)
-    return {sets_text(updating) + ", and the modes cannot tell which is true: " + numbers + ".", false};
+    return {sets_text(updating) + ", and the modes cannot show which is true: " + numbers + ".", false};
   if (!updating.explains())
     return {"These parameters explain the modes poorly: " + numbers +
                 ", which chance alone exceeds once in 20 times.",
@@ -69,12 +69,11 @@ std::pair<std::string, bool> update_verdict(const UpdateStudy& study) {
     return {fmt::format("One set of parameters explains the modes, as far as was found: {}.", numbers), true};
   if (study.twins.method != TwinSearch::Method::all_solutions && starts_say_little(updating))
     return {
-        fmt::format("One set of parameters explains the modes, as far as so few starts can tell ({}): {}.",
+        fmt::format("One set of parameters explains the modes, as far as so few starts can show ({}): {}.",
                     updating.starts, numbers),
         true};
-  return {fmt::format(
-              "One set of parameters explains the modes: {}.{}", numbers,
-              updating.freedom > 0 ? "" : " No number is left over to contradict a wrong mode or sensor."),
+  return {fmt::format("One set of parameters explains the modes: {}.{}", numbers,
+                      updating.freedom > 0 ? "" : " No number remains to contradict a wrong mode or sensor."),
           true};
 }
 
@@ -107,7 +106,7 @@ std::string completeness_text(const UpdateStudy& study) {
                      "found, {} of them with positive values.",
                      twins.complex_solutions, twins.values.size())
                : fmt::format(
-                     "Not proven complete: {} of the {} complex solutions were found and told apart; some "
+                     "Not proven complete: {} of the {} complex solutions were found and distinguished; some "
                      "lie together or too near each other.",
                      twins.found, twins.complex_solutions);
   const std::size_t starts = study.updating.starts;
@@ -116,8 +115,8 @@ std::string completeness_text(const UpdateStudy& study) {
                   starts == 1 ? "" : "s");
   if (starts_say_little(study.updating))
     return searched +
-           " So few say nothing of other sets: nearly each of them ended at a place of its own. Ask for more "
-           "by --starts.";
+           " So few show no other sets: nearly each of them ended at a place of its own. Request more by "
+           "--starts.";
   return searched + fmt::format(
                         " The chance that one more start ends elsewhere is about {:.2g} % (sets that "
                         "one start alone found).",
@@ -155,8 +154,8 @@ std::string twins_warning(const Experiment& experiment) {
     if (study.updating.as_well() < 2) return {};
     return fmt::format(
         "Not unique by frequencies alone: {}, those of the structure as described ('beamid twins --config "
-        "FILE' lists them). An estimate near another set has small intervals, too. Sensors that tell the "
-        "shapes apart decide, or initial estimates that are near.",
+        "FILE' lists them). An estimate near another set has small intervals, too. Sensors that distinguish "
+        "the shapes decide, or initial estimates that are near.",
         sets_text(study.updating));
   } catch (const std::exception&) {  // the command itself says what is wrong
     return {};
@@ -164,7 +163,7 @@ std::string twins_warning(const Experiment& experiment) {
 }
 
 std::string described_text() {
-  return "All that is not asked about counts as described, exactly. Frequencies and shapes know only the "
+  return "All that is not requested counts as described, exactly. Frequencies and shapes determine only the "
          "ratio of stiffness to mass: " +
          std::string(of_unweighed_masses);
 }
@@ -174,12 +173,12 @@ std::vector<std::string> update_sentences(const UpdateStudy& study) {
   std::vector<std::string> sentences;
   if (!updating.explains())
     sentences.push_back(
-        fmt::format("What is left counts as noise: intervals are widened by {:.3g}.", updating.widening));
+        fmt::format("The residual counts as noise: intervals are widened by {:.3g}.", updating.widening));
   for (const OpenDirection& open : updating.open)
     sentences.push_back(
         std::isinf(open.deviation)
             ? fmt::format("No measured number changes with {}.", direction_text(study, open))
-            : fmt::format("Hardly any measured number changes with {}: known to a factor of {:.2g} only.",
+            : fmt::format("Almost no measured number changes with {}: known to a factor of {:.2g} only.",
                           direction_text(study, open),
                           std::exp(quantile_95 * std::min(open.deviation, 100.0))));
   for (std::size_t j = 0; j < study.unknowns().size(); ++j) {
@@ -189,13 +188,14 @@ std::vector<std::string> update_sentences(const UpdateStudy& study) {
                           " lies on its bound: its interval ends there, and those of all hold only if the "
                           "bound does.");
     if (updating.parameters[j].at_search_limit)
-      sentences.push_back(name +
-                          " ran away, beyond a factor of 1e4 from its initial estimate: nothing holds it.");
+      sentences.push_back(
+          name + " ran away, beyond a factor of 1e4 from its initial estimate: no measurement holds it.");
   }
   if (std::count(study.model->asked().has_prior.begin(), study.model->asked().has_prior.end(), true) > 0)
-    sentences.emplace_back("The deviations stated in [[parameters]] count as measurements (priors).");
+    sentences.emplace_back(
+        "The standard deviations stated in [[parameters]] count as measurements (priors).");
   if (!study.model->asked().left_out.empty())
-    sentences.push_back("Left out, since frequencies and shapes hardly depend on damping: " +
+    sentences.push_back("Omitted, since frequencies and shapes depend little on damping: " +
                         joined(study.model->asked().left_out) + ".");
   return sentences;
 }

@@ -104,7 +104,7 @@ Table measured_mode_table(const UpdateStudy& study) {
 }
 
 Table deciding_table(const std::vector<DecidingMeasurement>& deciding) {
-  Table table{"deciding", "What would tell the sets apart"};
+  Table table{"deciding", "What would distinguish the sets"};
   table.column({"measurement", "measurement"})
       .column({"kind", "kind"})
       .column({"least distance [+-]", "separation_standard_deviations", "{:.1f}"});

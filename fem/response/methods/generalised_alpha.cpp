@@ -16,7 +16,7 @@ Response generalised_alpha(const ResponseProblem& problem, const ResponseOptions
 
 const bool generalised_alpha_registered = register_response_method(
     {"generalised_alpha",
-     "second order, fast motions multiplied by rho_infinity at each step, slow ones hardly damped",
+     "second order, fast motions multiplied by rho_infinity at each step, slow ones almost undamped",
      "[chung1993]",
      {{"rho_infinity", 0.8, "", "0 (fast motions gone in one step) to 1 (not damped)"}}},
     generalised_alpha);

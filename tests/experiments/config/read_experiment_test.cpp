@@ -195,7 +195,7 @@ TEST(ReadExperiment, RefusesImpossibleBeams) {
        {"[beam]\nlength_m = 2009-01-01\n",
         "bad.toml:2:12: beam.length_m is a date or time; expected a positive number"},
        {"\n [beam]\nlength_m = 1\nmass_kg = 3\n",
-        "bad.toml:2:2: bending stiffness is given by nothing; expected exactly one of youngs_modulus_pa, "
+        "bad.toml:2:2: bending stiffness is given by no key; expected exactly one of youngs_modulus_pa, "
         "bending_stiffness_n_m2"},
        {BEAM "youngs_modulus_pa = 2e11\n",
         "bad.toml:1:1: bending stiffness is given by youngs_modulus_pa, bending_stiffness_n_m2; expected "
@@ -203,7 +203,7 @@ TEST(ReadExperiment, RefusesImpossibleBeams) {
        {"[beam]\nlength_m = 1\nyoungs_modulus_pa = 2e11\nwidth_m = 1\nmass_kg = 1\n",
         "bad.toml:1:1: beam.height_m is missing; expected a positive number beside youngs_modulus_pa"},
        {"[beam]\nlength_m = 1\nbending_stiffness_n_m2 = 1\n",
-        "bad.toml:1:1: mass is given by nothing; expected exactly one of mass_kg, mass_per_length_kg_per_m, "
+        "bad.toml:1:1: mass is given by no key; expected exactly one of mass_kg, mass_per_length_kg_per_m, "
         "density_kg_per_m3"},
        {BEAM "density_kg_per_m3 = 7850\n",
         "bad.toml:1:1: mass is given by mass_kg, density_kg_per_m3; expected exactly one of mass_kg, "

@@ -191,7 +191,7 @@ TEST(ReadSpaceFrame, RefusesWhatCannotBe) {
        "tower.toml:20:8: space_frame.sections[2].name is the text \"bar\"; expected a name that no other "
        "section has"},
       {good + "[[space_frame.supports]]\njoint = 1\n",
-       "tower.toml:28:1: what the support holds is given by nothing; expected exactly one of kind, holds"},
+       "tower.toml:28:1: what the support holds is given by no key; expected exactly one of kind, holds"},
       {replaced(good, "second = 3", "second = 1"),
        "tower.toml:2:88: space_frame.joints[3] ends no member; expected one at least"},
       {replaced(good, "}]\n", "}, { x_m = 9, y_m = 0, z_m = 0 }, { x_m = 9, y_m = 2, z_m = 0 }]\n") +

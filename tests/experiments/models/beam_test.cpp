@@ -115,7 +115,7 @@ TEST(BeamModel, SaysWhatItCannotDo) {
   EXPECT_THAT(asking({test::in_region(0.2, 0.5), test::in_region(0.4, 0.6)}),
               testing::HasSubstr("regions overlap"));
   EXPECT_THAT(asking({test::parameter("tip_mass"), test::parameter("tip_mass")}),
-              testing::HasSubstr("asked about twice"));
+              testing::HasSubstr("requested twice"));
   EXPECT_THAT(asking({test::of_mode("damping_ratio", 400)}), testing::HasSubstr("mode 400"));
   EXPECT_THAT(refusal(setting, {{"sensor_bias", false}, {"sensor_drift", true}}),
               testing::HasSubstr("sensor_drift"));

@@ -150,7 +150,7 @@ TEST(ReadRecord, RefusesBadNumbersAtTheirPlaces) {
         "bad.txt:2:1: column 1 holds '-inf'; expected a finite number within double precision"},
        {"0,1\n1,1e999\n",
         "bad.txt:2:3: column 2 holds '1e999'; expected a finite number within double precision"},
-       {"0,1,2\n1,,2\n", "bad.txt:2:3: column 2 holds nothing; expected a number"},
+       {"0,1,2\n1,,2\n", "bad.txt:2:3: column 2 holds no entry; expected a number"},
        {"0,1\n1,0x10\n", "bad.txt:2:3: column 2 holds '0x10'; expected a number"},
        {"0,1\n1,+-1\n", "bad.txt:2:3: column 2 holds '+-1'; expected a number"},
        {"some,text\nmore,text\n",
@@ -159,7 +159,7 @@ TEST(ReadRecord, RefusesBadNumbersAtTheirPlaces) {
         "in the configuration"},
        {"0,1,2\n1,1\n", "bad.txt:2:1: 2 columns; expected 3 as in the first row"},
        {"0 1\n1 1 1\n", "bad.txt:2:1: 3 columns; expected 2 as in the first row"},
-       {"0,1\n1,\n", "bad.txt:2:3: column 2 holds nothing; expected a number"}});
+       {"0,1\n1,\n", "bad.txt:2:3: column 2 holds no entry; expected a number"}});
 }
 
 TEST(ReadRecord, RefusesANumberThatIsTooLargeInTheUnitOfTheRecord) {
@@ -199,7 +199,7 @@ TEST(ReadRecord, RefusesColumnsThatAreNotThere) {
   by_name.channels[0] = {Quantity::acceleration, "acc", 0, 1.0};
   by_number.channels[0].number = 3;
   expect_refused(by_number,
-                 {{"\n0,1\n1,1\n", "bad.txt:2:1: 2 columns; expected at least 3, the column asked for"}});
+                 {{"\n0,1\n1,1\n", "bad.txt:2:1: 2 columns; expected at least 3, the column requested"}});
   expect_refused(
       by_name,
       {{"0,1\n1,1\n", "bad.txt: no header; expected one that names the column 'acc'"},

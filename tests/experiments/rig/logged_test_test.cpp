@@ -71,7 +71,7 @@ TEST(LoggedTest, BeginsWithTheExcitation) {
   ASSERT_EQ(test.record.size(), exact.size());
   EXPECT_NEAR(test.record.time[0], 0.5, 1e-12);
   EXPECT_LT((test.record.samples - exact.samples).norm(), 1e-12 * exact.samples.norm());
-  EXPECT_THAT(test.notes, Contains(HasSubstr("0.5 s recorded before the excitation are left out")));
+  EXPECT_THAT(test.notes, Contains(HasSubstr("0.5 s recorded before the excitation are omitted")));
 }
 
 TEST(LoggedTest, KeepsUnevenStampsAndNoneBeforeTheExcitation) {

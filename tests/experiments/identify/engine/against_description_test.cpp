@@ -87,8 +87,8 @@ TEST(AgainstDescription, OneParameterFarFromItsEstimateIsNamedAlone) {
                           true);
   EXPECT_EQ(found.scale, "");
   ASSERT_EQ(found.differences.size(), 1u);
-  EXPECT_THAT(found.differences[0],
-              AllOf(HasSubstr("stiffness comes out as 250 N/m, 5 deviations"), HasSubstr("(2.5 times)")));
+  EXPECT_THAT(found.differences[0], AllOf(HasSubstr("stiffness comes out as 250 N/m, 5 standard deviations"),
+                                          HasSubstr("(2.5 times)")));
 }
 
 TEST(AgainstDescription, WithoutAMeasuredForceThereIsNoScale) {

@@ -122,11 +122,12 @@ TEST(ModelCheck, TellsFromSeveralTipMassesWhatOneCannot) {
   for (const double mass : {1.4, 0.7, 0.25})
     several.push_back(structure(cantilever(mass), "tip_mass", 0.04, 1));
   const ModelCheck one = check_model({several[0]}, settings), joint = check_model(several, settings);
-  EXPECT_THAT(testing::PrintToString(conclusions(one)), HasSubstr("One frequency cannot tell"));
+  EXPECT_THAT(testing::PrintToString(conclusions(one)), HasSubstr("One frequency cannot distinguish"));
   EXPECT_EQ(candidate_of(joint, joint.single[0]).name, "tip_mass");
   EXPECT_NEAR(joint.single[0].change[0], 0.04, 1e-4);
   EXPECT_EQ(joint.single[1].verdict, Verdict::leaves_much);
-  EXPECT_THAT(testing::PrintToString(conclusions(joint)), Not(HasSubstr("cannot tell")));
+  EXPECT_THAT(testing::PrintToString(conclusions(joint)),
+              Not(testing::ContainsRegex("cannot (show|distinguish)")));
 }
 
 TEST(ModelCheck, HoldsAClampThatWouldHaveToBeStifferThanRigid) {

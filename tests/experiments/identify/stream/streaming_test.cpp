@@ -284,7 +284,7 @@ TEST(Stream, RefusesAStateThatNoFilterHas) {
     return "taken";
   };
   EXPECT_EQ(refusal("covariance", std::vector<double>(16, 0.0)),
-            "a deviation of the state is 0; expected more than 0");
+            "a standard deviation of the state is 0; expected more than 0");
   EXPECT_EQ(refusal("step", 1e30), "step is 1e+30; expected a whole number from 1 to 1000000000000000");
   EXPECT_EQ(refusal("step", -3), "step is -3; expected a whole number from 1 to 1000000000000000");
   EXPECT_NE(refusal("mean", nlohmann::json::array()).find("mean has 0 numbers"), std::string::npos);
@@ -334,7 +334,7 @@ TEST(SampleLine, SaysWhatIsWrongAndWhere) {
     return "";
   };
   EXPECT_EQ(message("0.5,one"),
-            "standard input:3:5: 'one'; expected a number, or nothing where none was measured");
+            "standard input:3:5: 'one'; expected a number, or an empty field where none was measured");
   EXPECT_EQ(message("0.5"),
             "standard input:3:1: 1 fields; expected 2: a time and 1 output, parted by commas");
   EXPECT_EQ(message(",1"), "standard input:3:1: no time; expected seconds");

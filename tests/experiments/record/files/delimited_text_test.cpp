@@ -40,7 +40,7 @@ TEST(DelimitedTextReader, CountsAndLocatesTheLinesItIsToldToSkip) {
   EXPECT_EQ(record.channel_names(), (std::vector<std::string>{"a", "b"}));
   EXPECT_THAT(
       record.remarks,
-      ElementsAre("3 lines are left out, as each is not a row of numbers like the others: lines 5, 8, 10."));
+      ElementsAre("3 lines are omitted, as each is not a row of numbers like the others: lines 5, 8, 10."));
   format.irregular = false;
   EXPECT_THAT(input_error_of(file, [&] { read_record(file.path(), format); }),
               HasSubstr("bad.txt:9:5: time 0.3 after 0.1"));
@@ -51,7 +51,7 @@ TEST(DelimitedTextReader, TakesEmptyCellsForMissingWhereToldTo) {
   const TemporaryFile file("rates.csv",
                            "time_s,acceleration_m_per_s2,force_n\n0,1,\n0.1,,2\n0.2,3,nan\n0.3, NA ,5\n");
   EXPECT_EQ(input_error_of(file, [&] { read_record(file.path()); }),
-            "rates.csv:2:5: column 3 holds nothing; expected a number");
+            "rates.csv:2:5: column 3 holds no entry; expected a number");
   RecordFormat format;
   format.malformed = MalformedRows::as_missing;
   const Eigen::MatrixXd samples = read_record(file.path(), format).samples;
@@ -63,7 +63,7 @@ TEST(DelimitedTextReader, TakesEmptyCellsForMissingWhereToldTo) {
             "text.csv:3:5: column 2 holds 'broken'; expected a number");
   const TemporaryFile stamp("stamp.csv", "time_s,force_n\n0,1\n,2\n0.2,3\n");
   EXPECT_EQ(input_error_of(stamp, [&] { read_record(stamp.path(), format); }),
-            "stamp.csv:3:1: column 1 holds nothing; expected a number");
+            "stamp.csv:3:1: column 1 holds no entry; expected a number");
 }
 
 TEST(DelimitedTextReader, ReadsOrRefusesDamagedFiles) {

@@ -26,10 +26,9 @@ Record with_gaps() {
 TEST(KnownInputs, LeavesTheLongestStretchAndSaysSo) {
   Record record = with_gaps();
   const Record expected = record.window(3.5, 9.9);
-  EXPECT_EQ(
-      take_known_inputs(record, MissingInput::leave_out),
-      "Every input is known from 3.5 to 9.9 s: 64 % of the record, the longest of 2 such stretches. The "
-      "rest is left out.");
+  EXPECT_EQ(take_known_inputs(record, MissingInput::leave_out),
+            "Every input is known from 3.5 to 9.9 s: 64 % of the record, the longest of 2 such stretches. "
+            "The rest is omitted.");
   EXPECT_EQ(record.time, expected.time);
   EXPECT_EQ(record.samples.row(1), expected.samples.row(1));
   EXPECT_EQ(take_known_inputs(record, MissingInput::leave_out), "");
@@ -38,9 +37,10 @@ TEST(KnownInputs, LeavesTheLongestStretchAndSaysSo) {
 TEST(KnownInputs, AreZeroWhereToldTo) {
   Record record = with_gaps();
   const Record before = record;
-  EXPECT_EQ(take_known_inputs(record, MissingInput::zero),
-            "Inputs are taken as 0 where they were not recorded, as missing_input says: 6 of 101 samples of "
-            "'ground'.");
+  EXPECT_EQ(
+      take_known_inputs(record, MissingInput::zero),
+      "Inputs are taken as 0 where they were not recorded, as missing_input states: 6 of 101 samples of "
+      "'ground'.");
   EXPECT_EQ(record.samples.row(1).segment(30, 5).norm(), 0.0);
   EXPECT_EQ(record.samples(1, 100), 0.0);
   EXPECT_EQ(record.samples.row(1).head(30), before.samples.row(1).head(30));

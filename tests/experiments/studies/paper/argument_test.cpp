@@ -202,7 +202,7 @@ TEST(Alternatives, ThatKeepThePoleKeepTheDamping) {
     } else if (one.name == "displacement high-passed once more") {
       EXPECT_LT(one.damping_error_percent.cwiseAbs().maxCoeff(), 2.6);
       EXPECT_NEAR(one.noisy_damping_error_percent[1], -1560.0, 15.0);
-    } else if (one.name.ends_with("transient left out") || one.name.ends_with("taken for v and x")) {
+    } else if (one.name.ends_with("transient omitted") || one.name.ends_with("taken for v and x")) {
       EXPECT_LT(one.damping_error_percent.cwiseAbs().maxCoeff(), 0.1) << one.name;
     }
 }

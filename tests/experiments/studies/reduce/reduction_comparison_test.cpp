@@ -152,7 +152,7 @@ TEST(ReductionComparison, LeavesOutWhatNobodyAskedForAndRefusesTheRest) {
                               parse_reduction("modal_truncation:modes=4", "")};
   const auto all = compare_reductions(experiment, choices, {2, 20.0}, {}, [](const std::string&) {});
   ASSERT_EQ(all.reductions.size(), 1u);
-  EXPECT_TRUE(all.notes.back().starts_with("rayleigh is left out: ")) << all.notes.back();
+  EXPECT_TRUE(all.notes.back().starts_with("rayleigh is excluded: ")) << all.notes.back();
 }
 
 // A stiff little beam: a record at 1 kHz would hold less than a sample of a period.

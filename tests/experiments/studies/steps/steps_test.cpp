@@ -112,7 +112,8 @@ TEST(Steps, SayWhereAStepIsTooLongForItsScheme) {
   EXPECT_EQ(last.verdict, Verdict::invalid);
   EXPECT_FALSE(last.is_valid());
   EXPECT_THAT(study.warnings, Contains(HasSubstr("forward_euler at steps of 80 ms has no valid estimate")));
-  EXPECT_THAT(study.notes, Contains(HasSubstr("5 of 8 steps: the next would leave 1.81 samples a period")));
+  EXPECT_THAT(study.notes,
+              Contains(HasSubstr("5 of 8 steps: with the next there would be 1.81 samples a period")));
   EXPECT_EQ(report(simulated.experiment(), study).values["schemes"][1]["steps"][4]["found"], nullptr);
 }
 
