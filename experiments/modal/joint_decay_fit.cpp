@@ -21,6 +21,24 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+/// e^(rate t) at t = 0, dt, ..., (N - 1) dt: an exponential for one sample of 64, a product for the others.
+Eigen::VectorXcd wave_of(Complex rate, double interval, Index count) {
+  constexpr Index span = 64;
+  Eigen::VectorXcd wave(count);
+  const Index first = std::min(span, count);
+  for (Index k = 0; k < first; ++k) wave[k] = std::exp(rate * (interval * static_cast<double>(k)));
+  for (Index begin = span; begin < count; begin += span) {
+    const Complex turn = std::exp(rate * (interval * static_cast<double>(begin)));
+    const double re = turn.real(), im = turn.imag();
+    const Index samples = std::min(span, count - begin);
+    for (Index k = 0; k < samples; ++k) {  // by parts: the product of the library looks for infinities
+      const double a = wave[k].real(), b = wave[k].imag();
+      wave[begin + k] = {re * a - im * b, re * b + im * a};
+    }
+  }
+  return wave;
+}
+
 void check_joint_decay_fit(const MatrixXd& outputs, double interval, const std::vector<Complex>& start) {
   const std::size_t fewest = 2 * (4 * start.size() + 1);
   const bool oscillating = std::all_of(start.begin(), start.end(), [](Complex rate) {
@@ -52,8 +70,7 @@ JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd&
   Eigen::MatrixXcd waves(count, modes);
   MatrixXd basis(count, 2 * modes + 1);
   for (Index m = 0; m < modes; ++m) {
-    for (Index k = 0; k < count; ++k)
-      waves(k, m) = std::exp(Complex(-rates[2 * m + 1], rates[2 * m]) * (interval * static_cast<double>(k)));
+    waves.col(m) = wave_of({-rates[2 * m + 1], rates[2 * m]}, interval, count);
     basis.col(2 * m) = waves.col(m).real();
     basis.col(2 * m + 1) = -waves.col(m).imag();
   }

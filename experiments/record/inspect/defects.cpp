@@ -217,7 +217,10 @@ std::vector<Run> repeated_samples(const std::vector<double>& signal) {
     const std::size_t behind = std::max(end, k + 1);
     if (k >= 2 && behind < signal.size()) {
       const double into = signal[k - 1] - signal[k - 2], out = signal[behind] - signal[behind - 1];
-      if (into * out > 0) {
+      // A near miss needs a step of two thirds of its move and below a quarter of the moves beside it.
+      const double least_move = std::min(std::abs(into), std::abs(out));
+      const bool may_count = end > k || jump * std::abs(signal[k] - signal[k - 1]) < 1.6 * least_move;
+      if (into * out > 0 && may_count) {
         const double step = steps.near(signal[k]), least = jump * step;
         if (std::abs(into) > least && std::abs(out) > least) {
           if (end > k)
