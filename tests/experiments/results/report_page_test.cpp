@@ -161,6 +161,11 @@ TEST(ReportPage, HasTextOfEnoughContrastBrightAndDark) {
 TEST(ReportPage, BeginsWithAVerdictOfColourAndWord) {
   Results results = small_results(1.0);
   EXPECT_THAT(report_section(results, ".").html, HasSubstr("<p class=\"verdict good\"><b>No warnings.</b>"));
+  results.limitation("Innovations: not white.");
+  EXPECT_THAT(
+      report_section(results, ".").html,
+      HasSubstr("<p class=\"verdict doubtful\"><b>With reservations.</b> Innovations: not white.</p>"));
+  EXPECT_TRUE(to_json(results)["messages"].empty());
   results.warning("Two modes beat.");
   EXPECT_THAT(report_section(results, ".").html,
               HasSubstr("<p class=\"verdict doubtful\"><b>With warnings.</b> Two modes beat."));
