@@ -142,13 +142,26 @@ std::string paragraph_html(const Paragraph& paragraph) {
   return "<p" + std::string(box) + ">" + typeset_html(paragraph.text) + "</p>\n";
 }
 
-/// The first thing to see after the title: a colour and a word, and what the word stands on.
+bool is_warning(const Paragraph& paragraph) {
+  return paragraph.severity == Severity::warning || paragraph.severity == Severity::failure;
+}
+
+/// The first line of a message, at most 300 characters of it.
+std::string beginning(std::string text) {
+  constexpr std::size_t longest = 300;
+  if (const std::size_t end = text.find('\n'); end != std::string::npos) text.resize(end);
+  return text.size() > longest ? text.substr(0, text.rfind(' ', longest)) + " ..." : text;
+}
+
+/// The first thing to see after the title: a colour and a label, and what it stands on.
 std::string verdict_html(const Results& results) {
   std::size_t warnings = 0;
-  const Paragraph* first = nullptr;
+  const Paragraph *first = nullptr, *limit = nullptr;
   for (const auto& part : results.report) {
     const auto* said = std::get_if<Paragraph>(&part);
-    if (!said || (said->severity != Severity::warning && said->severity != Severity::failure)) continue;
+    if (!said) continue;
+    if (said->limits && !limit) limit = said;
+    if (!is_warning(*said)) continue;
     ++warnings;
     if (!first || (said->severity == Severity::failure && first->severity != Severity::failure)) first = said;
   }
@@ -156,16 +169,15 @@ std::string verdict_html(const Results& results) {
                                  ? results.values["status"].get<std::string>()
                                  : "";
   const bool failed = first && first->severity == Severity::failure;
-  std::string word = failed ? "Not to be used" : first ? "With warnings" : "No warnings";
-  std::string text = !first ? "None of the messages is a warning or a failure." : first->text;
-  constexpr std::size_t longest = 300;
-  if (const std::size_t end = text.find('\n'); end != std::string::npos) text.resize(end);
-  if (text.size() > longest) text = text.substr(0, text.rfind(' ', longest)) + " ...";
-  return "<p class=\"verdict " +
-         std::string(failed  ? "bad"
-                     : first ? "doubtful"
-                             : "good") +
-         "\"><b>" + word + ".</b> " + typeset_html(text) +
+  const std::string label = failed  ? "Not to be used"
+                            : first ? "With warnings"
+                            : limit ? "With reservations"
+                                    : "No warnings";
+  const std::string text = first   ? beginning(first->text)
+                           : limit ? beginning(limit->text)
+                                   : "None of the messages is a warning or a failure.";
+  const std::string kind = failed ? "bad" : first || limit ? "doubtful" : "good";
+  return "<p class=\"verdict " + kind + "\"><b>" + label + ".</b> " + typeset_html(text) +
          (warnings > 1 ? " (" + std::to_string(warnings) + " messages, all below)" : "") +
          (status.empty() ? "" : " <span class=\"status\">status: " + escaped(status) + "</span>") + "</p>\n";
 }
@@ -282,8 +294,7 @@ ReportSection report_section(const Results& results, const std::filesystem::path
         section.title = heading->text;
     } else if (const auto* paragraph = std::get_if<Paragraph>(&piece)) {
       parts.back().html += paragraph_html(*paragraph);
-      parts.back().open |=
-          paragraph->severity == Severity::warning || paragraph->severity == Severity::failure;
+      parts.back().open |= is_warning(*paragraph) || paragraph->limits;
     } else {
       parts.back().html += html_table(std::get<Table>(piece));
     }

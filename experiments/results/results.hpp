@@ -38,6 +38,7 @@ const char* to_string(Severity severity);
 struct Paragraph {
   std::string text;
   Severity severity = Severity::none;
+  bool limits = false;  ///< part of the report, no message, but it states what limits the results
 };
 
 /// Files that none of the other parts describes, such as meshes.
@@ -70,6 +71,8 @@ struct Results {
 
   void heading(std::string text) { report.emplace_back(Heading{std::move(text)}); }
   void paragraph(std::string text) { report.emplace_back(Paragraph{std::move(text)}); }
+  /// What limits the results and is no message: innovations that are not white, records that differ.
+  void limitation(std::string text) { report.emplace_back(Paragraph{std::move(text), Severity::none, true}); }
   void note(std::string text) { report.emplace_back(Paragraph{std::move(text), Severity::note}); }
   void notes(const std::vector<std::string>& texts) {
     for (const std::string& text : texts) note(text);

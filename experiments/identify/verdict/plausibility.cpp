@@ -121,7 +121,8 @@ void put_first(Results& results, const Sentences& found) {
   if (found.empty()) return;
   auto place = results.report.begin();
   if (place != results.report.end() && std::holds_alternative<Heading>(*place)) ++place;
-  for (const std::string& sentence : found) place = results.report.insert(place, Paragraph{sentence}) + 1;
+  for (const std::string& sentence : found)
+    place = results.report.insert(place, Paragraph{sentence, Severity::none, true}) + 1;
   for (const std::string& sentence : found) results.values["beam_warnings"].push_back(sentence);
 }
 

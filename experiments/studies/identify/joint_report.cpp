@@ -361,7 +361,7 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
   results.table(table_of(joint, "records", "", 0));
   results.table(constants_of(joint));
   results.paragraph(agreement_words(joint.estimate, {"K", "C"}));
-  if (const std::string text = lost_text(joint); !text.empty()) results.paragraph(text);
+  if (const std::string text = lost_text(joint); !text.empty()) results.limitation(text);
   Figure figure{"agreement", {}, 2, 1, 900};
   figure.panels = {panel_of(joint, 0, "frequency [Hz]"), panel_of(joint, 1, "damping ratio [%]")};
   figure.height = forest_height(figure.panels[0].remarks.size(), 2);

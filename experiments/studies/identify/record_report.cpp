@@ -320,11 +320,16 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   results.table(parameter_table(experiment, found));
   if (found.batch) results.paragraph(batch_text(found));
   results.notes(found.remarks);
-  results.paragraph(consistency_text(found));
+  const bool consistent =
+      found.consistency && found.consistency->white() && found.consistency->size_is_steady();
+  if (consistent || !found.consistency)
+    results.paragraph(consistency_text(found));
+  else
+    results.limitation(consistency_text(found));
   const std::vector<std::string> names = record.channel_names();
   if (found.diagnostics) results.paragraph(words(*found.diagnostics, names));
   if (const std::string text = failure_sentences(found.identification.run.events); !text.empty())
-    results.paragraph("The filter had trouble (--on-failure states what it then does). " + text);
+    results.limitation("The filter had trouble (--on-failure states what it then does). " + text);
   results.paragraph(noise_text(record, found));
   if (experiment.is_described)
     results.paragraph(fmt::format(

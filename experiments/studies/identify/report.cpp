@@ -251,7 +251,7 @@ Results identification_report(const Experiment& experiment, const Comparison& fo
   for (const Eigen::Index i : output_channels(record))
     outputs.push_back(record.channels[static_cast<std::size_t>(i)].name);
   if (const std::string text = failure_sentences(run.run.events); !text.empty())
-    results.paragraph("The filter had trouble (--on-failure states what it then does). " + text);
+    results.limitation("The filter had trouble (--on-failure states what it then does). " + text);
   if (run.batch) results.table(batch_table(run));
   if (run.diagnostics) {
     results.paragraph(words(*run.diagnostics, outputs));

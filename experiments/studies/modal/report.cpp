@@ -161,7 +161,7 @@ void add_merged(const std::vector<RecordModes>& records, const std::vector<Merge
                                m + 1);
   }
   if (!differing.empty())
-    results.paragraph(
+    results.limitation(
         "The records differ by more than their standard deviations allow (at 5 %) in " + differing +
         ". There the standard deviation between records is the one to trust; amplitude, temperature or "
         "clamping may have changed.");

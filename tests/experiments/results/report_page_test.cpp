@@ -4,9 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <regex>
+#include <string>
 
 #include "experiments/results/gnuplot_axes.hpp"
 #include "experiments/results/page/figure_data.hpp"
@@ -113,9 +118,54 @@ TEST(ReportPage, IsMadeForTheDarkForPaperAndForNarrowScreens) {
   EXPECT_THAT(page, Not(HasSubstr("break-before: page")));
 }
 
+/// Relative luminance of "#rgb" or "#rrggbb".
+double luminance(std::string colour) {
+  colour.erase(0, 1);
+  if (colour.size() == 3) colour = {colour[0], colour[0], colour[1], colour[1], colour[2], colour[2]};
+  const double weights[] = {0.2126, 0.7152, 0.0722};
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double part = std::stoi(colour.substr(2 * i, 2), nullptr, 16) / 255.0;
+    sum += weights[i] * (part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4));
+  }
+  return sum;
+}
+
+double contrast(const std::string& one, const std::string& other) {
+  const auto [dark, bright] = std::minmax({luminance(one), luminance(other)});
+  return (bright + 0.05) / (dark + 0.05);
+}
+
+// Oracle: WCAG 2.1 AA: 4.5 of text, 3 of what borders a button.
+TEST(ReportPage, HasTextOfEnoughContrastBrightAndDark) {
+  EXPECT_NEAR(contrast("#fff", "#767676"), 4.54, 0.01);  // the grey that is named everywhere
+  const std::string style(page_style());
+  static const std::regex scheme(R"(:root \{([^}]*)\})"), entry(R"(--([a-z-]+): (#[0-9a-f]+))");
+  int schemes = 0;
+  for (std::sregex_iterator one(style.begin(), style.end(), scheme), end; one != end; ++one, ++schemes) {
+    const std::string body = (*one)[1];
+    std::map<std::string, std::string> colours;
+    for (std::sregex_iterator it(body.begin(), body.end(), entry), last; it != last; ++it)
+      colours[(*it)[1]] = (*it)[2];
+    for (const char* ground : {"ground", "soft", "warning-ground", "failure-ground", "good-ground"})
+      for (const char* text : {"ink", "note", "link"})
+        EXPECT_GE(contrast(colours.at(text), colours.at(ground)), 4.5) << text << " on " << ground;
+    for (const std::string mark : {"warning", "failure", "good"})
+      EXPECT_GE(contrast(colours.at(mark), colours.at(mark + "-ground")), 4.5) << mark;
+    EXPECT_GE(contrast(colours.at("line"), colours.at("ground")), 3.0);
+    EXPECT_GE(contrast(colours.at("line"), colours.at("soft")), 3.0);
+  }
+  EXPECT_EQ(schemes, 2);
+}
+
 TEST(ReportPage, BeginsWithAVerdictOfColourAndWord) {
   Results results = small_results(1.0);
   EXPECT_THAT(report_section(results, ".").html, HasSubstr("<p class=\"verdict good\"><b>No warnings.</b>"));
+  results.limitation("Innovations: not white.");
+  EXPECT_THAT(
+      report_section(results, ".").html,
+      HasSubstr("<p class=\"verdict doubtful\"><b>With reservations.</b> Innovations: not white.</p>"));
+  EXPECT_TRUE(to_json(results)["messages"].empty());
   results.warning("Two modes beat.");
   EXPECT_THAT(report_section(results, ".").html,
               HasSubstr("<p class=\"verdict doubtful\"><b>With warnings.</b> Two modes beat."));
