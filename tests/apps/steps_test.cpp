@@ -1,6 +1,9 @@
 // beamid steps, end to end, on the tutorials' simulated record.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "tests/apps/run_command.hpp"
 
 namespace beamid::apps::steps_test {
@@ -74,6 +77,44 @@ TEST_F(Steps, SayThatNoStructureGivesTheValue) {
       place_.run("steps --published-xi 0.02 --scheme forward_euler --interval 0.004 --frequency 3.4555");
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.out, HasSubstr("NOT POSSIBLE"));
+}
+
+// Oracles: the truth, two ratios of 1 %; xi_f = sin(w dt / 2) + ... of forward Euler, mode by mode; a step of
+// zero by the powers of the step alone.
+TEST_F(Steps, OfAWholeModelFollowTheLawOfManyDegreesOfFreedom) {
+  place_.write("two.toml",
+               "[chain]\nmasses_kg = [1000, 900]\nstiffnesses_n_per_m = [2.0e6, 1.2e6]\nheights_m = [3, 3]\n"
+               "[damping]\nlaw = \"modal\"\nratio = 0.01\n"
+               "[excitation]\nkind = \"release\"\nposition_m = 6\ndeflection_m = 0.01\n"
+               "[simulation]\nduration_s = 10\nsampling_rate_hz = 500\nframes = 0\n"
+               "[[sensors]]\nquantity = \"acceleration\"\nposition_m = 3\nnoise_m_per_s2 = 1e-4\n"
+               "[[sensors]]\nquantity = \"acceleration\"\nposition_m = 6\nnoise_m_per_s2 = 1e-4\n"
+               "[model]\nname = \"beam\"\n[reduction]\nmethod = \"none\"\n"
+               "[[parameters]]\nquantity = \"storey_stiffness\"\nfrom_m = 0\nto_m = 3\n"
+               "[[parameters]]\nquantity = \"storey_stiffness\"\nfrom_m = 3\nto_m = 6\n"
+               "[[parameters]]\nquantity = \"damping_ratio\"\nmode = 1\n"
+               "[[parameters]]\nquantity = \"damping_ratio\"\nmode = 2\n");
+  ASSERT_EQ(place_.run("simulate --config two.toml --out made --quiet").code, 0);
+  const json found =
+      json_of(place_.run("steps made/record.csv --config two.toml --whole-model --discretisation "
+                         "forward_euler --steps 3 --json"));
+  int rows = 0;
+  for (const json& row : found.at("tables").at("modes")) {
+    if (row.at("discretisation") != "forward_euler") continue;
+    ++rows;
+    const double step = 1e-3 * row.at("step_ms").get<double>(), f = row.at("behind_frequency_hz"),
+                 ratio = row.at("damping_ratio_percent");
+    EXPECT_NEAR(row.at("behind_damping_ratio_percent").get<double>(), 1.0, 0.02);
+    EXPECT_NEAR(ratio, 1.0 + 100.0 * std::sin(std::numbers::pi * f * step), 0.02 * ratio);
+  }
+  EXPECT_EQ(rows, 6);
+  for (const json& row : found.at("tables").at("parameters")) {
+    if (row.at("discretisation") != "forward_euler") continue;
+    const double zero = row.at("at_step_0"), truth = row.at("parameter") == "storey_stiffness_1"   ? 2.0e6
+                                                     : row.at("parameter") == "storey_stiffness_2" ? 1.2e6
+                                                                                                   : 0.01;
+    EXPECT_NEAR(zero / truth, 1.0, 0.02) << row.at("parameter");
+  }
 }
 
 TEST_F(Steps, RefuseWhatMakesNoSense) {
