@@ -208,8 +208,6 @@ NoiseLevels::NoiseLevels(const NoisyFilterFactory& make_filter, const Gaussian& 
   check_groups(outputs_, settings.guess.output, measurements.output_deviations.size() > 0, "output");
   check_groups(settings.process_groups, settings.guess.process, false, "state");
   if (settings.method == NoiseMethod::expectation_maximisation) check_diagonal();
-  if (settings.log_likelihood && (settings.initial_level || measurements.output_deviations.size() > 0))
-    throw std::invalid_argument("a log-likelihood is given; expected levels of the noise alone");
   size_ = static_cast<Index>(outputs_.size() + settings.process_groups.size()) + settings.initial_level;
 }
 
@@ -254,7 +252,6 @@ Measurements NoiseLevels::measurements(const VectorXd& x) const {
 
 double NoiseLevels::log_likelihood(const VectorXd& x) {
   ++runs_;
-  if (settings_.log_likelihood) return settings_.log_likelihood(noise(x));
   const std::unique_ptr<Filter> filter = make_filter_(noise(x));
   const bool own = measurements_.output_deviations.size() > 0;
   const FilterRun result =

@@ -31,9 +31,6 @@ struct NoiseSettings {
   /// Converged when the next step would change no level by more than this share, or raise the log-likelihood
   /// by less than 1e-9.
   double tolerance = 1e-6;
-  /// Of the record with this noise, from the same initial estimate: a model's own way to what the filter's
-  /// run would say, minus infinity where it fails. Empty: the filter's run.
-  std::function<double(const Noise&)> log_likelihood = {};
 };
 
 enum class NoiseStatus { converged, iterations_exhausted, failed };
@@ -59,8 +56,7 @@ struct NoiseEstimate {
 /// filter's approximation. Where the record has deviations of its own for every sample, output levels
 /// multiply them.
 /// @throws std::invalid_argument when shapes disagree, an index does not exist or is in two groups, a level
-/// would multiply zero, expectation-maximisation is asked of noises that are correlated, or a log-likelihood
-/// is given where the initial estimate or the record's own deviations have a level.
+/// would multiply zero, or expectation-maximisation is asked of noises that are correlated.
 NoiseEstimate estimate_noise(const NoisyFilterFactory& make_filter, const Gaussian& initial,
                              const Measurements& measurements, const NoiseSettings& settings);
 

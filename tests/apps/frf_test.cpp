@@ -136,7 +136,7 @@ TEST(Frf, RefusesNoFrequencyOfAFreeBody) {
   const Outcome outcome = place.run("frf --config free.toml");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.first_error_line(),
-              HasSubstr("frequency_response.from_hz is 0, where a structure that"));
+              HasSubstr("frequency_response.from_hz is 0, where a structure"));
 }
 
 }  // namespace

@@ -104,16 +104,19 @@ TEST_F(Steps, OfAWholeModelFollowTheLawOfManyDegreesOfFreedom) {
     ++rows;
     const double step = 1e-3 * row.at("step_ms").get<double>(), f = row.at("behind_frequency_hz"),
                  ratio = row.at("damping_ratio_percent");
-    EXPECT_NEAR(row.at("behind_damping_ratio_percent").get<double>(), 1.0, 0.02);
-    EXPECT_NEAR(ratio, 1.0 + 100.0 * std::sin(std::numbers::pi * f * step), 0.02 * ratio);
+    // Two stiffnesses and two ratios stand for the six numbers of K_f and C_f.
+    EXPECT_NEAR(row.at("behind_damping_ratio_percent").get<double>(), 1.0, 0.03 * ratio);
+    EXPECT_NEAR(ratio, 1.0 + 100.0 * std::sin(std::numbers::pi * f * step), 0.03 * ratio);
   }
   EXPECT_EQ(rows, 6);
   for (const json& row : found.at("tables").at("parameters")) {
     if (row.at("discretisation") != "forward_euler") continue;
-    const double zero = row.at("at_step_0"), truth = row.at("parameter") == "storey_stiffness_1"   ? 2.0e6
-                                                     : row.at("parameter") == "storey_stiffness_2" ? 1.2e6
-                                                                                                   : 0.01;
-    EXPECT_NEAR(zero / truth, 1.0, 0.02) << row.at("parameter");
+    const std::string name = row.at("parameter");
+    const double zero = row.at("at_step_0");
+    if (name.starts_with("storey"))
+      EXPECT_NEAR(zero / (name.ends_with('1') ? 2.0e6 : 1.2e6), 1.0, 0.01) << name;
+    else
+      EXPECT_NEAR(zero, 0.01, 5e-4) << name;  // 0.036 and 0.072 at the record's own step
   }
 }
 

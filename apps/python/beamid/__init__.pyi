@@ -285,13 +285,14 @@ def check(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., m
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
 def steps(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     window: Sequence[_Number] | None = ..., discretisation: str | Sequence[str] | None = ...,
-    steps: int | None = ..., published_xi: _Number | None = ..., scheme: str | None = ...,
-    interval: _Number | None = ..., frequency: _Number | None = ..., column: str | Sequence[str] | None = ...,
-    quantity: str | Sequence[str] | None = ..., unit: str | Sequence[str] | None = ...,
-    position: str | Sequence[str] | None = ..., time: str | None = ..., rate: _Number | None = ...,
-    stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
-    skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
-    verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
+    steps: int | None = ..., whole_model: bool | None = ..., published_xi: _Number | None = ...,
+    scheme: str | None = ..., interval: _Number | None = ..., frequency: _Number | None = ...,
+    column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
+    unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
+    rate: _Number | None = ..., stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ...,
+    header_lines: int | None = ..., skip_malformed: bool | None = ..., reader: str | None = ...,
+    out: _Path | None = ..., force: bool | None = ..., verbose: bool | None = ..., no_progress: bool | None = ...,
+    **keys: Any) -> Results: ...
 def sense(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ..., at: str | Sequence[str] | None = ...,
     filter: str | None = ..., column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,

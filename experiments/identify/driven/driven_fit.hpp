@@ -106,7 +106,9 @@ DrivenFit evaluate_driven(const DrivenProblem& problem, const Eigen::VectorXd& t
 ///
 /// noise of an input makes channels coherent and resonances stand out; that of sensors does neither.
 /// @param theta of the unknowns (q); @param sizes of the inputs, all noisy in proportion (m)
-/// @returns the gain of the log-likelihood, at most what the likeliest q gains; 0 where none gains
+/// @returns the gain of the log-likelihood, at most what the likeliest q gains; 0 where none gains; infinite
+/// where the half-power widths of the resonances in the band, 2 xi f each, are less than five lines together:
+/// there the lines cannot decide
 double input_noise_gain(const DrivenProblem& problem, const Eigen::VectorXd& theta,
                         const Eigen::VectorXd& sizes);
 

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <complex>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -13,6 +15,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
 using Complex = std::complex<double>;
+using std::numbers::pi;
 
 // What a converter that holds or joins samples by lines does to a frequency.
 Complex path_gain(InputPath path, double omega, double interval) {
@@ -171,6 +174,13 @@ double input_noise_gain(const DrivenProblem& problem, const VectorXd& theta, con
   const DrivenMotion motion(problem);
   const LinearResponse response = motion.response(theta);
   const RecordLines& part = problem.parts.front();
+  constexpr double enough_width = 5.0;  // of all resonances together, in lines
+  const double duration = part.interval * static_cast<double>(part.samples);
+  double width = 0.0;
+  for (const Complex pole : response.poles())
+    if (pole.imag() > 0.0 && pole.imag() < part.omega[part.omega.size() - 1])
+      width -= pole.real() / pi * duration;
+  if (width < enough_width) return std::numeric_limits<double>::infinity();
   const PartAt at(problem, response, part);
   const Index p = part.outputs.rows(), count = part.omega.size();
   MatrixXcd left(p, count);

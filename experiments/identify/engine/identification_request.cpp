@@ -239,7 +239,7 @@ std::optional<ModalEstimate> mode_behind(const Record& record, double from, doub
 
 std::string DecayWindow::words() const {
   return fmt::format(
-      "No window was given: identified is the decay from {:.4g} to {:.4g} s, from {:g} periods behind {}, at "
+      "Window chosen automatically: the decay from {:.4g} to {:.4g} s, from {:g} periods behind {}, at "
       "{:.4g} s, over two time constants of {:.3g} s. record.window_s or --window takes the place of this.",
       from, to, settling,
       behind == Behind::start_up ? "the end of the sensor's start-up"
@@ -328,7 +328,7 @@ void cut_decay(IdentificationRequest& one) {
   const Record decay = format.window ? record.window(format.window->first, format.window->second) : record;
   if (const auto part = sound_part(one.experiment, decay, one.prepared.defects)) {
     format.window = {part->from, part->to};
-    one.window += one.window.empty() ? "No window was given. " + part->words +
+    one.window += one.window.empty() ? "Window chosen automatically. " + part->words +
                                            " record.window_s or --window takes the place of this."
                                      : " " + part->words;
   }

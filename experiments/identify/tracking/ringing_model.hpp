@@ -3,8 +3,6 @@
 
 #include <memory>
 
-#include <Eigen/Core>
-
 #include "filters/discrete_model.hpp"
 
 namespace beamid::experiments {
@@ -24,12 +22,5 @@ enum State { signal, slope, stiffness_integral, damping_integral, stiffness, dam
 /// @param frequency_hz f_0 @param interval [s] @param noise Q (7 x 7), R (1 x 1)
 std::unique_ptr<filters::DiscreteModel> ringing_model(double frequency_hz, double interval,
                                                       filters::Noise noise);
-
-/// log p(signal) that `ekf` on this model gives, but for rounding; minus infinity where it fails. The
-/// integrals, which feed nothing back, are left out, and of the products what is zero: a fourteenth of its
-/// time.
-/// @param signal (N) at even stamps, finite; the initial estimate is about its first sample
-double ringing_log_likelihood(double frequency_hz, double interval, const filters::Noise& noise,
-                              const filters::Gaussian& initial, const Eigen::VectorXd& signal);
 
 }  // namespace beamid::experiments

@@ -165,10 +165,6 @@ Levels tuned(const Ringing& ringing, const filters::Measurements& span, const fi
   filters::NoiseSettings search;
   search.process_groups = {{ringing::slope}};
   if (!settings.walk) search.process_groups.push_back({ringing::stiffness, ringing::damping});
-  const VectorXd readings = span.outputs.row(0);
-  search.log_likelihood = [&](const filters::Noise& noise) {
-    return ringing_log_likelihood(ringing.centre_hz, ringing.interval, noise, initial, readings);
-  };
   search.max_iterations = first_iterations;
   search.tolerance = 1e-3;
   std::vector<double> walks{first_walk, 0.01 * first_walk};

@@ -242,10 +242,13 @@ void judge_certainty(ComparedRun& run) {
   for (const ComparedParameter& p : run.parameters)
     if (p.overconfidence < far_surer) names += (names.empty() ? "" : ", ") + p.estimate.name;
   if (names.empty()) return;
+  const std::string reason = "the filter is more than twice as sure of " + names + " as the record allows";
+  const bool contradicted =
+      run.status == ComparedRun::Status::contradicted;  // by a residual, which goes before
   run.status = ComparedRun::Status::contradicted;
-  run.reason = "the filter is more than twice as sure of " + names + " as the record allows";
-  run.warnings.insert(run.warnings.begin(),
-                      "CONTRADICTED: " + run.reason +
+  if (!contradicted) run.reason = reason;
+  run.warnings.insert(run.warnings.begin() + (contradicted && !run.warnings.empty() ? 1 : 0),
+                      "CONTRADICTED: " + reason +
                           ", so that the truth may lie many of its intervals away. Expected nearer initial "
                           "estimates, more passes ([compare] passes), a reduction in place of the mesh, or "
                           "`identify` in place of `compare`, which uses all samples at once.");

@@ -65,7 +65,7 @@ Record from_release(const Record& record, std::vector<std::string>& remarks) {
   (size.cwiseInverse().asDiagonal() * record.samples).cwiseAbs().maxCoeff(&channel, &begin);
   if (begin == 0 || record.size() - begin < fewest_decay_samples) return record;
   remarks.push_back(fmt::format(
-      "No window was given: the decay is taken from the largest reading on, {:.4g} s.", record.time[begin]));
+      "Window chosen automatically: the decay from the largest reading on, {:.4g} s.", record.time[begin]));
   return part_of(record, begin, record.size() - begin);
 }
 

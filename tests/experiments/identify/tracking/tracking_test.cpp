@@ -6,10 +6,8 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 
-#include "experiments/identify/tracking/ringing_model.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "experiments/studies/track/report.hpp"
 
@@ -75,27 +73,6 @@ TEST(Tracking, FindsNoMoreChangesWhereThereAreNoneThanStated) {
   }
   EXPECT_LE(alarmed,
             boost::math::quantile(boost::math::complement(boost::math::binomial(runs, asked), 1e-3)));
-}
-
-// Oracle: the registered filter on the whole model.
-TEST(Tracking, HasTheLikelihoodOfItsFilter) {
-  const Ringing record{
-      VectorXd::LinSpaced(800, 0, 799 * interval), ringing({20}, 800, 3), interval, {10, 40}, 20, noise};
-  const filters::Gaussian initial = fresh_estimate(record, 0);
-  for (const double walk : {0.0, 0.02, 1.0})
-    for (const double force : {0.0, 10.0}) {
-      const filters::Noise levels = ringing_noise(record, noise, force, walk);
-      const filters::FilterRun run =
-          filters::run(*ringing_filter(record, levels), initial, record.span(0, record.size() - 1));
-      ASSERT_FALSE(run.failure);
-      const double found = ringing_log_likelihood(record.centre_hz, interval, levels, initial, record.signal);
-      EXPECT_NEAR(found, run.log_likelihood, 1e-9 * std::abs(run.log_likelihood)) << walk << ", " << force;
-    }
-  EXPECT_EQ(ringing_log_likelihood(
-                record.centre_hz, interval, ringing_noise(record, 0.0, 0.0, 0.0),
-                {VectorXd::Zero(ringing::size), Eigen::MatrixXd::Zero(ringing::size, ringing::size)},
-                record.signal),
-            -std::numeric_limits<double>::infinity());
 }
 
 // A known span, the walk as told. Oracle: the normal distribution, 1e-4 of test runs fail either way.
