@@ -243,11 +243,9 @@ void judge_certainty(ComparedRun& run) {
     if (p.overconfidence < far_surer) names += (names.empty() ? "" : ", ") + p.estimate.name;
   if (names.empty()) return;
   const std::string reason = "the filter is more than twice as sure of " + names + " as the record allows";
-  const bool contradicted =
-      run.status == ComparedRun::Status::contradicted;  // by a residual, which goes before
   run.status = ComparedRun::Status::contradicted;
-  if (!contradicted) run.reason = reason;
-  run.warnings.insert(run.warnings.begin() + (contradicted && !run.warnings.empty() ? 1 : 0),
+  run.reason = reason;
+  run.warnings.insert(run.warnings.begin(),
                       "CONTRADICTED: " + reason +
                           ", so that the truth may lie many of its intervals away. Expected nearer initial "
                           "estimates, more passes ([compare] passes), a reduction in place of the mesh, or "
@@ -262,7 +260,8 @@ void judge_model(const RunContext& context, ComparedRun& run) {
   if (const std::string text = step_error(context, run); !text.empty())
     run.warnings.insert(run.warnings.begin(), text);
   judge_settling(run);
-  judge_motion_left(context, run);
+  judge_certainty(run);
+  judge_motion_left(context, run);  // what the model lacks goes before: it explains the certainty
   if (!judge_faults(run)) judge_inputs(context, run);
   judge_decay(context, run);
   judge_moved_mass(run);
@@ -272,7 +271,6 @@ void judge_model(const RunContext& context, ComparedRun& run) {
   else
     judge_size(context, run);
   judge_against_modal_analysis(context, run);
-  judge_certainty(run);
   judge_innovations(context, run);
 }
 
