@@ -130,8 +130,8 @@ CheckedStructure structure_of(const Request& request, const ModalStudySettings& 
                              request.experiment.elements,    request.experiment.damping,
                              observed_modes(found),          found[0].record.channels};
   for (const RecordModes& one : found)
-    for (const std::string& warning : one.record.warnings)
-      structure.warnings.push_back(one.name + ": " + warning);
+    for (const experiments::Objection& objection : one.record.objections)
+      structure.warnings.push_back(one.name + ": " + objection.text);
   return structure;
 }
 

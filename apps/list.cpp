@@ -18,6 +18,7 @@
 #include "experiments/results/table.hpp"
 #include "experiments/results/text.hpp"
 #include "experiments/studies/study.hpp"
+#include "experiments/text/objection.hpp"
 #include "experiments/text/spelling.hpp"
 #include "fem/response/response.hpp"
 #include "filters/filter.hpp"
@@ -88,6 +89,17 @@ void print_keys(std::ostream& stream, const std::string& name, const experiments
   experiments::print(stream, table, page);
 }
 
+void print_objections() {
+  experiments::Table table{"objections", ""};
+  table.column({"name", "name"})
+      .column({"of", "of"})
+      .column({"statistic", "statistic and limit"})
+      .column({"meaning", "meaning"});
+  for (const experiments::ObjectionKind& kind : experiments::objection_kinds())
+    table.row({kind.name, kind.of, kind.statistic, kind.meaning});
+  experiments::print(std::cout, table, terminal_page());
+}
+
 template <class Registry>
 MethodList methods_of(const Registry& registry) {
   MethodList list{registry.kind(), {}};
@@ -132,7 +144,8 @@ const std::vector<Kind>& kinds() {
 Words kind_names() {
   Words names;
   for (const Kind& kind : kinds()) names.push_back(kind.name);
-  names.insert(std::lower_bound(names.begin(), names.end(), "keys"), "keys");
+  for (const char* other : {"keys", "objections"})
+    names.insert(std::lower_bound(names.begin(), names.end(), other), other);
   return names;
 }
 
@@ -156,6 +169,10 @@ int run_list(const Values& values) {
       print_tables(std::cout, terminal_page());
     return 0;
   }
+  if (asked == "objections") {
+    print_objections();
+    return 0;
+  }
   for (const Kind& kind : kinds()) {
     if (kind.name != asked) continue;
     if (values.has("name"))
@@ -173,7 +190,8 @@ Command list_command() {
   return {
       "list",
       "[KIND [NAME]]",
-      "what can be chosen by name, and the options of each; the keys of an experiment file",
+      "what can be chosen by name, and the options of each; the keys of an experiment file; the objections "
+      "that a verdict may hold",
       {{.name = "kind", .choices = kind_names()}, {.name = "name"}},
       {},
       "  beamid list\n  beamid list filters\n  beamid list filters ukf\n  beamid list keys beam.springs\n",

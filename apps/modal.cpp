@@ -186,7 +186,8 @@ int run_modal(const Values& values) {
       prepared.push_back(read_and_prepare(request.file, request.format));
       Record& record = prepared.back().record;
       if (!record.own_clock.empty())
-        record.warnings.emplace_back(
+        record.objections.emplace_back(
+            "own_clock",
             "Channels with a clock of their own (own_clock) are taken as stamped: frequencies and damping do "
             "not depend on a lag, shapes do.");
       records.push_back(made_analysable(prepared.back().record));

@@ -77,7 +77,7 @@ py::dict read_record(const std::string& file, const std::string& toml) {
   found["channels"] = channels;
   py::list remarks, warnings;
   for (const std::string& text : record.remarks) remarks.append(text);
-  for (const std::string& text : record.warnings) warnings.append(text);
+  for (const experiments::Objection& one : record.objections) warnings.append(one.text);
   found["remarks"] = remarks;
   found["warnings"] = warnings;
   return found;

@@ -105,7 +105,7 @@ ModalData modes_in(const Json& json, const std::filesystem::path& file, const Ex
                                                   json.value("command", "")));
   for (const Json& message : json.value("messages", Json::array()))
     if (message.value("severity", "") != to_string(Severity::note))
-      data.warnings.push_back(message.value("text", ""));
+      data.objections.push_back(message.value("text", ""));
   if (json.contains("modes")) {  // of hits, by --method frf_lscf or frf_half_power
     for (const Json& mode : json["modes"])
       data.modes.push_back(

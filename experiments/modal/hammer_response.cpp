@@ -198,7 +198,8 @@ void leave_out_moving(std::vector<ForceBlock>& blocks, HammerResponses& found) {
       fmt::format("{} of {} hits met a structure that still moved, by more than 5 % of what followed: ",
                   blocks.end() - moving, blocks.size());
   if (moving == blocks.begin()) {
-    found.warnings.push_back(met +
+    found.objections.emplace_back(
+        "met_in_motion", met +
                              "the modal masses are off by as much, frequencies and damping ratios by more "
                              "than their standard deviations. Expected hits from rest.");
     return;
@@ -282,10 +283,13 @@ HammerResponses hammer_responses(const std::vector<Record>& records, double wind
   for (const std::vector<Hit>& of_record : hits)
     for (const Hit& hit : of_record)
       if (hit.pulses_s.size() > 1)
-        found.warnings.push_back(fmt::format(
-            "The hit of {:.3g} N rebounded, {} pulses within {:.3g} ms: all are in its force, but what the "
-            "hammer touches in between is no free structure. No mass from this hit is to be trusted.",
-            hit.largest, hit.pulses_s.size(), 1000 * (hit.pulses_s.back() - hit.pulses_s.front())));
+        found.objections.emplace_back(
+            "damped_by_hammer",
+            fmt::format(
+                "The hit of {:.3g} N rebounded, {} pulses within {:.3g} ms: all are in its force, but what "
+                "the "
+                "hammer touches in between is no free structure. No mass from this hit is to be trusted.",
+                hit.largest, hit.pulses_s.size(), 1000 * (hit.pulses_s.back() - hit.pulses_s.front())));
   const std::size_t all = blocks.size();
   std::erase_if(blocks, [&](const ForceBlock& block) { return 3 * block.length < longest; });
   if (blocks.size() < all)

@@ -8,6 +8,7 @@
 
 #include "experiments/modal/poles.hpp"
 #include "experiments/record/record.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -65,7 +66,7 @@ struct HammerResponses {
   double duration = 0;                ///< of a block [s]
   double window_rate = 0;             ///< of the exponential window [1/s]
   std::vector<std::string> remarks;   ///< sentences
-  std::vector<std::string> warnings;  ///< what makes the masses wrong, a sentence each
+  std::vector<Objection> objections;  ///< to the masses
 };
 
 /// H1 = S_yf / S_ff, H2 = S_yy / S_fy, coherence = |S_yf|^2 / (S_ff S_yy) over the hits of all records

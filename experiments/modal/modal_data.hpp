@@ -21,8 +21,8 @@ struct MeasuredMode {
 struct ModalData {
   std::string source;  ///< the file, for messages
   std::vector<MeasuredMode> modes;
-  std::vector<std::string> remarks = {};   ///< what was decided in reading, sentences
-  std::vector<std::string> warnings = {};  ///< of the analysis that found them, sentences
+  std::vector<std::string> remarks = {};     ///< what was decided in reading, sentences
+  std::vector<std::string> objections = {};  ///< of the analysis that found them, sentences
 
   bool has_shapes() const {
     return std::ranges::any_of(modes, [](const MeasuredMode& mode) { return mode.shape.size() > 1; });

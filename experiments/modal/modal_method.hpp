@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/modal/poles.hpp"
+#include "experiments/text/objection.hpp"
 #include "filters/registry.hpp"
 
 namespace beamid::experiments {
@@ -23,9 +24,9 @@ struct PoleSearch {
   /// (p x L) what the modes are to reproduce, first column at t = 0: the record itself where it is a free
   /// decay, else the autocorrelations of its channels, whose square roots are amplitudes.
   Eigen::MatrixXd decays;
-  std::vector<RefusedPole> refused = {};   ///< of the contract mode_by_mode
-  std::vector<std::string> remarks = {};   ///< sentences
-  std::vector<std::string> warnings = {};  ///< sentences
+  std::vector<RefusedPole> refused = {};  ///< of the contract mode_by_mode
+  std::vector<std::string> remarks = {};  ///< sentences
+  std::vector<Objection> objections = {};
 };
 
 /// One method, ready to run with its options.

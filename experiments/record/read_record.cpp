@@ -143,8 +143,8 @@ Record joined_record(const RecordFormat& format) {
       others += fmt::format("; {} is brought there from {:.6g} Hz", part.stem, 1.0 / part.record.interval());
     for (const std::string& remark : part.record.remarks)
       if (std::ranges::find(joined.remarks, remark) == joined.remarks.end()) joined.remarks.push_back(remark);
-    for (const std::string& warning : part.record.warnings)
-      joined.warnings.push_back(part.stem + ": " + warning);
+    for (const Objection& one : part.record.objections)
+      joined.objections.emplace_back(one.name, part.stem + ": " + one.text);
   }
   joined.remarks.push_back(fmt::format(
       "{} files joined {}: {} samples in common at {:.6g} Hz{}.", parts.size(),
@@ -338,7 +338,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   record.own_clock = format.own_clock;
   if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
   record.remarks = table.remarks;
-  record.warnings = table.warnings;
+  for (const std::string& text : table.warnings) record.objections.emplace_back("file", text);
   std::vector<std::string> names;
   for (const RecordColumn& column : columns.channels)
     names.push_back(column.index < table.names.size() ? table.names[column.index] : "");

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "experiments/text/choice.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -81,7 +82,7 @@ struct Record {
   std::vector<Channel> channels;           ///< p
   double time_resolution = 0.0;            ///< stamps are as exact as they were printed, within this [s]
   std::vector<std::string> remarks = {};   ///< for reports: lines left out, what was done to the samples
-  std::vector<std::string> warnings = {};  ///< what may make any result wrong, for the first lines of reports
+  std::vector<Objection> objections = {};  ///< what may make any result wrong, for the first lines of reports
   std::vector<std::string> own_clock = {};   ///< names or quantities of channels stamped by other clocks
   std::optional<InputPath> input_path = {};  ///< absent: band-limited where stamps are even, else linear
 

@@ -47,6 +47,36 @@ Json messages_of(const Results& results) {
   return messages;
 }
 
+// The command's own status where it has one, else by the worst message; every objection in the report's
+// order.
+Json verdict_of(const Results& results) {
+  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  Json objections = Json::array(), limitations = Json::array();
+  bool doubtful = false;
+  for (const auto& part : results.report) {
+    const auto* said = std::get_if<Paragraph>(&part);
+    if (!said) continue;
+    doubtful = doubtful || said->limits || said->severity == Severity::warning;
+    if (said->limits) limitations.push_back(said->text);
+    if (const auto& one = said->objection)
+      objections.push_back({{"name", one->name},
+                            {"statistic", number(one->statistic)},
+                            {"limit", number(one->limit)},
+                            {"sentence", said->text}});
+  }
+  const auto status = results.values.find("status");
+  const char* const by_messages = results.has_failed() ? "failed"
+                                  : doubtful           ? "with_reservations"
+                                                       : "no_objections";
+  Json verdict{
+      {"status", status != results.values.end() && status->is_string() ? *status : Json(by_messages)}};
+  if (const auto sentence = results.values.find("verdict"); sentence != results.values.end())
+    verdict["sentence"] = *sentence;
+  verdict["objections"] = objections;
+  verdict["limitations"] = limitations;
+  return verdict;
+}
+
 // Every table as its CSV has it: a row an object of the same keys, null where there is no number.
 Json tables_of(const Results& results) {
   Json tables = Json::object();
@@ -166,6 +196,7 @@ Json to_json(const Results& results) {
   json["seed"] = results.seed ? Json(*results.seed) : Json(nullptr);
   json["configuration"] = results.configuration;
   for (const auto& [key, value] : results.values.items()) {
+    if (key == "verdict") continue;  // its sentence
     if (json.contains(key) || key == "warnings" || key == "messages" || key == "tables" || key == "files")
       throw std::invalid_argument("result '" + key +
                                   "': every results.json has a key of this name; expected another");
@@ -175,6 +206,7 @@ Json to_json(const Results& results) {
   make_finite(json, "", warnings);
   if (!warnings.empty()) json["warnings"] = warnings;
   json["messages"] = messages_of(results);
+  json["verdict"] = verdict_of(results);
   json["tables"] = tables_of(results);
   json["files"] = result_files_of(results);
   return json;

@@ -17,6 +17,7 @@
 #include "experiments/results/result_directory.hpp"
 #include "experiments/results/table.hpp"
 #include "experiments/results/text.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -39,6 +40,7 @@ struct Paragraph {
   std::string text;
   Severity severity = Severity::none;
   bool limits = false;  ///< part of the report, no message, but it states what limits the results
+  std::optional<Objection> objection = {};  ///< what the message was made of
 };
 
 /// Files that none of the other parts describes, such as meshes.
@@ -81,6 +83,10 @@ struct Results {
   void warning(std::string text, bool failed = false) {
     report.emplace_back(Paragraph{std::move(text), failed ? Severity::failure : Severity::warning});
   }
+  /// What speaks against them, found by a test of its own. @param of what it was found in, "a.csv: "
+  void object(const Objection& one, const std::string& of = {}, bool failed = false) {
+    report.emplace_back(Paragraph{of + one.text, failed ? Severity::failure : Severity::warning, false, one});
+  }
   /// Whether a message is a failure: exit code 3.
   bool has_failed() const;
   void table(Table table) { report.emplace_back(std::move(table)); }
@@ -88,8 +94,10 @@ struct Results {
 
 /// The contents of results.json: schema_version, program, version, command, seed, configuration, then the
 /// values' keys, then "messages", the notes, warnings and failures of the report in its order, each with its
-/// severity and the heading it stands below, "tables", every table as rows with the keys of its CSV header,
-/// and "files", the names of all files that write() makes.
+/// severity and the heading it stands below, "verdict", the status, the sentence in values["verdict"] where
+/// there is one, and every objection with its name, its statistic and the limit of it (null where no one
+/// number decided) and its sentences, and the limitations, "tables", every table as rows with the keys of its
+/// CSV header, and "files", the names of all files that write() makes.
 ///
 /// JSON knows no number that is not finite: one becomes null, and "warnings" then names its place and what it
 /// was, "beams[0].frequency_hz is nan".

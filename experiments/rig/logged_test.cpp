@@ -21,14 +21,14 @@ SimulatedTest logged_test(const Experiment& experiment, const std::filesystem::p
   SimulatedTest test = simulate(experiment, folder, 0, progress, experiment.acquisition);
   if (experiment.acquisition.perfect()) return test;
   Record& record = test.record;
-  const std::vector<std::string> own = record.warnings;
+  const std::vector<Objection> own = record.objections;
   const std::vector<RecordDefect> defects = mark_defects(record, name);
   if (test.event > 0.0) {
     leave_out_before(record, test.event);
     test.notes.push_back(fmt::format("The {:g} s recorded before the excitation are omitted.", test.event));
   }
-  record.warnings = warnings_of(defects, record);
-  record.warnings.insert(record.warnings.begin(), own.begin(), own.end());
+  record.objections = objections_of(defects, record);
+  record.objections.insert(record.objections.begin(), own.begin(), own.end());
   refuse_mostly_missing(record, defects, name);
   return test;
 }

@@ -403,7 +403,8 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
   }
   const bool of_base = history.base_acceleration.size() > 0;
   if (of_base && !acquisition.force)
-    test.record.warnings.emplace_back(
+    test.record.objections.emplace_back(
+        "unrecorded_base",
         "The base moves, which the record does not hold: an identification takes this motion for a free "
         "decay.");
   for (std::size_t i = 0; acquisition.force && i < inputs.size(); ++i)

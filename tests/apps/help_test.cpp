@@ -163,7 +163,7 @@ TEST(List, OfKeysShowsTheTablesOfAnExperimentFileAndTheKeysOfOne) {
 TEST(List, RefusesUnknownKindsAndNames) {
   EXPECT_EQ(Workplace().run("list quaternions").first_error_line(),
             "beamid: list: unknown kind 'quaternions'; known: discretisations, filters, keys, modal_methods, "
-            "models, "
+            "models, objections, "
             "readers, reductions, responses, smoothers, springs, steps, studies");
   EXPECT_EQ(Workplace().run("list filters quaternion").first_error_line(),
             "beamid: unknown filter 'quaternion'; known: adaptive_ekf, ckf, dual_ekf, dual_kf, ekf, enkf, "

@@ -151,6 +151,14 @@ class Results(unittest.TestCase):
         self.assertLess(len(page), 200_000)
         self.assertIn("<th>frequency_hz</th>", beamid.modes(modes=2)._repr_html_())
 
+    def test_the_verdict_has_every_objection_with_its_number(self):
+        self.assertEqual(self.found.verdict["status"], "converged")
+        time = np.arange(400) / 100.0
+        short = beamid.modal(beamid.Record(time, acceleration_g=np.cos(20 * time), name="steady"))
+        found = {one["name"]: one for one in short.verdict["objections"]}
+        self.assertIn("no_decay", found)
+        self.assertIn(found["no_decay"]["sentence"], [one["text"] for one in short.messages])
+
     def test_a_notebook_runs_nothing_that_a_name_holds(self):
         time = np.arange(1000) / 500.0
         record = beamid.Record(time, acceleration_g=np.exp(-0.2 * time) * np.sin(40 * time), name="<script>x")

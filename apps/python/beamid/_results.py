@@ -84,6 +84,7 @@ class Results:
                                 make, both at found.time (N); numpy arrays that share memory with the results
     found.figures["spectrum"]   captions and curves, numpy arrays (N) that share memory with the results
     found.messages              notes, warnings and failures in the order of the report
+    found.verdict               "status", "objections" (name, statistic, limit, sentence) and "limitations"
     found.code                  the command's exit code: 3 where there is no estimate to rely on
     found.write("folder")       what the command's --out writes: report.html, tables, figures, results.json
     found.command               the shell command that finds the same, to the last bit
@@ -171,6 +172,10 @@ class Results:
     def messages(self):
         return self.values["messages"]
 
+    @property
+    def verdict(self):
+        return self.values["verdict"]
+
     def frame(self, table=None):
         """A table as a pandas DataFrame. :raises ImportError: where pandas is not installed"""
         import pandas  # pylint: disable=import-outside-toplevel
@@ -255,9 +260,15 @@ def _cell(found, most_rows=30):
     escaped = html.escape
     heard = [one for one in found.messages if one["severity"] in ("warning", "failure")]
     failed = [one for one in heard if one["severity"] == "failure"]
-    word, colour = ("Not to be used", "#a32000") if failed else ("With warnings", "#8a5a00") if heard else ("No warnings", "#00614a")
+    limits = found.verdict["limitations"]
+    word, colour = (
+        ("Not to be used", "#a32000") if failed
+        else ("With warnings", "#8a5a00") if heard
+        else ("With reservations", "#8a5a00") if limits
+        else ("No warnings", "#00614a")
+    )
     text = f'<p style="border-left: 6px solid {colour}; padding-left: .6em"><b style="color: {colour}">{word}.</b>'
-    text += "".join(f" {escaped(one['text'][:500])}" for one in (failed or heard)[:1]) + "</p>\n"
+    text += "".join(f" {escaped(one[:500])}" for one in ([one["text"] for one in failed or heard] or limits)[:1]) + "</p>\n"
     names = list(found.estimates)
     if names:
         head, rows = ["", "estimate", "95 % interval", "unit"], []

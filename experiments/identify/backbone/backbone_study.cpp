@@ -118,7 +118,8 @@ BackboneStudy study_backbone(const Record& record, const BackboneSettings& setti
   study.masing = invert_windows(windows, range, WindowReading::masing);
   take_change(settings, study);
   if (study.windows.largest_other > other_motion)
-    study.warnings.push_back(
+    study.objections.emplace_back(
+        "other_motion",
         fmt::format("Beside the mode there is other motion of {:.0f} % of its amplitude: another mode, noise "
                     "or a motion that is no decay.",
                     100 * study.windows.largest_other));
@@ -127,8 +128,8 @@ BackboneStudy study_backbone(const Record& record, const BackboneSettings& setti
       study.record = fit_whole_record(
           record, study.windows, {study.elastic, study.masing, settings.windows.mass}, samples_per_period);
     } catch (const std::exception& error) {
-      study.warnings.push_back(
-          fmt::format("No force law could be fitted to the whole record: {}.", error.what()));
+      study.objections.emplace_back(
+          "no_law", fmt::format("No force law could be fitted to the whole record: {}.", error.what()));
       break;
     }
     study.by_record = study.record.law >= 0 && study.record.lack < largest_lack;

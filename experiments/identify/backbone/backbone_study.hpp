@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/identify/backbone/whole_record_fit.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -28,7 +29,7 @@ struct BackboneStudy {
   double change = 0,
          change_deviation = 0;  ///< of K(A) from the smallest window's amplitude to the largest's, relative
   double ratio = 1;             ///< of the largest amplitude to the smallest
-  std::vector<std::string> warnings;
+  std::vector<Objection> objections;
 
   const RecordFit* law() const;  ///< the whole record's; nullptr where the windows' backbone is used
   /// Up to where the backbone is known: what the law's motion asks for, or the windows' largest amplitude

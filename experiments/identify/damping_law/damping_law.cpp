@@ -245,7 +245,7 @@ DampingLawStudy study_damping_law(const Experiment& experiment, const Record& wh
   if (law != "auto" && std::find(all.begin(), all.end(), law) == all.end())
     throw std::invalid_argument("unknown damping law '" + law + "'; known: auto, " + joined(all));
   DampingLawStudy study;
-  study.warnings = whole.warnings;
+  study.objections = whole.objections;
   AnalysableRecord ready = analysable(whole);
   if (!ready.remark.empty()) study.remarks.push_back(std::move(ready.remark));
   const Record& record = ready.record;

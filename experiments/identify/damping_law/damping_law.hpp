@@ -11,6 +11,7 @@
 #include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/text/objection.hpp"
 #include "filters/measurements.hpp"
 
 namespace beamid::experiments {
@@ -82,11 +83,12 @@ struct DampingLawStudy {
   double friction_velocity = 0.0;  ///< [m/s]
   /// Of the displacement [m]: at the record's beginning, and where it ends or noise hides its damping.
   double first_amplitude = 0.0, last_amplitude = 0.0;
-  std::vector<AmplitudePoint> sections;        ///< that share no sample, amplitudes as displacement [m]
-  LawMisfit misfit;                            ///< of the law supported
-  std::vector<std::string> warnings, remarks;  ///< of the record
-  std::vector<FittedLaw> laws;  ///< in the order of damping_laws(), or viscous and the one named
-  std::size_t chosen = 0;       ///< of laws: the lowest BIC of those possible, or the one named
+  std::vector<AmplitudePoint> sections;  ///< that share no sample, amplitudes as displacement [m]
+  LawMisfit misfit;                      ///< of the law supported
+  std::vector<Objection> objections;     ///< to the record
+  std::vector<std::string> remarks;      ///< on the record
+  std::vector<FittedLaw> laws;           ///< in the order of damping_laws(), or viscous and the one named
+  std::size_t chosen = 0;                ///< of laws: the lowest BIC of those possible, or the one named
   bool named = false;
 
   const FittedLaw& supported() const { return laws[chosen]; }

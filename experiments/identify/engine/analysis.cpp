@@ -328,7 +328,9 @@ RecordAnalysis analyse_to(Depth depth, const Experiment& experiment, const Recor
                described = described_frequency_hz(experiment, found.record);
   found.expected_hz = shown_at(described, rate);
   found.aliased = 2.0 * described > rate;
-  if (found.aliased) found.warnings.push_back(aliased_text(described, rate, found.expected_hz));
+  if (found.aliased)
+    found.objections.emplace_back("aliased", aliased_text(described, rate, found.expected_hz), described,
+                                  0.5 * rate);
   if (found.forced()) {
     take_complete_forces(found);
     if (has_supports(found.record))
@@ -364,10 +366,12 @@ DecayObjection jump_objection(const DecayJump& jump, double from) {
   const MotionJump* const motion = jump.motion();
   const bool contradicts =
       !motion || std::abs(motion->amplitude_ratio - 1) > much || std::abs(motion->phase) > much;
-  return {fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
-                      "intervals. Expected a --window on one side of it.",
-                      contradicts ? "CONTRADICTED: " : "", jump.sentence(from)),
-          contradicts};
+  return {
+      {"jump",
+       fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
+                   "intervals. Expected a --window on one side of it.",
+                   contradicts ? "CONTRADICTED: " : "", jump.sentence(from))},
+      contradicts};
 }
 
 }  // namespace
@@ -381,9 +385,11 @@ std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, con
                  error = overtone->damping_error() * std::abs(mode.damping_ratio);
     if (std::abs(error) > half)
       objections.push_back(
-          {fmt::format("{} The damping ratio is wrong by about {:.2g} % through it, more than its interval. "
-                       "Expected a later --window, or a sensor of larger range.",
-                       overtone->words(), 100 * std::abs(overtone->damping_error())),
+          {{"overtone",
+            fmt::format("{} The damping ratio is wrong by about {:.2g} % through it, more than its interval. "
+                        "Expected a later --window, or a sensor of larger range.",
+                        overtone->words(), 100 * std::abs(overtone->damping_error())),
+            std::abs(error), half},
            std::abs(error) > twice * half});
   }
   return objections;

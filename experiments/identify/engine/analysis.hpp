@@ -16,6 +16,7 @@
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/record.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -85,7 +86,8 @@ struct RecordAnalysis {
   std::optional<DecayJump> jump;           ///< of the first output of `even`, from its first sample
   std::optional<ThirdOvertone> overtone;   ///< of the first output
   ChannelAmplitudes channels;              ///< of all outputs, beside each other
-  std::vector<std::string> notes, warnings;
+  std::vector<std::string> notes;
+  std::vector<Objection> objections;
 
   bool forced() const;  ///< whether a force was measured
   /// The record itself where its stamps are even, missing samples and all; else `even`.
@@ -119,9 +121,9 @@ double shown_at(double frequency_hz, double sampling_rate_hz);
 
 // What in a free decay speaks against any one frequency and damping ratio of it.
 
-/// A sentence against one frequency and damping ratio of a free decay.
+/// What speaks against one frequency and damping ratio of a free decay.
 struct DecayObjection {
-  std::string text;          ///< a sentence or more for the first lines of a report
+  Objection objection;
   bool contradicts = false;  ///< the estimates are not to be relied on
 };
 

@@ -206,12 +206,12 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
     run.status = ComparedRun::Status::approximate;
     run.reason = fmt::format("the model explains {:.0f} % of the motion; the rest is not noise",
                              100.0 * (1.0 - run.sections->left_share));
-    run.warnings.insert(
-        run.warnings.begin(),
-        fmt::format("The model explains {:.0f} % of the motion; the rest is not noise. Intervals "
-                    "hold the scatter over the record. A mass, a place or a gain "
-                    "described wrongly does so, too, and moves estimates by more.",
-                    100.0 * (1.0 - run.sections->left_share)));
+    run.object({"unexplained",
+                fmt::format("The model explains {:.0f} % of the motion; the rest is not noise. Intervals "
+                            "hold the scatter over the record. A mass, a place or a gain "
+                            "described wrongly does so, too, and moves estimates by more.",
+                            100.0 * (1.0 - run.sections->left_share)),
+                run.misfit_percent, too_much});
     return;
   }
   run.status = ComparedRun::Status::contradicted;
@@ -227,7 +227,7 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
                                     forced ? "filter has settled" : "search has ended")
                       : run.step_cause);
   if (run.reason.ends_with('.')) run.reason.pop_back();
-  run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
+  run.object({"unexplained", "CONTRADICTED: " + run.reason + ".", run.misfit_percent, too_much});
 }
 
 bool judge_faults(ComparedRun& run) {
@@ -262,9 +262,9 @@ bool judge_faults(ComparedRun& run) {
       break;
     }
   if (named.empty()) return false;
-  const std::string text =
-      "CONTRADICTED: one thing described otherwise explains the record better: " + named + ".";
-  run.warnings.insert(run.warnings.begin(), text);
+  run.object({"description",
+              "CONTRADICTED: one thing described otherwise explains the record better: " + named + ".",
+              run.faults.front().explained, mostly});
   run.status = ComparedRun::Status::contradicted;
   run.reason = named;
   return true;
@@ -275,7 +275,8 @@ void judge_innovations(const RunContext& context, ComparedRun& run) {
   if (run.status == ComparedRun::Status::approximate) return;  // which says as much
   const double left = context.analysis.forced() ? run.misfit_percent : 0.0;
   const std::string text = innovations_text(*run.diagnostics->consistency, left);
-  if (!text.empty()) run.warnings.push_back(text);
+  if (!text.empty())
+    run.objections.emplace_back("innovations", text, run.diagnostics->consistency->whiteness_p_value, 1e-3);
 }
 
 }  // namespace beamid::experiments

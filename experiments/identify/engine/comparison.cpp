@@ -255,7 +255,7 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
   if (comparison.compared.truth && !analysis.even.remark.empty())
     comparison.compared.notes.push_back("For the modal analysis and first estimates: " +
                                         analysis.even.remark);
-  comparison.warnings = analysis.warnings;
+  comparison.objections = analysis.objections;
   const RunContext context{experiment, comparison.compared, analysis};
   Countdown countdown(
       progress, experiment.reductions.size() * experiment.filters.size() * experiment.discretisations.size(),

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/config/experiment.hpp"
@@ -17,6 +18,7 @@
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/identification.hpp"
+#include "experiments/text/objection.hpp"
 #include "experiments/text/progress.hpp"
 #include "filters/batch_estimator.hpp"
 #include "filters/diagnostics.hpp"
@@ -133,8 +135,11 @@ struct ComparedRun {
   std::vector<filters::Gaussian> smoothed;   ///< of every sample, where a smoother was asked for
   std::optional<BatchIdentification> batch;  ///< where it was asked for
   std::vector<std::string> remarks;
-  std::vector<std::string> warnings;  ///< for the first lines of a report, the worst first
+  std::vector<Objection> objections;  ///< for the first lines of a report, the worst first
   std::shared_ptr<const RecordIdentification> oscillator;  ///< K and C of a free decay, judged; else absent
+
+  /// The worst first: before those that are there.
+  void object(Objection worse) { objections.insert(objections.begin(), std::move(worse)); }
 
   /// Whether the estimates and their intervals may be relied on.
   bool answers() const { return status == Status::converged || status == Status::approximate; }
@@ -148,7 +153,7 @@ struct Comparison {
   ComparedRecord compared;
   RecordAnalysis analysis;
   std::vector<ComparedRun> runs;
-  std::vector<std::string> warnings = {};  ///< for the first lines of a report
+  std::vector<Objection> objections = {};  ///< to the record, for the first lines of a report
 };
 
 const char* to_string(ComparedRun::Status status);

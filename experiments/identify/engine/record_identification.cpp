@@ -12,8 +12,8 @@
 
 #include "experiments/identify/engine/analysis.hpp"
 #include "experiments/identify/engine/identified_parameters.hpp"
-#include "experiments/identify/verdict/input_faults.hpp"
 #include "experiments/identify/verdict/noise_near_mode.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
 #include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/estimates.hpp"
@@ -189,7 +189,7 @@ void take_divergence(const std::string& condition, const Experiment& experiment,
   else
     text += "Look at [prior] and [noise] in the experiment file, or another window.";
   if (!found.identification.run.failure) text += " Below is where the filter ended.";
-  judgement.messages.insert(judgement.messages.begin(), text);
+  judgement.object({"diverged", text});
 }
 
 // What filter and modal analysis differ by.
@@ -236,7 +236,8 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   Judgement judgement;
   const bool alone = !found.modal_failure.empty();
   if (alone)
-    judgement.messages.push_back(
+    judgement.objections.emplace_back(
+        "no_modal_analysis",
         fmt::format("No modal analysis stands beside this result: {}. The filter was started from {}, and "
                     "takes for noise the residual of its own motion.",
                     found.modal_failure, experiment.prior.stiffness ? "[prior]" : "the beam"));
@@ -250,11 +251,12 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   if (alone) {
     if (!(found.response_error_percent(record) > most_of_it)) return judgement;
     judgement.verdict = ComparedRun::Status::diverged;
-    judgement.messages.insert(judgement.messages.begin(),
-                              fmt::format("DIVERGED: the residual of its motion is {:.0f} % of the record. "
-                                          "The record is no free decay of this beam, "
-                                          "or [prior] is far from it.",
-                                          found.response_error_percent(record)));
+    judgement.object({"diverged",
+                      fmt::format("DIVERGED: the residual of its motion is {:.0f} % of the record. "
+                                  "The record is no free decay of this beam, "
+                                  "or [prior] is far from it.",
+                                  found.response_error_percent(record)),
+                      found.response_error_percent(record), most_of_it});
     return judgement;
   }
   const Oscillator& filter = identification.found;
@@ -265,8 +267,10 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   const bool damping =
       exclude_each_other(ratio, found.damping_factor() * identification.damping_ratio_deviation, modal_ratio,
                          found.modal.damping_ratio_standard_deviation, rounding_of_damping);
-  for (const std::string& text : {undetermined_text(found), overtone_text(found)})
-    if (!text.empty()) judgement.messages.push_back(text);
+  if (const std::string text = undetermined_text(found); !text.empty())
+    judgement.objections.emplace_back("undetermined_damping", text);
+  if (const std::string text = overtone_text(found); !text.empty())
+    judgement.objections.emplace_back("overtone", text);
   if (!frequency && !damping) return judgement;
   std::string text = difference_text(found, frequency, damping);
   const std::string cause = cause_of(experiment, record, found);
@@ -280,7 +284,7 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
     text += (doubtful ? "; " : ": ") + cause;
   else if (!doubtful)
     text += ". None of the usual causes was found (scheme, prior, another mode, amplitude, rattle)";
-  judgement.messages.insert(judgement.messages.begin(), text + ".");
+  judgement.object({"modal_disagreement", text + "."});
   return judgement;
 }
 
@@ -322,20 +326,20 @@ void take_objections(const RecordAnalysis& analysis, RecordIdentification& found
   FoundMode mode{filter.found.frequency_hz(), filter.found.damping_ratio()};
   mode.damping_ratio_deviation = found.damping_factor() * filter.damping_ratio_deviation;
   for (const DecayObjection& one : decay_objections(analysis, mode)) {
-    found.judgement.messages.insert(found.judgement.messages.begin(), one.text);
+    found.judgement.object(one.objection);
     if (one.contradicts) found.judgement.verdict = ComparedRun::Status::contradicted;
   }
 }
 
 void take_channels(const ChannelAmplitudes& channels, Judgement& judgement) {
-  if (!channels.text.empty()) judgement.messages.push_back(channels.text);
+  if (!channels.text.empty()) judgement.objections.emplace_back("channel_amplitudes", channels.text);
   if (channels.contradict && judgement.verdict == ComparedRun::Status::converged)
     judgement.verdict = ComparedRun::Status::contradicted;
 }
 
 void take_clocks(const Record& record, const std::optional<ClockScatter>& scatter, Judgement& judgement) {
   if (!scatter || judgement.verdict == ComparedRun::Status::diverged) return;
-  judgement.messages.insert(judgement.messages.begin(), clock_scatter_text(record, *scatter));
+  judgement.object({"channel_clocks", clock_scatter_text(record, *scatter)});
   judgement.verdict = ComparedRun::Status::contradicted;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/config/experiment.hpp"
@@ -10,6 +11,7 @@
 #include "experiments/identify/verdict/noise_near_mode.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/models/identification.hpp"
+#include "experiments/text/objection.hpp"
 #include "filters/diagnostics.hpp"
 
 namespace beamid::experiments {
@@ -21,7 +23,9 @@ struct RecordIdentification;
 /// The verdict on an identification, with its reasons.
 struct Judgement {
   ComparedRun::Status verdict = ComparedRun::Status::converged;
-  std::vector<std::string> messages;  ///< for the first lines of a report, the worst first; empty: none
+  std::vector<Objection> objections;  ///< for the first lines of a report, the worst first; empty: none
+
+  void object(Objection worse) { objections.insert(objections.begin(), std::move(worse)); }
 };
 
 /// The verdict and, where the filter diverged or its intervals and those of the modal analysis exclude each

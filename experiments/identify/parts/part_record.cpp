@@ -136,7 +136,7 @@ ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord
   result.record.time = record.record.time;
   result.record.time_resolution = record.record.time_resolution;
   result.record.remarks = record.record.remarks;
-  result.record.warnings = record.record.warnings;
+  result.record.objections = record.record.objections;
   result.record.input_path = record.record.input_path;
   const bool spans = has_spans(experiment.structure);
   std::vector<Index> kept;

@@ -126,12 +126,13 @@ void widen_by_innovations(ComparedRun& run) {
   run.interval_factor = std::max(run.interval_factor, factor);
   constexpr double worth_saying = 1.1;
   if (factor > worth_saying)
-    run.warnings.insert(
-        run.warnings.begin(),
-        fmt::format(
-            "The innovations are {:.3g} times as large as the stated noise makes them (mean normalised "
-            "square {:.3g}): standard deviations are widened by as much.",
-            factor, found.mean_normalised_square));
+    run.object(
+        {"innovations",
+         fmt::format(
+             "The innovations are {:.3g} times as large as the stated noise makes them (mean normalised "
+             "square {:.3g}): standard deviations are widened by as much.",
+             factor, found.mean_normalised_square),
+         found.mean_normalised_square, found.upper_95});
 }
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;

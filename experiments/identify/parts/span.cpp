@@ -142,12 +142,14 @@ void judge_span(const LinesLeft& left, ComparedRun& run) {
   if (!(left.strong > left.weak * (1.0 + chance * left.deviation))) return;
   const bool stands_out = left.strong > many * left.weak && left.motion_percent > too_much;
   if (!stands_out && !(left.motion_percent > whatever)) {
-    run.warnings.push_back(
+    run.objections.emplace_back(
+        "unexplained",
         fmt::format("The sections do not explain {:.2g} % of the motion inside: lines are {:.3g} "
                     "times the noise stated where motion is strong, {:.3g} times where it is weak. "
                     "Estimates may be off by more than their intervals: a place, a gain, a mass, a force "
                     "inside, or a simulation cut to few modes",
-                    left.motion_percent, std::sqrt(left.strong), std::sqrt(left.weak)));
+                    left.motion_percent, std::sqrt(left.strong), std::sqrt(left.weak)),
+        left.motion_percent, whatever);
     return;
   }
   run.status = ComparedRun::Status::contradicted;
@@ -157,7 +159,7 @@ void judge_span(const LinesLeft& left, ComparedRun& run) {
       "a mass "
       "is not as described",
       left.motion_percent);
-  run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + run.reason + ".");
+  run.object({"unexplained", "CONTRADICTED: " + run.reason + ".", left.motion_percent, too_much});
 }
 
 void take_fit(const LineProblem& problem, const LineFit& fit, const std::optional<Experiment>& truth,
@@ -189,10 +191,12 @@ void take_fit(const LineProblem& problem, const LineFit& fit, const std::optiona
 // A ratio is of the modes of the whole, which a span does not have.
 void warn_of_ratios(const fem::DampingLaw& law, ComparedRun& run) {
   if (std::holds_alternative<fem::ModalDamping>(law) || std::holds_alternative<fem::StructuralDamping>(law))
-    run.warnings.push_back(fmt::format(
-        "[damping] law = \"{}\" is of the whole beam's modes; those of the span held at its sections "
-        "have taken its ratios. Expected rayleigh",
-        fem::name(law)));
+    run.objections.emplace_back(
+        "part_law",
+        fmt::format(
+            "[damping] law = \"{}\" is of the whole beam's modes; those of the span held at its sections "
+            "have taken its ratios. Expected rayleigh",
+            fem::name(law)));
 }
 
 }  // namespace

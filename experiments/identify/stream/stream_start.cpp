@@ -41,7 +41,7 @@ StreamStart stream_start(const Experiment& experiment, const Record& earlier) {
       model_setting(experiment, record, experiment.reduction).observations;
   const double duration = record.interval() * static_cast<double>(record.size());
   const JointModel& model = *run.model;
-  StreamStart start{model, run.settings, run.interval_factor, run.answers(), run.warnings};
+  StreamStart start{model, run.settings, run.interval_factor, run.answers(), run.objections};
   start.settings.initial = initial_estimate(
       model, start_directions(model, observations,
                               start_scale(model, observations, measurements(record).outputs, duration)));

@@ -3,6 +3,7 @@
 
 #include "experiments/config/experiment.hpp"
 #include "experiments/models/identification.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -12,7 +13,7 @@ struct StreamStart {
   IdentificationSettings settings;  ///< of one pass; the unknowns as uncertain as before any record
   double interval_factor = 1;       ///< of deviations, for the noise near the mode; 1 at least
   bool reliable = true;  ///< whether the earlier record, identified alike, has an estimate to rely on
-  std::vector<std::string> warnings = {};  ///< of that identification, the worst first
+  std::vector<Objection> objections = {};  ///< of that identification, the worst first
 };
 
 /// Identifies the earlier record with the experiment's model, reduction and filter (identify_with_model).

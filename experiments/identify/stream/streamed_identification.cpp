@@ -213,8 +213,8 @@ StreamedIdentification::StreamedIdentification(const Experiment& experiment, con
   running_ = std::make_unique<filters::RunningFilter>(*filter_, settings.on_failure,
                                                       measurements(earlier).time_resolution);
   running_->start(settings.initial, settings.start);
-  for (const std::string& warning : prepared_.warnings)
-    news_.push_back("The earlier record, identified alike: " + warning);
+  for (const Objection& one : prepared_.objections)
+    news_.push_back("The earlier record, identified alike: " + one.text);
 }
 
 bool StreamedIdentification::take_in(const filters::Sample& sample) {

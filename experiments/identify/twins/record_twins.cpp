@@ -295,7 +295,7 @@ LikeliestSet likeliest_set(const Experiment& experiment, const std::filesystem::
   }
   ComparedRun& run = result.found.runs.front();
   if (result.twins.undecided() > 0) {
-    run.warnings.insert(run.warnings.begin(), not_unique_text(result.twins));
+    run.object({"not_unique", not_unique_text(result.twins)});
     if (run.answers())
       run.status = ComparedRun::Status::not_unique, run.reason = "other sets explain the record as well";
   }

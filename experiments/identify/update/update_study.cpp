@@ -151,28 +151,31 @@ LogRatios frequency_ratios(const UpdateStudy& study, const std::vector<Index>& n
   return mean_and_spread(logs);
 }
 
-void add_units(const UpdateStudy& study, std::vector<std::string>& warnings) {
+void add_units(const UpdateStudy& study, std::vector<Objection>& objections) {
   const double factor = std::exp(frequency_ratios(study, pair_modes(study.data(), study.described)).mean);
   const double turn = 2.0 * std::numbers::pi;
   if (std::abs(std::log(factor / turn)) < 0.2)
-    warnings.push_back(
+    objections.emplace_back(
+        "unit_of_frequency",
         fmt::format("The measured frequencies are {:.3g} times those described, about 2 pi: are "
                     "they in rad/s? Expected Hz.",
                     factor));
   else if (std::abs(std::log(factor * turn)) < 0.2)
-    warnings.push_back(
+    objections.emplace_back(
+        "unit_of_frequency",
         fmt::format("The measured frequencies are {:.3g} times those described, about 1 / (2 "
                     "pi): were they divided by 2 pi twice?",
                     factor));
   else if (std::abs(std::log(factor)) > std::log(2.5))
-    warnings.push_back(
+    objections.emplace_back(
+        "unit_of_frequency",
         fmt::format("The measured frequencies are {:.3g} times those described: a mass, a unit "
                     "or the numbering of the modes may be wrong.",
                     factor));
 }
 
 // One mode left out that makes the ratios alike.
-void add_missing(const UpdateStudy& study, std::vector<std::string>& warnings) {
+void add_missing(const UpdateStudy& study, std::vector<Objection>& objections) {
   const auto count = static_cast<Index>(study.data().modes.size());
   const bool numbered = std::any_of(study.data().modes.begin(), study.data().modes.end(),
                                     [](const MeasuredMode& mode) { return mode.number.has_value(); });
@@ -189,10 +192,12 @@ void add_missing(const UpdateStudy& study, std::vector<std::string>& warnings) {
       least = spread, missing = skipped;
   }
   if (missing < 0 || in_order < 0.05 || least > 0.4 * in_order) return;
-  warnings.push_back(fmt::format(
-      "The frequencies are taken for modes 1 to {0}. Without mode {1} among them they "
-      "would be nearer to those described: if it was not found, state so by the key 'mode' of [[modes]].",
-      count, missing + 1));
+  objections.emplace_back(
+      "missing_mode",
+      fmt::format(
+          "The frequencies are taken for modes 1 to {0}. Without mode {1} among them they "
+          "would be nearer to those described: if it was not found, state so by the key 'mode' of [[modes]].",
+          count, missing + 1));
 }
 
 double mean_assurance(const ModalData& data, const PredictedModes& modes) {
@@ -206,7 +211,7 @@ double mean_assurance(const ModalData& data, const PredictedModes& modes) {
 }
 
 // A sensor whose readings turned round bring shapes and predictions together.
-void add_signs(const UpdateStudy& study, std::vector<std::string>& warnings) {
+void add_signs(const UpdateStudy& study, std::vector<Objection>& objections) {
   if (!study.data().has_shapes()) return;
   constexpr double much = 0.15;
   double best_gain = much;
@@ -222,39 +227,42 @@ void add_signs(const UpdateStudy& study, std::vector<std::string>& warnings) {
     }
   }
   if (turned >= 0)
-    warnings.push_back(
-        fmt::format("With the sign of sensor {} turned round the shapes are much nearer to the "
-                    "predicted ones (mean MAC {:+.2f}): is it mounted the other way?",
-                    turned + 1, best_gain));
+    objections.emplace_back(
+        "sign", fmt::format("With the sign of sensor {} turned round the shapes are much nearer to the "
+                            "predicted ones (mean MAC {:+.2f}): is it mounted the other way?",
+                            turned + 1, best_gain));
 }
 
 // All parameters by one factor: what is wrong is elsewhere.
-void add_common_factor(const UpdateStudy& study, std::vector<std::string>& warnings) {
+void add_common_factor(const UpdateStudy& study, std::vector<Objection>& objections) {
   const VectorXd& x = study.updating.best().fit.x;
   if (x.size() < 2 || !study.updating.open.empty()) return;
   for (Index j = 0; j < x.size(); ++j)
     if (!study.space->logarithmic(j)) return;
   const LogRatios factor = mean_and_spread(x);
   if (std::abs(factor.mean) < 0.35 || factor.spread > 0.3 * std::abs(factor.mean)) return;
-  warnings.push_back(
+  objections.emplace_back(
+      "common_factor",
       fmt::format("All parameters changed alike, by a factor of {:.3g} in the mean: a mass or a unit that is "
                   "wrong does that, too. Frequencies determine only the ratio of stiffness to mass.",
                   std::exp(factor.mean)));
 }
 
-void add_strange_shapes(const UpdateStudy& study, std::vector<std::string>& warnings) {
+void add_strange_shapes(const UpdateStudy& study, std::vector<Objection>& objections) {
   const auto& value = study.updating.best().fit.value;
   const MatrixXd assurance = modal_assurances(study.data(), value.modes);
   for (std::size_t i = 0; i < value.pairs.size(); ++i)
     if (const double mac = assurance(static_cast<Index>(i), value.pairs[i]); mac < 0.8)
-      warnings.push_back(fmt::format("The shape at {:.4g} Hz resembles no predicted one: MAC {:.2f} at best.",
-                                     study.data().modes[i].frequency_hz, mac));
+      objections.emplace_back(
+          "strange_shape",
+          fmt::format("The shape at {:.4g} Hz resembles no predicted one: MAC {:.2f} at best.",
+                      study.data().modes[i].frequency_hz, mac));
 }
 
 // Where two modes are nearly one frequency a test measures any two shapes of their plane. Within 1 % shapes
 // are held against the plane, beyond it one against one: near that border the estimate hangs on where it
 // lies.
-void add_close_pairs(const UpdateStudy& study, std::vector<std::string>& warnings) {
+void add_close_pairs(const UpdateStudy& study, std::vector<Objection>& objections) {
   constexpr double nearest = 0.005, farthest = 0.02;
   std::vector<double> frequencies;
   for (const MeasuredMode& mode : study.data().modes)
@@ -263,29 +271,32 @@ void add_close_pairs(const UpdateStudy& study, std::vector<std::string>& warning
   for (std::size_t i = 1; i < frequencies.size(); ++i) {
     const double gap = frequencies[i] / frequencies[i - 1] - 1.0;
     if (gap < nearest || gap > farthest) continue;
-    warnings.push_back(fmt::format(
-        "The modes at {:.5g} and {:.5g} Hz are so close that a test may have mixed their shapes. What rests "
-        "on which is which, x and y exchanged for one, may be wrong by more than its interval: do the "
-        "estimates "
-        "stay without these two shapes?",
-        frequencies[i - 1], frequencies[i]));
+    objections.emplace_back(
+        "close_pair",
+        fmt::format(
+            "The modes at {:.5g} and {:.5g} Hz are so close that a test may have mixed their shapes. What "
+            "rests "
+            "on which is which, x and y exchanged for one, may be wrong by more than its interval: do the "
+            "estimates "
+            "stay without these two shapes?",
+            frequencies[i - 1], frequencies[i]));
   }
 }
 
 /// Sentences: frequencies in rad/s, a mode missing in between, a sensor with the wrong sign, a mass or unit
 /// that is wrong by a factor, modes that no predicted one resembles.
-std::vector<std::string> update_warnings(const UpdateStudy& study) {
-  std::vector<std::string> warnings;
-  for (const std::string& warning : study.data().warnings)
-    warnings.push_back("beamid modal warned of these modes: " + warning);
-  for (const Remedy& remedy : study.remedies) warnings.push_back(remedy.sentence);
-  add_units(study, warnings);
-  add_missing(study, warnings);
-  add_signs(study, warnings);
-  add_common_factor(study, warnings);
-  add_strange_shapes(study, warnings);
-  add_close_pairs(study, warnings);
-  return warnings;
+std::vector<Objection> update_objections(const UpdateStudy& study) {
+  std::vector<Objection> objections;
+  for (const std::string& warning : study.data().objections)
+    objections.emplace_back("measured_modes", "beamid modal warned of these modes: " + warning);
+  for (const Remedy& remedy : study.remedies) objections.emplace_back("remedy", remedy.sentence);
+  add_units(study, objections);
+  add_missing(study, objections);
+  add_signs(study, objections);
+  add_common_factor(study, objections);
+  add_strange_shapes(study, objections);
+  add_close_pairs(study, objections);
+  return objections;
 }
 
 constexpr Index spare_modes = 4;  // beyond those measured, for pairing
@@ -334,7 +345,7 @@ UpdateStudy study_update(const Experiment& experiment, const ModalData& data, co
   study.deciding = deciding_measurements(*study.model, data, as_well, settings.trust);
   if (study.updating.refuted && study.model->dense())
     study.remedies = remedies({experiment, *study.model, *study.space, data, settings.trust, study.updating});
-  study.warnings = update_warnings(study);
+  study.objections = update_objections(study);
   return study;
 }
 

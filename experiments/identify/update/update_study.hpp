@@ -11,6 +11,7 @@
 #include "experiments/identify/update/modal_model.hpp"
 #include "experiments/identify/update/modal_residual.hpp"
 #include "experiments/identify/update/updating.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -47,7 +48,7 @@ struct UpdateStudy {
   PredictedModes described;                   ///< before anything is changed
   std::vector<DecidingMeasurement> deciding;  ///< between the sets that fit as well
   std::vector<Remedy> remedies;               ///< where no values explain the modes
-  std::vector<std::string> warnings;          ///< sentences (update_study.cpp)
+  std::vector<Objection> objections;
 
   const ModalData& data() const { return residual->data(); }
   const std::vector<Unknown>& unknowns() const { return model->asked().unknowns; }

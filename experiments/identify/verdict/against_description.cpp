@@ -1,4 +1,4 @@
-#include "experiments/identify/verdict/against_description.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -155,13 +155,13 @@ AgainstDescription against_description(const std::vector<ComparedParameter>& par
 void judge_description(const RunContext& context, ComparedRun& run) {
   const AgainstDescription found =
       against_description(run.parameters, measures_force(context.analysis.record), run.unknowns);
-  run.warnings.insert(run.warnings.end(), found.differences.begin(), found.differences.end());
+  for (const std::string& text : found.differences) run.objections.emplace_back("prior", text);
   if (found.scale.empty()) return;
   if (!found.contradicts) {
-    run.warnings.push_back(found.scale + ".");
+    run.objections.emplace_back("prior", found.scale + ".");
     return;
   }
-  run.warnings.insert(run.warnings.begin(), "CONTRADICTED: " + found.scale + ".");
+  run.object({"prior", "CONTRADICTED: " + found.scale + "."});
   if (!run.answers()) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = found.scale;

@@ -1,4 +1,4 @@
-#include "experiments/identify/verdict/input_faults.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -69,6 +69,7 @@ double phase_of(const ComparedRun& run, double lag, double interval) {
 
 // What speaks against the inputs, and how far it moves the unknown that it moves most.
 struct InputFault {
+  std::string name = "input_clock";  ///< of the objection
   std::string text, advice;
   Index unknown = 0;
   double moved = 0.0;      ///< in deviations as they are reported
@@ -135,6 +136,7 @@ std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun&
   const Record& record = context.analysis.record;
   const auto inputs = input_channels(record);
   InputFault fault;
+  fault.name = "input_noise";
   for (std::size_t j = 0; j < inputs.size(); ++j) {
     const Channel& channel = channel_of(record, inputs[j]);
     const double noise = run.likeliest_input_noise->deviation[static_cast<Index>(j)];
@@ -171,12 +173,14 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
           ? fmt::format(" and makes {:.0f} % of the residual, in squares", 100.0 * fault->explained)
           : "";
   const bool said = run.status == ComparedRun::Status::contradicted;  // by all that is left
-  run.warnings.insert(run.warnings.begin() + (said ? 1 : 0),
-                      fmt::format("{}{}, or the model lacks what looks so: allowed for, it moves {} by "
-                                  "{:.2g} of its standard deviations{}. {}",
-                                  excluded && !said ? "CONTRADICTED: " : "", fault->text,
-                                  run.parameters[static_cast<std::size_t>(fault->unknown)].estimate.name,
-                                  fault->moved, explained, fault->advice));
+  run.objections.insert(run.objections.begin() + (said ? 1 : 0),
+                        {fault->name,
+                         fmt::format("{}{}, or the model lacks what looks so: allowed for, it moves {} by "
+                                     "{:.2g} of its standard deviations{}. {}",
+                                     excluded && !said ? "CONTRADICTED: " : "", fault->text,
+                                     run.parameters[static_cast<std::size_t>(fault->unknown)].estimate.name,
+                                     fault->moved, explained, fault->advice),
+                         fault->moved, quantile_95});
   if (!excluded || said) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fault->text;
@@ -192,7 +196,7 @@ std::string clock_scatter_text(const Record& record, const ClockScatter& scatter
 
 void judge_clock_scatter(const RunContext& context, ComparedRun& run) {
   if (!run.clock_scatter || !run.has_estimate()) return;
-  run.warnings.insert(run.warnings.begin(), clock_scatter_text(context.analysis.record, *run.clock_scatter));
+  run.object({"channel_clocks", clock_scatter_text(context.analysis.record, *run.clock_scatter)});
   if (!run.answers()) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = "the channels do not ring at one frequency";

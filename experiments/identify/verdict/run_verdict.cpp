@@ -13,9 +13,6 @@
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/engine/record_identification.hpp"
 #include "experiments/identify/engine/run_bound.hpp"
-#include "experiments/identify/verdict/against_description.hpp"
-#include "experiments/identify/verdict/input_faults.hpp"
-#include "experiments/identify/verdict/step_error.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/joint_model.hpp"
@@ -188,7 +185,7 @@ void judge_against_modal_analysis(const RunContext& context, ComparedRun& run) {
   if (!modal || !run.mode || !one_mode) return;
   const std::string text = difference_text(*modal, run);
   if (text.empty()) return;
-  run.warnings.push_back(text);
+  run.objections.emplace_back("modal_disagreement", text);
   if (!has_another_damping(*modal, run)) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format("damping ratio {:.3g} %, where the modal analysis of the record has {:.3g} %",
@@ -203,16 +200,17 @@ void judge_settling(ComparedRun& run) {
       fmt::format("the last one moved an unknown by {:.2g} of its standard deviations", run.last_move);
   run.status = ComparedRun::Status::contradicted;
   run.reason = "the passes have not settled: " + moved;
-  run.warnings.insert(run.warnings.begin(),
-                      "NOT SETTLED: " + moved +
-                          ". The estimates are not to be relied on; expected more passes "
-                          "([compare] passes) or nearer initial estimates.");
+  run.object({"not_settled",
+              "NOT SETTLED: " + moved +
+                  ". The estimates are not to be relied on; expected more passes "
+                  "([compare] passes) or nearer initial estimates.",
+              run.last_move, many});
 }
 
 void judge_decay(const RunContext& context, ComparedRun& run) {
   if (!run.mode) return;
   for (const DecayObjection& one : decay_objections(context.analysis, *run.mode)) {
-    run.warnings.insert(run.warnings.begin(), one.text);
+    run.object(one.objection);
     if (!one.contradicts) continue;
     run.status = ComparedRun::Status::contradicted;
     run.reason = "the record is no free decay of one damping ratio";
@@ -223,42 +221,48 @@ void judge_decay(const RunContext& context, ComparedRun& run) {
 void judge_moved_mass(ComparedRun& run) {
   constexpr double enough = 0.95;
   if (run.model->moved_share >= enough) return;
-  run.warnings.push_back(fmt::format(
-      "The {} coordinates of this model hold {:.3g} % of the mass that the base moves; the rest is in the "
-      "record and not in the model. Expected more of them: [reduction] modes.",
-      run.coordinates, 100.0 * run.model->moved_share));
+  run.objections.emplace_back(
+      "moved_mass",
+      fmt::format("The {} coordinates of this model hold {:.3g} % of the mass that the base moves; the rest "
+                  "is in the "
+                  "record and not in the model. Expected more of them: [reduction] modes.",
+                  run.coordinates, 100.0 * run.model->moved_share),
+      run.model->moved_share, enough);
 }
 
 // A unit that is wrong, of a forced motion that nothing makes by its size.
 void judge_size(const RunContext& context, ComparedRun& run) {
   if (const std::string text = described_response_text(context, run); !text.empty())
-    run.warnings.push_back(text);
+    run.objections.emplace_back("implausible_response", text);
 }
 
 // Collapsed particles, or a filter linearised elsewhere: the truth may lie many of its intervals away.
 void judge_certainty(ComparedRun& run) {
   constexpr double far_surer = 0.5;
   std::string names;
-  for (const ComparedParameter& p : run.parameters)
+  double least = 1.0;
+  for (const ComparedParameter& p : run.parameters) {
+    least = std::min(least, p.overconfidence);
     if (p.overconfidence < far_surer) names += (names.empty() ? "" : ", ") + p.estimate.name;
+  }
   if (names.empty()) return;
   const std::string reason = "the filter is more than twice as sure of " + names + " as the record allows";
   run.status = ComparedRun::Status::contradicted;
   run.reason = reason;
-  run.warnings.insert(run.warnings.begin(),
-                      "CONTRADICTED: " + reason +
-                          ", so that the truth may lie many of its intervals away. Expected nearer initial "
-                          "estimates, more passes ([compare] passes), a reduction in place of the mesh, or "
-                          "`identify` in place of `compare`, which uses all samples at once.");
+  run.object({"overconfident",
+              "CONTRADICTED: " + reason +
+                  ", so that the truth may lie many of its intervals away. Expected nearer initial "
+                  "estimates, more passes ([compare] passes), a reduction in place of the mesh, or "
+                  "`identify` in place of `compare`, which uses all samples at once.",
+              least, far_surer});
 }
 
 // Of the general model: its lowest mode beside the modal analysis, its innovations.
 void judge_model(const RunContext& context, ComparedRun& run) {
   widen_intervals(context, run);
   if (const std::string text = reduction_error(context, run); !text.empty())
-    run.warnings.insert(run.warnings.begin(), text);
-  if (const std::string text = step_error(context, run); !text.empty())
-    run.warnings.insert(run.warnings.begin(), text);
+    run.object({"reduction_bias", text});
+  if (const std::string text = step_error(context, run); !text.empty()) run.object({"step_bias", text});
   judge_settling(run);
   judge_certainty(run);
   judge_motion_left(context, run);  // what the model lacks goes before: it explains the certainty
@@ -278,7 +282,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
 void judge_oscillator(const RunContext& context, ComparedRun& run) {
   const auto found =
       std::make_shared<const RecordIdentification>(oscillator_of(context.experiment, context.analysis, run));
-  run.warnings = found->judgement.messages;
+  run.objections = found->judgement.objections;
   run.near_mode = found->near_mode;
   run.interval_factor = found->interval_factor;
   if (found->interval_factor > 1.0) {
@@ -300,7 +304,7 @@ void judge_oscillator(const RunContext& context, ComparedRun& run) {
 // A unit that is wrong, of a free decay by its channels.
 void judge_channels(const RunContext& context, ComparedRun& run) {
   const ChannelAmplitudes& channels = context.analysis.channels;
-  if (!channels.text.empty()) run.warnings.push_back(channels.text);
+  if (!channels.text.empty()) run.objections.emplace_back("channel_amplitudes", channels.text);
   if (!channels.contradict || run.status != ComparedRun::Status::converged) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = channels.text;
@@ -312,14 +316,18 @@ void judge_what_is_said(ComparedRun& run) {
   // Of the prior deviation: half of the information is the prior's.
   constexpr double next_to_nothing = 0.7;
   std::string text;
+  double largest = 0.0;
   for (const ComparedParameter& p : run.parameters)
     if (const double share = p.estimate.deviation / p.estimate.prior_deviation;
         !p.estimate.nuisance && share > next_to_nothing)
+      largest = std::max(largest, share),
       text += fmt::format("{}{} ({:.2g})", text.empty() ? "" : ", ", p.estimate.name, share);
   if (!text.empty())
-    run.warnings.push_back("NOT DETERMINED: the record shows almost no effect of " + text +
-                           "; what is printed is the prior, in brackets the standard deviation "
-                           "over the prior one.");
+    run.objections.emplace_back("not_determined",
+                                "NOT DETERMINED: the record shows almost no effect of " + text +
+                                    "; what is printed is the prior, in brackets the standard deviation "
+                                    "over the prior one.",
+                                largest, next_to_nothing);
 }
 
 void judge_run(const RunContext& context, ComparedRun& run) {
@@ -330,8 +338,7 @@ void judge_run(const RunContext& context, ComparedRun& run) {
   else if (run.answers())
     judge_model(context, run);
   else {
-    run.warnings.insert(run.warnings.begin(),
-                        "DIVERGED: " + run.reason + ". There is no estimate to rely on.");
+    run.object({"diverged", "DIVERGED: " + run.reason + ". There is no estimate to rely on."});
     judge_size(context, run);
   }
   if (run.oscillator) return;  // whose own verdict holds them

@@ -1,6 +1,9 @@
 // What a single identification of a record is worth, beside what else is known of the record.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "experiments/identify/engine/compared_run.hpp"
 
 namespace beamid::experiments {
@@ -25,5 +28,65 @@ void judge_run(const RunContext& context, ComparedRun& run);
 /// A warning where the deviation of a parameter asked about, no nuisance, is nearly the one assumed
 /// beforehand.
 void judge_what_is_said(ComparedRun& run);
+
+// What the discretisation does to the higher modes of a model (step_error.cpp).
+
+/// A sentence where the scheme of a run, by its closed form (discretisation_bias.hpp), moves the stiffness of
+/// a mode that holds a hundredth of the record by more than the narrowest interval of the run: what is
+/// determined by that mode comes out wrong by as much. Empty otherwise, for exact schemes and for models that
+/// are not linear. Of damping likewise: the scheme of the run turns each pole of another motion,
+/// log(g(lambda_f dt)) / dt, into that of the model as found; said where the damping ratio of a mode that the
+/// record holds differs by more than the narrowest interval of a damping.
+///
+/// A mode holds what the outputs' spectra do within a tenth of its frequency; modes above half the sampling
+/// rate are left out.
+std::string step_error(const RunContext& context, const ComparedRun& run);
+
+// What a record itself says against its clocks and its measured inputs, though nobody stated it
+// (input_faults.cpp).
+
+/// Where a driven record is surely likelier with a clock late or at another rate (likeliest_clock.hpp), or
+/// else with noise in its inputs (noisy_input_fit.hpp): contradicted where that moves an unknown out of its
+/// 95 % interval, or where it makes most of what is left; a warning where it moves one by more than a
+/// deviation.
+void judge_inputs(const RunContext& context, ComparedRun& run);
+
+/// What is said of them, and what to do.
+std::string clock_scatter_text(const Record& record, const ClockScatter& scatter);
+
+/// Contradicted where the channels of a free decay do not ring at one frequency (joint_decay_fit.hpp).
+void judge_clock_scatter(const RunContext& context, ComparedRun& run);
+
+// Estimates beside the prior that they started from (against_description.cpp).
+
+/// Estimates beside what was described or given as a prior, p0 +- s0.
+struct AgainstDescription {
+  std::string scale;         ///< all masses and stiffnesses are wrong by one factor; empty: they are not
+  bool contradicts = false;  ///< the priors exclude that factor
+  std::vector<std::string>
+      differences;  ///< parameters, each more than four s0 away; none where `scale` has it
+};
+
+/// The force, and nothing else, fixes the scale of what it weighs: with a force e times too large all masses,
+/// stiffnesses and dashpots of M x'' + C x' + K x = f come out e times too large, the motion is met as well
+/// as ever, and only what was known beforehand can tell. With r_j = log(p_j / p0_j) and s_j^2 = (s0_j /
+/// p0_j)^2 + (s_j / p_j)^2 the factor is g = sum r_j / s_j^2 / sum 1 / s_j^2, with the deviation (sum 1 /
+/// s_j^2)^-1/2. It is one factor where sum (r_j - g)^2 / s_j^2 is less than its chi-square's 99.9 % point.
+/// The priors exclude it from four deviations on. From one and a half on it is still no coincidence where
+/// all r_j lie together within a tenth of g.
+///
+/// A damping known to 100 % or less well states no prior, and is left out.
+/// @param by_force whether a force was measured, which the scale then comes from
+/// @param unknowns of the same parameters, in whose coordinates they are away from their priors; empty:
+/// linear
+AgainstDescription against_description(const std::vector<ComparedParameter>& parameters, bool by_force,
+                                       const std::vector<Unknown>& unknowns = {});
+
+/// ", as with 9.80665, a force in N taken for kgf ...": of a force's reading over the force, or a motion over
+/// its reading, what makes such a factor within exp(+-near); empty: nothing usual.
+std::string usual_scale(double factor, double near);
+
+/// Puts it among the warnings of a run; its status becomes contradicted where the priors exclude the factor.
+void judge_description(const RunContext& context, ComparedRun& run);
 
 }  // namespace beamid::experiments

@@ -1,4 +1,4 @@
-#include "experiments/identify/verdict/step_error.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
 
 #include <fmt/format.h>
 

@@ -178,10 +178,11 @@ void compare_clocks(const JointDecayFit& fit, RecordModes& found) {
     deviation =
         std::hypot(deviation, scatter->farthest[static_cast<Eigen::Index>(m)] / (2.0 * std::numbers::pi));
   }
-  found.warnings.push_back(
+  found.objections.emplace_back(
+      "channel_clocks",
       scatter->sentence(found.record.channel_names()) +
-      " A frequency cannot show which is right; its standard deviations are widened by how far "
-      "its channels are from it.");
+          " A frequency cannot show which is right; its standard deviations are widened by how far "
+          "its channels are from it.");
 }
 
 using Modes = std::vector<ModeEstimate>;
@@ -327,7 +328,8 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
     return;
   }
   if (any)
-    found.warnings.emplace_back(
+    found.objections.emplace_back(
+        "no_deviations",
         "No pole was confirmed by least squares; --no-polish lists them as the method finds them.");
 }
 

@@ -211,15 +211,20 @@ void judge(DrivenStudy& study) {
   const double explained = study.explained();
   if (study.modes.empty()) return;
   if (explained < healthy)
-    study.warnings.push_back(fmt::format(
-        "The measured input{} only {:.0f} % of the motion through these modes. Something else moves the "
-        "structure, a mode is missing, or frequencies and damping are not constant: standard deviations may "
-        "be too "
-        "small.",
-        study.inputs.size() > 1 ? "s make" : " makes", 100.0 * explained));
+    study.objections.emplace_back(
+        "unexplained_modes",
+        fmt::format(
+            "The measured input{} only {:.0f} % of the motion through these modes. Something else moves the "
+            "structure, a mode is missing, or frequencies and damping are not constant: standard deviations "
+            "may "
+            "be too "
+            "small.",
+            study.inputs.size() > 1 ? "s make" : " makes", 100.0 * explained),
+        explained, healthy);
   for (std::size_t k = 0; k < study.modes.size(); ++k)
     if (study.outputs.size() > 1 && phase_collinearity(study.modes[k].pole.shape) < least)
-      study.warnings.push_back(
+      study.objections.emplace_back(
+          "channel_phases",
           fmt::format("Channels do not move in phase or in opposition in mode {} at {:.4g} Hz: clocks that "
                       "differ, a near "
                       "mode that was missed, or damping that is not classical.",
@@ -233,7 +238,7 @@ DrivenStudy study_driven(const std::string& name, const Record& record, const Mo
   DrivenStudy study;
   study.name = name;
   study.remarks = record.remarks;
-  study.warnings = record.warnings;
+  study.objections = record.objections;
   study.record = complete_part(record, study.remarks);
   check_intervals(study.record);
   const double interval = study.record.interval();

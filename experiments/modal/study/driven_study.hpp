@@ -7,6 +7,7 @@
 #include "experiments/modal/driven_poles.hpp"
 #include "experiments/modal/input_responses.hpp"
 #include "experiments/modal/study/modal_study.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -31,9 +32,10 @@ struct DrivenStudy {
   Stabilisation stabilisation;
   DrivenLines lines;
   DrivenPoles fit;
-  std::vector<DrivenMode> modes;               ///< by rising frequency
-  int sections = 0;                            ///< over which poles were asked for their scatter; 0: too few
-  std::vector<std::string> remarks, warnings;  ///< sentences
+  std::vector<DrivenMode> modes;  ///< by rising frequency
+  int sections = 0;               ///< over which poles were asked for their scatter; 0: too few
+  std::vector<std::string> remarks;
+  std::vector<Objection> objections;
 
   double explained() const { return 1.0 - fit.left_share; }  ///< of the root mean square
 };

@@ -177,11 +177,12 @@ void add_peaks(const std::vector<Pole>& peaks, HammerStudy& study) {
   std::sort(study.modes.begin(), study.modes.end(), [](const HammerMode& a, const HammerMode& b) {
     return a.pole.frequency_hz() < b.pole.frequency_hz();
   });
-  study.warnings.push_back(
-      "Peaks at " + added +
-      " Hz have no pole that is stable over the orders and were taken from the lines around them: no sum of "
-      "linear modes goes through all lines there. Frequencies or damping that follow the amplitude do that, "
-      "and a force that is not all of what acted.");
+  study.objections.emplace_back("unstable_peak", "Peaks at " + added +
+                                                     " Hz have no pole that is stable over the orders and "
+                                                     "were taken from the lines around them: no sum of "
+                                                     "linear modes goes through all lines there. Frequencies "
+                                                     "or damping that follow the amplitude do that, "
+                                                     "and a force that is not all of what acted.");
 }
 
 /// How far the fit has carried a pole, relative; more than all others where it does not decay.
@@ -216,15 +217,16 @@ bool refine(const VectorXd& lines, const MatrixXcd& measured, HammerStudy& study
       const HammerMode& lost = study.modes[worst];
       const std::string why = fmt::format("the pole at {:.4g} Hz runs away", lost.pole.frequency_hz());
       if (rates.size() == 1) throw std::runtime_error(why);
-      study.warnings.push_back("Least squares of all poles: " + why + " and was excluded.");
+      study.objections.emplace_back("spurious_pole",
+                                    "Least squares of all poles: " + why + " and was excluded.");
       study.stabilisation.rejected.push_back({lost.pole, lost.orders, "runs away in the least squares"});
       study.modes.erase(study.modes.begin() + static_cast<std::ptrdiff_t>(worst));
     }
   } catch (const std::runtime_error& error) {
     study = before;
-    study.warnings.push_back(
-        std::string("Poles are as they were found at first, without standard deviations: ") + error.what() +
-        ".");
+    study.objections.emplace_back(
+        "no_deviations", std::string("Poles are as they were found at first, without standard deviations: ") +
+                             error.what() + ".");
     return false;
   }
 }
@@ -242,7 +244,7 @@ void fit_modes(const VectorXd& lines, const MatrixXcd& measured, bool refined, H
   if (!refined || refine(lines, measured, study)) return;
   HammerStudy anew = study;
   anew.modes.clear();
-  anew.warnings.back() =
+  anew.objections.back().text =
       "Least squares do not keep the poles that are stable over the orders; those at the peaks took their "
       "place.";
   for (const Pole& peak : poles_at_peaks(lines, measured, shift, study.power, smallest_peak))
@@ -306,13 +308,16 @@ void judge_phases(HammerStudy& study) {
       mode.complex = true;
       const std::string mass =
           std::isfinite(mode.mass[o]) ? fmt::format(" of {:.3g} kg", mode.mass[o]) : std::string();
-      study.warnings.push_back(fmt::format(
-          "The residue of mode {} at {:.4g} Hz{} has a phase of {:.0f} degrees, where a real mode has 0 or "
-          "180: its modal mass{} is not to be trusted. A near mode that was missed, a rebound or a frequency "
-          "that follows the amplitude does that.",
-          m + 1, mode.pole.frequency_hz(),
-          study.channels.size() > 1 ? " in " + study.channels[o].name : std::string(),
-          mode.phase[o] * 180 / std::numbers::pi, mass));
+      study.objections.emplace_back(
+          "residue_phase",
+          fmt::format("The residue of mode {} at {:.4g} Hz{} has a phase of {:.0f} degrees, where a real "
+                      "mode has 0 or "
+                      "180: its modal mass{} is not to be trusted. A near mode that was missed, a rebound or "
+                      "a frequency "
+                      "that follows the amplitude does that.",
+                      m + 1, mode.pole.frequency_hz(),
+                      study.channels.size() > 1 ? " in " + study.channels[o].name : std::string(),
+                      mode.phase[o] * 180 / std::numbers::pi, mass));
     }
   }
 }
@@ -328,8 +333,8 @@ HammerStudy study_hits(const std::vector<std::string>& names, const std::vector<
   study.names = names;
   study.remarks = records.front().remarks;
   for (std::size_t r = 0; r < records.size(); ++r)
-    for (const std::string& warning : records[r].warnings)
-      study.record_warnings.push_back(names[r] + ": " + warning);
+    for (const Objection& one : records[r].objections)
+      study.record_objections.emplace_back(one.name, names[r] + ": " + one.text);
   study.estimator = options.text("estimator");
   study.responses = hammer_responses(records, options.number("window_end"));
   Record motion = records.front();

@@ -8,6 +8,7 @@
 #include "experiments/modal/hammer_response.hpp"
 #include "experiments/modal/residue_fit.hpp"
 #include "experiments/modal/study/modal_study.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -59,8 +60,9 @@ struct HammerStudy {
   ResidueFit fit;
   double misfit = 0;  ///< of the responses in the band, relative
   std::vector<HammerMode> modes;
-  std::vector<std::string> remarks, warnings;  ///< sentences
-  std::vector<std::string> record_warnings;    ///< of the records, with their names
+  std::vector<std::string> remarks;
+  std::vector<Objection> objections;
+  std::vector<Objection> record_objections;  ///< of the records, with their names
 };
 
 /// Without a band: up to where the force's spectrum has fallen to a tenth, or the response's to a twentieth.

@@ -142,7 +142,7 @@ ModalEstimate strongest_of(const std::vector<ModeEstimate>& modes, const ModeEst
 /// Sentences about the strongest mode in the channel that shows it best: a jump of the motion on the way
 /// (decay_jump.hpp), and the overtone of a sensor that saturates softly (third_overtone.hpp), where the
 /// damping ratio is wrong by more than two of its deviations through it.
-std::vector<std::string> decay_warnings(const RecordModes& found) {
+std::vector<Objection> decay_objections_to(const RecordModes& found) {
   if (found.modes.empty()) return {};
   const ModeEstimate& strongest = found.strongest();
   const Record& record = found.record;
@@ -150,21 +150,24 @@ std::vector<std::string> decay_warnings(const RecordModes& found) {
   (strongest.pole.shape.cwiseAbs().array() / record.samples.rowwise().norm().array()).maxCoeff(&channel);
   const Eigen::VectorXd signal = record.samples.row(channel).transpose();
   const ModalEstimate mode = strongest_of(found.modes, strongest, channel);
-  std::vector<std::string> warnings;
+  std::vector<Objection> objections;
   if (const auto jump = decay_jump(signal, record.interval(), mode))
-    warnings.push_back(
+    objections.emplace_back(
+        "jump",
         jump->sentence(record.time[0]) +
-        " Modes across it are wrong by more than their standard deviations. Expected a --window on one "
-        "side of it.");
+            " Modes across it are wrong by more than their standard deviations. Expected a --window on one "
+            "side of it.");
   constexpr double many = 2;
   const auto overtone = third_overtone(signal, record.interval(), mode);
   if (overtone && std::abs(overtone->damping_error()) * mode.damping_ratio >
                       many * strongest.pole.damping_ratio_deviation)
-    warnings.push_back(fmt::format(
-        "{} The damping ratio of the mode at {:.4g} Hz is wrong by about {:.2g} % through it, "
-        "more than its standard deviation. Expected a later --window, or a sensor of larger range.",
-        overtone->words(), mode.frequency_hz, 100 * std::abs(overtone->damping_error())));
-  return warnings;
+    objections.emplace_back(
+        "overtone",
+        fmt::format(
+            "{} The damping ratio of the mode at {:.4g} Hz is wrong by about {:.2g} % through it, "
+            "more than its standard deviation. Expected a later --window, or a sensor of larger range.",
+            overtone->words(), mode.frequency_hz, 100 * std::abs(overtone->damping_error())));
+  return objections;
 }
 
 /// Rows over the root mean square of all channels of their quantity.
@@ -244,7 +247,8 @@ void take_modes(RecordModes& found) {
   for (const RefusedPole& refused : found.search.refused)
     if (inside(refused.pole)) found.stabilisation.rejected.push_back({refused.pole, {}, refused.reason});
   found.remarks.insert(found.remarks.end(), found.search.remarks.begin(), found.search.remarks.end());
-  found.warnings.insert(found.warnings.end(), found.search.warnings.begin(), found.search.warnings.end());
+  found.objections.insert(found.objections.end(), found.search.objections.begin(),
+                          found.search.objections.end());
 }
 
 /// A method for decays wants one, a method for random vibration a steady record. A slow decay loses little
@@ -261,26 +265,30 @@ void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found
   const bool decays =
       (found.polished && !found.modes.empty()) ||
       (found.reproduced.size() > 0 && (found.target - found.reproduced).norm() < reproduced * motion.norm());
-  const std::size_t before = found.warnings.size();
+  const std::size_t before = found.objections.size();
   if (found.free_decay && !decays && late > 0.7 * early)
-    found.warnings.push_back(
+    found.objections.emplace_back(
+        "no_decay",
         "The record does not decay: its second half is nearly as strong as its first, and no decaying modes "
         "reproduce it. For random vibration take --method ssi_cov; for a decay that comes later in the "
         "record, --window.");
   else if (found.free_decay && motion_goes_on(found))
-    found.warnings.push_back(
+    found.objections.emplace_back(
+        "no_decay",
         fmt::format("The motion goes on: the modes do not explain {:.2g} % of it, at their own frequencies "
                     "and to the end, which no decay does. {}",
                     100.0 * (found.target - found.reproduced).norm() / motion.norm(), no_decay));
   else if (found.free_decay && moved_before(whole, found))
-    found.warnings.push_back(
+    found.objections.emplace_back(
+        "no_decay",
         fmt::format("No release was found: the record moves as much before its largest reading, at {:.4g} s, "
                     "as after. {}",
                     found.record.time[0], no_decay));
-  found.decays = found.warnings.size() == before;
+  found.decays = found.objections.size() == before;
   found.steady = found.free_decay || std::max(early, late) <= 10 * std::min(early, late);
   if (!found.steady)
-    found.warnings.push_back(
+    found.objections.emplace_back(
+        "unsteady",
         "The record is not steady: one half is much stronger than the other. For a free decay take --method "
         "era; for random vibration, a --window without the strong part.");
 }
@@ -298,7 +306,8 @@ void take_lines_out(const VectorXd& scales, CoarseRecord& coarse, RecordModes& f
     squares += line.share * line.share;
   }
   const bool several = frequencies.size() > 1;
-  found.warnings.push_back(
+  found.objections.emplace_back(
+      "steady_line",
       fmt::format("{} at {}, {:.2g} % of the motion's root mean square, {} over the whole record, as no mode "
                   "does that is shaken at random: a machine or the mains. {} before modes were sought.",
                   several ? "Lines" : "A line", frequencies_text(frequencies), 100.0 * std::sqrt(squares),
@@ -325,11 +334,13 @@ void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found)
       missed.push_back(line.frequency_hz);
   }
   if (!outside.empty())
-    found.warnings.push_back(fmt::format(
-        "{} at {} {} outside this band; --band takes {} in.", outside.size() > 1 ? "Lines" : "A line",
-        frequencies_text(outside), outside.size() > 1 ? "lie" : "lies", outside.size() > 1 ? "them" : "it"));
+    found.objections.emplace_back(
+        "lines", fmt::format("{} at {} {} outside this band; --band takes {} in.",
+                             outside.size() > 1 ? "Lines" : "A line", frequencies_text(outside),
+                             outside.size() > 1 ? "lie" : "lies", outside.size() > 1 ? "them" : "it"));
   if (!missed.empty())
-    found.warnings.push_back(
+    found.objections.emplace_back(
+        "lines",
         fmt::format("No mode stands for the {} at {}; another --band, --window or --order may show one.",
                     missed.size() > 1 ? "lines" : "line", frequencies_text(missed)));
 }
@@ -399,7 +410,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   if (found.free_decay) {
     for (ModeEstimate& mode : found.modes)  // back to the undecimated record and its beginning
       mode.pole.shape *= std::exp(-mode.pole.rate * coarse.last.start) / coarse.last.response(mode.pole.rate);
-    for (const std::string& text : decay_warnings(found)) found.warnings.push_back(text);
+    for (Objection& one : decay_objections_to(found)) found.objections.push_back(std::move(one));
   }
   return found;
 }

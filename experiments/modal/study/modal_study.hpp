@@ -11,6 +11,7 @@
 #include "experiments/modal/poles.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/text/choice.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -36,12 +37,12 @@ struct ModeEstimate {
 
 /// The modes of one record, and how they were found.
 struct RecordModes {
-  std::string name;                   ///< of the record
-  Record record;                      ///< what was analysed: from its beginning on, motion only
-  std::vector<std::string> remarks;   ///< sentences
-  std::vector<std::string> warnings;  ///< sentences
-  bool free_decay = true;             ///< as the method takes it
-  bool mode_by_mode = false;          ///< without model orders
+  std::string name;                  ///< of the record
+  Record record;                     ///< what was analysed: from its beginning on, motion only
+  std::vector<std::string> remarks;  ///< sentences
+  std::vector<Objection> objections;
+  bool free_decay = true;     ///< as the method takes it
+  bool mode_by_mode = false;  ///< without model orders
   bool polished = false;
   bool decays = true;  ///< of a method for free decays: whether the record is one
   bool steady = true;  ///< of a method for random vibration: whether both halves are about as strong

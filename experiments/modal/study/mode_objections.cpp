@@ -130,7 +130,8 @@ void set_overtones_aside(RecordModes& found) {
                      multiple_of(*base, mode), base->pole.frequency_hz())});
   }
   if (kept.size() < found.modes.size())
-    found.warnings.emplace_back(
+    found.objections.emplace_back(
+        "overtone_mode",
         "Multiples of a mode's frequency that share its damping ratio or its phase are listed as its "
         "overtones, not as modes. Stiffness, clamp or sensor are not linear at these amplitudes.");
   found.modes = std::move(kept);

@@ -230,11 +230,13 @@ void follow_phases(const JointDecayFit& fit, RecordModes& found) {
     pole.damping_ratio_deviation = std::hypot(pole.damping_ratio_deviation, 0.25 * q / w);
   }
   if (!(all.squares > chi_square_limit(all.freedom, 1.0 - worth_saying))) return;
-  found.warnings.push_back(fmt::format(
-      "The modes do not keep their phases (chi^2 = {:.3g} of {:.0f} in {} sections of the record). They "
-      "wander as under a clock that is {:.2g} ms off after {:.3g} s of intervals that scatter, or under "
-      "frequencies that change. Standard deviations allow for such a walk.",
-      all.squares, all.freedom, sections, 1e3 * std::sqrt(walk * duration), duration));
+  found.objections.emplace_back(
+      "phase_wander",
+      fmt::format(
+          "The modes do not keep their phases (chi^2 = {:.3g} of {:.0f} in {} sections of the record). They "
+          "wander as under a clock that is {:.2g} ms off after {:.3g} s of intervals that scatter, or under "
+          "frequencies that change. Standard deviations allow for such a walk.",
+          all.squares, all.freedom, sections, 1e3 * std::sqrt(walk * duration), duration));
 }
 
 }  // namespace beamid::experiments

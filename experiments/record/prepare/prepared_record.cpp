@@ -38,12 +38,12 @@ struct ChannelDefects {
   const Channel& channel() const { return record->channels[static_cast<std::size_t>(row)]; }
   std::string unit() const { return si_unit(channel().quantity); }
 
-  void add(const std::string& what, const std::vector<Run>& runs, const std::string& consequence,
-           bool clipped = false) const {
+  void add(const char* name, const std::string& what, const std::vector<Run>& runs,
+           const std::string& consequence, bool clipped = false) const {
     if (runs.empty()) return;
     const auto time = [&](std::size_t sample) { return record->time[static_cast<Index>(sample)]; };
     const std::size_t samples = samples_in(runs);
-    RecordDefect defect;
+    RecordDefect defect{name, {}, {}};
     defect.channel = row;
     defect.clipped = clipped;
     for (const Run& run : runs) defect.spans.emplace_back(time(run.first), time(run.first + run.length - 1));
@@ -94,6 +94,7 @@ void mark_gaps(const Record& record, std::vector<RecordDefect>& all) {
     if (steps[k] > wide * usual + 1.000001 * record.time_resolution)
       gaps.spans.emplace_back(record.time[k], record.time[k + 1]);
   if (gaps.spans.empty()) return;
+  gaps.name = "gaps";
   gaps.text = fmt::format(
       "{} gap{} between the stamps, up to {:.4g} s long, the first behind {:.6g} s: gaps are not "
       "interpolated.",
@@ -127,26 +128,29 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
                       channel.unit(), signal.size(), found.spikes.empty() ? "" : " but for spikes"));
     if (input) {
       const bool force = channel.channel().quantity == Quantity::force;
-      channel.add("clipped at " + channel.levels(found.clipped), found.clipped,
+      channel.add("clipped", "clipped at " + channel.levels(found.clipped), found.clipped,
                   fmt::format(": the {} was larger, and what is computed from it is wrong by that.",
                               force ? "force" : "acceleration"));
       continue;
     }
     if (!found.spikes.empty())
-      channel.add(fmt::format("spikes, the first {:.3g} {}", found.spikes.front().value, channel.unit()),
+      channel.add("spikes",
+                  fmt::format("spikes, the first {:.3g} {}", found.spikes.front().value, channel.unit()),
                   found.spikes, found.spikes.size() > 1 ? left_out : "; it is omitted.");
-    channel.add("clipped at " + channel.levels(found.clipped), found.clipped,
+    channel.add("clipped", "clipped at " + channel.levels(found.clipped), found.clipped,
                 noise_decides(signal, found.clipped)
                     ? "; they are omitted, but noise decides which readings beside them are not. Amplitudes "
                       "near the limit come out too small, and the damping ratio of a decay with them. A "
                       "--window behind them avoids that."
                     : left_out,
                 true);
-    channel.add(fmt::format("{} drop-out{}", found.dropped.size(), found.dropped.size() == 1 ? "" : "s"),
+    channel.add("dropped",
+                fmt::format("{} drop-out{}", found.dropped.size(), found.dropped.size() == 1 ? "" : "s"),
                 found.dropped, left_out);
-    channel.add("repeats of the reading before", found.repeated, left_out);
+    channel.add("repeated", "repeats of the reading before", found.repeated, left_out);
     if (const auto& rattle = found.rattle; rattle && !shaken)
       channel.add(
+          "rattle",
           fmt::format("rattle, broadband noise {:.3g} times that of the quiet rest, while the motion is "
                       "large",
                       rattle->ratio),
@@ -158,14 +162,14 @@ std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::pa
   return all;
 }
 
-std::vector<std::string> warnings_of(const std::vector<RecordDefect>& defects, const Record& record) {
+std::vector<Objection> objections_of(const std::vector<RecordDefect>& defects, const Record& record) {
   const double from = record.time[0], to = record.time[record.size() - 1];
-  std::vector<std::string> warnings;
+  std::vector<Objection> objections;
   for (const RecordDefect& defect : defects)
     if (std::any_of(defect.spans.begin(), defect.spans.end(),
                     [&](const auto& span) { return span.first <= to && span.second >= from; }))
-      warnings.push_back(defect.text);
-  return warnings;
+      objections.emplace_back(defect.name, defect.text);
+  return objections;
 }
 
 void refuse_mostly_missing(const Record& record, const std::vector<RecordDefect>& defects,
@@ -263,9 +267,9 @@ void PreparedRecord::take(Record prepared, const RecordFormat& format, const std
                       [&] { return record.window(format.window->first, format.window->second); });
   std::string stretch =
       at_place(Place{file.string()}, [&] { return take_known_inputs(record, format.missing_input); });
-  record.warnings = raw.warnings;
-  for (std::string& warning : warnings_of(defects, record)) record.warnings.push_back(std::move(warning));
-  if (!stretch.empty()) record.warnings.push_back(std::move(stretch));
+  record.objections = raw.objections;
+  for (Objection& one : objections_of(defects, record)) record.objections.push_back(std::move(one));
+  if (!stretch.empty()) record.objections.emplace_back("missing_input", std::move(stretch));
   refuse_mostly_missing(record, defects, file);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/record/record.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -14,6 +15,7 @@ namespace beamid::experiments {
 
 /// What is wrong with a record, in a sentence, and when [s].
 struct RecordDefect {
+  std::string name;  ///< of the objection: "clipped", "gaps"
   std::string text;
   std::vector<std::pair<double, double>> spans;
   Eigen::Index channel = -1;  ///< -1: of all
@@ -26,7 +28,7 @@ struct RecordDefect {
 std::vector<RecordDefect> mark_defects(Record& record, const std::filesystem::path& file);
 
 /// Those sentences that concern what the record, cut to a window, still holds.
-std::vector<std::string> warnings_of(const std::vector<RecordDefect>& defects, const Record& record);
+std::vector<Objection> objections_of(const std::vector<RecordDefect>& defects, const Record& record);
 
 /// @throws InputError when more than half of a channel's samples are missing.
 void refuse_mostly_missing(const Record& record, const std::vector<RecordDefect>& defects,

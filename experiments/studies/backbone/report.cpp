@@ -172,11 +172,11 @@ Results report(const BackboneSettings& settings, const Record& record, const std
                            {"linear", settings.linear}};
   results.values = backbone_values(settings, record, record_name, study);
   const bool determined = study.spring != SpringKind::not_determined;
-  if (determined && study.warnings.empty())
+  if (determined && study.objections.empty())
     results.paragraph(backbone_verdict(study));
   else
     results.warning(backbone_verdict(study), !determined);
-  for (const std::string& warning : study.warnings) results.warning(warning);
+  for (const Objection& one : study.objections) results.object(one);
   // A loop that is determined says itself what a cycle dissipates.
   if (study.loop != LoopKind::masing && study.loop != LoopKind::between)
     if (const std::string text =

@@ -342,7 +342,7 @@ std::vector<std::string> words(const Comparison& comparison) {
   std::vector<std::string> paragraphs;
   if (!alone && reference) paragraphs.push_back("The reference: " + name_of(comparison, *reference) + ".");
   for (const ComparedRun& run : comparison.runs)
-    if (!alone && !run.answers() && run.warnings.empty())  // which say why
+    if (!alone && !run.answers() && run.objections.empty())  // which say why
       paragraphs.push_back(fmt::format("{}: {}{}{}.", name_of(comparison, run), to_string(run.status),
                                        run.reason.empty() ? "" : ", ", run.reason));
   const auto add = [&](const std::vector<std::string>& texts) {

@@ -312,6 +312,17 @@ void add_arrays(const Comparison& comparison, Results& results) {
   results.arrays.push_back({"", "time_s", comparison.compared.record.time.transpose()});
 }
 
+// Of all runs, what several share once, with their names.
+std::vector<Objection> objections_of(const Comparison& comparison) {
+  std::vector<Objection> all;
+  for (const ComparedRun& run : comparison.runs)
+    for (const Objection& one : run.objections)
+      if (std::ranges::find(all, one.text, &Objection::text) == all.end()) all.push_back(one);
+  const auto named = said_once(comparison, [](const ComparedRun& run) { return texts(run.objections); });
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].text = named[k];
+  return all;
+}
+
 }  // namespace
 
 Results report(const Experiment& experiment, const Comparison& comparison) {
@@ -324,14 +335,13 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   const std::optional<RecordInputs> inputs = record_inputs(record);
   const char* const usual = comparison.runs.size() == 1 ? "Identification" : "Reduced against continuum";
   results.heading(experiment.title.empty() ? usual : experiment.title);
-  for (const std::string& warning : record.warnings) results.warning(warning);
-  for (const std::string& warning : comparison.warnings) results.warning(warning);
+  for (const Objection& one : record.objections) results.object(one);
+  for (const Objection& one : comparison.objections) results.object(one);
   const bool alone = comparison.runs.size() == 1;
   // Of a run without an estimate to rely on the first says why.
   const std::size_t failures = alone && !comparison.runs[0].answers() ? 1 : 0;
   std::size_t said = 0;
-  for (const std::string& text : said_once(comparison, [](const ComparedRun& run) { return run.warnings; }))
-    results.warning(text, said++ < failures);
+  for (const Objection& one : objections_of(comparison)) results.object(one, {}, said++ < failures);
   if (!reference_run(comparison) && (!alone || said == 0))
     results.warning(
         alone ? fmt::format("{}: {}.", to_string(comparison.runs[0].status), comparison.runs[0].reason)

@@ -182,7 +182,7 @@ Results report(const Experiment& experiment, const Record& record, const std::st
                     {"laws", Json::array()}};
   for (const FittedLaw& law : study.laws) results.values["laws"].push_back(damping_law_values(law));
   results.heading(experiment.title.empty() ? record_name : experiment.title);
-  for (const std::string& warning : study.warnings) results.warning(warning);
+  for (const Objection& one : study.objections) results.object(one);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz; mode at {:.4f} Hz. Low-passed and "
                   "decimated by {} to {} samples for the fits.",
@@ -332,7 +332,8 @@ Results report(const Experiment& experiment, const std::vector<StudiedRecord>& r
   results.command = "identify";
   results.heading(experiment.title.empty() ? "Damping law of several records" : experiment.title);
   for (const StudiedRecord& one : records)
-    for (const std::string& warning : one.study.warnings) results.paragraph(one.name + ": " + warning);
+    for (const Objection& objection : one.study.objections)
+      results.paragraph(one.name + ": " + objection.text);
   results.paragraph(conclusion(records, compared));
   for (const StudiedRecord& one : records) results.paragraph(one.name + ": " + law_words(one.study));
   results.table(record_table(records));

@@ -80,7 +80,7 @@ DecayOutcome identify_decay(const SeededDecay& decay) {
   try {
     const RecordIdentification found = identify_record(decay.experiment, decay.record);
     if (found.judgement.verdict != ComparedRun::Status::converged) {
-      outcome.failure = found.judgement.messages.back();
+      outcome.failure = found.judgement.objections.back().text;
       return outcome;
     }
     const Identification& i = found.identification;

@@ -96,7 +96,7 @@ Results report(const Experiment& experiment, const JointComparison& joint) {
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
   for (const Comparison& one : joint.records) {
-    for (const std::string& text : one.warnings) results.warning(one.compared.name + ": " + text);
+    for (const Objection& objection : one.objections) results.object(objection, one.compared.name + ": ");
     for (const std::string& text : one.compared.notes) notes.push_back(one.compared.name + ": " + text);
   }
   results.paragraph(fmt::format(
@@ -349,7 +349,8 @@ Results report(const Experiment& experiment, const JointIdentification& joint) {
   results.heading(experiment.title.empty() ? fmt::format("{} records", joint.records.size())
                                            : experiment.title);
   for (const IdentifiedRecord& one : joint.records) {
-    for (const std::string& text : one.found.judgement.messages) results.warning(one.name + ": " + text);
+    for (const Objection& objection : one.found.judgement.objections)
+      results.object(objection, one.name + ": ");
   }
   results.paragraph(fmt::format(
       "{} records of one beam, each with its own start, noise and window; {} on {}, discretisation {}.",

@@ -198,7 +198,7 @@ std::string unmodelled_text(const RecordIdentification& found) {
 std::string verdict(const RecordIdentification& found) {
   const filters::InnovationConsistency& c = *found.consistency;
   if (c.white() && c.size_is_steady())
-    return found.judgement.messages.empty()
+    return found.judgement.objections.empty()
                ? "white and stationary: consistent"
                : "white and stationary, as they also are with a wrong discretisation or mass";
   if (c.windows.maxCoeff() < c.window_lower_95)
@@ -300,9 +300,10 @@ Results report(const Experiment& experiment, const Record& record, const std::st
   const Record placed = with_places(record, experiment);
   results.values["channels"] = channel_values(placed);
   results.heading(experiment.title.empty() ? record_name : experiment.title);
-  for (const std::string& text : found.judgement.messages)
-    results.warning(text, found.judgement.verdict != ComparedRun::Status::converged &&
-                              &text == &found.judgement.messages.front());
+  for (const Objection& one : found.judgement.objections)
+    results.object(one, {},
+                   found.judgement.verdict != ComparedRun::Status::converged &&
+                       &one == &found.judgement.objections.front());
   results.paragraph(fmt::format(
       "{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. {} on {}, discretisation {}, {} pass{}.",
       record_name, record.size(), record.time[0], record.time[record.size() - 1], 1.0 / record.interval(),

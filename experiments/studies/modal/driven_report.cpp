@@ -233,7 +233,7 @@ Results report(const ModalStudySettings& settings, const std::vector<DrivenStudy
     results.configuration["records"].push_back(study.name);
     results.values["records"].push_back(describe(study));
     results.heading(study.name);
-    for (const std::string& warning : study.warnings) results.warning(warning);
+    for (const Objection& one : study.objections) results.object(one);
     results.paragraph(driven_introduction(settings, study));
     results.notes(study.remarks);
     if (study.modes.empty())

@@ -35,7 +35,7 @@ Table mode_table(const HammerStudy& study) {
                  fmt::format("modal_mass_{}_kg", o + 1), "{:.4g}"})
         .column({"standard deviation", fmt::format("modal_mass_{}_standard_deviation_kg", o + 1), "{:.2g}"})
         .column({"phase [deg]", fmt::format("residue_phase_{}_deg", o + 1), "{:.1f}"});
-  const bool rebounded = !study.responses.warnings.empty();
+  const bool rebounded = !study.responses.objections.empty();
   const bool coarse = !study.responses.coarse.empty();
   const bool remarks = rebounded || coarse ||
                        std::any_of(study.modes.begin(), study.modes.end(),
@@ -199,8 +199,8 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   std::string names;
   for (const std::string& name : study.names) names += (names.empty() ? "" : ", ") + name;
   results.heading(names);
-  for (const auto* warnings : {&study.record_warnings, &study.responses.warnings})
-    for (const std::string& warning : *warnings) results.warning(warning);
+  for (const auto* objections : {&study.record_objections, &study.responses.objections})
+    for (const Objection& one : *objections) results.object(one);
   if (!study.responses.coarse.empty()) results.warning(study.responses.coarse, study.responses.masses_lost);
   if (study.responses.masses_lost) results.values["status"] = "contradicted";
   std::string text = fmt::format(
@@ -230,7 +230,7 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
         "--order may show one.");
   else
     results.table(mode_table(study));
-  for (const std::string& warning : study.warnings) results.warning(warning);
+  for (const Objection& one : study.objections) results.object(one);
   for (Figure& figure : hammer_figures(study)) results.figures.push_back(std::move(figure));
   return results;
 }

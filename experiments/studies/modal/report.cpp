@@ -179,7 +179,7 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
     const RecordModes& found = records[r];
     const std::string suffix = records.size() > 1 ? fmt::format("_{}", r + 1) : "";
     results.heading(found.name);
-    for (const std::string& warning : found.record.warnings) results.warning(warning);
+    for (const Objection& one : found.record.objections) results.object(one);
     results.paragraph(introduction(settings, found));
     results.notes(found.remarks);
     if (found.modes.empty())
@@ -190,7 +190,7 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
                 "or --order may show one.");
     else
       results.table(mode_table(found, suffix));
-    for (const std::string& warning : found.warnings) results.warning(warning);
+    for (const Objection& one : found.objections) results.object(one);
     if (Table rejected = rejected_table(found, suffix); rejected.rows() > 0)
       results.table(std::move(rejected));
     for (Figure& figure : figures(found, suffix)) results.figures.push_back(std::move(figure));

@@ -14,7 +14,7 @@ void add_mode_warnings(const PosteriorStudy& study, Results& results) {
   if (!study.explains())
     results.warning(update_verdict(*study.update).first +
                     " The posterior takes their standard deviations as they are: it is too narrow.");
-  for (const std::string& warning : study.update->warnings) results.warning(warning);
+  for (const Objection& one : study.update->objections) results.object(one);
 }
 
 nlohmann::ordered_json record_configuration(const Experiment& experiment, const PosteriorStudy& study) {
@@ -55,7 +55,7 @@ Results posterior_report(const Experiment& experiment, const PosteriorStudy& stu
     add_mode_warnings(study, results);
   else
     add_sensing_verdict(study.source->sensing, results);
-  for (const std::string& warning : prior_warnings(study)) results.warning(warning);
+  for (const Objection& one : prior_objections(study)) results.object(one);
   if (const std::string text = mass_sentence(experiment, study); !text.empty()) results.paragraph(text);
   results.heading("Parameters");
   results.table(posterior_table(study));

@@ -8,6 +8,7 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/posterior/posterior_study.hpp"
 #include "experiments/results/results.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -17,7 +18,7 @@ Results posterior_report(const Experiment& experiment, const PosteriorStudy& stu
 /// Whether the draws may be relied upon, how many humps there are and how wide Laplace's normal density is.
 std::string posterior_verdict(const PosteriorStudy& study);
 /// Where the prior, not what was measured, decides: a warning each.
-std::vector<std::string> prior_warnings(const PosteriorStudy& study);
+std::vector<Objection> prior_objections(const PosteriorStudy& study);
 /// What else there is to say, a sentence each.
 std::vector<std::string> posterior_sentences(const PosteriorStudy& study);
 Table posterior_table(const PosteriorStudy& study);

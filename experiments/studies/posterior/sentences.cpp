@@ -50,23 +50,26 @@ std::string posterior_verdict(const PosteriorStudy& study) {
                             least, most, humps > 1 ? " in the first" : "");
 }
 
-std::vector<std::string> prior_warnings(const PosteriorStudy& study) {
-  std::vector<std::string> warnings;
+std::vector<Objection> prior_objections(const PosteriorStudy& study) {
+  std::vector<Objection> objections;
   for (std::size_t j = 0; j < study.unknowns().size(); ++j) {
     const Unknown& unknown = study.unknowns()[j];
     const PosteriorParameter& one = study.parameters[j];
     if (one.cut_at)
-      warnings.push_back(
+      objections.emplace_back(
+          "at_bound",
           fmt::format("{}: the draws pile up at its stated bound of {:.5g}{}{}, which decides its interval "
                       "and moves those of the others.",
                       unknown.name, *one.cut_at, unknown.unit.empty() ? "" : " ", unknown.unit));
     else if (one.in_tail)
-      warnings.push_back(fmt::format(
-          "{}: most draws lie where its prior has 0.1 % of its probability ({}): prior and measurement "
-          "contradict each other, and the interval lies between the two.",
-          unknown.name, study.likelihood->priors()[j].text()));
+      objections.emplace_back(
+          "prior_tail",
+          fmt::format(
+              "{}: most draws lie where its prior has 0.1 % of its probability ({}): prior and measurement "
+              "contradict each other, and the interval lies between the two.",
+              unknown.name, study.likelihood->priors()[j].text()));
   }
-  return warnings;
+  return objections;
 }
 
 std::vector<std::string> posterior_sentences(const PosteriorStudy& study) {

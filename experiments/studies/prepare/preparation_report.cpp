@@ -235,12 +235,12 @@ void lead_with(Results& results, const std::string& record_name, const Record& r
     const auto* said = std::get_if<Paragraph>(&part);
     return std::holds_alternative<Heading>(part) || (said && said->severity > Severity::note);
   };
-  for (const std::string& warning : record.warnings) {
-    const std::string text = record_name.empty() ? warning : record_name + ": " + warning;
+  for (const Objection& one : record.objections) {
+    const std::string text = record_name.empty() ? one.text : record_name + ": " + one.text;
     if (std::any_of(report.begin(), report.end(), [&](const auto& part) { return says(part, text); }))
       continue;
     const auto place = std::find_if_not(report.begin(), report.end(), leads);
-    report.insert(place, Paragraph{text, Severity::warning});
+    report.insert(place, Paragraph{text, Severity::warning, false, one});
   }
 }
 

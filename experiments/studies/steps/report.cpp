@@ -180,7 +180,7 @@ Results report(const Experiment& experiment, const StepsStudy& study) {
         fmt::format("NO REFERENCE: the exact discretisation has no estimate to compare with on {} ({}).",
                     study.record, study.steps[0].found[0].reason),
         true);
-    for (const std::string& text : study.warnings) results.warning(text);
+    for (const Objection& one : study.objections) results.object(one);
     results.table(steps_table(study));
     return results;
   }
@@ -190,7 +190,7 @@ Results report(const Experiment& experiment, const StepsStudy& study) {
     else
       results.warning(scheme_text(study, d));
   }
-  for (const std::string& text : study.warnings) results.warning(text);
+  for (const Objection& one : study.objections) results.object(one);
   results.table(steps_table(study));
   if (Table limits = extrapolation_table(study); limits.rows() > 0) results.table(std::move(limits));
   for (const std::string& text : study.notes) results.paragraph(text);

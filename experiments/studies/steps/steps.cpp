@@ -151,36 +151,45 @@ void judge_steps(StepsStudy& study) {
   constexpr double few = 8.0;
   const double per_period = 1.0 / (reference.frequency_hz * study.steps[0].interval);
   if (per_period < few)
-    study.warnings.push_back(fmt::format(
-        "The record has {:.3g} samples a period only: too few to be decimated, and steps of other schemes "
-        "than the exact one are far too long.",
-        per_period));
+    study.objections.emplace_back("few_samples",
+                                  fmt::format("The record has {:.3g} samples a period only: too few to be "
+                                              "decimated, and steps of other schemes "
+                                              "than the exact one are far too long.",
+                                              per_period));
   const double half = quantile_95 * reference.damping_ratio_deviation;
   for (const RecordAtStep& step : study.steps) {
     const SchemeAtStep& exact = step.found[0];
     if (!exact.is_valid()) continue;
     const double apart = std::abs(exact.found->damping_ratio - reference.damping_ratio);
     if (apart <= half) continue;
-    study.warnings.push_back(fmt::format(
-        "The exact discretisation finds a damping ratio of {:.4g} % at steps of {:.4g} ms and {:.4g} % at "
-        "those of the record, further apart than its interval. More than the step has changed. Higher modes, "
-        "which decimation takes out, or too short a window do that; a low-pass ([[record.prepare]]) or a "
-        "later window helps.",
-        100.0 * exact.found->damping_ratio, 1e3 * step.interval, 100.0 * reference.damping_ratio));
+    study.objections.emplace_back(
+        "decimated_shift",
+        fmt::format(
+            "The exact discretisation finds a damping ratio of {:.4g} % at steps of {:.4g} ms and {:.4g} % "
+            "at "
+            "those of the record, further apart than its interval. More than the step has changed. Higher "
+            "modes, "
+            "which decimation takes out, or too short a window do that; a low-pass ([[record.prepare]]) or a "
+            "later window helps.",
+            100.0 * exact.found->damping_ratio, 1e3 * step.interval, 100.0 * reference.damping_ratio));
     break;
   }
   for (const RecordAtStep& step : study.steps)
     for (const SchemeAtStep& one : step.found) {
       if (one.verdict == SchemeAtStep::Verdict::invalid)
-        study.warnings.push_back(fmt::format("{} at steps of {:.4g} ms has no valid estimate: {}.",
-                                             one.discretisation, 1e3 * step.interval, one.reason));
+        study.objections.emplace_back("no_estimate_at_step",
+                                      fmt::format("{} at steps of {:.4g} ms has no valid estimate: {}.",
+                                                  one.discretisation, 1e3 * step.interval, one.reason));
       if (one.verdict == SchemeAtStep::Verdict::unexplained)
-        study.warnings.push_back(fmt::format(
-            "{} at steps of {:.4g} ms finds a damping ratio of {:.5g} %, where {}. The closed form, of one "
-            "mode in one channel without process noise, does not describe this record.",
-            one.discretisation, 1e3 * step.interval, 100.0 * one.found->damping_ratio,
-            one.predicted ? fmt::format("{:.5g} % was predicted", 100.0 * one.predicted->damping_ratio)
-                          : std::string("no motion of the scheme is the record's")));
+        study.objections.emplace_back(
+            "unexplained_step",
+            fmt::format("{} at steps of {:.4g} ms finds a damping ratio of {:.5g} %, where {}. The closed "
+                        "form, of one "
+                        "mode in one channel without process noise, does not describe this record.",
+                        one.discretisation, 1e3 * step.interval, 100.0 * one.found->damping_ratio,
+                        one.predicted
+                            ? fmt::format("{:.5g} % was predicted", 100.0 * one.predicted->damping_ratio)
+                            : std::string("no motion of the scheme is the record's")));
     }
 }
 
@@ -217,8 +226,9 @@ StepsStudy study_steps(const StepsSettings& settings, const IdentificationReques
         "identifies it; expected more than two samples a period");
   study.steps.push_back(record_at_step(own, 1));
   study.status = own.runs[0].status;
-  study.warnings = own.warnings;
-  study.warnings.insert(study.warnings.end(), own.runs[0].warnings.begin(), own.runs[0].warnings.end());
+  study.objections = own.objections;
+  study.objections.insert(study.objections.end(), own.runs[0].objections.begin(),
+                          own.runs[0].objections.end());
   if (!study.has_reference() || !study.steps[0].found[0].found) {
     if (study.has_reference()) study.status = ComparedRun::Status::diverged;
     return study;

@@ -9,6 +9,7 @@
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/engine/identification_request.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/text/objection.hpp"
 
 namespace beamid::experiments {
 
@@ -69,7 +70,8 @@ struct StepsStudy {
   std::vector<std::string> discretisations;                     ///< the exact one first
   ComparedRun::Status status = ComparedRun::Status::converged;  ///< of the exact one at the record's own step
   std::vector<RecordAtStep> steps;                              ///< the record's own first
-  std::vector<std::string> notes, warnings;                     ///< warnings: the worst first
+  std::vector<std::string> notes;
+  std::vector<Objection> objections;  ///< the worst first
 
   bool has_reference() const {
     return status == ComparedRun::Status::converged || status == ComparedRun::Status::approximate;

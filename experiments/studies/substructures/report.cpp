@@ -84,8 +84,7 @@ void add_verdict(const PartedIdentification& found, Results& results) {
     else
       results.warning(fmt::format("{}: {}, {}.", part.part.name, to_string(run.status), run.reason), true);
     if (run.status != ComparedRun::Status::contradicted)  // which says the same
-      for (const std::string& warning : run.warnings)
-        results.warning(fmt::format("{}: {}", part.part.name, warning));
+      for (const Objection& one : run.objections) results.object(one, part.part.name + ": ");
   }
   const auto worst =
       std::max_element(found.joined.begin(), found.joined.end(),

@@ -52,7 +52,7 @@ Results twins_report(const Experiment& experiment, const UpdateStudy& study) {
   else
     results.warning(twins_verdict(study), study.updating.refuted);
   if (!study.updating.continuum()) results.paragraph(completeness_text(study));
-  for (const std::string& warning : study.warnings) results.warning(warning);
+  for (const Objection& one : study.objections) results.object(one);
   results.table(set_table(study, most_twins_shown,
                           study.updating.explains() && study.twins.values.size() > study.updating.as_well()));
   for (const std::string& sentence : update_sentences(study)) results.paragraph(sentence);

@@ -33,7 +33,7 @@ Results report(const Experiment& experiment, const UpdateStudy& study) {
     results.paragraph(verdict);
   else
     results.warning(verdict, study.updating.refuted);
-  for (const std::string& warning : study.warnings) results.warning(warning);
+  for (const Objection& one : study.objections) results.object(one);
   results.heading("Parameters");
   results.table(parameter_table(study));
   for (const std::string& sentence : update_sentences(study)) results.paragraph(sentence);

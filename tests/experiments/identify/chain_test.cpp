@@ -80,7 +80,7 @@ TEST_F(MovingBase, IsAChannelOfTheRecordAndOfItsFile) {
   const SimulatedTest test = simulate(experiment(""), place_.path, 0, unwatched);
   ASSERT_EQ(test.record.channels.size(), 3u);
   EXPECT_EQ(test.record.channels[2].quantity, Quantity::base_acceleration);
-  EXPECT_TRUE(test.record.warnings.empty());
+  EXPECT_TRUE(test.record.objections.empty());
   write_record(test.record, place_.path / "record.csv");
   const Record read = read_record(place_.path / "record.csv");
   EXPECT_EQ(read.channels[2].quantity, Quantity::base_acceleration);

@@ -43,7 +43,7 @@ TEST(ChannelAmplitudes, AreAmongTheMessagesOfAnIdentification) {
   const RecordIdentification found =
       identify_record(simulated.experiment(), acceleration_and_displacement(1000.0, 1));
   EXPECT_EQ(found.judgement.verdict, ComparedRun::Status::contradicted);
-  EXPECT_THAT(found.judgement.messages,
+  EXPECT_THAT(texts(found.judgement.objections),
               Contains(HasSubstr("displacement 'laser' has 1000 times the amplitude")));
 }
 

@@ -29,7 +29,7 @@ TEST_P(ClippedRecord, IsIdentifiedByWhatWasMeasured) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Record record = clipped_at(GetParam(), seed);
     const RecordIdentification r = identify_record(simulated.experiment(), record);
-    ASSERT_EQ(r.judgement.verdict, ComparedRun::Status::converged) << r.judgement.messages[0];
+    ASSERT_EQ(r.judgement.verdict, ComparedRun::Status::converged) << r.judgement.objections[0].text;
     const Identification& i = r.identification;
     EXPECT_LT(std::abs(i.found.frequency_hz() - simulated.truth.frequency_hz()),
               3.29 * r.frequency_factor() * i.frequency_deviation_hz);

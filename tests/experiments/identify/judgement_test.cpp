@@ -39,7 +39,7 @@ TEST(Judgement, HasNothingToSayOfAGoodRecord) {
     const RecordIdentification r =
         identified(simulated.experiment(), simulated.record({Quantity::acceleration}, 0.01, seed));
     EXPECT_EQ(r.judgement.verdict, ComparedRun::Status::converged);
-    EXPECT_THAT(r.judgement.messages, IsEmpty()) << seed;
+    EXPECT_THAT(texts(r.judgement.objections), IsEmpty()) << seed;
   }
 }
 
@@ -47,8 +47,8 @@ TEST(Judgement, HasNothingToSayOfAGoodRecord) {
 TEST(Judgement, SaysWhereTheDampingIsHardlyDetermined) {
   const Record record = simulated.record({Quantity::acceleration}, 0.4, 3).window(0, 2);
   const RecordIdentification r = identified(simulated.experiment(), record);
-  ASSERT_FALSE(r.judgement.messages.empty());
-  EXPECT_THAT(r.judgement.messages[0], HasSubstr("The damping ratio is poorly determined"));
+  ASSERT_FALSE(r.judgement.objections.empty());
+  EXPECT_THAT(r.judgement.objections[0].text, HasSubstr("The damping ratio is poorly determined"));
 }
 
 // C_f / C - 1 by the closed form, with the sampling interval of 5 ms: 1200 %.
@@ -58,11 +58,11 @@ TEST(Judgement, NamesTheDiscretisationThatMakesTheDifference) {
   const Record record = simulated.record({Quantity::acceleration}, 0.01, 1);
   const RecordIdentification r = identified(experiment, record);
   EXPECT_EQ(r.judgement.verdict, ComparedRun::Status::contradicted);
-  ASSERT_EQ(r.judgement.messages.size(), 1u);
+  ASSERT_EQ(r.judgement.objections.size(), 1u);
   const Oscillator seen = seen_through("forward_euler", simulated.truth, 0.005);
   const std::string error = std::to_string(
       static_cast<int>(std::lround(percent(seen.damping, simulated.truth.damping) / 10.0)));  // three digits
-  EXPECT_THAT(r.judgement.messages[0],
+  EXPECT_THAT(r.judgement.objections[0].text,
               AllOf(HasSubstr("disagree by +"), HasSubstr("forward_euler at 5 ms makes C 1"),
                     HasSubstr("too large"), HasSubstr("use exponential")));
   EXPECT_NEAR(percent(r.identification.found.damping, simulated.truth.damping), 10.0 * std::stod(error),
@@ -86,7 +86,7 @@ TEST(Judgement, NamesAStepThatIsTooLong) {
   experiment.discretisation = "runge_kutta_4";
   const RecordIdentification r = identified(experiment, thin);
   EXPECT_EQ(r.judgement.verdict, ComparedRun::Status::diverged);
-  EXPECT_THAT(r.judgement.messages.at(0),
+  EXPECT_THAT(r.judgement.objections.at(0).text,
               AllOf(HasSubstr("DIVERGED: its damping ratio is -"),
                     HasSubstr("The step is too long; discretisation exponential")));
 }
@@ -98,7 +98,8 @@ TEST(Judgement, NamesAPriorThatExcludesTheRecord) {
   experiment.prior.damping_ratio_deviation = 1e-6;  // surer than the record
   const RecordIdentification r = identified(experiment, simulated.record({Quantity::acceleration}, 0.01, 1));
   EXPECT_NE(r.judgement.verdict, ComparedRun::Status::converged);
-  EXPECT_THAT(r.judgement.messages.at(0), HasSubstr("prior.damping_ratio, 0.05 +- 1e-06, excludes it"));
+  EXPECT_THAT(r.judgement.objections.at(0).text,
+              HasSubstr("prior.damping_ratio, 0.05 +- 1e-06, excludes it"));
   EXPECT_EQ(report(experiment, simulated.record({Quantity::acceleration}, 0.01, 1), "r", r).values["status"],
             to_string(r.judgement.verdict));
 }
@@ -114,8 +115,8 @@ TEST(Judgement, NamesAnotherMode) {
   const RecordIdentification r = identified(simulated.experiment(), record);
   ASSERT_EQ(r.modal.companions.size(), 1u);
   EXPECT_NEAR(r.modal.damping_ratio, simulated.damping_ratio, 0.05 * simulated.damping_ratio);
-  if (!r.judgement.messages.empty()) {
-    EXPECT_THAT(r.judgement.messages[0], HasSubstr("another mode at"));
+  if (!r.judgement.objections.empty()) {
+    EXPECT_THAT(r.judgement.objections[0].text, HasSubstr("another mode at"));
   }
 }
 
@@ -131,8 +132,8 @@ TEST(Judgement, NamesAnOvertone) {
   record.time = record.time(slow).eval();
   record.samples = record.samples(Eigen::all, slow).eval();
   const RecordIdentification r = identified(simulated.experiment(), record);
-  ASSERT_FALSE(r.judgement.messages.empty());
-  EXPECT_THAT(r.judgement.messages.back(),
+  ASSERT_FALSE(r.judgement.objections.empty());
+  EXPECT_THAT(r.judgement.objections.back().text,
               HasSubstr("An overtone at 6.911 Hz, 2 times the frequency, has 30 %"));
 }
 
@@ -144,15 +145,15 @@ TEST(Judgement, NamesAnOvertoneAsTheCauseOfADivergence) {
   r.modal.companions = {{2 * r.modal.frequency_hz, r.modal.damping_ratio, 0.8 * r.modal.amplitude}};
   const Judgement judgement = judge(simulated.experiment(), record, r);
   EXPECT_EQ(judgement.verdict, ComparedRun::Status::diverged);
-  EXPECT_THAT(judgement.messages.at(0),
+  EXPECT_THAT(judgement.objections.at(0).text,
               HasSubstr("An overtone at 6.911 Hz, 2 times the frequency, has 80 %"));
   r.modal.companions[0].frequency_hz = 1.4 * r.modal.frequency_hz;
-  EXPECT_THAT(judge(simulated.experiment(), record, r).messages.at(0), HasSubstr("another mode at 4.84 Hz"));
+  EXPECT_THAT(judge(simulated.experiment(), record, r).objections.at(0).text, HasSubstr("another mode at 4.84 Hz"));
 }
 
 TEST(Report, BeginsWithTheWarningsOfTheRecord) {
   Record record = simulated.record({Quantity::acceleration}, 0.01, 1);
-  record.warnings = {"Channel tip is clipped."};
+  record.objections = {{"clipped", "Channel tip is clipped."}};
   const Experiment experiment = simulated.experiment();
   Results results = report(experiment, record, "record.csv", identify_record(experiment, record));
   lead_with(results, "", record);
@@ -169,7 +170,7 @@ TEST(Judgement, NamesTheConditionThatADivergedFilterFails) {
   const Record record = simulated.record({Quantity::displacement}, 0.01, 9);
   const RecordIdentification r = identified(experiment, record);
   EXPECT_EQ(r.judgement.verdict, ComparedRun::Status::diverged);
-  EXPECT_THAT(r.judgement.messages.at(0), HasSubstr("DIVERGED: sample "));
+  EXPECT_THAT(r.judgement.objections.at(0).text, HasSubstr("DIVERGED: sample "));
 }
 
 }  // namespace

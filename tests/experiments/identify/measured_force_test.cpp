@@ -186,13 +186,13 @@ TEST(RecordInputs, AreStraightAcrossAGapAndSaySo) {
 TEST(RecordInputs, AreThoseOfEveryPartOfTheRecord) {
   Record given = record(Truth(0.01), {frequency}, 20, 10);
   given.input_path = InputPath::held;
-  given.warnings = {"clipped"};
+  given.objections = {{"clipped", "clipped"}};
   const Record part = given.window(0.5, 2.0);
   EXPECT_EQ(part.input_path, InputPath::held);
-  EXPECT_EQ(part.warnings, given.warnings);
+  EXPECT_EQ(texts(part.objections), texts(given.objections));
   const ComparedRecord chosen = chosen_channels({"", given, {}, {}, {}}, {"x"});
   EXPECT_EQ(chosen.record.input_path, InputPath::held);
-  EXPECT_EQ(chosen.record.warnings, given.warnings);
+  EXPECT_EQ(texts(chosen.record.objections), texts(given.objections));
 }
 
 TEST(RecordInputs, MustAllBeThere) {

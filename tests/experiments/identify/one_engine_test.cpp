@@ -31,7 +31,7 @@ TEST(OneEngine, IdentifiesAsItCompares) {
   EXPECT_DOUBLE_EQ(run.parameters[1].estimate.deviation,
                    alone.damping_factor() * alone.identification.damping_deviation);
   EXPECT_EQ(run.status, alone.judgement.verdict);
-  EXPECT_EQ(run.warnings, alone.judgement.messages);
+  EXPECT_EQ(texts(run.objections), texts(alone.judgement.objections));
 }
 
 TEST(OneEngine, IdentifiesTheBeamAsItComparesIt) {

@@ -94,8 +94,8 @@ TEST(SoundPart, IsThatAtTheRateOfTheStamps) {
 TEST(DecayObjections, ContradictADecayAcrossAChangeOfRate) {
   const RecordIdentification r = identify_record(simulated.experiment(), slowed(5.0, 9));
   EXPECT_EQ(r.judgement.verdict, ComparedRun::Status::contradicted);
-  ASSERT_FALSE(r.judgement.messages.empty());
-  EXPECT_THAT(r.judgement.messages[0],
+  ASSERT_FALSE(r.judgement.objections.empty());
+  EXPECT_THAT(r.judgement.objections[0].text,
               testing::ContainsRegex("the frequency jumps from 3.4.* times, while the motion"));
 }
 
@@ -107,9 +107,10 @@ TEST(SoundPart, OfASoundDecayIsNotAsked) {
 TEST(DecayObjections, ContradictADecayAcrossAKnock) {
   const RecordIdentification r = identify_record(simulated.experiment(), knocked(5.0, 0.2, 5));
   EXPECT_EQ(r.judgement.verdict, ComparedRun::Status::contradicted);
-  ASSERT_FALSE(r.judgement.messages.empty());
-  EXPECT_THAT(r.judgement.messages[0], testing::AllOf(testing::HasSubstr("s the motion jumps, by +20 %"),
-                                                      testing::HasSubstr("--window")));
+  ASSERT_FALSE(r.judgement.objections.empty());
+  EXPECT_THAT(
+      r.judgement.objections[0].text,
+      testing::AllOf(testing::HasSubstr("s the motion jumps, by +20 %"), testing::HasSubstr("--window")));
 }
 
 // Behind a sway the sections of the decay tell nothing of the amplitude: the overtone does.
@@ -123,8 +124,8 @@ TEST(DecayObjections, ContradictASensorThatSaturates) {
   const RecordIdentification r = identify_record(simulated.experiment(), record);
   EXPECT_LT(r.identification.found.damping_ratio(), 0.9 * simulated.damping_ratio);
   EXPECT_EQ(r.judgement.verdict, ComparedRun::Status::contradicted);
-  ASSERT_FALSE(r.judgement.messages.empty());
-  EXPECT_THAT(r.judgement.messages[0], testing::HasSubstr("An overtone at three times the frequency"));
+  ASSERT_FALSE(r.judgement.objections.empty());
+  EXPECT_THAT(r.judgement.objections[0].text, testing::HasSubstr("An overtone at three times the frequency"));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST(HammerDeviation, HoldsTheTruthInNineteenOfTwentyTests) {
   for (int seed = 0; seed < records; ++seed) {
     const HammerStudy study = study_hits({"hits"}, {test::with_noise(clean, 0.5, 3.0, seed)}, settings);
     ASSERT_EQ(study.modes.size(), 2u) << seed;
-    EXPECT_TRUE(study.responses.warnings.empty() && study.responses.coarse.empty()) << seed;
+    EXPECT_TRUE(study.responses.objections.empty() && study.responses.coarse.empty()) << seed;
     for (int m = 0; m < 2; ++m, ++all) {
       const HammerMode& mode = study.modes[m];
       const Pole& pole = mode.pole;
@@ -67,12 +67,13 @@ TEST(HammerDeviation, TellsMotionBeforeAHitFromNoise) {
   for (int k = 0; k < 4; ++k) impacts.push_back({0.5 + 3 * k, 0.02, 100});
   Record record = test::struck_modes({{12, 0.03, 1.6}}, impacts, 2e-3, 6250);
   const double rms = std::sqrt(record.samples.row(1).segment(260, 140).squaredNorm() / 140);
-  EXPECT_TRUE(hammer_responses({test::with_noise(record, 0.3, 0.08 * rms, 1)}, 0.01).warnings.empty());
+  EXPECT_TRUE(hammer_responses({test::with_noise(record, 0.3, 0.08 * rms, 1)}, 0.01).objections.empty());
   for (const test::Impact& impact : impacts)
     for (Eigen::Index k = 0; k < record.size(); ++k)
       if (record.time[k] < impact.start && record.time[k] > impact.start - 0.3)
         record.samples(1, k) += 0.1 * std::sqrt(2) * rms * std::sin(75 * record.time[k]);
-  const auto warnings = hammer_responses({test::with_noise(record, 0.3, 0.01 * rms, 1)}, 0.01).warnings;
+  const auto warnings =
+      texts(hammer_responses({test::with_noise(record, 0.3, 0.01 * rms, 1)}, 0.01).objections);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("4 of 4 hits met a structure that still moved"), std::string::npos);
 }
@@ -104,8 +105,8 @@ TEST(HammerDeviation, KeepsAHitThatMetMotionWhereTheOneFromRestIsShort) {
       test::struck_modes({{3.4555, 0.0045, 1.0806}}, {{1.0, 0.02, 50.0}, {3.0, 0.02, 50.0}}, 4e-3, 5000);
   const HammerResponses found = hammer_responses({test::with_noise(clean, 1e-3, 0.02, 1)}, 0.001);
   EXPECT_EQ(found.averages, 1);
-  ASSERT_FALSE(found.warnings.empty());
-  EXPECT_NE(found.warnings[0].find("1 of 1 hits met a structure that still moved"), std::string::npos);
+  ASSERT_FALSE(found.objections.empty());
+  EXPECT_NE(found.objections[0].text.find("1 of 1 hits met a structure that still moved"), std::string::npos);
   EXPECT_TRUE(found.h1.allFinite());
 }
 

@@ -76,7 +76,7 @@ TEST(Hammer, FindsModesAndModalMasses) {
     EXPECT_NEAR(mode.phase[0], 0, 0.03);
     EXPECT_LT(mode.deviation[0], 0.01 * mode.mass[0]);
   }
-  EXPECT_TRUE(study.responses.warnings.empty());  // both hits meet a structure at rest
+  EXPECT_TRUE(study.responses.objections.empty());  // both hits meet a structure at rest
   EXPECT_GT(study.responses.coherence(0, static_cast<Eigen::Index>(12 * study.responses.duration)), 0.99);
 }
 
@@ -107,13 +107,13 @@ TEST(Hammer, WarnsOfAMassWhoseResidueIsOutOfPhase) {
   EXPECT_NEAR(std::abs(study.modes[1].phase[0]), 2 * pi * truth[1].frequency_hz * 2.5e-3, 0.1);
   EXPECT_FALSE(study.modes[0].complex);
   EXPECT_TRUE(study.modes[1].complex);
-  EXPECT_NE(study.warnings.back().find("is not to be trusted"), std::string::npos);
+  EXPECT_NE(study.objections.back().text.find("is not to be trusted"), std::string::npos);
 }
 
 TEST(Hammer, WarnsOfASecondPulseAndRefusesMissingReadings) {
   Record record = struck(1, 0.05);
   for (int k = 0; k < 12; ++k) record.samples(1, 80 + k) += 30 * std::sin(pi * k / 12);
-  EXPECT_EQ(hammer_responses({record}, 0.01).warnings.size(), 1u);
+  EXPECT_EQ(hammer_responses({record}, 0.01).objections.size(), 1u);
   record.samples(0, 100) = std::nan("");
   EXPECT_THROW(hammer_responses({record}, 0.01), std::invalid_argument);
 }

@@ -121,7 +121,7 @@ TEST(HitSampling, GivesNoMassOfHitsOfTwoSamplesAndWidensThatOfThree) {
 
   const HammerStudy fine = study_of(10, 1);
   EXPECT_EQ(fine.responses.coarse, "");
-  EXPECT_TRUE(fine.responses.warnings.empty());
+  EXPECT_TRUE(fine.responses.objections.empty());
   EXPECT_LT(std::abs(fine.modes[0].mass[0] - truth.mass), 1.96 * fine.modes[0].deviation[0]);
 }
 

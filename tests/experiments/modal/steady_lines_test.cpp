@@ -86,7 +86,7 @@ TEST(SteadyLines, DoNotDrawAModeToThemselves) {
     ASSERT_FALSE(found.modes.empty()) << seed;
     const Pole& first = found.modes[0].pole;
     held += std::abs(first.frequency_hz() - 1.0) < 1.96 * first.frequency_deviation_hz ? 1 : 0;
-    for (const std::string& warning : found.warnings)
+    for (const std::string& warning : texts(found.objections))
       said += warning.find("A line at 1.06 Hz") != std::string::npos ? 1 : 0;
   }
   EXPECT_GE(held, 16);  // binomial of 20 and 0.95: fewer with probability 0.003
@@ -104,7 +104,7 @@ TEST(SteadyLines, WeakOnesAreLeftOutOfTheBand) {
     ASSERT_FALSE(found.orders[0].poles.empty()) << seed;
     const Pole& first = found.orders[0].poles[0];
     held += std::abs(first.frequency_hz() - 1.0) < 1.96 * first.frequency_deviation_hz ? 1 : 0;
-    for (const std::string& warning : found.warnings)
+    for (const std::string& warning : texts(found.objections))
       said += warning.find("beside the mode at") != std::string::npos ? 1 : 0;
   }
   EXPECT_GE(held, 16);
@@ -115,7 +115,7 @@ TEST(SteadyLines, HealthyBandsKeepTheirFrequencies) {
   int said = 0;
   const auto method = modal_method_registry().make("bayoma", {{"response", std::string("displacement")}});
   for (std::uint64_t seed = 101; seed <= 140; ++seed)
-    said += static_cast<int>(method->search(chain.record(8000, seed), chain.interval, 0).warnings.size());
+    said += static_cast<int>(method->search(chain.record(8000, seed), chain.interval, 0).objections.size());
   EXPECT_EQ(said, 0);
 }
 

@@ -78,8 +78,8 @@ TEST(ReadRecord, WarnsWhereAColumnIsStatedOtherwiseThanItIsNamed) {
   format.time = ColumnDescription{Quantity::acceleration, "time_s", 0, 1.0};
   const auto warnings = [&](const ColumnDescription& stated) {
     format.channels = {stated};
-    return read_text_record("time_s,displacement_tip_m,acceleration_g\n0,1,2\n1,1,2\n2,1,2\n", format)
-        .warnings;
+    return texts(read_text_record("time_s,displacement_tip_m,acceleration_g\n0,1,2\n1,1,2\n2,1,2\n", format)
+                     .objections);
   };
   EXPECT_THAT(
       warnings({Quantity::acceleration, "", 2, 1.0}),

@@ -40,9 +40,9 @@ TEST(Results, JsonHasTheSchemasKeysInOrder) {
   std::vector<std::string> keys;
   const auto json = to_json(results());
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_EQ(keys,
-            (std::vector<std::string>{"schema_version", "program", "version", "command", "seed",
-                                      "configuration", "status", "beams", "messages", "tables", "files"}));
+  EXPECT_EQ(keys, (std::vector<std::string>{"schema_version", "program", "version", "command", "seed",
+                                            "configuration", "status", "beams", "messages", "verdict",
+                                            "tables", "files"}));
   EXPECT_EQ(json["schema_version"], 4);
   EXPECT_EQ(json["program"], "beamid");
   EXPECT_EQ(json["seed"], 7);
@@ -72,6 +72,23 @@ TEST(Results, JsonListsWhatMustBeHeeded) {
             R"([{"severity":"note","heading":"Identification","text":"Cut."},)"
             R"({"severity":"warning","heading":"Identification","text":"Clipped."},)"
             R"({"severity":"failure","heading":"Identification","text":"Diverged."}])");
+}
+
+TEST(Results, JsonHasAVerdictWithTheNumbersThatDecided) {
+  Results results = results_test::results();
+  results.values.erase("status");
+  EXPECT_EQ(to_json(results)["verdict"].dump(),
+            R"({"status":"no_objections","objections":[],"limitations":[]})");
+  results.limitation("Not white.");
+  results.object({"not_settled", "It moves.", 7.5, 5.0}, "a.csv: ");
+  results.object({"gaps", "2 gaps."});
+  EXPECT_EQ(to_json(results)["verdict"].dump(),
+            R"({"status":"with_reservations","objections":[)"
+            R"({"name":"not_settled","statistic":7.5,"limit":5.0,"sentence":"a.csv: It moves."},)"
+            R"({"name":"gaps","statistic":null,"limit":null,"sentence":"2 gaps."}],)"
+            R"("limitations":["Not white."]})");
+  results.values["status"] = "contradicted";
+  EXPECT_EQ(to_json(results)["verdict"]["status"], "contradicted");
 }
 
 TEST(Results, NumbersThatAreNotFiniteBecomeNullWithAWarning) {

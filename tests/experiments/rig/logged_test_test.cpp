@@ -40,7 +40,7 @@ const Record& perfect() {
 
 TEST(LoggedTest, OfPerfectInstrumentsIsTheTestItself) {
   EXPECT_EQ(logged(rig()).record.samples, perfect().samples);
-  EXPECT_TRUE(logged(rig()).record.warnings.empty());
+  EXPECT_TRUE(logged(rig()).record.objections.empty());
 }
 
 TEST(LoggedTest, MissesWhatIsClippedAndSaysSo) {
@@ -58,7 +58,7 @@ TEST(LoggedTest, MissesWhatIsClippedAndSaysSo) {
       EXPECT_EQ(record.samples(0, k), perfect().samples(0, k)) << k;
     }
   }
-  EXPECT_THAT(record.warnings, Contains(HasSubstr("clipped at")));
+  EXPECT_THAT(texts(record.objections), Contains(HasSubstr("clipped at")));
 }
 
 TEST(LoggedTest, BeginsWithTheExcitation) {
@@ -82,7 +82,7 @@ TEST(LoggedTest, KeepsUnevenStampsAndNoneBeforeTheExcitation) {
   const Record record = logged(experiment).record;
   EXPECT_GE(record.time[0], 0.5 - 1e-9);
   EXPECT_LT(record.time[0], 0.5 + 3.0 / 250);
-  EXPECT_THAT(record.warnings, Contains(HasSubstr("2 gaps between the stamps")));
+  EXPECT_THAT(texts(record.objections), Contains(HasSubstr("2 gaps between the stamps")));
 }
 
 TEST(LoggedTest, RefusesADeadChannel) {

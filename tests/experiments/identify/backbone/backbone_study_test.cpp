@@ -186,7 +186,7 @@ TEST(BackboneStudy, WarnsOfASecondModeNearby) {
   Decay truth;
   truth.second_mode = 0.6;
   const BackboneStudy study = study_backbone(decay_record(truth, 7), with_mass());
-  EXPECT_TRUE(!study.warnings.empty() || study.spring == SpringKind::not_determined)
+  EXPECT_TRUE(!study.objections.empty() || study.spring == SpringKind::not_determined)
       << backbone_verdict(study);
 }
 

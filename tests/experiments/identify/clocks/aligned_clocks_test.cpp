@@ -141,7 +141,7 @@ TEST_F(Clocks, ThatNobodyNamedAreReportedWhereTheyMoveAnAnswer) {
         Case{{3, 0, 0}, "x3m is ", 0.003, "own_clock = [\"x3m\"]"}}) {
     const ComparedRun run = found(11, one.late_ms, {}).runs.at(0);
     EXPECT_EQ(run.status, ComparedRun::Status::contradicted) << one.who;
-    EXPECT_THAT(run.warnings,
+    EXPECT_THAT(texts(run.objections),
                 testing::Contains(testing::AllOf(testing::HasSubstr(one.who), testing::HasSubstr(one.key))));
     EXPECT_NEAR(run.likeliest_clocks.late->lag(), one.lag,
                 4.0 * run.interval_factor * run.likeliest_clocks.late->lag_deviation());
@@ -149,7 +149,7 @@ TEST_F(Clocks, ThatNobodyNamedAreReportedWhereTheyMoveAnAnswer) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const ComparedRun run = found(seed, {0, 0, 0}, {}).runs.at(0);
     EXPECT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
-    EXPECT_THAT(run.warnings, testing::Each(testing::Not(testing::HasSubstr("own_clock")))) << seed;
+    EXPECT_THAT(texts(run.objections), testing::Each(testing::Not(testing::HasSubstr("own_clock")))) << seed;
   }
 }
 
@@ -162,7 +162,7 @@ TEST_F(Clocks, AtAnotherRateAreReportedWhereTheyMoveAnAnswer) {
   for (const auto& [growth, words] : cases) {
     const ComparedRun run = found(11, {0, 0, 0}, {}, growth).runs.at(0);
     EXPECT_EQ(run.status, ComparedRun::Status::contradicted) << words;
-    EXPECT_THAT(run.warnings, testing::Contains(testing::HasSubstr(words)));
+    EXPECT_THAT(texts(run.objections), testing::Contains(testing::HasSubstr(words)));
     const LikeliestClock& clock = *run.likeliest_clocks.drifting;
     const double given = growth[0] + growth[1] - growth[2];
     EXPECT_NEAR(clock.growth(), given, 4.0 * run.interval_factor * clock.growth_deviation()) << words;

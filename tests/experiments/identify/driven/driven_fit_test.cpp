@@ -124,7 +124,7 @@ TEST(DrivenRecord, IsAnsweredApproximatelyWhereTheModelLacksSomething) {
       identify_with_model(asked(1300.0), measured_record("building", shaken(12000, 0.05, 0.01)), {}, silent);
   const ComparedRun& run = found.runs.front();
   EXPECT_EQ(run.status, ComparedRun::Status::approximate) << run.reason;
-  EXPECT_THAT(run.warnings.front(), testing::HasSubstr("the rest is not noise"));
+  EXPECT_THAT(run.objections.front().text, testing::HasSubstr("the rest is not noise"));
   for (std::size_t j = 0; j < 3; ++j) {
     const Estimate& e = run.parameters[j].estimate;
     EXPECT_GT(e.value, 0.94 * stiffness[static_cast<Index>(j)]);

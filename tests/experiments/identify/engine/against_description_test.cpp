@@ -1,7 +1,7 @@
 // Estimates beside what was described beforehand. Oracle: an oscillator under a known force, exactly, whose
 // force is recorded with a wrong factor: mass, stiffness and damping are then wrong by that factor, whatever
 // else is.
-#include "experiments/identify/verdict/against_description.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(AgainstDescription, AForceInAnotherUnitIsNamed) {
     const ComparedRun run = identified(gain, 1);
     EXPECT_EQ(run.status, ComparedRun::Status::contradicted) << gain;
     EXPECT_NEAR(run.parameters.at(2).estimate.value / (gain * mass), 1.0, 0.01);
-    EXPECT_THAT(run.warnings, testing::Contains(HasSubstr(name)));
+    EXPECT_THAT(texts(run.objections), testing::Contains(HasSubstr(name)));
   }
 }
 
@@ -53,7 +53,7 @@ TEST(AgainstDescription, AForceThatMakesNoMotionIsNamedAsTheCause) {
                                    Unit{0.001, "a force in kN taken for N"}, Unit{-1.0, "against it"}}) {
     const ComparedRun run = identified(gain, 1);
     EXPECT_NE(run.status, ComparedRun::Status::converged) << gain;
-    EXPECT_THAT(run.warnings, Contains(HasSubstr(name))) << gain;
+    EXPECT_THAT(texts(run.objections), Contains(HasSubstr(name))) << gain;
   }
 }
 
@@ -62,14 +62,14 @@ TEST(AgainstDescription, AForceThatMakesNoMotionIsNamedAsTheCause) {
 TEST(AgainstDescription, ASmallGainIsSaidWithoutAContradiction) {
   const ComparedRun run = identified(1.2, 1);
   EXPECT_EQ(run.status, ComparedRun::Status::converged);
-  EXPECT_THAT(run.warnings, Contains(HasSubstr("come out 1.2 times as large as described")));
+  EXPECT_THAT(texts(run.objections), Contains(HasSubstr("come out 1.2 times as large as described")));
 }
 
 TEST(AgainstDescription, AHealthyRecordIsSilent) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
     const ComparedRun run = identified(1.0, seed);
     EXPECT_EQ(run.status, ComparedRun::Status::converged);
-    EXPECT_THAT(run.warnings, IsEmpty()) << seed;
+    EXPECT_THAT(texts(run.objections), IsEmpty()) << seed;
   }
 }
 

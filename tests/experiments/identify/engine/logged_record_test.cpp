@@ -35,7 +35,7 @@ TEST(LoggedRecord, IsAnalysedAsAMeasuredOne) {
   const Comparison found = compare(e, simulated_record(e, {}, silent), {}, silent);
   const ComparedRecord& record = found.compared;
   EXPECT_FALSE(record.record.samples.allFinite());  // what was clipped is no reading
-  EXPECT_THAT(record.record.warnings, Contains(HasSubstr("clipped at")));
+  EXPECT_THAT(texts(record.record.objections), Contains(HasSubstr("clipped at")));
   EXPECT_THAT(record.notes, Contains(HasSubstr("The stamps are uneven.")));
   const ComparedRun& run = found.runs[0];
   ASSERT_EQ(run.status, ComparedRun::Status::converged) << run.reason;

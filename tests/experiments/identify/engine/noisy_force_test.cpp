@@ -49,13 +49,14 @@ TEST(NoisyForce, ThatNobodyStatedIsReportedWhereItMovesAnAnswer) {
     EXPECT_EQ(run.status, ComparedRun::Status::contradicted) << seed;
     ASSERT_TRUE(run.likeliest_input_noise) << seed;
     EXPECT_NEAR(run.likeliest_input_noise->deviation[0], 0.5, 0.25) << seed;
-    EXPECT_THAT(run.warnings,
+    EXPECT_THAT(texts(run.objections),
                 testing::Contains(testing::AllOf(testing::HasSubstr(" N of noise in "),
                                                  testing::HasSubstr("State it: [noise] force_n = 0."))))
         << seed;
     const ComparedRun exact = identified(0.0, "", seed);
     EXPECT_EQ(exact.status, ComparedRun::Status::converged) << exact.reason;
-    EXPECT_THAT(exact.warnings, testing::Each(testing::Not(testing::HasSubstr("of noise in")))) << seed;
+    EXPECT_THAT(texts(exact.objections), testing::Each(testing::Not(testing::HasSubstr("of noise in"))))
+        << seed;
   }
 }
 

@@ -62,14 +62,14 @@ TEST(Verdict, AReductionThatMovesTheModeIsNamed) {
   const ComparedRun& wrong = found.runs.at(0);
   const double error = 100.0 * (wrong.parameters.at(0).estimate.value / *wrong.parameters.at(0).truth - 1.0);
   ASSERT_LT(error, -1.0);
-  ASSERT_FALSE(wrong.warnings.empty());
-  const std::string text = wrong.warnings.at(0);
+  ASSERT_FALSE(wrong.objections.empty());
+  const std::string text = wrong.objections.at(0).text;
   EXPECT_THAT(text, testing::StartsWith("WRONG BY THE REDUCTION: "));
   const std::string before = "Stiffness comes out wrong by about ";
   ASSERT_NE(text.find(before), std::string::npos);
   EXPECT_NEAR(std::stod(text.substr(text.find(before) + before.size())), error, 0.1 * std::abs(error));
   for (const std::size_t right : {1u, 2u})
-    EXPECT_THAT(found.runs.at(right).warnings, Not(Contains(HasSubstr("REDUCTION"))));
+    EXPECT_THAT(texts(found.runs.at(right).objections), Not(Contains(HasSubstr("REDUCTION"))));
 }
 
 TEST(Verdict, FiltersThatAgreeAreSaidToAgree) {
@@ -88,7 +88,7 @@ TEST(Verdict, AnAliasedRecordIsRecognisedAndIdentified) {
   const ComparedRecord record = simulated_record(e, {}, silent);
   EXPECT_THAT(record.notes, Contains(HasSubstr("no mode lies below half the sampling rate, 2.5 Hz")));
   const Comparison found = compare(e, record, {}, silent);
-  EXPECT_THAT(found.warnings, Contains(HasSubstr("ALIASED: the beam's first mode")));
+  EXPECT_THAT(texts(found.objections), Contains(HasSubstr("ALIASED: the beam's first mode")));
   EXPECT_EQ(found.runs[0].status, ComparedRun::Status::converged) << found.runs[0].reason;
 }
 
@@ -184,13 +184,13 @@ TEST(Verdict, WhatTheRecordDoesNotTellIsNamed) {
                  {"modal_truncation"}, "root_rotational_stiffness_n_m_per_rad = 1e9\n"));
   const ComparedRun& run = found.runs[0];
   ASSERT_TRUE(run.has_estimate()) << run.reason;
-  EXPECT_THAT(run.warnings,
+  EXPECT_THAT(texts(run.objections),
               Contains(HasSubstr(
                   "NOT DETERMINED: the record shows almost no effect of root_rotational_stiffness (1)")));
   const Comparison known =
       compared(cantilever("[simulation]\nduration_s = 4\nsampling_rate_hz = 100\n" + sensor + ask_stiffness,
                           {"modal_truncation"}));
-  EXPECT_THAT(known.runs[0].warnings, Not(Contains(HasSubstr("NOT DETERMINED"))));
+  EXPECT_THAT(texts(known.runs[0].objections), Not(Contains(HasSubstr("NOT DETERMINED"))));
 }
 
 TEST(Words, BlameCollapsedParticlesAndNoNestedShapes) {
@@ -256,7 +256,7 @@ TEST(ModelBeam, IsWarnedWhereTheModalAnalysisSaysOtherwise) {
   Experiment e = cantilever("[simulation]\nduration_s = 4\nsampling_rate_hz = 400\nmodes = 4\n" + sensor +
                                 ask_stiffness + "[filter]\ndiscretisation = \"forward_euler\"\n",
                             {"modal_truncation"});
-  EXPECT_THAT(compared(e).runs[0].warnings, Contains(HasSubstr("DISAGREE: ")));
+  EXPECT_THAT(texts(compared(e).runs[0].objections), Contains(HasSubstr("DISAGREE: ")));
 }
 
 }  // namespace

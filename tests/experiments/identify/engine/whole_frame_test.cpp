@@ -105,7 +105,7 @@ TEST(WholeFrame, ThatHasNotSettledIsSaidOrMended) {
   e.passes = 1;
   const ComparedRun compared = compare(e, record, {}, silent).runs.at(0);
   EXPECT_EQ(compared.status, ComparedRun::Status::contradicted);
-  EXPECT_THAT(compared.warnings.at(0), HasSubstr("NOT SETTLED"));
+  EXPECT_THAT(compared.objections.at(0).text, HasSubstr("NOT SETTLED"));
 
   e.reduction = e.reductions.at(0);
   const ComparedRun mended = identify_with_model(e, record, {}, silent).runs.at(0);

@@ -194,8 +194,8 @@ TEST(Substructure, OfNoiseStatedTooSmallHasDeviationsAsWideAsThatOfTheNoiseThere
   const ComparedRun &right = well.parts.front().run(Sections::noisy),
                     &wrong = tenth.parts.front().run(Sections::noisy);
   ASSERT_TRUE(right.has_estimate() && wrong.has_estimate());
-  ASSERT_FALSE(wrong.warnings.empty());
-  EXPECT_THAT(wrong.warnings.front(), testing::HasSubstr("deviations are widened"));
+  ASSERT_FALSE(wrong.objections.empty());
+  EXPECT_THAT(wrong.objections.front().text, testing::HasSubstr("deviations are widened"));
   for (std::size_t j = 0; j < right.parameters.size(); ++j)
     EXPECT_NEAR(wrong.parameters[j].estimate.deviation / right.parameters[j].estimate.deviation, 1.0, 0.15)
         << right.parameters[j].estimate.name;

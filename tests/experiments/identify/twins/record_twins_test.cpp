@@ -71,8 +71,9 @@ TEST_F(TwinsOfARecord, AreThoseOfItsFrequenciesWhereOneSensorSeesADecay) {
   const ComparedRun& judged = answer.found.runs.at(0);
   EXPECT_EQ(judged.status, ComparedRun::Status::not_unique);
   EXPECT_FALSE(judged.answers());
-  EXPECT_THAT(judged.warnings.front(), HasSubstr("NOT UNIQUE: at least 1 other set of parameters explains"));
-  EXPECT_THAT(judged.warnings.front(), HasSubstr("6 would decide"));
+  EXPECT_THAT(judged.objections.front().text,
+              HasSubstr("NOT UNIQUE: at least 1 other set of parameters explains"));
+  EXPECT_THAT(judged.objections.front().text, HasSubstr("6 would decide"));
 }
 
 TEST_F(TwinsOfARecord, AreRuledOutByASecondSensorOrAMeasuredForce) {

@@ -28,14 +28,14 @@ TEST(Remedies, NameTheSensorsThatWereExchanged) {
     for (MeasuredMode& mode : data.modes) std::swap(mode.shape[2], mode.shape[3]);
     const UpdateStudy study = studied(data);
     EXPECT_TRUE(study.updating.refuted);
-    EXPECT_THAT(study.warnings, Contains(HasSubstr("With sensors 3 and 4 exchanged")));
+    EXPECT_THAT(texts(study.objections), Contains(HasSubstr("With sensors 3 and 4 exchanged")));
   }
 }
 
 TEST(Remedies, NameTheSensorOfAnotherGain) {
   ModalData data = measured(1);
   for (MeasuredMode& mode : data.modes) mode.shape[3] *= 1.25;
-  EXPECT_THAT(studied(data).warnings, Contains(HasSubstr("Without sensor 4")));
+  EXPECT_THAT(texts(studied(data).objections), Contains(HasSubstr("Without sensor 4")));
 }
 
 TEST(Remedies, NameTheModeThatIsNone) {
@@ -43,7 +43,7 @@ TEST(Remedies, NameTheModeThatIsNone) {
   MeasuredMode& third = data.modes[2];
   third.frequency_hz *= 0.8;
   third.shape = data.modes[0].shape;
-  EXPECT_THAT(studied(data).warnings,
+  EXPECT_THAT(texts(studied(data).objections),
               Contains(HasSubstr(fmt::format("Without the mode at {:.4g} Hz", third.frequency_hz))));
 }
 
@@ -60,7 +60,7 @@ TEST(Remedies, NameTheModeThatIsMissing) {
       frequencies({all.modes[0].frequency_hz, all.modes[2].frequency_hz, all.modes[3].frequency_hz}),
       {{0.002, 0.0}, 20});
   EXPECT_TRUE(study.updating.refuted);
-  EXPECT_THAT(study.warnings, Contains(HasSubstr("Were mode 2 missing")));
+  EXPECT_THAT(texts(study.objections), Contains(HasSubstr("Were mode 2 missing")));
 }
 
 TEST(Remedies, NothingNeedsOneWhereAllIsWell) {

@@ -125,14 +125,14 @@ TEST(Updating, WarnsOfFrequenciesInRadiansPerSecond) {
   std::vector<double> wrong = three_frequencies;
   for (double& f : wrong) f *= 6.283185307;
   const UpdateStudy study = study_update(three_storeys(), frequencies(wrong), few_starts());
-  ASSERT_FALSE(study.warnings.empty());
-  EXPECT_THAT(study.warnings[0], HasSubstr("rad/s"));
+  ASSERT_FALSE(study.objections.empty());
+  EXPECT_THAT(study.objections[0].text, HasSubstr("rad/s"));
 }
 
 TEST(Updating, WarnsOfAModeThatIsMissingInBetween) {
   const UpdateStudy study = study_update(four_storeys(), frequencies({0.885, 4.02, 4.76}), few_starts());
   std::string all;
-  for (const std::string& warning : study.warnings) all += warning;
+  for (const std::string& warning : texts(study.objections)) all += warning;
   EXPECT_THAT(all, HasSubstr("Without mode 2"));
 }
 
@@ -141,7 +141,7 @@ TEST(Updating, WarnsOfASensorMountedTheOtherWay) {
   for (MeasuredMode& mode : data.modes) mode.shape[2] = -mode.shape[2];
   const UpdateStudy study = study_update(four_storeys(), data, few_starts());
   std::string all;
-  for (const std::string& warning : study.warnings) all += warning;
+  for (const std::string& warning : texts(study.objections)) all += warning;
   EXPECT_THAT(all, HasSubstr("sensor 3"));
   EXPECT_FALSE(study.updating.explains());
 }

@@ -101,8 +101,8 @@ TEST(FindModes, NamesLinesOutsideTheBand) {
   settings.band_hz = {0.5, 10};
   const RecordModes found = find_modes("a", decay(truth, 250, 10, 0.02, 1), false, settings);
   EXPECT_EQ(found.modes.size(), 1u);
-  EXPECT_THAT(PrintToString(found.warnings), HasSubstr("Lines at 22.8"));
-  EXPECT_THAT(PrintToString(found.warnings), HasSubstr("outside this band"));
+  EXPECT_THAT(PrintToString(texts(found.objections)), HasSubstr("Lines at 22.8"));
+  EXPECT_THAT(PrintToString(texts(found.objections)), HasSubstr("outside this band"));
 }
 
 // Modes a factor of 35 apart: at the rate of the highest, 200 samples hold less than two cycles of the
@@ -178,7 +178,7 @@ TEST(FindModes, TakesASaturatedSensorsOvertoneForNoMode) {
     const RecordModes found = find_modes("a", record, false, {});
     ASSERT_EQ(found.modes.size(), 1u) << PrintToString(frequencies(found));
     EXPECT_LT(found.modes[0].pole.damping_ratio(), 0.0045);
-    EXPECT_THAT(PrintToString(found.warnings),
+    EXPECT_THAT(PrintToString(texts(found.objections)),
                 HasSubstr("An overtone at three times the frequency, against it"));
   }
 }
@@ -187,7 +187,7 @@ TEST(FindModes, TakesASaturatedSensorsOvertoneForNoMode) {
 TEST(FindModes, SaysWhereADecayIsKnocked) {
   Record record = decay({{5, 0.005, 6}}, 200, 10, 0.05, 1);
   record.samples.rightCols(1200) += 0.5 * decay({{5, 0.005, 6}}, 200, 10, 0, 1).samples.rightCols(1200);
-  EXPECT_THAT(PrintToString(find_modes("a", record, false, {}).warnings),
+  EXPECT_THAT(PrintToString(texts(find_modes("a", record, false, {}).objections)),
               HasSubstr("s the motion jumps, by +5"));
 }
 
@@ -202,10 +202,10 @@ TEST(FindModes, CallsASlowDecayAndABeatDecays) {
   for (const auto& sines : {std::vector<Sine>{{5, 0.0003, 6}}, {{5, 0.001, 6}, {5.2, 0.001, -5}}}) {
     const RecordModes found = find_modes("a", decay(sines, 100, 8, 0.05, 1), true, {});
     EXPECT_EQ(found.modes.size(), sines.size());
-    EXPECT_THAT(PrintToString(found.warnings), Not(HasSubstr("does not decay")));
+    EXPECT_THAT(PrintToString(texts(found.objections)), Not(HasSubstr("does not decay")));
   }
   const RecordModes steady = find_modes("a", decay({{5, 0, 6}}, 100, 8, 0.05, 1), true, {});
-  EXPECT_THAT(PrintToString(steady.warnings), HasSubstr("does not decay"));
+  EXPECT_THAT(PrintToString(texts(steady.objections)), HasSubstr("does not decay"));
 }
 
 // A drop-out of 0.4 s: whatever is listed has been confirmed by least squares.
@@ -231,7 +231,8 @@ TEST(FindModes, SaysWhereTheMotionGoesOnOrNothingWasReleased) {
       return std::abs(pole.frequency_hz() - 3.45553) > 3 * pole.frequency_deviation_hz ||
              std::abs(pole.damping_ratio() - 0.0045) > 3 * pole.damping_ratio_deviation;
     });
-    const bool said = PrintToString(found.warnings).find("For random vibration take") != std::string::npos;
+    const bool said =
+        PrintToString(texts(found.objections)).find("For random vibration take") != std::string::npos;
     off += is_off ? 1 : 0;
     silently += is_off && !said ? 1 : 0;
   }
@@ -242,7 +243,7 @@ TEST(FindModes, SaysWhereTheMotionGoesOnOrNothingWasReleased) {
 // Decays: in noise of a fifth of them, from a hit late in the record, and of a spring that hardens.
 TEST(FindModes, DoesNotSayOfADecayThatItGoesOn) {
   const auto goes_on = [](const Record& record) {
-    const std::string said = PrintToString(find_modes("", record, false, {}).warnings);
+    const std::string said = PrintToString(texts(find_modes("", record, false, {}).objections));
     return said.find("goes on") != std::string::npos ||
            said.find("No release was found") != std::string::npos;
   };

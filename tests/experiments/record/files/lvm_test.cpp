@@ -54,7 +54,7 @@ TEST(LvmReader, JoinsSegmentsAndSaysSo) {
     const Record record = read_record(file.path());
     expect_both(record, 1e-5);
     EXPECT_THAT(record.remarks, ElementsAre("2 segments are joined."));
-    EXPECT_THAT(record.warnings, testing::IsEmpty());
+    EXPECT_THAT(texts(record.objections), testing::IsEmpty());
   }
 }
 
@@ -121,7 +121,7 @@ TEST(LvmReader, MakesStampsWhereSegmentsDoNotFollowEachOther) {
 
 TEST(LvmReader, WarnsOfATornSegment) {
   const TemporaryFile file("torn.lvm", lvm_segments({{0.0, 0.004, "g", 900}}));
-  EXPECT_THAT(read_record(file.path()).warnings,
+  EXPECT_THAT(texts(read_record(file.path()).objections),
               ElementsAre("Segment 1 has 20 rows where its header states 900 samples: the others are lost."));
 }
 

@@ -74,8 +74,8 @@ TEST_F(Nied, LeavesOutAnotherEarthquakeAtTheOtherDepth) {
   write("x.EW1", record_text("2", "1 -1 1 -1\n", "2001/01/01 00:00:00"));
   const Record record = read_record(write("x.EW2", record_text("5", "3 -3 3 -3\n")));
   EXPECT_EQ(record.channels.size(), 1u);
-  ASSERT_EQ(record.warnings.size(), 1u);
-  EXPECT_THAT(record.warnings[0], HasSubstr("x.EW1 is of another record"));
+  ASSERT_EQ(record.objections.size(), 1u);
+  EXPECT_THAT(record.objections[0].text, HasSubstr("x.EW1 is of another record"));
 }
 
 void expect_refused(const std::filesystem::path& file, const std::string& words) {

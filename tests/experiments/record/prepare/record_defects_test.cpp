@@ -46,17 +46,17 @@ TEST(ReadAndPrepare, MakesClippedSamplesMissingAndWarns) {
   record.samples = record.samples.cwiseMin(2).cwiseMax(-2).eval();
   const PreparedRecord found = prepared(record);
   EXPECT_EQ(found.record.samples.array().isNaN().count(), beyond);
-  ASSERT_EQ(found.record.warnings.size(), 1u);
-  EXPECT_THAT(found.record.warnings[0], HasSubstr("tip (acceleration): clipped at -2 and 2 m/s2"));
+  ASSERT_EQ(found.record.objections.size(), 1u);
+  EXPECT_THAT(found.record.objections[0].text, HasSubstr("tip (acceleration): clipped at -2 and 2 m/s2"));
   RecordFormat later;
   later.window = {9.0, 10.0};
-  EXPECT_TRUE(prepared(record, later).record.warnings.empty());  // nothing is clipped there
+  EXPECT_TRUE(prepared(record, later).record.objections.empty());  // nothing is clipped there
 }
 
 TEST(ReadAndPrepare, LeavesAHealthyRecordAsItIs) {
   const Record record = made();
   const PreparedRecord found = prepared(record);
-  EXPECT_TRUE(found.record.warnings.empty());
+  EXPECT_TRUE(found.record.objections.empty());
   EXPECT_TRUE(found.record.samples.allFinite());
 }
 

@@ -39,7 +39,7 @@ TEST(Steps, LieOnTheCurvesOfTheClosedForm) {
   const StepsStudy study =
       studied(acceleration(1e-5), {"forward_euler", "implicit_midpoint", "runge_kutta_2"});
   ASSERT_EQ(study.steps.size(), 3u);  // 58, 29, 14 samples a period
-  EXPECT_THAT(study.warnings, IsEmpty());
+  EXPECT_THAT(texts(study.objections), IsEmpty());
   for (const RecordAtStep& step : study.steps)
     for (const SchemeAtStep& one : step.found) {
       ASSERT_TRUE(one.is_valid()) << one.discretisation << step.factor;
@@ -111,7 +111,8 @@ TEST(Steps, SayWhereAStepIsTooLongForItsScheme) {
   const SchemeAtStep& last = study.steps.back().found[1];
   EXPECT_EQ(last.verdict, Verdict::invalid);
   EXPECT_FALSE(last.is_valid());
-  EXPECT_THAT(study.warnings, Contains(HasSubstr("forward_euler at steps of 80 ms has no valid estimate")));
+  EXPECT_THAT(texts(study.objections),
+              Contains(HasSubstr("forward_euler at steps of 80 ms has no valid estimate")));
   EXPECT_THAT(study.notes,
               Contains(HasSubstr("5 of 8 steps: with the next there would be 1.81 samples a period")));
   EXPECT_EQ(report(simulated.experiment(), study).values["schemes"][1]["steps"][4]["found"], nullptr);
@@ -133,7 +134,7 @@ TEST(Steps, SayThatOtherMotionChangesWithTheStep) {
     record.samples(0, k) +=
         size * std::exp(-1.5 * record.time[k]) * std::cos(2.0 * M_PI * 21.6 * record.time[k]);
   const StepsStudy study = studied(record, {"forward_euler"});
-  const bool sure = study.has_reference() && study.warnings.empty() &&
+  const bool sure = study.has_reference() && study.objections.empty() &&
                     std::abs(study.reference().damping_ratio / simulated.damping_ratio - 1.0) > 0.02;
   EXPECT_FALSE(sure) << study.reference().damping_ratio;
 }
