@@ -28,6 +28,7 @@ FAULTS = {  # name: what the sentence of the verdict calls it
     "damping per mode": None,  # model error: no described quantity explains it
     "coloured noise": None,
 }
+NAMES_A_CAUSE = ("description", "input_clock", "input_noise")
 RATE, SINES, STOREY = 100.0, 160, 3.0
 
 
@@ -139,7 +140,8 @@ def judged(beamid, fault, truth, file):
     inside = [p["lower_95"] <= x <= p["upper_95"] for p, x in zip(parameters, truth)]
     if run.returncode == 0:
         return "WRONG AND SURE" if far > 4 else "answered", far, inside, sentences[0]
-    named = FAULTS[fault] and any(re.search(FAULTS[fault], one) for one in sentences[:2])
+    causes = [one["sentence"] for one in found["verdict"]["objections"] if one["name"] in NAMES_A_CAUSE]
+    named = FAULTS[fault] and any(re.search(FAULTS[fault], one) for one in causes[:2])
     return "named" if named else "contradicted", far, inside, sentences[0]
 
 
