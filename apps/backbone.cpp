@@ -2,7 +2,7 @@
 #include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
-#include "experiments/modal/study/decay_part.hpp"
+#include "experiments/modal/study/record_kind.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/backbone/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"

@@ -17,7 +17,7 @@
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/check/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::apps {

@@ -156,12 +156,11 @@ std::vector<Option> Command::all_options() const {
 
 const std::vector<CommandGroup>& command_groups() {
   static const std::vector<CommandGroup> groups{
-      {"Every day",
-       {modes_command(), simulate_command(), identify_command(), modal_command(), compare_command(),
-        report_command()}},
+      {"Start with", {inspect_command(), modal_command(), identify_command(), modes_command()}},
+      {"Experiments", {simulate_command(), compare_command(), report_command()}},
       {"Records",
-       {inspect_command(), prepare_command(), track_command(), backbone_command(), stream_command(),
-        check_command(), steps_command(), sense_command(), substructures_command()}},
+       {prepare_command(), track_command(), backbone_command(), stream_command(), check_command(),
+        steps_command(), sense_command(), substructures_command()}},
       {"Modes measured", {update_command(), twins_command(), posterior_command()}},
       {"Beams and tests to come",
        {frf_command(), frame_command(), reduce_command(), identifiability_command()}},

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "experiments/config/failure_response.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/results/results.hpp"

@@ -11,7 +11,6 @@
 #include "experiments/studies/compare/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
 #include "experiments/text/choice.hpp"
-#include "experiments/text/choice_text.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
 

@@ -7,7 +7,7 @@
 #include "experiments/studies/efficiency/laboratory_records.hpp"
 #include "experiments/studies/efficiency/report.hpp"
 #include "experiments/studies/efficiency/seeded_decays.hpp"
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 
 namespace beamid::apps {
 namespace {

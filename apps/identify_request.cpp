@@ -11,7 +11,7 @@
 #include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "apps/values.hpp"
-#include "experiments/config/failure_response.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/identify/damping_law/damping_law.hpp"

@@ -14,7 +14,7 @@
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/modal/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 
 namespace beamid::apps {
 namespace {

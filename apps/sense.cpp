@@ -11,7 +11,6 @@
 #include "experiments/models/structure_points.hpp"
 #include "experiments/studies/sensing/report.hpp"
 #include "experiments/text/choice.hpp"
-#include "experiments/text/choice_text.hpp"
 #include "filters/filter.hpp"
 
 namespace beamid::apps {

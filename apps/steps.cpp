@@ -12,7 +12,7 @@
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
-#include "experiments/studies/steps/report.hpp"
+#include "experiments/studies/steps/steps.hpp"
 #include "experiments/text/choice.hpp"
 #include "filters/scheme.hpp"
 

@@ -9,7 +9,7 @@
 #include "apps/command.hpp"
 #include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
-#include "experiments/config/failure_response.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/identify/engine/model_setting.hpp"

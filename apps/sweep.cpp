@@ -11,8 +11,8 @@
 #include "experiments/identify/verdict/plausibility.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/manifest.hpp"
-#include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/repeats.hpp"
+#include "experiments/sweep/sweep_plan.hpp"
 #include "experiments/text/choice.hpp"
 
 namespace beamid::apps {

@@ -14,7 +14,7 @@
 
 #include "apps/command.hpp"
 #include "apps/command_parts.hpp"
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/fields.hpp"
 
 namespace beamid::apps {

@@ -1,11 +1,12 @@
-// What the assemblies of plane and space frames collect on their way.
+// The equations of plane frames: what the assemblies of plane and space frames collect on their way.
 #pragma once
 
-#include <Eigen/Core>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "fem/parametric_system.hpp"
 #include "fem/structural_system.hpp"

@@ -1,4 +1,4 @@
-// Noise levels from the record itself.
+// Noise levels from the record itself: by the highest likelihood, and by expectation-maximisation.
 #pragma once
 
 #include <functional>

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/config/failure_response.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "fem/shear_building.hpp"

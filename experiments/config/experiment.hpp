@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/models/joint_model.hpp"
-#include "experiments/models/springs/storey_spring.hpp"
+#include "experiments/models/springs/spring_law.hpp"
 #include "experiments/models/unknown.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/text/choice.hpp"
@@ -268,5 +268,11 @@ std::string channels_text(const Record& record);
 
 /// Name, quantity, unit and position of every channel, for results.json.
 nlohmann::ordered_json channel_values(const Record& record);
+
+// What a run does when its filter fails, by name.
+
+/// @throws std::invalid_argument "on_failure is 'inflat'; expected stop, inflate, report"
+filters::OnFailure failure_response(const std::string& name);
+const char* to_string(filters::OnFailure response);
 
 }  // namespace beamid::experiments

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 
 namespace beamid::experiments {
 namespace {

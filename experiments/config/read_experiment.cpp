@@ -11,7 +11,6 @@
 #include "experiments/config/readers.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/models/springs/spring_law.hpp"
-#include "experiments/models/springs/storey_spring.hpp"
 #include "experiments/text/choice.hpp"
 #include "experiments/text/toml_table.hpp"
 #include "fem/beam.hpp"

@@ -12,7 +12,7 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/config/schema.hpp"
 #include "experiments/modal/modal_data.hpp"
-#include "experiments/modal/nearest_real.hpp"
+#include "experiments/modal/poles.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/toml_table.hpp"
 

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 
-#include "experiments/config/failure_response.hpp"
+#include "experiments/config/experiment.hpp"
 #include "experiments/config/key_tables.hpp"
 #include "experiments/config/structure_description.hpp"
 #include "experiments/config/useless_keys.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/text/choice.hpp"
-#include "experiments/text/choice_text.hpp"
 #include "filters/filter.hpp"
 #include "filters/scheme.hpp"
 #include "filters/smoother.hpp"

@@ -13,8 +13,8 @@
 #include <Eigen/Dense>
 
 #include "experiments/modal/dominant_mode.hpp"
-#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/frequency_jump.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/sway.hpp"

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 
 namespace beamid::experiments {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <map>
 #include <numbers>
 #include <vector>
@@ -203,6 +204,11 @@ Stabilisation stabilise(const std::vector<OrderPoles>& orders, const Stabilisati
   std::sort(result.modes.begin(), result.modes.end(), rising);
   std::sort(result.rejected.begin(), result.rejected.end(), rising);
   return result;
+}
+
+Eigen::VectorXd nearest_real(const Eigen::VectorXcd& shape) {
+  const std::complex<double> square = shape.cwiseProduct(shape).sum();
+  return (shape * std::polar(1.0, -0.5 * std::arg(square))).real();
 }
 
 }  // namespace beamid::experiments

@@ -1,4 +1,4 @@
-// Poles of a modal analysis, and which of them stay as the model order grows: those of the structure.
+// Poles of a modal analysis, which of them stay as the model order grows, and their real shapes.
 #pragma once
 
 #include <complex>
@@ -89,5 +89,10 @@ struct Stabilisation {
 /// known. The deviation is then sqrt(1 / mean(1 / variance)): poles of several orders share their data, so
 /// more orders make no mode more certain.
 Stabilisation stabilise(const std::vector<OrderPoles>& orders, const StabilisationSettings& settings);
+
+// Real shapes of modes that were measured with phases.
+
+/// The real shape (p) nearest to a complex one: turned so that sum (Re)^2 is largest.
+Eigen::VectorXd nearest_real(const Eigen::VectorXcd& shape);
 
 }  // namespace beamid::experiments

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/models/springs/storey_spring.hpp"
+#include "experiments/models/springs/spring_law.hpp"
 #include "experiments/models/unknown.hpp"
 #include "experiments/record/record.hpp"
 #include "fem/structural_system.hpp"

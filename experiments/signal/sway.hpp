@@ -1,5 +1,7 @@
-// What moves slowly beneath an oscillation, taken out.
+// The slow motion beneath an oscillation, and the size of the oscillation along a signal.
 #pragma once
+
+#include <Eigen/Core>
 
 #include "experiments/signal/decimation.hpp"
 
@@ -13,5 +15,21 @@ DecimatedSignal without_sway(DecimatedSignal signal, double period);
 /// The mean of a signal under a Hann window of two periods, a period at each end left out: what the former
 /// takes out. Empty where it is shorter than the window.
 Eigen::VectorXd sway(const DecimatedSignal& signal, double period);
+
+// How large a vibration of one frequency is along a signal, and the offset that it rides on.
+
+/// At M instants, a quarter of a period apart: the middles of windows of two periods.
+struct LocalMotion {
+  Eigen::VectorXd time;       ///< (M) [s], from the first sample
+  Eigen::VectorXd amplitude;  ///< (M) of the vibration [unit of the signal]
+  Eigen::VectorXd offset;     ///< (M), of what changes slowly [unit of the signal]
+
+  static constexpr double windows_per_period = 4;
+};
+
+/// Least squares of a parabola and a sine at the frequency in every window: drifts and the end of a start-up
+/// are left to the parabola. A frequency that is a quarter off still gives most of the amplitude.
+/// Empty where the signal (N) is shorter than a window, or a period has fewer than four samples.
+LocalMotion local_motion(const Eigen::VectorXd& signal, double interval, double frequency_hz);
 
 }  // namespace beamid::experiments

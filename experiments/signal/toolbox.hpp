@@ -1,4 +1,5 @@
-// Reproducible noise: the same seed gives the same numbers on any machine and in any order.
+// Small tools of signal analysis: seeded noise, quantiles, lengths that transform fast, least squares,
+// medians.
 #pragma once
 
 #include <algorithm>

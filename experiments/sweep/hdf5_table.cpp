@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 
 namespace beamid::experiments {
 namespace {

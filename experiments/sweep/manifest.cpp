@@ -16,7 +16,7 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/results/result_directory.hpp"
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/toml_table.hpp"
 #include "filters/batch.hpp"

@@ -12,8 +12,8 @@
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
-#include "experiments/sweep/read_sweep.hpp"
-#include "experiments/text/choice_text.hpp"
+#include "experiments/sweep/sweep_plan.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
 

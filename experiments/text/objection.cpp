@@ -46,7 +46,7 @@ const std::vector<ObjectionKind>& objection_kinds() {
        "A mass, a place, a gain, a sign or a delay is not as described."},
       {"input_clock", driven, "lag or rate of a clock, in its standard deviations",
        "Inputs and outputs are not on one clock."},
-      {"input_noise", driven, "gain of the log likelihood by noise of an input, 12.5",
+      {"input_noise", driven, "gain of the log likelihood by noise of an input, 10.1",
        "A measured input holds noise, which biases stiffness and damping."},
       {"part_law", driven, "law of damping of a part", "The law is that of the whole beam's modes."},
       {"no_law", laws, "failure of the fit", "No force law was fitted to the whole record."},

@@ -56,7 +56,7 @@ void triangularise(Array& a, Root& l) {
   }
 }
 
-/// N states and P outputs, or Eigen::Dynamic; the model as in observed.hpp.
+/// N states and P outputs, or Eigen::Dynamic; the model as in registered_filter.hpp.
 template <class Scalar, int N, int P>
 class SquareRootKalman {
  public:

@@ -4,7 +4,6 @@
 #include "filters/algorithms/extended_kalman.hpp"
 #include "filters/algorithms/innovation_group.hpp"
 #include "filters/algorithms/oscillator.hpp"
-#include "filters/algorithms/some_outputs.hpp"
 
 namespace beamid::filters::algorithms {
 

@@ -15,7 +15,7 @@
 
 namespace beamid::filters::algorithms {
 
-/// N states and P outputs, or Eigen::Dynamic; the model as in observed.hpp.
+/// N states and P outputs, or Eigen::Dynamic; the model as in registered_filter.hpp.
 template <class Scalar, int N, int P>
 class UnscentedKalman {
  public:

@@ -60,8 +60,8 @@ TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(outcome.first_error_line(),
-            "beamid: unknown command 'quaternion'; known: modes, simulate, identify, modal, compare, report, "
-            "inspect, prepare, track, backbone, stream, check, steps, sense, substructures, update, twins, "
+            "beamid: unknown command 'quaternion'; known: inspect, modal, identify, modes, simulate, "
+            "compare, report, prepare, track, backbone, stream, check, steps, sense, substructures, update, twins, "
             "posterior, frf, frame, reduce, "
             "identifiability, sweep, "
             "efficiency, "

@@ -16,7 +16,7 @@
 #include "experiments/results/result_directory.hpp"
 #include "experiments/studies/report/report.hpp"
 #include "experiments/sweep/manifest.hpp"
-#include "experiments/sweep/read_sweep.hpp"
+#include "experiments/sweep/sweep_plan.hpp"
 #include "experiments/text/choice.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/toml_table.hpp"

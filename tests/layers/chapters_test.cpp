@@ -14,7 +14,7 @@
 namespace beamid::layers::chapters_test {
 namespace {
 
-constexpr double most_files = 915, most_short = 170, most_one_user = 84;
+constexpr double most_files = 850, most_short = 135, most_one_user = 60;
 constexpr long longest = 450, shortest = 40;  // lines
 
 std::vector<std::string> product_files() {

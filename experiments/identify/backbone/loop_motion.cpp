@@ -10,12 +10,12 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 /// F(x) = x s(|x|), dF/dx, and dF/dtheta, times a factor, added to rows of a gradient.
-struct SpringForce {
+struct CurveForce {
   double force = 0, slope = 0;
 };
 
-SpringForce spring_force(const SecantCurve& curve, double x, const VectorXd& z, Index place, double factor,
-                         VectorXd* gradient) {
+CurveForce curve_force(const SecantCurve& curve, double x, const VectorXd& z, Index place, double factor,
+                       VectorXd* gradient) {
   const SecantCurve::Local local = curve.local(x);
   double secant = 0, slope = 0;
   for (Index m = 0; m < local.count; ++m) {
@@ -65,8 +65,8 @@ std::vector<filters::Label> LoopMotion::output_labels() const {
 
 double LoopMotion::loop_force(const VectorXd& z, VectorXd* gradient) const {
   const double mu = z[masing()];
-  const SpringForce branch =
-      spring_force(set_.spring, 0.5 * (z[displacement] - z[reversal]), z, spring, 2 * mu, gradient);
+  const CurveForce branch =
+      curve_force(set_.spring, 0.5 * (z[displacement] - z[reversal]), z, spring, 2 * mu, gradient);
   if (gradient) {
     (*gradient)[displacement] += mu * branch.slope;
     (*gradient)[reversal] -= mu * branch.slope;
@@ -79,7 +79,7 @@ double LoopMotion::loop_force(const VectorXd& z, VectorXd* gradient) const {
 double LoopMotion::acceleration(const VectorXd& z, VectorXd* gradient) const {
   const double x = z[displacement], v = z[velocity], mu = z[masing()];
   if (gradient) gradient->setZero(states());
-  const SpringForce elastic = spring_force(set_.spring, x, z, spring, 1 - mu, gradient);
+  const CurveForce elastic = curve_force(set_.spring, x, z, spring, 1 - mu, gradient);
   const double loop = set_.hysteretic ? loop_force(z, gradient) : 0;
   const SecantCurve::Local local = set_.damping.local(x);
   double c = 0, c_slope = 0;
@@ -108,8 +108,8 @@ void LoopMotion::begin(VectorXd& z, MatrixXd* directions) const {
   z[reversal] = sign * amplitude;
   VectorXd gradient = VectorXd::Zero(states());
   const double mu = z[masing()];
-  const SpringForce force =
-      spring_force(set_.spring, z[reversal], z, spring, mu, directions ? &gradient : nullptr);
+  const CurveForce force =
+      curve_force(set_.spring, z[reversal], z, spring, mu, directions ? &gradient : nullptr);
   z[reversal_force] += mu * force.force;
   if (!directions || !(amplitude > 0)) return;
   gradient[reversal_force] = 1;

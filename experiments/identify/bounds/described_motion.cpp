@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "experiments/identify/bounds/identifiability.hpp"
+#include "experiments/identify/engine/identified_parameters.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
-#include "experiments/identify/engine/true_value.hpp"
 #include "experiments/identify/verdict/reproduction.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/structure_points.hpp"

@@ -11,7 +11,7 @@
 
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/verdict/reproduction.hpp"
-#include "experiments/modal/study/decay_part.hpp"
+#include "experiments/modal/study/record_kind.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/spectrum.hpp"

@@ -175,6 +175,9 @@ std::string value_text(const Candidate& candidate, const fem::Structure& structu
                        100.0 * quantile_95 * deviation);
   const double step = 1e-3 * candidate.scale(),
                slope = (candidate.value(structure, x + step) - candidate.value(structure, x)) / step;
+  if (candidate.value_unit == of_described)
+    return fmt::format("{} by the record {:.4g} +- {:.2g} times as large as described", candidate.label,
+                       candidate.value(structure, x), quantile_95 * std::abs(slope) * deviation);
   return fmt::format("{} described as {:.4g} {}, by the record {:.4g} +- {:.2g} {}", candidate.label,
                      candidate.value(structure, 0.0), candidate.value_unit, candidate.value(structure, x),
                      quantile_95 * std::abs(slope) * deviation, candidate.value_unit);

@@ -10,9 +10,9 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/verdict/amplitude_sections.hpp"
 #include "experiments/identify/verdict/noise_near_mode.hpp"
+#include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/modal/decay_jump.hpp"
 #include "experiments/modal/dominant_mode.hpp"
-#include "experiments/modal/third_overtone.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/record.hpp"
@@ -129,7 +129,8 @@ struct DecayObjection {
 
 /// - A jump of the motion (decay_jump.hpp) in what was identified: no single decay goes across it. By a
 ///   twentieth of the amplitude, or of a radian, or of its frequency, it contradicts.
-/// - The overtone of a sensor that saturates softly (third_overtone.hpp), where the damping ratio is wrong by
+/// - The overtone of a sensor that saturates softly (amplitude_dependence.hpp), where the damping ratio is
+/// wrong by
 ///   more than its interval through it, and the frequency does not follow the amplitude as that of a spring
 ///   would; it contradicts from twice the interval on.
 /// @param mode as identified, with its deviations as they are reported

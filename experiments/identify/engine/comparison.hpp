@@ -14,7 +14,6 @@
 #include "experiments/identify/driven/driven_fit.hpp"
 #include "experiments/identify/engine/analysis.hpp"
 #include "experiments/identify/engine/noise_in_estimates.hpp"
-#include "experiments/identify/engine/noisy_input_fit.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/identification.hpp"

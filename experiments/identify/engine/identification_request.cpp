@@ -12,8 +12,8 @@
 #include "experiments/modal/decay_jump.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
-#include "experiments/signal/local_motion.hpp"
 #include "experiments/signal/onsets.hpp"
+#include "experiments/signal/sway.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "experiments/text/choice.hpp"
 

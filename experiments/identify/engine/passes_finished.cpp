@@ -5,10 +5,10 @@
 
 #include "experiments/identify/engine/analysis.hpp"
 #include "experiments/identify/engine/compared_run.hpp"
+#include "experiments/identify/engine/identified_parameters.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/engine/passes.hpp"
 #include "experiments/identify/engine/run_bound.hpp"
-#include "experiments/identify/engine/true_value.hpp"
 #include "experiments/identify/verdict/reproduction.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "filters/smoother.hpp"

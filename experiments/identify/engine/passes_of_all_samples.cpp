@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "experiments/identify/driven/driven_fit.hpp"
-#include "experiments/identify/engine/noisy_input_fit.hpp"
+#include "experiments/identify/engine/noise_in_estimates.hpp"
 #include "experiments/identify/engine/passes.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/joint_model.hpp"

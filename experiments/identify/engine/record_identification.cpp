@@ -14,7 +14,7 @@
 #include "experiments/identify/engine/identified_parameters.hpp"
 #include "experiments/identify/verdict/noise_near_mode.hpp"
 #include "experiments/identify/verdict/run_verdict.hpp"
-#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"

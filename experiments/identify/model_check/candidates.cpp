@@ -25,7 +25,7 @@ std::vector<Candidate> candidates_of_one(const fem::Structure& structure) {
 
 Candidate relative_candidate(std::string name, double plausible,
                              std::function<fem::Structure(const fem::Structure&, double)> changed) {
-  Candidate c{std::move(name), {}, "%", "of described", -0.9, 9, -plausible, plausible};
+  Candidate c{std::move(name), {}, "%", of_described, -0.9, 9, -plausible, plausible};
   c.label = c.name;
   std::replace(c.label.begin(), c.label.end(), '_', ' ');
   c.changed = [=](const fem::Structure& s, double x) { return changed(s, 1 + x); };

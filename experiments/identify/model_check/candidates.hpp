@@ -9,6 +9,8 @@
 
 namespace beamid::experiments {
 
+inline constexpr const char* of_described = "of described";  ///< unit of values that are factors
+
 /// One physical quantity and a change x of it; x = 0 is the structure as described. Several structures share
 /// x: the same clamp, the same material, the same forgotten mass.
 struct Candidate {

@@ -12,7 +12,7 @@
 
 #include "experiments/identify/model_check/shared_residual.hpp"
 #include "experiments/identify/update/mode_pairing.hpp"
-#include "experiments/modal/study/merged_modes.hpp"
+#include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "experiments/text/spelling.hpp"
 

@@ -122,8 +122,8 @@ ModelCheck check_model(std::vector<CheckedStructure> structures, const ModelChec
 
 // What several records of one beam show, as one.
 
-/// The modes of all records, merged (merged_modes.hpp), each with the records that show it; the larger of the
-/// two deviations counts.
+/// The modes of all records, merged (mode_objections.hpp), each with the records that show it; the larger of
+/// the two deviations counts.
 std::vector<ObservedMode> observed_modes(const std::vector<RecordModes>& records);
 
 }  // namespace beamid::experiments

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "experiments/identify/update/updating.hpp"
-#include "experiments/modal/nearest_real.hpp"
+#include "experiments/modal/poles.hpp"
 #include "experiments/models/estimates.hpp"
 
 namespace beamid::experiments {

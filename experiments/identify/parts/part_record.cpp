@@ -1,4 +1,4 @@
-#include "experiments/identify/parts/part_record.hpp"
+#include "experiments/identify/parts/parts.hpp"
 
 #include <fmt/format.h>
 

@@ -12,7 +12,6 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/engine/run_bound.hpp"
-#include "experiments/identify/parts/span.hpp"
 #include "reduction/reduction.hpp"
 
 namespace beamid::experiments {

@@ -8,9 +8,48 @@
 
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/engine/comparison.hpp"
-#include "experiments/identify/parts/part_record.hpp"
 
 namespace beamid::experiments {
+
+// A span of a beam between measured sections.
+
+/// The unknowns of a span by the lines of its record's spectrum (line_likelihood.hpp): a comparison of one
+/// run. Contradicted where its sensors move otherwise than the sections make it, diverged where no maximum is
+/// found.
+/// @param experiment experiment_of_part(); @param record record_of_part(); @param highest_hz of its lines;
+/// absent: as record_lines()
+/// @throws std::invalid_argument where stamps are uneven, readings are missing or the noise of a sensor
+/// inside is not stated.
+Comparison identify_span(const Experiment& experiment, ComparedRecord record,
+                         const std::optional<double>& highest_hz = {});
+
+// What of a record belongs to a part of the structure.
+
+/// Whether the noise of the motion at the sections counts.
+enum class Sections {
+  exact,  ///< as if what was measured there were the motion itself [koh1991]
+  noisy   ///< its noise is part of the state (filters/latent_inputs.hpp)
+};
+
+/// Whether parts are spans of a beam, which bends: a section passes on a deflection and a rotation.
+bool has_spans(const fem::Structure& structure);
+
+/// The channels of a part: accelerations at its sections become support_acceleration, those inside stay as
+/// they are, and so do forces inside and, where the part stands on the base, the base's acceleration. All
+/// else is left out: it acts through the sections alone. Of a span angular accelerations at the sections
+/// become support_angular_acceleration; where one is missing, a channel of zeros with infinite noise takes
+/// its place.
+/// @param record every channel knows its place
+/// @throws InputError at the part's place where no accelerometer sits at one of its sections or none inside,
+/// or, of noisy sections, where their noise is not stated; of a span also where the base moves, or more
+/// rotations are missing than accelerometers inside can make up for.
+ComparedRecord record_of_part(const Experiment& experiment, const ComparedRecord& record,
+                              const PartOfStructure& part, Sections sections);
+
+/// The experiment as asked about the part: in its own coordinates, of the parameters those that it has.
+/// @throws InputError where none of them is its own, or one is of modes, which are those of the whole.
+Experiment experiment_of_part(const Experiment& experiment, const ComparedRecord& part_record,
+                              const PartOfStructure& part);
 
 // A chain as long as the part that is asked about.
 

@@ -1,4 +1,4 @@
-#include "experiments/identify/parts/span.hpp"
+#include "experiments/identify/parts/parts.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "experiments/identify/engine/compared_run.hpp"
+#include "experiments/identify/engine/identified_parameters.hpp"
 #include "experiments/identify/engine/low_mode_fit.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
-#include "experiments/identify/engine/noisy_input_fit.hpp"
-#include "experiments/identify/engine/true_value.hpp"
+#include "experiments/identify/engine/noise_in_estimates.hpp"
 #include "experiments/identify/parts/line_likelihood.hpp"
 #include "experiments/identify/verdict/run_verdict.hpp"
 #include "experiments/models/motion/supported_motion.hpp"

@@ -1,4 +1,4 @@
-#include "experiments/identify/posterior/hump_mixture.hpp"
+#include "experiments/identify/posterior/posterior.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@
 #include <tbb/parallel_for.h>
 #include <boost/math/special_functions/erf.hpp>
 
-#include "experiments/identify/posterior/no_u_turn.hpp"
+#include "experiments/identify/posterior/samplers.hpp"
 #include "experiments/signal/in_double.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "filters/random.hpp"

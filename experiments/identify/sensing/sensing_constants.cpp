@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/models/estimates.hpp"
 #include "filters/innovation_likelihood.hpp"
 
 namespace beamid::experiments {

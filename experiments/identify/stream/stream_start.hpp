@@ -1,4 +1,4 @@
-// What a stream of samples takes from an earlier record of the same rig.
+// What a stream of samples starts from: an earlier record of the same rig, or a saved state.
 #pragma once
 
 #include "experiments/config/experiment.hpp"

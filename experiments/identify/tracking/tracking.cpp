@@ -156,8 +156,15 @@ struct Levels {
   double output_share = std::numeric_limits<double>::infinity();  // standard error of the output's
 };
 
+// The beginning of a span, which shows near which maximum its levels lie.
+filters::Measurements beginning_of(const filters::Measurements& span) {
+  constexpr Index enough = 20'000;  // levels within a hundredth
+  if (span.size() <= enough) return span;
+  return {span.time.head(enough), span.outputs.leftCols(enough), {}, {}, span.time_resolution};
+}
+
 // The likelihood may have a maximum where force moves the mode and another where its stiffness wanders: the
-// search begins at both, and goes on where it has come highest.
+// search begins at both, on the beginning of the span, and goes on with all of it where it has come highest.
 Levels tuned(const Ringing& ringing, const filters::Measurements& span, const filters::Gaussian& initial,
              const TrackSettings& settings) {
   constexpr int first_iterations = 8, iterations = 60;
@@ -167,13 +174,14 @@ Levels tuned(const Ringing& ringing, const filters::Measurements& span, const fi
   if (!settings.walk) search.process_groups.push_back({ringing::stiffness, ringing::damping});
   search.max_iterations = first_iterations;
   search.tolerance = 1e-3;
+  const filters::Measurements beginning = beginning_of(span);
   std::vector<double> walks{first_walk, 0.01 * first_walk};
   if (settings.walk) walks = {*settings.walk};
   std::optional<filters::NoiseEstimate> best;
   for (const double walk : walks)
     for (const double share : {0.1, 1.0}) {
       search.guess = ringing_noise(ringing, ringing.noise, share * typical_force(ringing), walk);
-      filters::NoiseEstimate found = filters::estimate_noise(make_filter, initial, span, search);
+      filters::NoiseEstimate found = filters::estimate_noise(make_filter, initial, beginning, search);
       if (found.status == filters::NoiseStatus::failed) continue;
       if (!best || found.log_likelihood > best->log_likelihood) best = std::move(found);
     }

@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <Eigen/QR>
 
-#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/spectrum.hpp"

@@ -46,8 +46,8 @@ std::string step_error(const RunContext& context, const ComparedRun& run);
 // (input_faults.cpp).
 
 /// Where a driven record is surely likelier with a clock late or at another rate (likeliest_clock.hpp), or
-/// else with noise in its inputs (noisy_input_fit.hpp): contradicted where that moves an unknown out of its
-/// 95 % interval, or where it makes most of what is left; a warning where it moves one by more than a
+/// else with noise in its inputs (noise_in_estimates.hpp): contradicted where that moves an unknown out of
+/// its 95 % interval, or where it makes most of what is left; a warning where it moves one by more than a
 /// deviation.
 void judge_inputs(const RunContext& context, ComparedRun& run);
 

@@ -1,6 +1,6 @@
 // Eigensystem realisation of a free decay [juang1985].
-#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/modal_method.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "filters/whole_number.hpp"
 
 namespace beamid::experiments {

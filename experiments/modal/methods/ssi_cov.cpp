@@ -1,6 +1,6 @@
 // Covariance-driven stochastic subspace identification [peeters1999] with uncertainties [doehler2013].
 #include "experiments/modal/modal_method.hpp"
-#include "experiments/modal/stochastic_subspace.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "filters/whole_number.hpp"
 
 namespace beamid::experiments {

@@ -10,11 +10,11 @@
 
 #include <fmt/format.h>
 
-#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/modal/study/phase_wander.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {

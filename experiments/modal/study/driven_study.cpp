@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "experiments/modal/hammer_response.hpp"
-#include "experiments/modal/study/decay_part.hpp"
 #include "experiments/modal/study/record_kind.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/toolbox.hpp"

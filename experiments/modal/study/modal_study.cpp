@@ -11,14 +11,13 @@
 
 #include <fmt/format.h>
 
+#include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/modal/decay_jump.hpp"
-#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/steady_lines.hpp"
-#include "experiments/modal/study/decay_part.hpp"
 #include "experiments/modal/study/decay_polish.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/modal/study/record_kind.hpp"
-#include "experiments/modal/third_overtone.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
@@ -140,7 +139,7 @@ ModalEstimate strongest_of(const std::vector<ModeEstimate>& modes, const ModeEst
 }
 
 /// Sentences about the strongest mode in the channel that shows it best: a jump of the motion on the way
-/// (decay_jump.hpp), and the overtone of a sensor that saturates softly (third_overtone.hpp), where the
+/// (decay_jump.hpp), and the overtone of a sensor that saturates softly (amplitude_dependence.hpp), where the
 /// damping ratio is wrong by more than two of its deviations through it.
 std::vector<Objection> decay_objections_to(const RecordModes& found) {
   if (found.modes.empty()) return {};

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "experiments/modal/amplitude_dependence.hpp"
-#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
 

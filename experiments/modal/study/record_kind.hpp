@@ -1,4 +1,4 @@
-// What a record is, by its inputs: which method of modal analysis suits it.
+// What a record is, which part of it a modal analysis can use, and which method suits it.
 #pragma once
 
 #include <optional>
@@ -78,5 +78,22 @@ CoarseRecord coarse_record(const Record& record, double highest_hz);
 void search_levels(const ModalMethod& method, const ModalStudySettings& settings,
                    const Eigen::VectorXd& scales, const std::vector<RecordLine>& lines,
                    const CoarseRecord& finest, RecordModes& found);
+
+// The part of a record that a modal analysis can use.
+
+/// Channels that move: forces are no response.
+/// @throws std::invalid_argument when there is none.
+Record motion_of(const Record& record);
+
+/// The longest part in which every channel has all its readings (missing ones, NaN, are those of a clipped
+/// sensor or a drop-out); what was left out is a sentence of `remarks`.
+/// @throws std::invalid_argument when no part has 64 samples, with the place.
+Record complete_part(const Record& record, std::vector<std::string>& remarks);
+
+/// From the largest reading on, relative to each channel's own size.
+Record from_release(const Record& record, std::vector<std::string>& remarks);
+
+/// @throws std::invalid_argument unless the intervals are equal within 20 %.
+void check_intervals(const Record& record);
 
 }  // namespace beamid::experiments

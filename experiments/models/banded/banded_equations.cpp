@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "experiments/models/banded/symmetric_pattern.hpp"
+#include "experiments/models/banded/banded_blocks.hpp"
 
 namespace beamid::experiments::banded {
 

@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
+#include "experiments/models/banded/banded_blocks.hpp"
 #include "experiments/models/banded/banded_lanes.hpp"
 #include "experiments/models/banded/strain_product.hpp"
-#include "experiments/models/banded/symmetric_pattern.hpp"
 #include "experiments/models/motion/parametric_motion.hpp"
 #include "fem/parametric_system.hpp"
 

@@ -4,9 +4,9 @@
 #include <variant>
 #include <vector>
 
+#include "experiments/models/banded/banded_blocks.hpp"
 #include "experiments/models/banded/banded_factor.hpp"
 #include "experiments/models/banded/banded_lanes.hpp"
-#include "experiments/models/banded/symmetric_pattern.hpp"
 
 namespace beamid::experiments::banded {
 

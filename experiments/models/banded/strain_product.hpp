@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "experiments/models/banded/banded_blocks.hpp"
 #include "experiments/models/banded/banded_lanes.hpp"
-#include "experiments/models/banded/symmetric_pattern.hpp"
 #include "fem/structural_system.hpp"
 
 namespace beamid::experiments::banded {

@@ -6,11 +6,13 @@
 // the stiffness at rest, dr/dd at d = h = 0, so that small motion is that of a linear spring k.
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "experiments/models/unknown.hpp"
+#include "experiments/text/choice.hpp"
 #include "filters/registry.hpp"
 
 namespace beamid::experiments {
@@ -59,5 +61,13 @@ SpringVector spring_parameters(const SpringLaw& law, double stiffness);
 
 using SpringLawRegistry = filters::Registry<SpringLaw>;
 SpringLawRegistry& spring_law_registry();
+
+// A storey of a chain whose spring follows a law, as an experiment describes it.
+
+/// A storey whose spring follows a law that is not linear.
+struct StoreySpring {
+  int storey = 1;  ///< from the lowest up
+  Choice law;      ///< of spring_law_registry()
+};
 
 }  // namespace beamid::experiments

@@ -1,14 +1,21 @@
 #include "experiments/record/inspect/noise_floor.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <complex>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <unsupported/Eigen/FFT>
 #include <utility>
 #include <vector>
+
+#include <unsupported/Eigen/FFT>
+
+#include "experiments/record/inspect/defects.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -67,6 +74,86 @@ double noise_floor(const VectorXd& signal) {
   for (Index begin = 0; begin + size <= signal.size(); begin += size)
     variances.push_back(white.of(signal.segment(begin, size)));
   return std::sqrt(quantile(variances, 0.25));
+}
+
+namespace {
+
+// Rising as numbers do: all bits of a negative one turned, the sign of others set.
+std::uint64_t ordered_bits(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  constexpr std::uint64_t sign = std::uint64_t{1} << 63;
+  return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
+double value_of(std::uint64_t ordered) {
+  constexpr std::uint64_t sign = std::uint64_t{1} << 63;
+  return std::bit_cast<double>((ordered & sign) != 0 ? ordered & ~sign : ~ordered);
+}
+
+// Sorts finite values by their digits, the last first: four times as fast as comparisons with a million of
+// them.
+void sort_values(std::vector<double>& values) {
+  constexpr std::size_t few = 4096;
+  if (values.size() < few) return std::sort(values.begin(), values.end());
+  constexpr int digit_bits = 11, digits = 6;
+  constexpr std::size_t buckets = std::size_t{1} << digit_bits;
+  std::vector<std::uint64_t> keys(values.size()), moved(values.size());
+  std::vector<std::array<std::size_t, buckets>> counts(digits);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    keys[i] = ordered_bits(values[i]);
+    for (int d = 0; d < digits; ++d)
+      ++counts[static_cast<std::size_t>(d)][(keys[i] >> (d * digit_bits)) % buckets];
+  }
+  for (int d = 0; d < digits; ++d) {
+    auto& places = counts[static_cast<std::size_t>(d)];
+    if (places[(keys[0] >> (d * digit_bits)) % buckets] == keys.size()) continue;  // all have this digit
+    std::size_t next = 0;
+    for (std::size_t& place : places) next += std::exchange(place, next);
+    for (const std::uint64_t key : keys) moved[places[(key >> (d * digit_bits)) % buckets]++] = key;
+    keys.swap(moved);
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(keys[i]);
+}
+
+}  // namespace
+
+ValueSteps::ValueSteps(const std::vector<double>& signal) {
+  std::vector<double> sorted;
+  for (const double value : signal)
+    if (std::isfinite(value)) sorted.push_back(value);
+  sort_values(sorted);
+  if (sorted.empty()) return;
+  const double same = 1e-12 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
+  for (const double value : sorted) {
+    if (values_.empty() || value > values_.back() + same) values_.push_back(value), counts_.push_back(0);
+    ++counts_.back();
+  }
+}
+
+std::size_t ValueSteps::place(double value) const {
+  const auto above = std::upper_bound(values_.begin(), values_.end(), value);
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, above - values_.begin() - 1));
+}
+
+double ValueSteps::near(double value) const {
+  constexpr std::size_t reach = 8;
+  const std::size_t at = place(value), from = at - std::min(at, reach),
+                    to = std::min(at + reach + 1, values_.size());
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = from + 1; i < to; ++i) step = std::min(step, values_[i] - values_[i - 1]);
+  return step;
+}
+
+std::size_t ValueSteps::count(double value) const {
+  return values_.empty() ? 0 : counts_[std::min(place(value), values_.size() - 1)];
+}
+
+std::size_t ValueSteps::most_frequent_beside(double value) const {
+  constexpr std::size_t looked_at = 8;
+  if (values_.size() <= looked_at) return 0;
+  const auto first = value == values_.front() ? counts_.begin() + 1
+                                              : counts_.end() - 1 - static_cast<std::ptrdiff_t>(looked_at);
+  return *std::max_element(first, first + static_cast<std::ptrdiff_t>(looked_at));
 }
 
 }  // namespace beamid::experiments

@@ -1,4 +1,4 @@
-// How much of a signal is noise, where nothing else is known of it.
+// How much of a signal is noise, and in which steps its values are written.
 #pragma once
 
 #include <Eigen/Core>

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "experiments/record/prepare/channel_step.hpp"
-#include "experiments/signal/frequency_calculus.hpp"
 #include "experiments/signal/integration.hpp"
 
 namespace beamid::experiments {

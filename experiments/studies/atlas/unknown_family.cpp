@@ -1,4 +1,4 @@
-#include "experiments/studies/atlas/unknown_family.hpp"
+#include "experiments/studies/atlas/many_degrees.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -12,7 +12,7 @@
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/oscillator.hpp"
 #include "experiments/signal/toolbox.hpp"
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 #include "experiments/text/progress.hpp"
 #include "filters/filter_run.hpp"
 #include "filters/fisher_information.hpp"

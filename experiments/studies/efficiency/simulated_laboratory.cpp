@@ -1,4 +1,4 @@
-#include "experiments/studies/efficiency/simulated_laboratory.hpp"
+#include "experiments/studies/efficiency/laboratory_records.hpp"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 
 #include "experiments/modal/study/driven_study.hpp"
 #include "experiments/modal/study/hammer_study.hpp"
-#include "experiments/modal/study/merged_modes.hpp"
+#include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/results/page/swing_model.hpp"
 #include "experiments/results/results.hpp"

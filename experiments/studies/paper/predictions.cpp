@@ -1,4 +1,4 @@
-#include "experiments/studies/paper/predictions.hpp"
+#include "experiments/studies/paper/report.hpp"
 
 #include <cmath>
 #include <functional>
@@ -10,7 +10,6 @@
 
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/studies/paper/numerical_validation.hpp"
-#include "experiments/studies/paper/report.hpp"
 #include "fem/free_decay.hpp"
 #include "filters/diagnostics.hpp"
 

@@ -1,4 +1,4 @@
-#include "experiments/studies/prepare/preparation_cost.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "experiments/studies/reduce/release_decay.hpp"
+#include "experiments/studies/reduce/report.hpp"
 
 #include <fmt/format.h>
 

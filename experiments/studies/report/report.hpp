@@ -30,7 +30,7 @@ Table parameters_side_by_side(const std::vector<NamedResults>& results);
 Table numbers_side_by_side(const std::vector<NamedResults>& results, bool all);
 
 /// Writes the page of all folders, whole or not at all: what differs between their configurations, their
-/// parameters and numbers side by side, methods and versions (report.hpp), then the page of each.
+/// parameters and numbers side by side, methods and versions (steps.hpp), then the page of each.
 /// @param all as numbers_side_by_side()
 /// @throws InputError naming a folder that holds no results of beamid, or none that has a page.
 void write_joined_report(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& file,

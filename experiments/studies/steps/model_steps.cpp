@@ -12,7 +12,7 @@
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
-#include "experiments/studies/steps/report.hpp"
+#include "experiments/studies/steps/steps.hpp"
 #include "filters/continuous_model.hpp"
 #include "filters/scheme.hpp"
 

@@ -9,7 +9,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
-#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::joint_identification_test {

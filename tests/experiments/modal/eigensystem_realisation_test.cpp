@@ -1,4 +1,4 @@
-#include "experiments/modal/eigensystem_realisation.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 
 #include <gtest/gtest.h>
 

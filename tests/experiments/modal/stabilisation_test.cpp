@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "experiments/modal/dominant_mode.hpp"
-#include "experiments/modal/eigensystem_realisation.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/modal/modal_method.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/damped_oscillation.hpp"
 #include "tests/experiments/modal/shaken_chain.hpp"

@@ -1,5 +1,5 @@
 // Stochastic subspace identification on chains of masses whose modes are known.
-#include "experiments/modal/stochastic_subspace.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A sensor that saturates softly. Oracle: the Fourier series of its characteristic.
-#include "experiments/modal/third_overtone.hpp"
+#include "experiments/modal/amplitude_dependence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Steps of a record's preparation against known answers, and their costs against closed forms.
-#include "experiments/studies/prepare/preparation_cost.hpp"
+#include "experiments/studies/prepare/preparation_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,6 @@
 #include "experiments/record/record.hpp"
 #include "experiments/rig/virtual_rig.hpp"
 #include "experiments/signal/butterworth.hpp"
-#include "experiments/signal/frequency_calculus.hpp"
 #include "experiments/signal/integration.hpp"
 #include "experiments/signal/interpolation.hpp"
 #include "experiments/signal/toolbox.hpp"

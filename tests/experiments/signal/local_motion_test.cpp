@@ -1,5 +1,5 @@
 // Oracle: the envelope and the offset that the signal was made with.
-#include "experiments/signal/local_motion.hpp"
+#include "experiments/signal/sway.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,6 @@
 #include <sstream>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "experiments/studies/noise/treatment.hpp"
 #include "experiments/studies/paper/monte_carlo.hpp"
 
 namespace beamid::experiments::higher_mode_noise_test {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "experiments/sweep/read_sweep.hpp"
 #include "experiments/sweep/sweep_plan.hpp"
 #include "tests/experiments/sweep/sweep_rows.hpp"
 

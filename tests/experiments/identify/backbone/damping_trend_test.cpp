@@ -1,6 +1,6 @@
 // Oracles: dampings worked out from the friction or drag put in; constant ones with noise of their stated
 // size.
-#include "experiments/identify/backbone/damping_trend.hpp"
+#include "experiments/identify/backbone/secant_curve.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // A span of a girder between two sections. Oracle: its exact modes without elements, random forces beyond the
 // span in steady state; the values that the record was made with.
-#include "experiments/identify/parts/span.hpp"
+#include "experiments/identify/parts/parts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,6 @@
 #include <numbers>
 
 #include "experiments/config/read_experiment.hpp"
-#include "experiments/identify/parts/parts.hpp"
 #include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::span_test {

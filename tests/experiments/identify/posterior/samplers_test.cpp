@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "experiments/identify/posterior/no_u_turn.hpp"
 #include "experiments/identify/posterior/posterior.hpp"
+#include "experiments/identify/posterior/samplers.hpp"
 #include "tests/experiments/identify/posterior/posterior_cases.hpp"
 
 namespace beamid::experiments::samplers_test {

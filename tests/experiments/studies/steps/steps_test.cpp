@@ -8,7 +8,6 @@
 
 #include "experiments/models/discretisation_bias.hpp"
 #include "experiments/results/results.hpp"
-#include "experiments/studies/steps/report.hpp"
 #include "tests/experiments/identify/simulated_record.hpp"
 
 namespace beamid::experiments::steps_test {

@@ -1,4 +1,4 @@
-#include "experiments/text/choice_text.hpp"
+#include "experiments/text/choice.hpp"
 
 #include <charconv>
 #include <cmath>
