@@ -44,7 +44,7 @@ set(CPACK_COMPONENT_PARAVIEW_DESCRIPTION
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbeamid-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libspectra-dev, libsuitesparse-dev, "
-  "libsundials-dev, libvtk9-dev, libtbb-dev, libboost-program-options-dev, libmatio-dev, libhdf5-dev, "
+  "libsundials-dev, libvtk9-dev, libtbb-dev, libboost-program-options-dev, libmatio-dev, libhdf5-dev, zlib1g-dev, "
   "libtomlplusplus-dev, nlohmann-json3-dev, libfmt-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "${about}This package holds headers, static libraries and a CMake package.")

@@ -22,6 +22,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/text/fields.hpp"
@@ -88,12 +89,11 @@ void CollectedSignals::add_matrix(const std::function<std::string(std::size_t, b
 
 bool CollectedSignals::set(const std::string& name, double value) {
   const std::string last = last_part(name);
-  const bool rate = last == "fs" || last == "Fs" || last == "sampling_rate_hz" || last == "sample_rate";
-  const bool interval = last == "dt" || last == "Ts" || last == "Delta_X" || last == "sampling_interval_s";
-  if (!rate && !interval) return false;
+  const SamplingName what = sampling_name(last);
+  if (what == SamplingName::none) return false;
   if (!(value > 0 && std::isfinite(value)))
     throw InputError({file_}, fmt::format("{} is {}; expected a positive number", name, value));
-  const double stated = rate ? 1 / value : value;
+  const double stated = what == SamplingName::rate ? 1 / value : value;
   if (interval_ > 0 && std::abs(stated - interval_) > 1e-9 * interval_)
     throw InputError({file_}, fmt::format("{} means an interval of {} s beside one of {} s; expected one",
                                           name, stated, interval_));

@@ -213,13 +213,53 @@ bool names_columns(const std::vector<std::string_view>& fields) {
   return named;
 }
 
+SamplingName sampling_name(std::string_view name) {
+  static const std::set<std::string> rates{"fs",
+                                           "fsample",
+                                           "fsamp",
+                                           "sr",
+                                           "samplerate",
+                                           "samplingrate",
+                                           "samprate",
+                                           "sampleratehz",
+                                           "samplingratehz",
+                                           "samplefrequency",
+                                           "samplefreq",
+                                           "samplingfrequency",
+                                           "samplingfreq",
+                                           "sampfreq",
+                                           "fshz",
+                                           "rate"},
+      intervals{"dt",
+                "ts",
+                "deltat",
+                "deltax",
+                "tinterval",
+                "increment",
+                "xincrement",
+                "xinc",
+                "tinc",
+                "wfincrement",
+                "timestep",
+                "timeincrement",
+                "samplinginterval",
+                "samplingintervals",
+                "sampleinterval",
+                "sampleperiod",
+                "samplingperiod"};
+  std::string letters;
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return rates.contains(letters)       ? SamplingName::rate
+         : intervals.contains(letters) ? SamplingName::interval
+                                       : SamplingName::none;
+}
+
 namespace {
 
 /// Cells that name an interval, and a number in the next cell or in that below.
 std::optional<double> interval_in_cells(std::string_view text, char decimal) {
-  static const std::set<std::string> intervals{"increment", "xinc",    "xincrement", "sampleinterval",
-                                               "dt",        "deltat",  "deltax",     "samplinginterval",
-                                               "tinc",      "timestep"};
   std::vector<std::string_view> cells, above;
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
@@ -231,10 +271,8 @@ std::optional<double> interval_in_cells(std::string_view text, char decimal) {
       const ParsedNumber number = parse_number(cell, decimal);
       return number.finite && number.value > 0.0 ? std::optional(number.value) : std::nullopt;
     };
-    const auto names_interval = [&](std::string_view cell) {
-      std::string name;
-      for (const std::string& word : words_of(cell)) name += word;
-      return intervals.contains(name);
+    const auto names_interval = [](std::string_view cell) {
+      return sampling_name(cell) == SamplingName::interval;
     };
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (k + 1 < cells.size() && names_interval(cells[k]))

@@ -37,6 +37,11 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
 /// alone.
 bool names_columns(const std::vector<std::string_view>& fields);
 
+/// What a number alone is by its name: "fs", "SampleRate", "sampling_frequency" are rates, "dt", "Tinterval",
+/// "wf_increment" intervals.
+enum class SamplingName { none, rate, interval };
+SamplingName sampling_name(std::string_view name);
+
 /// The rate that lines of text state [Hz]: "Sample rate: 400 Hz", "fs = 400", "dt = 0.0025",
 /// "Sampling interval (s): 0.0025"; or a cell "Increment", "XInc", "Sample Interval", "dt:" and a number in
 /// the next cell or below it.

@@ -58,6 +58,23 @@ class Records(unittest.TestCase):
                 call()
             self.assertIn(message, str(refused.exception))
 
+    def test_archives_of_numpy_are_read_compressed_or_not(self):
+        time = np.arange(2000) / 200.0
+        motion = np.exp(-0.15 * time) * np.cos(2 * np.pi * 5 * time)
+        with working_folder():
+            for rate in ({"fs": 200.0}, {"SampleRate": 200.0}, {"wf_increment": 0.005}):
+                np.savez("plain.npz", acc=motion, **rate)
+                np.savez_compressed("small.npz", acc=motion, **rate)
+                found = [beamid.modal(name).tables["modes"]["frequency_hz"][0] for name in ("plain.npz", "small.npz")]
+                self.assertEqual(found[0], found[1])
+                self.assertAlmostEqual(found[0], 5.0, 3)
+            with open("small.npz", "rb") as stream:
+                whole = stream.read()
+            with open("cut.npz", "wb") as stream:
+                stream.write(whole[:200] + bytes(60) + whole[260:])
+            with self.assertRaises(beamid.InputError):
+                beamid.modal("cut.npz")
+
     def test_samples_of_a_file_cannot_be_written_to_and_outlive_it(self):
         samples = beamid.read(TUTORIAL / "tip_acceleration.csv").samples
         self.assertFalse(samples.flags.writeable)

@@ -55,7 +55,17 @@ std::string text_attribute(hid_t object, const char* name) {
   return text;
 }
 
-constexpr const char* sampling[] = {"sampling_rate_hz", "sampling_interval_s", "dt", "fs", "Fs", "Delta_X"};
+constexpr const char* sampling[] = {"sampling_rate_hz",
+                                    "sampling_interval_s",
+                                    "dt",
+                                    "fs",
+                                    "Fs",
+                                    "Delta_X",
+                                    "sample_rate",
+                                    "sampling_rate",
+                                    "SampleRate",
+                                    "sampling_frequency",
+                                    "wf_increment"};
 
 struct Walk {
   CollectedSignals& signals;

@@ -1,11 +1,13 @@
-// NumPy's array files: a header in Python's words, then the numbers [npy].
+// NumPy's array files and archives: a header in Python's syntax, then the numbers [npy].
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <regex>
 
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -64,11 +66,9 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
   if (shape[1].length() == 0) {  // a number alone
     if (bytes.size() < start + length + numbers->size) throw refuse("a header without its number");
     const double value = numbers->read(bytes.data() + start + length);
-    const bool interval = name.starts_with("dt") || name.find("interval") != std::string::npos;
-    if (value > 0.0 && !interval &&
-        (name.starts_with("fs") || name.starts_with("Fs") || name.find("rate") != std::string::npos))
-      table.stated_rate = value;
-    if (value > 0.0 && interval) table.stated_rate = 1.0 / value;
+    const SamplingName what = sampling_name(name);
+    if (value > 0.0 && what == SamplingName::rate) table.stated_rate = value;
+    if (value > 0.0 && what == SamplingName::interval) table.stated_rate = 1.0 / value;
     return;
   }
   const std::size_t rows = std::stoull(shape[1]), width = shape[2].length() > 0 ? std::stoull(shape[2]) : 1;
@@ -91,7 +91,26 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
     }
 }
 
-/// The entries of a zip archive, as np.savez writes it: each stored, its name that of the array.
+constexpr std::size_t deflated = 8;  ///< the method of np.savez_compressed
+
+/// Of so many bytes; fewer where the stream is damaged, which takes no more memory than it can hold.
+std::string inflated(std::string_view compressed, std::size_t whole) {
+  constexpr std::size_t largest_ratio = 1032;  // of the format
+  if (whole / largest_ratio > compressed.size() + 1) return {};
+  std::string bytes(whole, '\0');
+  z_stream stream{};
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
+  stream.avail_in = static_cast<uInt>(compressed.size());
+  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+  stream.avail_out = static_cast<uInt>(whole);
+  if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) return {};
+  inflate(&stream, Z_FINISH);
+  inflateEnd(&stream);
+  bytes.resize(stream.total_out);
+  return bytes;
+}
+
+/// The entries of a zip archive, as np.savez writes it: stored or deflated, the name that of the array.
 void add_archive(RecordTable& table, const std::string& bytes) {
   constexpr std::string_view entry = "PK\x01\x02";
   constexpr std::size_t fixed = 46, local = 30;
@@ -111,11 +130,17 @@ void add_archive(RecordTable& table, const std::string& bytes) {
   for (; at < bytes.size() && bytes.compare(at, entry.size(), entry) == 0 && at + fixed <= bytes.size();
        at += fixed + number(at + 28, 2) + number(at + 30, 2) + number(at + 32, 2)) {
     const std::string name = bytes.substr(at + fixed, number(at + 28, 2));
-    const std::size_t size = number(at + 20, 4), header = number(at + 42, 4);
-    if (number(at + 10, 2) != 0) throw refuse("'" + name + "' is compressed");
+    const std::size_t method = number(at + 10, 2), size = number(at + 20, 4), whole = number(at + 24, 4),
+                      header = number(at + 42, 4);
+    if (method != 0 && method != deflated) throw refuse("'" + name + "' is compressed by another method");
     const std::size_t begin = header + local + number(header + 26, 2) + number(header + 28, 2);
     if (begin > bytes.size() || size > bytes.size() - begin) throw refuse("'" + name + "' is cut short");
-    add_array(table, bytes.substr(begin, size), name.substr(0, name.rfind(".npy")));
+    const std::string content = method == 0 ? bytes.substr(begin, size)
+                                            : inflated(std::string_view(bytes).substr(begin, size), whole);
+    const auto* const first = reinterpret_cast<const Bytef*>(content.data());
+    if (content.size() != whole || crc32(0, first, static_cast<uInt>(whole)) != number(at + 16, 4))
+      throw refuse("'" + name + "' is damaged");
+    add_array(table, content, name.substr(0, name.rfind(".npy")));
   }
   if (table.columns.empty()) throw refuse("no array");
 }

@@ -363,6 +363,7 @@ class UniversalFileReader final : public RecordReader {
     if (first == nullptr)
       throw InputError({table.file}, fmt::format("no real time response among {} datasets 58; expected one",
                                                  functions.size()));
+    cut_to_common_part(table);
     if (others > 0)
       table.remarks.push_back(fmt::format("{} dataset{} 58 that {} no real time response {} passed over.",
                                           others, others == 1 ? "" : "s", others == 1 ? "is" : "are",
@@ -388,11 +389,23 @@ class UniversalFileReader final : public RecordReader {
     if (factor == 1.0) table.time = 0;                          // else found by its unit
   }
 
+  static void cut_to_common_part(RecordTable& table) {
+    std::size_t shortest = table.columns.front().size(), longest = shortest;
+    for (const auto& column : table.columns)
+      shortest = std::min(shortest, column.size()), longest = std::max(longest, column.size());
+    if (shortest == longest) return;
+    table.warnings.push_back(fmt::format("The datasets have {} to {} samples; the first {} of each are used.",
+                                         shortest, longest, shortest));
+    for (auto& column : table.columns) column.resize(shortest);
+  }
+
   static void check_same_instants(const std::string& file, const UniversalFunction& first,
                                   const UniversalFunction& other) {
-    if (first.even != other.even || first.points != other.points || first.start != other.start ||
-        first.step != other.step || first.abscissa_unit != other.abscissa_unit ||
-        first.abscissa != other.abscissa)
+    const auto both = std::min(first.abscissa.size(), other.abscissa.size());  // one may go on for longer
+    if (first.even != other.even || first.start != other.start || first.step != other.step ||
+        first.abscissa_unit != other.abscissa_unit ||
+        !std::equal(first.abscissa.begin(), first.abscissa.begin() + static_cast<std::ptrdiff_t>(both),
+                    other.abscissa.begin()))
       throw InputError(
           {file}, fmt::format("'{}' and '{}' are sampled at different instants; expected the same for all",
                               uff58_name_of(first), uff58_name_of(other)));

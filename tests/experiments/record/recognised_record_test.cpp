@@ -136,7 +136,12 @@ TEST(RecognisedRecord, ReadsStoredArchivesOfArraysAndRefusesDamagedOnes) {
     std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': " + shape + ", }\n",
                 array = "\x93NUMPY\x01" + std::string(1, '\0') + number(header.size(), 2) + header;
     array.append(reinterpret_cast<const char*>(values.data()), 8 * values.size());
-    const std::string sizes = number(0, 4) + number(array.size(), 4) + number(array.size(), 4) +
+    std::uint32_t sum = 0xFFFFFFFF;  // CRC-32, bit by bit
+    for (const unsigned char c : array) {
+      sum ^= c;
+      for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ (sum & 1 ? 0xEDB88320 : 0);
+    }
+    const std::string sizes = number(~sum, 4) + number(array.size(), 4) + number(array.size(), 4) +
                               number(name.size(), 2) + number(0, 2),
                       common = number(20, 2) + number(0, 2) + number(0, 2) + number(0, 4) + sizes;
     directory += "PK\x01\x02" + number(20, 2) + common + number(0, 2) + number(0, 2) + number(0, 2) +

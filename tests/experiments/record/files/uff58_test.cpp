@@ -1,5 +1,6 @@
 // Universal Files, dataset 58: what is read, what is refused.
 // Oracles: the numbers written into the files, by hand from the formats' descriptions or by the libraries.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -144,6 +145,24 @@ TEST(Uff58Reader, NumbersManyDatasetsOfOneName) {
   ASSERT_EQ(table.names.size(), 4000u);
   EXPECT_EQ(table.names[0], "1:+Z");
   EXPECT_EQ(table.names[3999], "1:+Z (4000)");
+}
+
+// Two datasets of one test, of which the second stopped earlier.
+TEST(Uff58Reader, CutsDatasetsOfOtherLengthsToTheirCommonPart) {
+  std::string shorter = ascii_58(2, 4, true, "m/s^2", second_signal);
+  constexpr int kept = written_samples - 4;  // a row of four is left out
+  const std::string points = fmt::format("{:10d}{:10d}", 4, written_samples);
+  shorter.replace(shorter.find(points), points.size(), fmt::format("{:10d}{:10d}", 4, kept));
+  const std::size_t end = shorter.rfind("    -1"), last_row = shorter.rfind('\n', end - 2) + 1;
+  shorter.erase(last_row, end - last_row);
+  const TemporaryFile file("two.uff", ascii_58(1, 4, true, "m/s^2", first_signal) + shorter);
+  const Record record = read_record(file.path());
+  ASSERT_EQ(record.size(), kept);
+  ASSERT_EQ(record.channels.size(), 2u);
+  EXPECT_NEAR(record.samples(1, kept - 1), second_signal(kept - 1), 1e-12);  // of E20.12
+  ASSERT_EQ(record.objections.size(), 1u);
+  EXPECT_THAT(record.objections[0].text,
+              HasSubstr(fmt::format("{} to {} samples; the first {}", kept, written_samples, kept)));
 }
 
 TEST(Uff58Reader, ReadsNumbersThatTouch) {
