@@ -61,10 +61,10 @@ TEST(PrintedOutput, IsFoundInTheLatestOutputThatHasIt) {
 
 TEST(PrintedOutput, NamesLinesOfThePageThatDiffer) {
   const std::vector<std::string> output{"K 1.0", "C 2.5", "end"};
-  EXPECT_EQ(disagreement({7, {"K 1.0", "C 2.5"}}, output, 0), "");
-  EXPECT_THAT(disagreement({7, {"K 1.0", "C 2.7"}}, output, 0),
+  EXPECT_EQ(disagreement({7, {"K 1.0", "C 2.5"}}, output, 0, 1), "");
+  EXPECT_THAT(disagreement({7, {"K 1.0", "C 2.7"}}, output, 0, 1),
               HasSubstr("line 8\n    printed C 2.7\n    found   C 2.5"));
-  EXPECT_THAT(disagreement({7, {"end", "C 2.7"}}, output, 2), HasSubstr("found   (the end)"));
+  EXPECT_THAT(disagreement({7, {"end", "C 2.7"}}, output, 2, 1), HasSubstr("found   (the end)"));
 }
 
 }  // namespace

@@ -22,6 +22,14 @@ std::vector<std::string> pages() {
   return found;
 }
 
+/// Pages are the program, to the printed digit; those whose last digit a processor decides are named with the
+/// reason. Tried with and without AVX, AVX2, FMA and AVX-512 of the C library (GLIBC_TUNABLES).
+double allowed_digits(const std::string& page) {
+  if (page.find("25_shake_table") != std::string::npos)
+    return 2;  // a search over 12,000 samples ends where rounding lets it: 2e-8 of the estimate
+  return 0;
+}
+
 bool is_set(const char* variable) {
   return std::getenv(variable) != nullptr;
 }
@@ -66,7 +74,7 @@ class Pages : public testing::TestWithParam<std::string> {
         continue;
       }
       const std::vector<std::string>& output = outputs_[place.output];
-      const std::string differences = disagreement(fragment, output, place.line);
+      const std::string differences = disagreement(fragment, output, place.line, allowed_digits(GetParam()));
       if (differences.empty()) continue;
       if (updating() && 2 * place.same >= fragment.text.size()) {
         for (std::size_t i = 0; i < fragment.text.size() && place.line + i < output.size(); ++i)

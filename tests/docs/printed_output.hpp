@@ -33,15 +33,16 @@ struct Place {
   std::size_t output = 0, line = 0, same = 0;
 };
 
-inline bool same_as_printed(const std::string& printed, const std::string& found) {
-  return same_line(printed, found, 1, {0, 0});
+/// @param digits units of the last digit that a number may differ by
+inline bool same_as_printed(const std::string& printed, const std::string& found, double digits) {
+  return same_line(printed, found, digits, {0, 0});
 }
 
 inline std::size_t lines_that_agree(const std::vector<std::string>& fragment,
                                     const std::vector<std::string>& output, std::size_t from) {
   std::size_t same = 0;
   for (std::size_t i = 0; i < fragment.size() && from + i < output.size(); ++i)
-    same += !fragment[i].empty() && same_as_printed(fragment[i], output[from + i]);
+    same += !fragment[i].empty() && same_as_printed(fragment[i], output[from + i], 1);
   return same;
 }
 
@@ -58,12 +59,13 @@ inline Place best_place(const std::vector<std::string>& fragment,
 }
 
 /// Lines of the page that differ from the output at that place, as "page:12: printed ..., found ...".
+/// @param digits units of the last digit that a number of this page may differ by
 inline std::string disagreement(const Fragment& fragment, const std::vector<std::string>& output,
-                                std::size_t line) {
+                                std::size_t line, double digits) {
   std::string text;
   for (std::size_t i = 0; i < fragment.text.size(); ++i) {
     const std::string found = line + i < output.size() ? output[line + i] : "(the end)";
-    if (!same_as_printed(fragment.text[i], found))
+    if (!same_as_printed(fragment.text[i], found, digits))
       text += fmt::format("  line {}\n    printed {}\n    found   {}\n", fragment.line + int(i),
                           fragment.text[i], found);
   }
