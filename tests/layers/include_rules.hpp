@@ -80,6 +80,7 @@ inline const std::vector<Library>& libraries() {
       {"HDF5", {"hdf5"}, {"experiments/"}},
       {"MPI", {"mpi.h"}, {"experiments/sweep/mpi_processes.cpp"}},
       {"matio", {"matio"}, {"experiments/record/files/"}},
+      {"zlib", {"zlib"}, {"experiments/record/files/"}},
       {"libsndfile", {"sndfile"}, {"experiments/record/files/"}},
       {"libmseed", {"libmseed"}, {"experiments/record/files/"}},
       {"oneTBB", {"tbb/", "oneapi/"}, {"experiments/"}},

@@ -8,10 +8,14 @@ import pkgutil
 import re
 import unittest
 
+import numpy as np
+
 import beamid
 from beamid import _commands
 from support import SOURCE, working_folder
 
+if hasattr(np, "long"):  # NumPy 2 shows its scalars as np.float64(3.5); pages show the numbers
+    np.set_printoptions(legacy="1.25")
 UPDATES = bool(os.environ.get("BEAMID_UPDATE_GOLDEN"))  # writes what is printed into the pages, in place of comparing
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 

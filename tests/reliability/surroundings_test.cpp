@@ -95,7 +95,7 @@ TEST_F(Surroundings, NoHomeNoEnvironmentAndDecimalCommasChangeNothing) {
       shell(place_,
             "localedef -i de_DE -f UTF-8 ./de_DE.UTF-8 2>/dev/null >&2; [ -d de_DE.UTF-8 ] || exit 77\n"
             "export LOCPATH=\"$PWD\" LC_ALL=de_DE.UTF-8 ASAN_OPTIONS=detect_leaks=0; bash -c 'printf %.1f "
-            "1,5' >number\n" +
+            "1,5' >number; grep -qx 1,5 number || exit 77\n" +
                 words + "german");
   if (german.code == 77) GTEST_SKIP() << "no locale with decimal commas can be made here";
   EXPECT_EQ(contents(place_.folder() / "number"), "1,5");

@@ -1,4 +1,5 @@
 #include "experiments/identify/driven/description_faults.hpp"
+#include "experiments/identify/engine/measured_force.hpp"
 
 #include <fmt/format.h>
 
@@ -37,11 +38,12 @@ class LeftOver {
 
   const VectorXd& left() const { return part().left; }
 
-  /// d of another model at the same unknowns: how the lines made differ, ends projected out.
-  VectorXd change_of(const JointModel& model) const {
-    const LinearResponse there(dynamic_cast<const filters::LinearMotion&>(*model.motion),
-                               state_of_unknowns(model, theta_));
-    return part().change_to(problem_, there, problem_.parts.front());
+  /// Of a model of another description at the same unknowns: how the lines made differ from those of the
+  /// description as it is, made anew in the same way. Each has the ends that suit it.
+  VectorXd change_of(const JointModel& described, const JointModel& other) const {
+    VectorXd change = left_of(described) - left_of(other);
+    part().project(change);
+    return change;
   }
 
   /// Of a gain of one channel.
@@ -89,6 +91,11 @@ class LeftOver {
   VectorXd at_once_;  // what no unknowns make, to first order
 
   const PartAt& part() const { return parts_.front(); }
+  VectorXd left_of(const JointModel& model) const {
+    const LinearResponse there(dynamic_cast<const filters::LinearMotion&>(*model.motion),
+                               state_of_unknowns(model, theta_));
+    return PartAt(problem_, there, problem_.parts.front()).left;
+  }
   VectorXd projected(const MatrixXcd& lines) const {
     VectorXd rows = line_rows(lines.reshaped());
     part().project(rows);
@@ -159,7 +166,7 @@ FollowedChange followed(const DrivenProblem& problem, const OtherModels& models,
     const LeftOver left(there, fit->theta);
     const double step = 0.02 * candidate.scale();
     const JointModel moved = models.of(candidate.changed(experiment.structure, x + step));
-    const auto score = left.score(left.change_of(moved) / step);
+    const auto score = left.score(left.change_of(model, moved) / step);
     if (!(left.left().squaredNorm() < best.left) || !score) break;
     best = {x, score->deviation, left.left().squaredNorm(), fit->theta};
     x += score->change;
@@ -183,6 +190,12 @@ std::string value_text(const Candidate& candidate, const fem::Structure& structu
                      quantile_95 * std::abs(slope) * deviation, candidate.value_unit);
 }
 
+/// A factor of all masses, which only a measured force distinguishes from one of all stiffnesses.
+bool weighs_all(const Candidate& candidate) {
+  return candidate.name == "floor_mass" || candidate.name == "beam_mass" || candidate.name == "member_mass" ||
+         candidate.name == "mass";
+}
+
 /// Whether the unknowns hold it already.
 bool is_asked(const Experiment& experiment, const Candidate& candidate) {
   return std::ranges::any_of(experiment.parameters, [&](const ParameterChoice& asked) {
@@ -193,14 +206,16 @@ bool is_asked(const Experiment& experiment, const Candidate& candidate) {
 
 void add_structure_changes(const DrivenProblem& problem, const OtherModels& models,
                            const Experiment& experiment, const LeftOver& left, const VectorXd& theta,
-                           bool much_is_left, std::vector<DescriptionFault>& faults) {
+                           bool much_is_left, bool weighed, std::vector<DescriptionFault>& faults) {
   const double whole = left.left().squaredNorm(), cost = evaluate_driven(problem, theta).cost;
+  const JointModel described = models.of(experiment.structure);
   for (const Candidate& candidate : candidates_of({experiment.structure})) {
     if (candidate.of_clock || is_asked(experiment, candidate)) continue;
+    if (!weighed && weighs_all(candidate)) continue;
     try {
       const double step = 0.02 * candidate.scale();
       const JointModel model = models.of(candidate.changed(experiment.structure, step));
-      const auto score = left.score(left.change_of(model) / step);
+      const auto score = left.score(left.change_of(described, model) / step);
       if (!score) continue;
       DescriptionFault fault{value_text(candidate, experiment.structure, score->change, score->deviation),
                              score->score, score->explained, score->moved};
@@ -281,6 +296,15 @@ void add_places(const DrivenProblem& problem, const OtherModels& models, const E
   }
 }
 
+/// With the estimates as guesses: a model takes the modes of its damping, for one, from there.
+Experiment at_estimates(Experiment experiment, const JointModel& model, const VectorXd& theta) {
+  const std::size_t count = std::min(experiment.parameters.size(), model.unknowns.size());
+  for (std::size_t j = 0; j < count; ++j)
+    if (experiment.parameters[j].quantity == model.unknowns[j].quantity)
+      experiment.parameters[j].guess = model.unknowns[j].to_physical(theta[static_cast<Index>(j)]);
+  return experiment;
+}
+
 }  // namespace
 
 std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,
@@ -298,13 +322,17 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
     const DrivenFit fit = evaluate_driven(*problem, theta);
     problem->weights = fit.left.cwiseMax(1e-150).cwiseInverse();
     const LeftOver left(*problem, theta);
-    const OtherModels models(experiment, record, reduction, folder);
+    const Experiment there = at_estimates(experiment, model, theta);
+    const OtherModels models(there, record, reduction, folder),
+        as_described(experiment, record, reduction, folder);
     constexpr double much = 0.03;
     const bool much_is_left = fit.left_share > much;
-    add_structure_changes(*problem, models, experiment, left, theta, much_is_left, faults);
+    add_structure_changes(*problem, models, experiment, left, theta, much_is_left, measures_force(record),
+                          faults);
     add_gains(record, left, faults);
     constexpr double misplaced = 0.15;  // a sensor a floor off leaves 20 % and more
-    if (fit.left_share > misplaced) add_places(*problem, models, experiment, record, left, theta, faults);
+    if (fit.left_share > misplaced)
+      add_places(*problem, as_described, experiment, record, left, theta, faults);
   } catch (const std::runtime_error&) {  // no motion at these unknowns
   }
   std::stable_sort(faults.begin(), faults.end(), [](const DescriptionFault& a, const DescriptionFault& b) {

@@ -8,10 +8,12 @@
 #include <limits>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include "experiments/text/fields.hpp"
@@ -56,28 +58,45 @@ bool is_ignored(int number) {
 
 }  // namespace
 
+// A signal comes to any thread that does not block it, to those of TBB as well: its handler writes its number
+// into a pipe, which next() waits for beside the samples.
 struct SampleSource::Before {
-  sigset_t mask{};
-  struct sigaction pipe {};
+  std::array<int, 2> pipe{-1, -1};
+  std::vector<std::pair<int, struct sigaction>> actions;
 };
 
+namespace {
+
+volatile std::sig_atomic_t writing_end = -1;
+
+void write_number(int number) {
+  const int before = errno;
+  const char byte = static_cast<char>(number);
+  if (::write(writing_end, &byte, 1) < 0) errno = before;  // full: a signal is there already
+  errno = before;
+}
+
+}  // namespace
+
 SampleSource::SampleSource(int descriptor) : descriptor_(descriptor), before_(std::make_unique<Before>()) {
-  sigset_t ending;
-  sigemptyset(&ending);
+  if (::pipe2(before_->pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) fail("waiting for signals");
+  signals_ = before_->pipe[0];
+  writing_end = before_->pipe[1];
+  const auto take = [this](int number, void (*handler)(int)) {
+    struct sigaction action {
+    }, before{};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;  // rows that are being written are written
+    if (sigaction(number, &action, &before) == 0) before_->actions.emplace_back(number, before);
+  };
   for (const int number : {SIGINT, SIGTERM, SIGHUP})
-    if (!is_ignored(number)) sigaddset(&ending, number);
-  signals_ = signalfd(-1, &ending, SFD_CLOEXEC);
-  if (signals_ < 0) fail("waiting for signals");
-  pthread_sigmask(SIG_BLOCK, &ending, &before_->mask);
-  struct sigaction ignore {};
-  ignore.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &ignore, &before_->pipe);
+    if (!is_ignored(number)) take(number, write_number);
+  take(SIGPIPE, SIG_IGN);
 }
 
 SampleSource::~SampleSource() {
-  sigaction(SIGPIPE, &before_->pipe, nullptr);
-  pthread_sigmask(SIG_SETMASK, &before_->mask, nullptr);
-  ::close(signals_);
+  for (const auto& [number, action] : before_->actions) sigaction(number, &action, nullptr);
+  for (const int end : before_->pipe) ::close(end);
 }
 
 bool SampleSource::next(std::string& line) {
@@ -107,8 +126,8 @@ bool SampleSource::read_more() {
     fail("waiting for samples");
   }
   if (waited[0].revents != 0) {
-    signalfd_siginfo told{};
-    if (::read(signals_, &told, sizeof told) == sizeof told) signal_ = static_cast<int>(told.ssi_signo);
+    char number = 0;
+    if (::read(signals_, &number, 1) == 1) signal_ = number;
     return signal_ == 0;
   }
   std::array<char, 65536> bytes{};

@@ -1,5 +1,5 @@
-// HDF5 files that lie: about units, sizes, where their numbers are; and damaged ones, on which HDF5 1.10
-// itself crashes or runs for ever. Oracles: the numbers written, and that this process goes on.
+// HDF5 files that lie: about units, sizes, where their numbers are; and damaged ones, on which HDF5 1.10 of
+// Debian 12 itself crashes or runs for ever. Oracles: the numbers written, and that this process goes on.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -124,8 +124,9 @@ std::string damaged(const Hdf5File& made, std::initializer_list<std::pair<std::s
 TEST(Hdf5Damage, ThatCrashesTheLibraryIsOneMessage) {
   const auto made = record_file(0.004, "s");
   const TemporaryFile file("segv.h5", damaged(*made, {{31, 3}}));
-  EXPECT_THAT(input_error_of(file, [&] { read_record(file.path()); }),
-              MatchesRegex("segv.h5: HDF5 crashes on it .*; expected an undamaged file"));
+  const std::string crashes = "segv.h5: HDF5 crashes on it .*; expected an undamaged file";
+  EXPECT_THAT(input_error_of(file, [&] { read_record(file.path()); }),  // 1.14 reads past what is damaged
+              MatchesRegex(H5_VERSION_GE(1, 12, 0) ? "no error|" + crashes : crashes));
 }
 
 TEST(Hdf5Damage, ThatNeverEndsIsOneMessage) {
