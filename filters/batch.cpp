@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <stdexcept>
 
@@ -58,9 +59,17 @@ void run_any(TrialGroup& group) {
 
 }  // namespace
 
+bool algorithms::processor_has_avx2() {
+  if (std::getenv("BEAMID_BASELINE") != nullptr) return false;
+#ifdef __x86_64__  // compilers know the function for these processors only
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+  return false;
+#endif
+}
+
 bool algorithms::avx2_is_usable() {
-  static const bool usable =
-      compiled_for_avx2() && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  static const bool usable = compiled_for_avx2() && processor_has_avx2();
   return usable;
 }
 

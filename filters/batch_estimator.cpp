@@ -88,7 +88,8 @@ Descent descend(OutputError& error, const VectorXd& start, Index samples, double
     }
     ++result.passes;
     const double fall = pass.finite ? result.last.cost - pass.cost : -1.0;
-    if (!(fall > 0.0)) return TriedStep{0.0, converged};
+    const double unseen = converged ? rounding * result.last.cost : 0.0;  // the last step may change less
+    if (!pass.finite || !(fall > -unseen)) return TriedStep{0.0, converged};
     result.coefficients = trial;
     result.last = std::move(pass);
     result.costs.push_back(result.last.cost);

@@ -5,13 +5,13 @@
 
 #include <Eigen/QR>
 
+#include "filters/batch_avx2.hpp"
 #include "filters/normal_avx2.hpp"
 
 namespace beamid::filters {
 
 Eigen::VectorXd normal_noise(Eigen::Index count, std::uint64_t seed, std::uint64_t stream) {
-  static const bool avx2 = algorithms::normal_compiled_for_avx2() && __builtin_cpu_supports("avx2") &&
-                           __builtin_cpu_supports("fma");
+  static const bool avx2 = algorithms::normal_compiled_for_avx2() && algorithms::processor_has_avx2();
   if (!avx2) return RandomStream(seed, stream).normal(count, 1);
   Eigen::VectorXd numbers(count + count % 2);
   algorithms::normal_avx2(numbers.data(), numbers.size(), seed, stream);

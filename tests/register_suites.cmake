@@ -1,8 +1,8 @@
 # Writes the list of tests that ctest reads, one for each suite of a test program: cmake -D PROGRAM=... -D PREFIX=fem.
-# -D LIST=... -D SOURCES=... [-D TOGETHER=...] -P ... A process for every single test would take a third of the time of
+# -D LIST=... -D SOURCES=... [-D TOGETHER=...] [-D EMULATOR=...] -P ... A process for every single test would take a third of the time of
 # all of them for its start, and repeat what the tests of a suite share. Suites below SOURCES/TOGETHER, a folder or the
 # beginning of a file's path, share what takes long to find: all of them are one.
-execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${LIST}.json
+execute_process(COMMAND ${EMULATOR} ${PROGRAM} --gtest_list_tests --gtest_output=json:${LIST}.json
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(READ ${LIST}.json listed)
 string(REPLACE "\\/" "/" listed "${listed}")

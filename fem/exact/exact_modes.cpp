@@ -305,16 +305,22 @@ int count_below(const std::vector<HarmonicChain>& chains, double omega) {
                          [&](int sum, const HarmonicChain& chain) { return sum + chain.count_below(omega); });
 }
 
+// Of a frequency that two pivots decide between them; so near to one, rounding may make them disagree, and
+// the count is one too many or too few.
+constexpr double unsure = 1e-12;
+
 // The smallest interval of numbers around root `wanted` (from 1): fewer roots lie below its begin. Every
-// count is kept for the roots to come.
+// count is kept for the roots to come, and the last that is too low begins the search: a count next to an
+// earlier root may be too high.
 std::pair<double, double> bracket(const std::vector<HarmonicChain>& chains, int wanted,
                                   std::map<double, int>& counts) {
   while (counts.rbegin()->second < wanted) {
     const double next = 2.0 * counts.rbegin()->first;
     counts[next] = count_below(chains, next);
   }
-  const auto above =
-      std::find_if(counts.begin(), counts.end(), [&](const auto& known) { return known.second >= wanted; });
+  const auto above = std::find_if(counts.rbegin(), counts.rend(), [&](const auto& known) {
+                       return known.second < wanted;
+                     }).base();
   double low = std::prev(above)->first, high = above->first;
   while (high - low > std::numeric_limits<double>::epsilon() * high) {
     const double middle = 0.5 * (low + high);
@@ -325,10 +331,12 @@ std::pair<double, double> bracket(const std::vector<HarmonicChain>& chains, int 
   return {low, high};
 }
 
-// Of the modes between low and high the one that is `which` from the first, at positions [m].
-VectorXd shape(const std::vector<HarmonicChain>& chains, double low, double high, int which,
+// Of the modes at a frequency the one that has `earlier` before it on the whole beam, at positions [m].
+VectorXd shape(const std::vector<HarmonicChain>& chains, double frequency, int earlier,
                const VectorXd& positions) {
   VectorXd w = VectorXd::Zero(positions.size());
+  const double low = (1.0 - unsure) * frequency, high = (1.0 + unsure) * frequency;
+  int which = earlier - count_below(chains, low);
   for (const HarmonicChain& chain : chains) {
     const int here = chain.count_below(high) - chain.count_below(low);
     if (which >= here && &chain != &chains.back()) {
@@ -342,7 +350,7 @@ VectorXd shape(const std::vector<HarmonicChain>& chains, double low, double high
     std::sort(order.begin(), order.end(), [&](Index a, Index b) { return positions[a] < positions[b]; });
     std::vector<double> sorted;
     for (const Index i : order) sorted.push_back(positions[i]);
-    const VectorXd part = chain.deflection(0.5 * (low + high), std::min(which, 1), sorted);
+    const VectorXd part = chain.deflection(frequency, std::clamp(which, 0, 1), sorted);
     for (Index i = 0; i < part.size(); ++i) w[order[i]] = part[i];
     break;
   }
@@ -395,7 +403,7 @@ std::optional<ExactModes> exact_modes(const Beam& beam, Index count, const Vecto
     } else {
       const auto [low, high] = bracket(chains, static_cast<int>(j) + 1, counts);
       modes.angular_frequency[j] = 0.5 * (low + high);
-      modes.deflection.col(j) = shape(chains, low, high, static_cast<int>(j) - counts[low], positions);
+      modes.deflection.col(j) = shape(chains, modes.angular_frequency[j], static_cast<int>(j), positions);
     }
     scale_to_one(modes.deflection.col(j));
   }

@@ -53,6 +53,21 @@ StrainSweeps::StrainSweeps(const Eigen::SparseMatrix<double>& strain) : coordina
     if (!determined[column]) gauges_.push_back(column);
 }
 
+void StrainSweeps::sweep_motion(double* q) const {
+  constexpr double cancelled = 1e-14;
+  for (Eigen::Index step = 0; step < steps(); ++step) {
+    double* const place = q + pivot_[step];
+    const RepeatedRows::Entry *entry = rows_.begin(step), *last = rows_.end(step);
+    double rest = 0.0, terms = 0.0;
+    while (++entry != last) {
+      const double term = entry->value * place[entry->offset];
+      rest -= term;
+      terms += std::abs(term);
+    }
+    *place = std::abs(rest) > cancelled * terms ? rest : 0.0;
+  }
+}
+
 void StrainSweeps::sweep_backward(double* f, double* forces) const {
   for (Eigen::Index step = steps(); step-- > 0;) {
     double* const place = f + pivot_[step];
@@ -73,7 +88,7 @@ constexpr double no_motion_strain = 1e-9;  // relative to the terms that cancel 
 VectorXd gauge_motion(const StrainSweeps& sweeps, int gauge) {
   VectorXd motion = VectorXd::Zero(sweeps.coordinates());
   motion[gauge] = 1.0;
-  sweeps.sweep_forward([](int) { return 0.0; }, motion.data());
+  sweeps.sweep_motion(motion.data());
   return motion;
 }
 
@@ -145,7 +160,7 @@ RigidMotions rigid_motions(const StrainSweeps& sweeps, const Eigen::SparseMatrix
       for (Index i = 0; i < rank; ++i)
         motion[result.kept[i]] = -follow[i] * largest[order[j]] / largest[order[i]];
     }
-    sweeps.sweep_forward([](int) { return 0.0; }, motion.data());
+    sweeps.sweep_motion(motion.data());
     motion /= motion.cwiseAbs().maxCoeff();
   }
   return result;

@@ -43,9 +43,13 @@ class StrainSweeps {
     }
   }
 
-  /// The same with the rounding errors of the sums carried along in `low` (n), all zero on entry. Uncarried
-  /// they are small but lean to one side over long stretches, and a chain of a million coordinates adds them
-  /// up twice.
+  /// The same without strain. A sum that cancels to rounding is zero: a fused multiplication would leave the
+  /// rounding error of a product, and a redundant row of nothing else would seem to strain.
+  void sweep_motion(double* q) const;
+
+  /// sweep_forward() with the rounding errors of the sums carried along in `low` (n), all zero on entry.
+  /// Uncarried they are small but lean to one side over long stretches, and a chain of a million coordinates
+  /// adds them up twice.
   template <class StrainOf>
   void sweep_forward_compensated(StrainOf&& strain_of, double* q, double* low) const {
     for (Eigen::Index step = 0; step < steps(); ++step) {

@@ -47,7 +47,7 @@ TEST(LevenbergMarquardt, FindsTheCertifiedFitOfMisra) {
   VectorXd b{{500.0, 1e-4}};
   EXPECT_EQ(descend(misra, b), DescentEnd::settled);
   EXPECT_NEAR(b[0], 2.3894212918e+02, 1e-7);
-  EXPECT_NEAR(b[1], 5.5015643181e-04, 1e-13);
+  EXPECT_NEAR(b[1], 5.5015643181e-04, 1e-12);  // costs are compared: sqrt(eps) of b, 1e-11, on any processor
   EXPECT_NEAR(misra(b, nullptr).squaredNorm(), 1.2455138894e-01, 1e-10);
 }
 

@@ -2,6 +2,7 @@
 // sqrt(EI / rho A). Each frequency equation is the determinant of the four end conditions: w = w' = 0
 // clamped, w = w'' = 0 pinned, w' = w''' = 0 guided, w'' = w''' = 0 free.
 #include <numbers>
+#include <random>
 
 #include "tests/fem/verification/oracle.hpp"
 
@@ -86,6 +87,48 @@ TEST(Supports, TwoEqualSpansVibrateAsPinnedPinnedAndAsClampedPinned) {
   for (int n = 1; n <= 2; ++n) b.insert(b.end(), {2 * n * std::numbers::pi, 2 * clamped[n - 1]});
   test::expect_frequencies(test::uniform_beam({pinned_root, {0.5 * length, true, false}, pinned_tip}),
                            frequencies(b));
+}
+
+// Counts of roots err where two pivots round differently, within some 1e-15 of a frequency; no search for the
+// next root and no shape may trust one there. Oracle: tan b = tanh b (clamped-pinned, whose frequencies a
+// pinned-free beam has, too) and tan b = -tanh b (guided-free), solved here; every beam has them after
+// scaling.
+TEST(Supports, FrequenciesAndShapesOfAnyUniformBeamAreThoseOfItsKind) {
+  const auto root = [](int n, double sign) {
+    double b = n * std::numbers::pi;
+    for (int k = 0; k < 50; ++k) b = n * std::numbers::pi + sign * std::atan(std::tanh(b));
+    return b;
+  };
+  struct Kind {
+    std::vector<double> b;
+    std::vector<double> at;  // supports over the length
+    bool pinned;
+  };
+  const std::vector<Kind> kinds{
+      {{0.0, root(1, 1), root(2, 1), root(3, 1), root(4, 1), root(5, 1)}, {0.0}, true},
+      {{0.0, root(1, -1), root(2, -1), root(3, -1), root(4, -1), root(5, -1)}, {0.0}, false},
+      {{2 * std::numbers::pi, 2 * root(1, 1), 4 * std::numbers::pi, 2 * root(2, 1), 6 * std::numbers::pi,
+        2 * root(3, 1)},
+       {0.0, 0.5, 1.0},
+       true}};
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(0.1, 10.0);
+  for (int beams = 0; beams < 200; ++beams)
+    for (const Kind& kind : kinds) {
+      fem::Beam beam;
+      const double span = any(random), stiffness = any(random), mass = any(random);
+      beam.segments = {{span, {stiffness, mass, 0.0, {}, {}, {}}}};
+      for (const double at : kind.at) beam.supports.push_back({at * span, kind.pinned, !kind.pinned});
+      const auto modes = fem::exact_modes(beam, 6, Eigen::VectorXd::LinSpaced(41, 0.0, span));
+      for (int i = 0; i < 6; ++i) {
+        const double b = kind.b[static_cast<std::size_t>(i)],
+                     expected = b * b * std::sqrt(stiffness / mass) / (span * span);
+        ASSERT_NEAR(modes->angular_frequency[i], expected, 1e-13 * expected)
+            << span << " " << stiffness << " " << mass;
+        ASSERT_GT(modes->deflection.col(i).cwiseAbs().maxCoeff(), 0.5)
+            << span << " " << stiffness << " " << mass;
+      }
+    }
 }
 
 TEST(Supports, SpansOnTheTwoSidesOfAClampShareTheirFrequencies) {
