@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -62,9 +63,12 @@ ColumnDescription column(const std::string& word) {
   return described;
 }
 
-double factor(const std::string& symbol, const std::vector<Unit>& known, const std::string& of) {
+/// @param quantity of which it is a unit; absent: time
+double factor(const std::string& symbol, const std::vector<Unit>& known, std::optional<Quantity> quantity) {
   for (const Unit& unit : known)
     if (unit.symbol == symbol) return unit.factor;
+  if (const auto converted = convertible_unit(symbol, quantity)) return *converted;
+  const std::string of = quantity ? to_string(*quantity) : "time";
   throw UsageError(fmt::format("'{}' is no unit of {}; known: {}", symbol, of, joined(symbols(known))));
 }
 
@@ -91,7 +95,7 @@ std::vector<ColumnDescription> channels(const Words& columns, const Words& quant
     channel.stated = !quantities.empty();
     if (!channel.stated) continue;
     channel.quantity = *find_quantity(word_for(quantities, k));
-    channel.factor = factor(word_for(units_given, k), units(channel.quantity), to_string(channel.quantity));
+    channel.factor = factor(word_for(units_given, k), units(channel.quantity), channel.quantity);
   }
   return described;
 }
@@ -100,7 +104,7 @@ std::vector<ColumnDescription> channels(const Words& columns, const Words& quant
 ColumnDescription time_column(const std::string& word) {
   const std::size_t colon = word.rfind(':');
   ColumnDescription described = column(word.substr(0, colon));
-  if (colon != std::string::npos) described.factor = factor(word.substr(colon + 1), time_units(), "time");
+  if (colon != std::string::npos) described.factor = factor(word.substr(colon + 1), time_units(), {});
   return described;
 }
 

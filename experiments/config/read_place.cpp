@@ -249,15 +249,18 @@ const bool record_keys_registered[] = {register_keys([]() -> const KeyTable& { r
                                        register_keys([]() -> const KeyTable& { return time_keys(); }),
                                        register_keys([]() -> const KeyTable& { return channel_keys(); })};
 
-/// @param what measured: "acceleration", for messages.
-double factor_of(const TomlTable& table, const std::string& what, const std::vector<Unit>& known) {
+/// @param quantity that is measured; absent: time
+double factor_of(const TomlTable& table, std::optional<Quantity> quantity, const std::vector<Unit>& known) {
+  const std::string what = quantity ? to_string(*quantity) : "time";
   const std::string expected = "a unit of " + what + ": " + joined(symbols(known));
   if (!table.contains("unit")) table.miss("unit", expected);
   const std::optional<std::string> symbol = table.find_text("unit");
   const auto unit =
       std::find_if(known.begin(), known.end(), [&](const Unit& u) { return u.symbol == *symbol; });
-  if (unit == known.end()) table.refuse("unit", expected);
-  return unit->factor;
+  if (unit != known.end()) return unit->factor;
+  const auto converted = convertible_unit(*symbol, quantity);
+  if (!converted) table.refuse("unit", expected);
+  return *converted;
 }
 
 ColumnDescription read_column(const TomlTable& table) {
@@ -278,7 +281,7 @@ ColumnDescription read_channel(const TomlTable& table, const fem::Structure* str
       structure ? channel_keys().read(table, structure->extent()) : channel_keys().read(table);
   ColumnDescription channel = read_column(table);
   channel.quantity = *find_quantity(given.quantity);
-  channel.factor = factor_of(table, given.quantity, units(channel.quantity));
+  channel.factor = factor_of(table, channel.quantity, units(channel.quantity));
   channel.position = given.position;
   channel.distance = given.distance.value_or(0.0);
   channel.place = given.place;
@@ -307,7 +310,7 @@ DescribedRecord read_described(const TomlTable& table, const fem::Structure* str
   if (record.window) record.window_place = table.value_place("window_s");
   if (const auto time = table.find_table("time")) {
     record.time = read_column(*time);
-    record.time->factor = factor_of(*time, "time", time_units());
+    record.time->factor = factor_of(*time, {}, time_units());
   }
   for (const TomlTable& channel : table.find_tables("channels")) {
     record.channels.push_back(read_channel(channel, structure));

@@ -47,6 +47,11 @@ std::string_view typical_line(std::string_view text) {
   return rest.substr(0, rest.find_first_of("\r\n"));
 }
 
+/// "Started:", "*STARTTIME", "[Start]": above a value of the file's head.
+bool is_title(std::string_view line) {
+  return line.ends_with(':') || line.starts_with('*') || (line.starts_with('[') && line.ends_with(']'));
+}
+
 /// "", "0", "1" or "0", "1", "2": what tables of pandas name columns without names.
 bool counts_columns(const std::vector<std::string_view>& fields) {
   const std::size_t first = !fields.empty() && fields[0].empty() ? 1 : 0;
@@ -148,7 +153,7 @@ bool DelimitedText::find_body() {
   };
   const auto names = [&](std::size_t line) { return names_columns(named(lines[line].text, width)); };
   for (std::size_t k = 0; k < first; ++k) {
-    const bool below_title = k > 0 && trimmed(lines[k - 1].text).ends_with(':');
+    const bool below_title = k > 0 && is_title(trimmed(lines[k - 1].text));
     if (lines[k].rows && !below_title && (lines[k].width == width || k + 1 == first)) return false;
   }
   std::optional<std::size_t> header, nearest;

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -22,154 +21,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "experiments/record/recognised_column.hpp"
-#include "experiments/record/record.hpp"
-#include "experiments/record/units.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/memory_need.hpp"
 
 namespace beamid::experiments {
-namespace {
-
-/// "data.time" -> "time".
-std::string last_part(const std::string& name) {
-  const std::size_t at = name.find_last_of("./");
-  return at == std::string::npos ? name : name.substr(at + 1);
-}
-
-/// What a name says of times: "t" and "time" nothing, "time_ms" the unit.
-struct TimeName {
-  bool time = false;
-  std::string unit;
-};
-
-TimeName time_name(const std::string& name) {
-  const std::string last = last_part(name);
-  if (last == "t" || last == "time" || last == "Time") return {true, ""};
-  for (const Unit& unit : time_units())
-    if (last == "time_" + unit.suffix || last == "t_" + unit.suffix) return {true, unit.symbol};
-  return {};
-}
-
-}  // namespace
-
-void CollectedSignals::announce(const std::string& name, const std::vector<std::size_t>& extent) {
-  double count = 1.0;
-  for (const std::size_t size : extent) count *= static_cast<double>(size);
-  announced_ += count;
-  if (announced_ > static_cast<double>(most_numbers_))
-    throw InputError(
-        {file_}, fmt::format("'{}' claims {} numbers, {:.3g} with those before it; expected at most "
-                             "{:.3g} in all, which a file of this size can hold",
-                             name, fmt::join(extent, " x "), announced_, static_cast<double>(most_numbers_)));
-}
-
-void CollectedSignals::add(std::string name, std::string unit, std::vector<double> values, int digits) {
-  for (double& value : values)
-    if (!std::isfinite(value)) value = std::nan("");
-  if (values.size() > 1) signals_.push_back({std::move(name), std::move(unit), std::move(values), digits});
-}
-
-void CollectedSignals::add_matrix(const std::function<std::string(std::size_t, bool)>& name_of,
-                                  const std::string& unit, const std::vector<double>& values,
-                                  std::size_t rows, std::size_t columns, int digits) {
-  constexpr std::size_t most_signals = 4096;
-  const bool by_rows = rows < columns;
-  const std::size_t count = std::min(rows, columns), length = std::max(rows, columns);
-  if (count > most_signals)
-    throw InputError({file_}, fmt::format("{} is {} x {}; expected at most {} channels", name_of(1, by_rows),
-                                          rows, columns, most_signals));
-  for (std::size_t k = 0; k < count; ++k) {
-    std::vector<double> signal(length);
-    for (std::size_t i = 0; i < length; ++i)
-      signal[i] = by_rows ? values[k + i * rows] : values[i + k * rows];
-    add(name_of(k + 1, by_rows), unit, std::move(signal), digits);
-  }
-}
-
-bool CollectedSignals::set(const std::string& name, double value) {
-  const std::string last = last_part(name);
-  const SamplingName what = sampling_name(last);
-  if (what == SamplingName::none) return false;
-  if (!(value > 0 && std::isfinite(value)))
-    throw InputError({file_}, fmt::format("{} is {}; expected a positive number", name, value));
-  const double stated = what == SamplingName::rate ? 1 / value : value;
-  if (interval_ > 0 && std::abs(stated - interval_) > 1e-9 * interval_)
-    throw InputError({file_}, fmt::format("{} means an interval of {} s beside one of {} s; expected one",
-                                          name, stated, interval_));
-  set_interval(name, stated);
-  return true;
-}
-
-void CollectedSignals::find_time(RecordTable& table, const RecordFormat& format) const {
-  const auto at = std::find_if(table.names.begin(), table.names.end(),
-                               [](const std::string& name) { return time_name(name).time; });
-  if (at == table.names.end()) {
-    if (interval_ > 0) table.clock = {0.0, interval_};
-    return;
-  }
-  const auto column = static_cast<std::size_t>(at - table.names.begin());
-  const std::string named = time_name(*at).unit;
-  std::string& unit = table.units[column];
-  if (unit.empty()) unit = named;
-  if (unit.empty() && !format.time)
-    table.remarks.push_back(fmt::format("'{}' states no unit: its times are taken as seconds.", *at));
-  const auto factor = seconds_per(unit, "'" + *at + "'", file_, format);
-  if (!factor) return;
-  if (!named.empty() && *factor != *seconds_per(named, *at, file_, format))
-    throw InputError({file_}, fmt::format("'{}' is in '{}'; expected the unit of its name", *at, unit));
-  if (*factor == 1.0) table.time = column;  // else found by its unit
-  const std::vector<double>& times = table.columns[column];
-  const double mean = *factor * (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-  constexpr double tolerated = 0.02;
-  if (interval_ > 0 && !format.time && !format.sampling_rate &&
-      std::abs(mean - interval_) > tolerated * interval_)
-    throw InputError(
-        {file_},
-        fmt::format("{} means an interval of {:.6g} s, and '{}' has one of {:.6g} s; expected them to "
-                    "agree, or record.time or record.sampling_rate_hz in the configuration",
-                    interval_name_, interval_, *at, mean));
-}
-
-RecordTable CollectedSignals::table(const RecordFormat& format) const {
-  std::map<std::size_t, std::size_t> numbers;  // of each length
-  for (const Signal& signal : signals_) numbers[signal.values.size()] += signal.values.size();
-  if (numbers.empty())
-    throw InputError({file_},
-                     "no signal of at least two numbers; expected vectors or matrices of real numbers");
-  const std::size_t length =
-      std::max_element(numbers.begin(), numbers.end(), [](const auto& a, const auto& b) {
-        return a.second < b.second;
-      })->first;
-  RecordTable table;
-  table.file = file_;
-  std::string others;
-  for (const Signal& signal : signals_) {
-    if (signal.values.size() != length) {
-      others += fmt::format("{}{} ({})", others.empty() ? "" : ", ", signal.name, signal.values.size());
-      continue;
-    }
-    table.names.push_back(signal.name);
-    table.units.push_back(signal.unit);
-    table.columns.push_back(signal.values);
-    table.precision.push_back(PrintedPrecision::of_digits(signal.digits));
-  }
-  find_time(table, format);
-  table.by_people = true;
-  for (std::size_t i = 0; i < table.width(); ++i) {
-    const auto meaning = parse_column_name(table.names[i]);
-    const auto unit = stated_unit(table.units[i]);
-    if ((meaning && meaning->quantity) || (unit && unit->quantity)) table.by_people = false;
-  }
-  const auto stated = [&](std::size_t i) { return table.time != i && !table.units[i].empty(); };
-  bool units = false;
-  for (std::size_t i = 0; i < table.width(); ++i) units = units || stated(i);
-  if (!units) table.units.clear();
-  if (!others.empty())
-    table.remarks.push_back(fmt::format("Omitted, as not of {} samples: {}.", length, others));
-  return table;
-}
-
 namespace {
 
 // The pipe between a process and the child that reads a file for it.
@@ -200,7 +55,7 @@ class PipeReceiver {
   PipeReceiver& operator=(const PipeReceiver&) = delete;
 
   bool bytes(void* to, std::size_t count);
-  bool text(std::string& text);  ///< of at most 1 MiB
+  bool text(std::string& text, std::size_t longest = std::size_t{1} << 20);
   template <class Number>
   bool number(Number& value) {
     return bytes(&value, sizeof value);
@@ -248,8 +103,7 @@ bool PipeReceiver::bytes(void* to, std::size_t count) {
   return true;
 }
 
-bool PipeReceiver::text(std::string& text) {
-  constexpr std::size_t longest = std::size_t{1} << 20;
+bool PipeReceiver::text(std::string& text, std::size_t longest) {
   std::size_t size = 0;
   if (!number(size) || size > longest) return false;
   text.resize(size);
@@ -276,8 +130,9 @@ void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
   setrlimit(resource, &now);
 }
 
-[[noreturn]] void work(int descriptor, const std::string& file, const ReadingLimits& limits,
-                       const std::function<void(CollectedSignals&)>& read) {
+/// @param answer reads the file, then sends that it was found and what.
+[[noreturn]] void work(int descriptor, const ReadingLimits& limits,
+                       const std::function<void(const PipeSender&)>& answer) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGSEGV, SIGBUS, SIGABRT, SIGXCPU})
     signal(number, SIG_DFL);
@@ -290,19 +145,7 @@ void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
   limit(RLIMIT_AS, memory, memory);
   const PipeSender out(descriptor);
   try {
-    CollectedSignals signals(file, limits.numbers);
-    read(signals);
-    out.number(ApartOutcome::found);
-    out.number(signals.interval());
-    out.text(signals.interval_name());
-    out.number(signals.signals().size());
-    for (const CollectedSignals::Signal& signal : signals.signals()) {
-      out.text(signal.name);
-      out.text(signal.unit);
-      out.number(signal.digits);
-      out.number(signal.values.size());
-      out.bytes(signal.values.data(), signal.values.size() * sizeof(double));
-    }
+    answer(out);
   } catch (const std::bad_alloc&) {
     out.number(ApartOutcome::no_memory);
   } catch (const std::exception& error) {
@@ -310,6 +153,20 @@ void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
     out.text(error.what());
   }
   _exit(0);
+}
+
+void send(const CollectedSignals& signals, const PipeSender& out) {
+  out.number(ApartOutcome::found);
+  out.number(signals.interval());
+  out.text(signals.interval_name());
+  out.number(signals.signals().size());
+  for (const CollectedSignals::Signal& signal : signals.signals()) {
+    out.text(signal.name);
+    out.text(signal.unit);
+    out.number(signal.digits);
+    out.number(signal.values.size());
+    out.bytes(signal.values.data(), signal.values.size() * sizeof(double));
+  }
 }
 
 /// @returns false where what comes is not whole.
@@ -360,15 +217,20 @@ ReadingLimits reading_limits(std::size_t file_bytes) {
   return limits;
 }
 
-CollectedSignals read_apart(const std::string& file, const std::string& library, const ReadingLimits& limits,
-                            const std::function<void(CollectedSignals&)>& read) {
+namespace {
+
+/// Answers in a child process. @param answer there; @param take what comes, here: false where it is not
+/// whole.
+void ask_apart(const std::string& file, const std::string& library, const ReadingLimits& limits,
+               const std::function<void(const PipeSender&)>& answer,
+               const std::function<bool(PipeReceiver&)>& take) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     throw std::runtime_error("no pipe for a process that reads '" + file + "': " + std::strerror(errno));
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    work(ends[1], file, limits, read);
+    work(ends[1], limits, answer);
   }
   const int reason = errno;
   close(ends[1]);
@@ -378,11 +240,10 @@ CollectedSignals read_apart(const std::string& file, const std::string& library,
   if (child < 0)
     throw std::runtime_error("no process that reads '" + file + "' can be started: " + std::strerror(reason));
 
-  CollectedSignals signals(file, limits.numbers);
   ApartOutcome outcome{};
   std::string message;
   const bool whole =
-      in.number(outcome) && (outcome == ApartOutcome::found     ? receive(in, limits, signals)
+      in.number(outcome) && (outcome == ApartOutcome::found     ? take(in)
                              : outcome == ApartOutcome::refused ? in.text(message)
                                                                 : outcome == ApartOutcome::no_memory);
   if (!whole) kill(child, SIGKILL);
@@ -402,7 +263,44 @@ CollectedSignals read_apart(const std::string& file, const std::string& library,
         {file}, fmt::format("{} needs more than {} MB of memory for it; {}, or one that holds less", library,
                             limits.bytes >> 20, expected));
   if (outcome == ApartOutcome::refused) throw refusal(file, message);
+}
+
+}  // namespace
+
+CollectedSignals read_apart(const std::string& file, const std::string& library, const ReadingLimits& limits,
+                            const std::function<void(CollectedSignals&)>& read) {
+  CollectedSignals signals(file, limits.numbers);
+  ask_apart(
+      file, library, limits,
+      [&](const PipeSender& out) {
+        CollectedSignals found(file, limits.numbers);
+        read(found);
+        send(found, out);
+      },
+      [&](PipeReceiver& in) { return receive(in, limits, signals); });
   return signals;
+}
+
+std::vector<std::string> texts_apart(const std::string& file, const std::string& library,
+                                     const ReadingLimits& limits,
+                                     const std::function<std::vector<std::string>()>& read) {
+  std::vector<std::string> texts;
+  ask_apart(
+      file, library, limits,
+      [&](const PipeSender& out) {
+        const std::vector<std::string> found = read();
+        out.number(ApartOutcome::found);
+        out.number(found.size());
+        for (const std::string& text : found) out.text(text);
+      },
+      [&](PipeReceiver& in) {
+        std::size_t count = 0;
+        if (!in.number(count)) return false;
+        for (std::size_t k = 0; k < count; ++k)
+          if (!in.text(texts.emplace_back(), limits.bytes)) return false;
+        return true;
+      });
+  return texts;
 }
 
 LoadedLibrary::LoadedLibrary(const std::string& file, const char* name, const char* package)
@@ -411,6 +309,10 @@ LoadedLibrary::LoadedLibrary(const std::string& file, const char* name, const ch
     throw InputError({file, 0, 0}, fmt::format("cannot be read without {}; expected that library: it is in "
                                                "Debian's package {}",
                                                name, package));
+}
+
+bool LoadedLibrary::has(const char* name) const {
+  return dlsym(handle_, name) != nullptr;
 }
 
 void* LoadedLibrary::symbol(const char* name) const {

@@ -95,6 +95,11 @@ ReadingLimits reading_limits(std::size_t file_bytes);
 CollectedSignals read_apart(const std::string& file, const std::string& library, const ReadingLimits& limits,
                             const std::function<void(CollectedSignals&)>& read);
 
+/// The same of texts, each no longer than the memory of the limits.
+std::vector<std::string> texts_apart(const std::string& file, const std::string& library,
+                                     const ReadingLimits& limits,
+                                     const std::function<std::vector<std::string>()>& read);
+
 // Libraries that few files need, loaded when one of these is read: a start takes no longer for them.
 
 /// A shared object of the system.
@@ -103,6 +108,9 @@ class LoadedLibrary {
   /// @param name of the shared object: "libsndfile.so.1". @param package of Debian that holds it.
   /// @throws InputError at `file` where there is no such library.
   LoadedLibrary(const std::string& file, const char* name, const char* package);
+
+  /// Whether it has a function of that name, which older versions lack.
+  bool has(const char* name) const;
 
   /// A function of it, of the type that the library's header gives it:
   /// function<decltype(sf_open)>("sf_open").

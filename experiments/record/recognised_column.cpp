@@ -63,19 +63,21 @@ bool any_word(const std::vector<std::string>& words, const std::set<std::string>
 }
 
 const std::set<std::string> times{
-    "t",       "time",    "times",   "timestamp", "zeit",     "zeitstempel", "temps",   "tiempo",  "tempo",
-    "seconds", "secs",    "elapsed", "sekunden",  "secondes", "segundos",    "secondi", "date",    "datetime",
-    "datum",   "fecha",   "uhrzeit", "epoch",     "unix",     "second",      "sec",     "sekunde", "seconde",
-    "segundo", "secondo", "hora",    "heure",     "ora",      "tijd",        "tid",     "aika",    "czas",
-    "时间",    "時間",    "時刻",    "время",     "zeitpunkt"};
+    "t",        "time",    "stamp",   "times",   "timestamp", "zeit",     "zeitstempel", "temps",   "tiempo",
+    "tempo",    "seconds", "secs",    "elapsed", "sekunden",  "secondes", "segundos",    "secondi", "date",
+    "datetime", "datum",   "fecha",   "uhrzeit", "epoch",     "unix",     "second",      "sec",     "sekunde",
+    "seconde",  "segundo", "secondo", "hora",    "heure",     "ora",      "tijd",        "tid",     "aika",
+    "czas",     "时间",    "時間",    "時刻",    "время",     "zeitpunkt"};
 // Time, and its unit [s].
 const std::vector<std::pair<std::string_view, double>> clocks{
     {"millis", 1e-3}, {"milliseconds", 1e-3}, {"msec", 1e-3},        {"micros", 1e-6}, {"microseconds", 1e-6},
     {"usec", 1e-6},   {"nanos", 1e-9},        {"nanoseconds", 1e-9}, {"minutes", 60.0}};
-const std::set<std::string> counts{
-    "sample",        "samples", "index",       "idx",      "n",       "nr",     "no",     "packet",
-    "packetcounter", "counter", "count",       "row",      "id",      "i",      "k",      "probe",
-    "abtastwert",    "muestra", "echantillon", "campione", "amostra", "nummer", "number", "point"};
+const std::set<std::string> counts{"sample",      "samples",  "index",   "idx",           "n",
+                                   "nr",          "no",       "packet",  "packetcounter", "seq",
+                                   "sequence",    "counter",  "count",   "row",           "id",
+                                   "i",           "k",        "probe",   "abtastwert",    "muestra",
+                                   "echantillon", "campione", "amostra", "nummer",        "number",
+                                   "point"};
 const std::set<std::string> no_motion{
     "euler",      "roll",    "pitch",        "yaw",      "gyr",        "gyro",     "gyroscope",
     "mag",        "magnet",  "magnetometer", "quat",     "quaternion", "temp",     "temperature",
@@ -148,6 +150,21 @@ std::optional<StatedUnit> unit_of(const std::string& unit) {
   return stated_unit(unit);
 }
 
+// The factor of a unit that no table here has: of the column's own, or in brackets; else behind a slash, or
+// behind a blank, a comma or an underscore where a sign shows that it is one ("velocity in/s", no "force
+// in").
+std::optional<double> factor_elsewhere(std::string_view name, std::string_view unit, Quantity quantity) {
+  if (!unit.empty()) return convertible_unit(unit, quantity);
+  const auto [plain, stated] = parted(name);
+  if (!stated.empty() && name.find_first_of("[(") != std::string_view::npos)
+    return convertible_unit(stated, quantity);
+  const std::size_t slash = name.find('/'), gap = name.find_last_of(" ,_");
+  if (slash != std::string_view::npos && slash > 0)
+    if (const auto factor = convertible_unit(name.substr(slash + 1), quantity)) return factor;
+  if (gap == std::string_view::npos || name.find_first_of("/^", gap) == std::string_view::npos) return {};
+  return convertible_unit(name.substr(gap + 1), quantity);
+}
+
 }  // namespace
 
 std::optional<RecognisedColumn> recognise_column(std::string_view name, std::string_view unit) {
@@ -155,8 +172,9 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
   auto [plain, stated] = parted(name);
   if (!unit.empty()) stated = std::string(unit);
   const std::vector<std::string> words = words_of(plain);
+  // Microseconds at 120 Hz at most; other instruments of the maker count 0.1 ms under this name.
   if (plain.find("SampleTimeFine") != std::string::npos)
-    return RecognisedColumn{Kind::time, {}, 1e-6, true, true};
+    return RecognisedColumn{Kind::time, {}, 1e-6, true, true, 1e6 / 125.0};
   RecognisedColumn found;
   const auto is_time = [&](std::optional<double> seconds) {
     found.kind = Kind::time;
@@ -177,6 +195,8 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
   if (any_word(words, times) && any_word(words_of(stated), epochs)) return is_time({});
   if (const auto seconds = seconds_per_unit(stated); any_word(words, times) && (stated.empty() || seconds))
     return is_time(seconds);
+  if (any_word(words, times) && !unit_of(stated))
+    if (const auto seconds = convertible_unit(stated, {})) return is_time(seconds);  // "Time [hr]"
   const auto quantity = quantity_of(words, plain);
   if (!quantity && any_word(words, no_motion)) return RecognisedColumn{Kind::other};
   if (!quantity && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts))
@@ -197,6 +217,9 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
     found.states_unit = true;
   } else if (any_word(words, {"gfx", "gfy", "gfz"})) {
     found.factor = standard_gravity;
+    found.states_unit = true;
+  } else if (const auto factor = quantity ? factor_elsewhere(name, unit, in_units_of) : std::nullopt) {
+    found.factor = *factor;
     found.states_unit = true;
   }
   return found;
@@ -293,7 +316,9 @@ std::optional<double> stated_rate(std::string_view lines, char decimal) {
       R"((?:sampl\w*[ _-]*(?:rate|freq\w*)|abtastrate|abtastfrequenz|messrate|data_rate|\bfs\b|\brate\b)[^0-9.\n]{0,20})" +
           number + R"([\s,;]*(k?)hz)",
       std::regex::icase),
-      bare(R"((?:\bfs\b|sampl\w*[ _-]*(?:rate|freq\w*))\s*[:=,;\t]\s*)" + number, std::regex::icase),
+      bare(
+          R"((?:\bfs\b|sampl\w*[ _-]*(?:rate|freq\w*))\s*(?:[\[(]\s*(k?)hz\s*[\])]\s*)?[:=,;\t]\s*)" + number,
+          std::regex::icase),
       interval(R"((?:\bdt\b|delta[ _]?t|sampl\w*[ _-]*(?:interval|period)|time[ _]?step)([^0-9.\n]{0,12}))" +
                    number + R"(\s*(ns|us|µs|ms|sec|s)?(?![a-zµ]))",
                std::regex::icase);
@@ -307,7 +332,7 @@ std::optional<double> stated_rate(std::string_view lines, char decimal) {
   if (std::regex_search(text, match, rate))
     found = std::stod(match[1]) * (match[2].length() > 0 ? 1e3 : 1.0);
   else if (std::regex_search(text, match, bare))
-    found = std::stod(match[1]);
+    found = std::stod(match[2]) * (match[1].length() > 0 ? 1e3 : 1.0);
   else if (std::regex_search(text, match, interval) && std::stod(match[2]) > 0.0) {
     const std::string before = match[1], behind = match[3];
     double unit = seconds_per_unit(behind).value_or(1.0);

@@ -156,8 +156,8 @@ class Recognition {
         } else if (!found->states_unit && counts_samples(table.columns[index])) {
           counted_ = index;
         } else {
-          take_stamps(table, index, found->states_unit ? std::optional(found->factor) : std::nullopt,
-                      columns);
+          const bool certain = found->states_unit && mean_step(table.columns[index]) >= found->least_step;
+          take_stamps(table, index, certain ? std::optional(found->factor) : std::nullopt, columns);
         }
         break;
       case RecognisedColumn::Kind::signal: {

@@ -148,10 +148,25 @@ double take_offset(StampText& text) {
   return (sign == '-' ? -1.0 : 1.0) * (an_hour * std::max(0, hours) + 60.0 * std::max(0, text.number(2)));
 }
 
+/// "0.0025 sec", "2.5 ms": a duration as MATLAB prints one. Its decimals are those of the seconds.
+std::optional<Stamp> elapsed(std::string_view text) {
+  const std::size_t blank = text.rfind(' ');
+  if (blank == text.npos) return {};
+  const std::string_view unit = text.substr(blank + 1), number = trimmed(text.substr(0, blank));
+  const bool seconds = unit == "sec" || unit == "s";
+  if (!seconds && unit != "ms") return {};
+  const ParsedNumber parsed = parse_number(number);
+  const std::size_t point = number.find('.');
+  if (!parsed.finite || number.find_first_not_of("0123456789.") != number.npos) return {};
+  const int decimals = point == number.npos ? 0 : static_cast<int>(number.size() - point) - 1;
+  return Stamp{Stamp::Kind::time_of_day, parsed.value * (seconds ? 1.0 : 1e-3), decimals + (seconds ? 0 : 3)};
+}
+
 }  // namespace
 
 std::optional<Stamp> parse_stamp(std::string_view field) {
   StampText text{trimmed(field)};
+  if (const auto duration = elapsed(text.rest)) return duration;
   if (text.rest.size() < 6 || !text.at_digit()) return {};  // "1:23.4"
   Stamp stamp;
   const auto days = take_date(text);

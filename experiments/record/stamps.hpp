@@ -19,8 +19,9 @@ struct Stamp {
 
 /// Dates: 2026-11-26, 2026/11/26, 26.11.2026, 11/26/2026, 26/11/2026 (where the first number is no month),
 /// 26-Nov-2026. Times of day: 9:05:07, 10:00:00.125, 10:00:00,125, 10:00:00:125, 01:00:00 PM, and 12:07.5,
-/// minutes and seconds, where a fraction shows that they are. Both, parted by T, a blank, a comma or '_',
-/// with Z or an offset behind them; without one the stamp counts as UTC: intervals do not depend on it.
+/// minutes and seconds, where a fraction shows that they are; 0.125 sec and 125 ms, elapsed. Both, parted by
+/// T, a blank, a comma or '_', with Z or an offset behind them; without one the stamp counts as UTC:
+/// intervals do not depend on it.
 /// @returns absent where the text is none
 std::optional<Stamp> parse_stamp(std::string_view text);
 

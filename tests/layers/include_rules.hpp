@@ -83,6 +83,8 @@ inline const std::vector<Library>& libraries() {
       {"zlib", {"zlib"}, {"experiments/record/files/"}},
       {"libsndfile", {"sndfile"}, {"experiments/record/files/"}},
       {"libmseed", {"libmseed"}, {"experiments/record/files/"}},
+      {"libfreexl", {"freexl"}, {"experiments/record/files/"}},
+      {"UDUNITS-2", {"udunits2"}, {"experiments/record/"}},
       {"oneTBB", {"tbb/", "oneapi/"}, {"experiments/"}},
       {"Boost.Math", {"boost/math/"}, {"fem/", "filters/", "experiments/"}},
       {"pybind11", {"pybind11/"}, {"apps/python/"}},

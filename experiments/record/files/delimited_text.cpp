@@ -21,7 +21,7 @@ namespace {
 struct OtherKind {
   std::string_view beginning, found, remedy;
 };
-constexpr std::string_view save_as_csv = "save its sheet as CSV";
+constexpr std::string_view save_as_csv = "state --reader spreadsheet, or save its sheet as CSV";
 constexpr OtherKind other_kinds[] = {
     {"\xD0\xCF\x11\xE0", "a workbook of Excel (.xls)", save_as_csv},
     {"%PDF", "a PDF document", "export the numbers of the record as text"},
@@ -31,7 +31,7 @@ constexpr OtherKind other_kinds[] = {
      "7zXZ",
      "compressed by xz", "unxz it"},
     {"7z\xBC\xAF", "a 7z archive", "unpack it"},
-    {"TDSm", "a TDMS file of National Instruments", "export it as LabVIEW measurement (.lvm) or CSV"},
+    {"TDSm", "a TDMS file of National Instruments", "state --reader tdms"},
     {"PAR1", "a Parquet table", "write it as CSV or NumPy array (.npy)"},
     {"ARROW1", "an Arrow table", "write it as CSV or NumPy array (.npy)"},
     {"SQLite format 3", "an SQLite database", "export the table of the record as CSV"},
@@ -71,65 +71,9 @@ class DelimitedTextReader final : public RecordReader {
 
   RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const override {
     refuse_other_kinds(file);
-    const auto content =
-        std::make_shared<const std::string>(read_text(file, "a record of numbers in columns"));
-    DelimitedText text(file.string(), *content, format.separator, format.header_lines, format.decimal,
-                       format.malformed == MalformedRows::skip);
-    RecordTable table;
-    table.file = file.string();
-    table.names = text.names();
-    table.by_people = true;
-    table.units = text.units();
-    table.header_line = text.header_line();
-    table.columns.resize(text.width());
-    table.precision.resize(text.width());
-    TextCells cells(table.file, content);
-    std::string token;
-    std::vector<std::optional<double>> first_stamp(
-        text.width());  // whole seconds: a double holds the rest finely
-    constexpr double half_a_day = 43200.0;
-    constexpr std::size_t looked_at_for_a_rate = 4000;
-    std::vector<double> days(text.width(), 0.0);  // that have passed [s]
-    while (text.next()) {
-      cells.add(text.line(), text.line_number());
-      table.lines.push_back(text.line_number());
-      for (std::size_t column = 0; column < text.width(); ++column) {
-        table.columns[column].push_back(text.value(column));
-        token = text.field(column);
-        if (!std::isfinite(table.columns[column].back())) {
-          const std::string field = unquoted(token);
-          double& value = table.columns[column].back();
-          if (const auto stamp = parse_stamp(field)) {
-            if (stamp->kind == Stamp::Kind::date) {
-              value = 0.0;
-            } else if (stamp->kind == Stamp::Kind::time_of_day) {  // past midnight the days go on
-              value = stamp->seconds + days[column];
-              const std::size_t rows = table.columns[column].size();
-              if (rows > 1 && value < table.columns[column][rows - 2] - half_a_day)
-                value += 2.0 * half_a_day, days[column] += 2.0 * half_a_day;
-            } else {
-              if (!first_stamp[column]) first_stamp[column] = std::floor(stamp->seconds);
-              value = stamp->seconds - *first_stamp[column];
-            }
-            if (!table.time && table.lines.size() == 1 && stamp->kind != Stamp::Kind::date)
-              table.time = column;
-            token = printed_like(*stamp);
-            if (stamp->kind != Stamp::Kind::date) table.precision[column].add(token);
-            continue;
-          }
-        }
-        if (text.decimal() == ',')
-          for (char& sign : token) sign = sign == ',' ? '.' : sign;
-        if (std::isfinite(table.columns[column].back())) table.precision[column].add(token);
-      }
-    }
-    table.cell = cells.cells(text.separator());
-    if (!table.time)
-      table.stated_rate =
-          stated_rate(std::string_view(*content).substr(0, looked_at_for_a_rate), text.decimal());
-    table.skipped_lines = text.skipped_lines();
-    if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");
-    return table;
+    return table_of_text(
+        file.string(), std::make_shared<const std::string>(read_text(file, "a record of numbers in columns")),
+        format);
   }
 };
 
@@ -142,4 +86,65 @@ const bool delimited_text_registered = record_reader_registry().add(
      [](const filters::Options&) { return std::make_unique<DelimitedTextReader>(); }});
 
 }  // namespace
+
+RecordTable table_of_text(const std::string& file, const std::shared_ptr<const std::string>& content,
+                          const RecordFormat& format) {
+  DelimitedText text(file, *content, format.separator, format.header_lines, format.decimal,
+                     format.malformed == MalformedRows::skip);
+  RecordTable table;
+  table.file = file;
+  table.names = text.names();
+  table.by_people = true;
+  table.units = text.units();
+  table.header_line = text.header_line();
+  table.columns.resize(text.width());
+  table.precision.resize(text.width());
+  TextCells cells(table.file, content);
+  std::string token;
+  std::vector<std::optional<double>> first_stamp(
+      text.width());  // whole seconds: a double holds the rest finely
+  constexpr double half_a_day = 43200.0;
+  constexpr std::size_t looked_at_for_a_rate = 4000;
+  std::vector<double> days(text.width(), 0.0);  // that have passed [s]
+  while (text.next()) {
+    cells.add(text.line(), text.line_number());
+    table.lines.push_back(text.line_number());
+    for (std::size_t column = 0; column < text.width(); ++column) {
+      table.columns[column].push_back(text.value(column));
+      token = text.field(column);
+      if (!std::isfinite(table.columns[column].back())) {
+        const std::string field = unquoted(token);
+        double& value = table.columns[column].back();
+        if (const auto stamp = parse_stamp(field)) {
+          if (stamp->kind == Stamp::Kind::date) {
+            value = 0.0;
+          } else if (stamp->kind == Stamp::Kind::time_of_day) {  // past midnight the days go on
+            value = stamp->seconds + days[column];
+            const std::size_t rows = table.columns[column].size();
+            if (rows > 1 && value < table.columns[column][rows - 2] - half_a_day)
+              value += 2.0 * half_a_day, days[column] += 2.0 * half_a_day;
+          } else {
+            if (!first_stamp[column]) first_stamp[column] = std::floor(stamp->seconds);
+            value = stamp->seconds - *first_stamp[column];
+          }
+          if (!table.time && table.lines.size() == 1 && stamp->kind != Stamp::Kind::date) table.time = column;
+          token = printed_like(*stamp);
+          if (stamp->kind != Stamp::Kind::date) table.precision[column].add(token);
+          continue;
+        }
+      }
+      if (text.decimal() == ',')
+        for (char& sign : token) sign = sign == ',' ? '.' : sign;
+      if (std::isfinite(table.columns[column].back())) table.precision[column].add(token);
+    }
+  }
+  table.cell = cells.cells(text.separator());
+  if (!table.time)
+    table.stated_rate =
+        stated_rate(std::string_view(*content).substr(0, looked_at_for_a_rate), text.decimal());
+  table.skipped_lines = text.skipped_lines();
+  if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");
+  return table;
+}
+
 }  // namespace beamid::experiments

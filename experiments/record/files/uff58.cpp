@@ -1,7 +1,6 @@
 // Universal File Format, dataset 58, "function at nodal degree of freedom": ASCII and binary (58b).
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -15,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/record/files/universal_lines.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
@@ -23,103 +23,6 @@
 
 namespace beamid::experiments {
 namespace {
-
-// The lines of a Universal File, and the numbers in their columns.
-
-/// Walks a file whose bytes are in memory; what does not fit is refused at its line and column.
-class UniversalLines {
- public:
-  /// @param bytes must live as long as this
-  UniversalLines(std::string name, const std::string& bytes) : name_(std::move(name)), bytes_(bytes) {}
-
-  /// False at the file's end.
-  bool next();
-  /// The next call of next() gives this line again.
-  void back() { at_ = begin_, --number_; }
-  /// The next line of a header. @throws InputError where the dataset or the file ends, naming `what` is
-  /// missing.
-  void next_of_header(const char* what);
-  /// Behind the line "-1".
-  void skip_dataset();
-
-  std::string_view line() const { return line_; }
-  /// Columns [from, from + width) of the line, without blanks around.
-  std::string_view field(std::size_t from, std::size_t width) const;
-  /// Its number, 0 where it is blank. @throws InputError where it is none, naming `what`.
-  long long whole(std::size_t from, std::size_t width, const char* what) const;
-  double real(std::size_t from, std::size_t width, const char* what) const;
-
-  /// The bytes behind the line, as they are, and what of them was taken.
-  std::string_view ahead() const { return std::string_view(bytes_).substr(std::min(at_, bytes_.size())); }
-  void skip_bytes(std::size_t count) { at_ += count; }
-  std::size_t size() const { return bytes_.size(); }
-
-  [[noreturn]] void fail(const std::string& message, std::size_t column = 0) const;
-
- private:
-  std::string name_;
-  const std::string& bytes_;
-  std::size_t at_ = 0, begin_ = 0, number_ = 0;
-  std::string_view line_;
-};
-
-/// Fortran writes exponents with E or D.
-ParsedNumber parse_fortran(std::string_view text);
-
-using std::string_view;
-
-void UniversalLines::fail(const std::string& message, std::size_t column) const {
-  throw InputError({name_, number_, column}, message);
-}
-
-bool UniversalLines::next() {
-  if (at_ >= bytes_.size()) return false;
-  begin_ = at_;
-  const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
-  line_ = string_view(bytes_).substr(at_, end - at_);
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
-  at_ = end + 1;
-  ++number_;
-  return true;
-}
-
-void UniversalLines::next_of_header(const char* what) {
-  if (!next() || trimmed(line_) == "-1") fail(fmt::format("the dataset ends; expected {}", what));
-}
-
-void UniversalLines::skip_dataset() {
-  while (next())
-    if (trimmed(line_) == "-1") return;
-}
-
-string_view UniversalLines::field(std::size_t from, std::size_t width) const {
-  return from < line_.size() ? trimmed(line_.substr(from, width)) : string_view();
-}
-
-long long UniversalLines::whole(std::size_t from, std::size_t width, const char* what) const {
-  const string_view text = field(from, width);
-  long long value = 0;
-  const char* const end = text.data() + text.size();
-  if (text.empty()) return 0;
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end)
-    fail(fmt::format("'{}'; expected {}, a whole number", text, what), from + 1);
-  return value;
-}
-
-double UniversalLines::real(std::size_t from, std::size_t width, const char* what) const {
-  const string_view text = field(from, width);
-  if (text.empty()) return 0.0;
-  const ParsedNumber parsed = parse_fortran(text);
-  if (!parsed.finite) fail(fmt::format("'{}'; expected {}, a number", text, what), from + 1);
-  return parsed.value;
-}
-
-ParsedNumber parse_fortran(string_view text) {
-  std::string plain(text);
-  for (char& letter : plain) letter = letter == 'D' || letter == 'd' ? 'e' : letter;
-  return parse_number(plain);
-}
 
 // Dataset 58 of a Universal File, "function at nodal degree of freedom".
 
@@ -276,21 +179,11 @@ UniversalFunction read_function(UniversalLines& lines) {
 std::vector<UniversalFunction> read_universal_functions(const std::string& name, const std::string& bytes) {
   UniversalLines lines(name, bytes);
   std::vector<UniversalFunction> all;
-  while (lines.next()) {
-    if (trimmed(lines.line()) != "-1") continue;
-    if (!lines.next()) break;
-    const std::string_view word =
-        trimmed(lines.line().substr(0, std::min<std::size_t>(6, lines.line().size())));
-    if (word == "-1") {  // an end without a beginning begins the next set
-      lines.back();
-      continue;
-    }
-    if (word != "58") {
+  for (int number = 0; lines.next_dataset(number);)
+    if (number == 58)
+      all.push_back(read_function(lines));
+    else
       lines.skip_dataset();
-      continue;
-    }
-    all.push_back(read_function(lines));
-  }
   return all;
 }
 

@@ -30,7 +30,7 @@ TEST(RecognisedRecord, RecognisesHeadersAsPeopleWriteThem) {
         Case{"tempo (s);accelerazione (g)", 1, standard_gravity, ';'},
         Case{"Time\tAcc\ns\tm/s^2", 1, 1, '\t'}, Case{"time_s,Linear Acceleration x (m/s^2)", 1, 1, ','},
         Case{"Time (s),Accel-Tip (mg)", 1, 1e-3 * standard_gravity, ','},
-        Case{"SampleTimeFine,Acc_X", 1e-6, 1, ','}}) {
+        Case{"Time,Acc\nsec,m/s^2", 1, 1, ','}}) {
     std::string text = std::string(header) + "\n";
     for (int k = 0; k < 20; ++k)
       text += fmt::format("{:.6f}{}{}\n", 0.0025 * (k + 1) / time, separator, 4.0 - 0.1 * k);
@@ -54,6 +54,42 @@ TEST(RecognisedRecord, TakesNoOrientationAndNoCountForAChannelOrATime) {
   EXPECT_EQ(record.channels[0].name, "Acc_X");
   EXPECT_NEAR(record.interval(), 0.008333, 1e-9);
   EXPECT_EQ(record.size(), 19) << "the first sample is a logger's zero";
+}
+
+// 0.1 ms or 1 us, by the instrument: at 400 Hz it cannot be the one that counts microseconds, and nothing
+// states the other.
+TEST(RecognisedRecord, AsksForTheUnitOfASampleTimeFineThatIsTooFast) {
+  std::string text = "PacketCounter,SampleTimeFine,Acc_X\n";
+  for (int k = 0; k < 20; ++k) text += fmt::format("{},{},{}\n", k, 25 * k, 0.25 + 0.1 * k);
+  try {
+    recognised(text);
+    FAIL();
+  } catch (const InputError& asked) {
+    EXPECT_THAT(asked.what(),
+                testing::HasSubstr("'SampleTimeFine' rises by 25 from row to row and states no unit"));
+  }
+}
+
+TEST(RecognisedRecord, ReadsDurationsOfMatlabSectionsOfALoggerAndRatesWithTheirUnit) {
+  std::string durations = "Time,Acc\n",
+              sections =
+                  "*CREATOR\nMSR 5.4\n*STARTTIME\n2026-11-01;10:00:00;\n*CHANNEL\n"
+                  "TIME;ACC y;\ns;G;\n*DATA\n",
+              rate = "Sampling Frequency (kHz),0.4\nsample,acc\n",
+              robot = "%time,field.header.seq,field.header.stamp,acc.x\n";
+  for (int k = 0; k < 20; ++k) {
+    const double t = 0.0025 * k, a = 4.0 - 0.1 * k;
+    durations += fmt::format("{:.4f} sec,{}\n", t, a);
+    sections += fmt::format("{:.4f};{};\n", t, a);
+    rate += fmt::format("{},{}\n", k, a);
+    robot += fmt::format("{0},{1},{0},{2}\n", 1732000000000000000 + 2500000LL * k, k, a);
+  }
+  for (const std::string& text : {durations, sections, rate, robot}) {
+    const Record record = recognised(text);
+    ASSERT_EQ(record.channels.size(), 1u) << text.substr(0, 40);
+    EXPECT_NEAR(record.interval(), 0.0025, 1e-8) << text.substr(0, 40);
+    EXPECT_EQ(record.size(), 20) << text.substr(0, 40);
+  }
 }
 
 TEST(RecognisedRecord, ReadsStampsOfADateAndIntervalsStatedAboveTheColumns) {

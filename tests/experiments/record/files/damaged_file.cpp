@@ -16,7 +16,7 @@ void expect_read_or_refused(const std::string& name, const std::string& whole, c
   int refused = 0;
   for (int round = 0; round < rounds; ++round) {
     std::string damaged = whole;
-    for (std::size_t change = 0; change <= below(4); ++change) {
+    for (std::size_t change = 0; change <= below(4) && !damaged.empty(); ++change) {
       const std::size_t at = below(damaged.size());
       switch (below(5)) {
         case 0:
