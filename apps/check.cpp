@@ -77,10 +77,6 @@ struct UsedRecord {
   PreparedRecord prepared;
 };
 
-bool is_modes_file(const fs::path& file) {
-  return file.extension() == ".toml" || file.extension() == ".json";
-}
-
 /// What a file of modes says, as update reads it.
 CheckedStructure structure_of_modes(const Request& request) {
   const Experiment& experiment = request.experiment;
@@ -107,7 +103,7 @@ CheckedStructure structure_of_modes(const Request& request) {
 /// What the records of one structure show, merged.
 CheckedStructure structure_of(const Request& request, const ModalStudySettings& settings,
                               std::vector<UsedRecord>& used) {
-  if (std::any_of(request.records.begin(), request.records.end(), is_modes_file))
+  if (std::any_of(request.records.begin(), request.records.end(), holds_modes))
     return structure_of_modes(request);
   std::vector<RecordModes> found;
   for (const fs::path& file : request.records) {

@@ -38,11 +38,6 @@ PosteriorSettings posterior_settings(const Values& values, bool of_record) {
   return settings;
 }
 
-// Modes come in TOML or in a results.json; all else is a record.
-bool holds_modes(const std::filesystem::path& file) {
-  return file.extension() == ".toml" || file.extension() == ".json";
-}
-
 PosteriorStudy posterior_of_record(const Values& values, const Experiment& experiment, const Record& record) {
   const std::filesystem::path config = values.text("config");
   const Place place{config.string()};
@@ -85,7 +80,7 @@ Command posterior_command() {
       "MODES|RECORD --config FILE [--draws N] [--seed N] [--out DIR]",
       "the whole posterior of parameters from modes or a record: humps, evidence, draws",
       {{"modes", false, true,
-        "a TOML file of [[modes]], or the results.json of beamid modal; any other file is a record, read "
+        "a TOML file of [[modes]], the results.json of beamid modal, or a Universal File with datasets 55; any other file is a record, read "
         "as [record] states"}},
       {update_options(), posterior_options(), output_options()},
       "  beamid posterior modes.toml --config building.toml\n"

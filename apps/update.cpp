@@ -29,7 +29,7 @@ Command update_command() {
   return {"update",
           "MODES --config FILE [--model-error PERCENT] [--starts N] [--out DIR]",
           "parameters of a structure from measured frequencies and shapes",
-          {{"modes", false, true, "a TOML file of [[modes]], or the results.json of beamid modal"}},
+          {{"modes", false, true, "a TOML file of [[modes]], the results.json of beamid modal, or a Universal File with datasets 55"}},
           {update_options(), output_options()},
           "  beamid update modes.toml --config building.toml\n"
           "  beamid update found/results.json --config building.toml --out updated\n"

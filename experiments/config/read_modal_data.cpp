@@ -13,6 +13,7 @@
 #include "experiments/config/schema.hpp"
 #include "experiments/modal/modal_data.hpp"
 #include "experiments/modal/poles.hpp"
+#include "experiments/modal/universal_modes.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -211,6 +212,81 @@ ModalData read_modes_toml(const std::filesystem::path& file, const Experiment& e
   return data;
 }
 
+// Universal Files of this and other programs.
+
+/// A node of a file and the axis along which it moves.
+struct NodeAxis {
+  Eigen::Index node = 0, axis = 0;
+};
+
+/// Those that move in any mode, more than a millionth of the mode's largest displacement: nodes in the file's
+/// order.
+std::vector<NodeAxis> moving_axes(const NodalModes& modes) {
+  std::vector<NodeAxis> moving;
+  for (Eigen::Index node = 0; node < modes.places.cols(); ++node)
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      if (std::ranges::any_of(modes.modes, [&](const NodalModes::Mode& mode) {
+            return std::abs(mode.shape(axis, node)) > 1e-6 * mode.shape.cwiseAbs().maxCoeff();
+          }))
+        moving.push_back({node, axis});
+  return moving;
+}
+
+/// The node and axis of each sensor by its position along x; empty where sensors have none, where nodes move
+/// along several axes, or where a sensor has no node of its own there.
+std::vector<NodeAxis> nodes_at_sensors(const NodalModes& modes, const std::vector<NodeAxis>& moving,
+                                       const std::vector<Sensor>& sensors) {
+  std::vector<NodeAxis> places;
+  const double extent = modes.places.row(0).maxCoeff() - modes.places.row(0).minCoeff();
+  constexpr double six_digits = 1e-5;
+  for (const NodeAxis& one : moving)
+    if (one.axis != moving.front().axis) return {};
+  for (const Sensor& sensor : sensors) {
+    if (!sensor.position || !(extent > 0.0)) return {};
+    std::vector<NodeAxis> there;
+    for (Eigen::Index node = 0; node < modes.places.cols(); ++node)
+      if (std::abs(modes.places(0, node) - *sensor.position) <= six_digits * extent)
+        there.push_back({node, moving.front().axis});
+    if (there.size() != 1) return {};
+    places.push_back(there.front());
+  }
+  return places;
+}
+
+ModalData read_modes_uff(const std::filesystem::path& file, const Experiment& experiment) {
+  const NodalModes found = read_universal_modes(file);
+  const std::vector<Sensor>& sensors = experiment.sensors;
+  ModalData data{file.string(), {}};
+  const std::vector<NodeAxis> moving = moving_axes(found);
+  std::vector<NodeAxis> places = nodes_at_sensors(found, moving, sensors);
+  if (sensors.size() < 2) {
+    places.clear();
+    data.remarks.emplace_back(
+        "Without two [[sensors]] in the experiment file the frequencies are used, and no shapes.");
+  } else if (places.empty()) {
+    if (moving.size() != sensors.size())
+      throw InputError(
+          {file.string()},
+          fmt::format(
+              "shapes of {} degrees of freedom at {} nodes, and {} [[sensors]] in the experiment file; "
+              "expected a node at the position_m of each sensor, or as many degrees of freedom in their "
+              "order",
+              moving.size(), found.places.cols(), sensors.size()));
+    places = moving;
+    data.remarks.emplace_back(
+        "No sensor's position_m is a node's: degrees of freedom are taken for the sensors in their order.");
+  }
+  for (const NodalModes::Mode& mode : found.modes) {
+    MeasuredMode measured{mode.frequency_hz, mode.frequency_deviation_hz.value_or(0.0)};
+    Eigen::VectorXcd shape(static_cast<Eigen::Index>(places.size()));
+    for (std::size_t i = 0; i < places.size(); ++i)
+      shape[static_cast<Eigen::Index>(i)] = mode.shape(places[i].axis, places[i].node);
+    if (!places.empty()) measured.shape = nearest_real(shape);
+    data.modes.push_back(std::move(measured));
+  }
+  return data;
+}
+
 /// By frequency; numbers of modes must rise with it.
 void sort_modes(ModalData& data) {
   const auto below = [](const MeasuredMode& a, const MeasuredMode& b) {
@@ -234,9 +310,14 @@ void sort_modes(ModalData& data) {
 
 }  // namespace
 
+bool holds_modes(const std::filesystem::path& file) {
+  return file.extension() == ".toml" || file.extension() == ".json" || holds_universal_modes(file);
+}
+
 ModalData read_modal_data(const std::filesystem::path& file, const Experiment& experiment) {
-  const bool json = file.extension() == ".json";
-  ModalData data = json ? read_modal_json(file, experiment) : read_modes_toml(file, experiment);
+  ModalData data = file.extension() == ".json"   ? read_modal_json(file, experiment)
+                   : holds_universal_modes(file) ? read_modes_uff(file, experiment)
+                                                 : read_modes_toml(file, experiment);
   sort_modes(data);
   return data;
 }

@@ -113,7 +113,7 @@ void read_prior(const TomlTable& root, Experiment& experiment);
 /// @throws InputError for a missing, a useless or a bad value.
 std::vector<ParameterChoice> read_parameters(const TomlTable& root, const fem::Structure& structure);
 
-// Measured modes from a file: a TOML file of [[modes]], or the results.json of `beamid modal`.
+// Measured modes from a file: TOML with [[modes]], the results.json of `beamid modal`, or a Universal File.
 
 /// TOML: one table [[modes]] for each mode with frequency_hz, frequency_standard_deviation_hz or
 /// frequency_relative_deviation, shape (a number for each of the experiment's sensors, in their order),
@@ -123,9 +123,16 @@ std::vector<ParameterChoice> read_parameters(const TomlTable& root, const fem::S
 /// is a sensor's, in their order; accelerations and velocities become displacements by powers of i omega,
 /// complex shapes the real ones nearest to them. Of several records the merged frequencies are used.
 ///
+/// Universal File: datasets 55 (modal/universal_modes.hpp). A sensor along a beam is the node at its
+/// position; else the degrees of freedom that move belong to the sensors in their order.
+///
 /// Modes are sorted by frequency; where the file has another order, a remark says so.
 /// @throws InputError naming place, what was found and what was expected.
 ModalData read_modal_data(const std::filesystem::path& file, const Experiment& experiment);
+
+/// Whether a file is one of those, by its ending or, of a Universal File, by a dataset 55; else it is a
+/// record.
+bool holds_modes(const std::filesystem::path& file);
 
 // Where something sits on a structure: a position along a beam, or the name of a place of any other.
 

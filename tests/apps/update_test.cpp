@@ -57,6 +57,31 @@ TEST_F(Update, ReadsTheResultsOfModalAsTheyAre) {
   EXPECT_NEAR(found["modes"][1]["mac"].get<double>(), 1.0, 1e-6);
 }
 
+// What `beamid modes` and `beamid modal` write for other programs. Oracle: the description that made them,
+// and the results.json of the same modes. Six digits of a frequency.
+TEST_F(Update, ReadsUniversalFilesOfBothCommands) {
+  ASSERT_EQ(place_.run("modes --config frame.toml --out exact").code, 0);
+  const json exact = json_of(place_.run("update exact/modes.uff --config frame.toml --json"));
+  for (const json& parameter : exact["parameters"])
+    EXPECT_NEAR(parameter["estimate"].get<double>(), 1751.3, 1e-5 * 1751.3);
+  EXPECT_EQ(exact["messages"].dump().find("in their order"),
+            std::string::npos);  // nodes at the positions of the sensors
+
+  place_.write("damped.toml",
+               contents(place_.folder() / "frame.toml") + "\n[damping]\nlaw = \"modal\"\nratio = 0.01\n");
+  ASSERT_EQ(place_.run("simulate --config damped.toml --duration 60 --sampling-rate 50 --out simulated").code,
+            0);
+  ASSERT_EQ(place_.run("modal simulated/record.csv --out found").code, 0);
+  const json universal = json_of(place_.run("update found/modes.uff --config frame.toml --json")),
+             own = json_of(place_.run("update found/results.json --config frame.toml --json"));
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_NEAR(
+        universal["parameters"][k]["estimate"].get<double>() / own["parameters"][k]["estimate"].get<double>(),
+        1.0, 1e-4);
+  for (const char* command : {"twins", "check"})
+    EXPECT_EQ(place_.run(std::string(command) + " found/modes.uff --config frame.toml").code, 0) << command;
+}
+
 // Shapes of sensors 3 and 4 exchanged: nothing explains them, and a script learns it, too.
 TEST_F(Update, EndsWithThreeWhereNothingExplainsTheModes) {
   place_.write("wrong.toml",

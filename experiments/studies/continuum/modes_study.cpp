@@ -15,11 +15,13 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/config/readers.hpp"
 #include "experiments/config/structure_description.hpp"
+#include "experiments/modal/universal_modes.hpp"
 #include "experiments/results/mode_figure.hpp"
 #include "experiments/results/page/swing_model.hpp"
 #include "experiments/results/result_directory.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/results/vtk/mode_shapes.hpp"
+#include "experiments/results/vtk/nodal_motion.hpp"
 #include "experiments/studies/continuum/modal_summary.hpp"
 #include "experiments/text/progress.hpp"
 #include "fem/modes.hpp"
@@ -38,6 +40,32 @@ struct ModeDrawing {
   Eigen::VectorXd frequencies_hz;  ///< (k)
 };
 
+/// The same for other programs: nodes of the mesh and their translations, largest 1, with the modal mass in
+/// that scale.
+/// @param damping gives the modes' ratios, dashpots aside; none where the law has fewer than there are modes
+NodalModes nodal_modes(const ModeDrawing& drawn, const fem::DampingLaw& damping, const std::string& title) {
+  NodalModes modes{title, nodal_places(drawn.system), {}, {}};
+  Eigen::VectorXd ratios;
+  try {
+    ratios = fem::damping_ratios(damping, 2.0 * std::numbers::pi * drawn.frequencies_hz);
+  } catch (const std::invalid_argument&) {
+    ratios.setConstant(drawn.shapes.cols(), std::nan(""));
+  }
+  for (const fem::Mesh::Element& element : drawn.system.mesh.elements)
+    modes.lines.emplace_back(element.first, element.second);
+  for (Eigen::Index m = 0; m < drawn.shapes.cols(); ++m) {
+    const Eigen::VectorXd shape = drawn.shapes.col(m);  // phi^T M phi = 1
+    const Eigen::Matrix3Xd moved = nodal_motion(drawn.system, shape).translation;
+    const double largest = moved.colwise().norm().maxCoeff();
+    if (!(largest > 0.0) || !(drawn.frequencies_hz[m] > 0.0)) continue;  // programs want a frequency
+    NodalModes::Mode mode{drawn.frequencies_hz[m], {}, {}, 1.0 / (largest * largest), {}};
+    if (std::isfinite(ratios[m])) mode.damping_ratio = ratios[m];
+    mode.shape = scaled_mode(drawn.system, shape).translation.cast<std::complex<double>>();
+    modes.modes.push_back(std::move(mode));
+  }
+  return modes;
+}
+
 /// Configuration, heading and the structure in a sentence. @param modes how many were found
 Results begin_modes_report(const Experiment& experiment, Eigen::Index modes, Eigen::Index elements,
                            Eigen::Index coordinates) {
@@ -50,14 +78,21 @@ Results begin_modes_report(const Experiment& experiment, Eigen::Index modes, Eig
   return results;
 }
 
-/// The figure mode_shapes and meshes for ParaView. @param surface draw the real sections instead of lines
-void draw_modes(const std::shared_ptr<const ModeDrawing>& drawn, bool surface, Results& results) {
+/// The figure mode_shapes, models for viewers and programs of modal analysis, and meshes for ParaView.
+/// @param surface draw the real sections instead of lines
+void draw_modes(const Experiment& experiment, const std::shared_ptr<const ModeDrawing>& drawn, bool surface,
+                Results& results) {
   results.figures.push_back(mode_figure(drawn->system, drawn->shapes, drawn->frequencies_hz));
   results.attachments.push_back({{"modes.glb"}, [drawn](const std::filesystem::path& folder) {
                                    write_file(folder / "modes.glb",
                                               binary_gltf(mode_model(Picture(drawn->structure, drawn->system),
                                                                      drawn->shapes, drawn->frequencies_hz)));
                                  }});
+  results.attachments.push_back(
+      {{"modes.uff"},
+       [drawn, damping = experiment.damping, title = experiment.title](const std::filesystem::path& folder) {
+         write_file(folder / "modes.uff", universal_file(nodal_modes(*drawn, damping, title)));
+       }});
   results.attachments.push_back(
       {mode_shape_files(drawn->shapes.cols()), [drawn, surface](const std::filesystem::path& folder) {
          write_mode_shapes(folder, Picture(drawn->structure, drawn->system, surface), drawn->shapes,
@@ -215,7 +250,7 @@ Results report(const Experiment& experiment, const ModalSummary& summary, bool s
     results.attachments.push_back(shapes_file(matrices->labels, summary.modes.shape));
     return results;
   }
-  draw_modes(drawing(experiment, summary), surface, results);
+  draw_modes(experiment, drawing(experiment, summary), surface, results);
   return results;
 }
 
@@ -393,7 +428,7 @@ Results report(const Experiment& experiment, const FrameModes& found, bool surfa
     notes.push_back(
         fmt::format("Pictures show the same frame with {} elements.", drawn->system.mesh.elements.size()));
   results.notes(notes);
-  draw_modes(drawn, surface, results);
+  draw_modes(experiment, drawn, surface, results);
   return results;
 }
 

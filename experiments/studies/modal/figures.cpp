@@ -171,6 +171,24 @@ std::optional<SwingModel> measured_shapes(const RecordModes& found) {
   return model;
 }
 
+std::optional<NodalModes> measured_nodal_modes(const RecordModes& found) {
+  const std::optional<SwingModel> sketch = measured_shapes(found);
+  if (!sketch) return std::nullopt;
+  const SwingModel::Part& sensors = sketch->parts.back();
+  NodalModes modes{found.name, sensors.points, {}, {}, true};
+  for (std::size_t i = 0; i + 1 < sketch->parts.front().corners.size(); i += 2)
+    modes.lines.emplace_back(sketch->parts.front().corners[i], sketch->parts.front().corners[i + 1]);
+  for (std::size_t m = 0; m < found.modes.size(); ++m) {
+    const ModeEstimate& mode = found.modes[m];
+    NodalModes::Mode one{mode.pole.frequency_hz(), mode.pole.damping_ratio(), {}, {}, {}};
+    if (mode.pole.frequency_deviation_hz > 0.0) one.frequency_deviation_hz = mode.pole.frequency_deviation_hz;
+    one.shape = sensors.motion[2 * m].cast<std::complex<double>>();
+    one.shape += std::complex<double>(0.0, 1.0) * sensors.motion[2 * m + 1];
+    modes.modes.push_back(std::move(one));
+  }
+  return modes;
+}
+
 std::vector<Figure> figures(const RecordModes& found, const std::string& suffix) {
   std::vector<Figure> result;
   if (!found.mode_by_mode) result.push_back(diagram(found, suffix));

@@ -199,6 +199,11 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
           {{"modes" + suffix + ".glb"}, [model, suffix](const std::filesystem::path& folder) {
              write_file(folder / ("modes" + suffix + ".glb"), binary_gltf(*model));
            }});
+    if (const auto nodal = measured_nodal_modes(found))
+      results.attachments.push_back(
+          {{"modes" + suffix + ".uff"}, [nodal, suffix](const std::filesystem::path& folder) {
+             write_file(folder / ("modes" + suffix + ".uff"), universal_file(*nodal));
+           }});
   }
   if (records.size() > 1) add_merged(records, merged, results);
   return results;

@@ -10,6 +10,7 @@
 #include "experiments/modal/study/driven_study.hpp"
 #include "experiments/modal/study/hammer_study.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
+#include "experiments/modal/universal_modes.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/results/page/swing_model.hpp"
 #include "experiments/results/results.hpp"
@@ -56,6 +57,9 @@ std::vector<Figure> figures(const RecordModes& found, const std::string& suffix)
 /// Measured mode shapes, with their phases, on a sketch: the sensors in a line, each moving across it. Absent
 /// for one channel, for strain, and where channels measure different quantities.
 std::optional<SwingModel> measured_shapes(const RecordModes& found);
+
+/// The same for other programs: a node for each channel, moving along z, in the channels' order.
+std::optional<NodalModes> measured_nodal_modes(const RecordModes& found);
 
 /// Poles that are no modes, and why.
 nlohmann::ordered_json rejected_values(const Stabilisation& stabilisation);
