@@ -41,7 +41,7 @@ experiments::Record ShakenBuilding::record(Index samples) const {
         const double w = std::sqrt(modes.eigenvalues()[m]);
         const Vector3d shape = modes.eigenvectors().col(m);
         response += shape * shape.sum() * omega * omega /
-                    std::complex<double>(w * w - omega * omega, 2.0 * ratio()[m] * w * omega);
+                    std::complex<double>(w * w - omega * omega, 2.0 * damping[m] * w * omega);
       }
       for (Index n = first; n < first + count; ++n) {
         const auto turn = std::polar(amplitude[i], omega * static_cast<double>(n) / rate + phase[i]);

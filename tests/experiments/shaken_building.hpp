@@ -13,6 +13,7 @@ struct ShakenBuilding {
   double noise = 0.0;      ///< of the floors' readings [m/s2]
   double softening = 0.0;  ///< of all storeys in the second half of the record, as a share
   std::uint64_t seed = 5;
+  Eigen::Vector3d damping = ratio();  ///< of the modes
 
   static Eigen::Vector3d stiffness() { return {2400.0, 3100.0, 3800.0}; }  ///< [N/m]
   static Eigen::Vector3d ratio() { return {0.012, 0.008, 0.005}; }

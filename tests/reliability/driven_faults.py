@@ -25,7 +25,7 @@ FAULTS = {  # name: what the sentence of the verdict calls it
     "lag": "late|ahead|behind|clock|delay",
     "place": "place|sits|at height|position",
     "input noise": "noise in",
-    "damping per mode": None,  # model error: no described quantity explains it
+    "damping per mode": "not one of all modes",
     "coloured noise": None,
 }
 NAMES_A_CAUSE = ("description", "input_clock", "input_noise")

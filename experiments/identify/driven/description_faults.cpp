@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -55,6 +56,28 @@ class LeftOver {
 
   /// Of a gain of all inputs.
   VectorXd gain_of_inputs() const { return projected(part().driven); }
+
+  const MatrixXd& slopes() const { return slopes_; }
+
+  /// s^T V^-1 s of many directions together, by what is left with them, whatever the noise of each line.
+  /// Directions that the unknowns make, or that make each other, drop out.
+  double together(const MatrixXd& directions) const {
+    const MatrixXd own = directions - slopes_ * normal_.solve(slopes_.transpose() * directions);
+    Eigen::ColPivHouseholderQR<MatrixXd> factors(own.rows(), own.cols());
+    factors.setThreshold(1e-3);
+    factors.compute(own);
+    const Index half = own.rows() / 2;
+    const MatrixXd axes = factors.householderQ() * MatrixXd::Identity(own.rows(), factors.rank());
+    const VectorXd sum = axes.transpose() * at_once_, rest = at_once_ - axes * sum;
+    MatrixXd variance = MatrixXd::Zero(sum.size(), sum.size());
+    for (Index k = 0; k < half; ++k) {
+      const double weight = axes.row(k).squaredNorm() + axes.row(k + half).squaredNorm();
+      const VectorXd line =
+          (axes.row(k) * rest[k] + axes.row(k + half) * rest[k + half]) / std::max(1e-3, 1.0 - weight);
+      variance += line * line.transpose();
+    }
+    return sum.dot(variance.ldlt().solve(sum));
+  }
 
   struct Score {
     double change, deviation, score, explained;
@@ -113,8 +136,9 @@ class OtherModels {
   JointModel of(const fem::Structure& structure) const {
     Experiment other = experiment_;
     other.structure = structure;
-    return made(other, record_);
+    return of(other);
   }
+  JointModel of(const Experiment& other) const { return made(other, record_); }
   JointModel with_place(Index channel, double position) const {
     Record other = record_;
     other.channels[static_cast<std::size_t>(channel)].position = position;
@@ -296,6 +320,86 @@ void add_places(const DrivenProblem& problem, const OtherModels& models, const E
   }
 }
 
+// One damping ratio of all modes, where each may have its own.
+
+/// |z| of the same significance as chi^2 of so many degrees of freedom [wilson1931].
+double normal_of_chi_squared(double value, double freedom) {
+  const double spread = 2.0 / (9.0 * freedom);
+  return (std::cbrt(value / freedom) - 1.0 + spread) / std::sqrt(spread);
+}
+
+/// The place of the damping ratio of all modes among the parameters asked; absent where there is none, or
+/// others beside it.
+std::optional<std::size_t> common_ratio(const Experiment& experiment, const JointModel& model) {
+  std::optional<std::size_t> place;
+  if (model.unknowns.size() != experiment.parameters.size()) return {};
+  for (std::size_t j = 0; j < experiment.parameters.size(); ++j) {
+    const ParameterChoice& asked = experiment.parameters[j];
+    if (asked.quantity != model.unknowns[j].quantity) return {};
+    if (asked.quantity == "damping_ratio" && (place || asked.mode)) return {};
+    if (asked.quantity == "damping_ratio") place = j;
+  }
+  return std::holds_alternative<fem::ModalDamping>(experiment.damping) ? place : std::nullopt;
+}
+
+/// What ratios of their own of the modes in the band, and to an octave above it, explain beyond the common
+/// one, all together: with D their slopes beyond J, s = D^T r, and V = sum_k d_k d_k^T r'_k^2 over the lines,
+/// r' what is left with them, s^T V^-1 s is chi^2 [white1982].
+void add_modal_ratios(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
+                      const LeftOver& left, const VectorXd& theta, std::vector<DescriptionFault>& faults) {
+  constexpr Index most_modes = 12;
+  const std::optional<std::size_t> common = common_ratio(experiment, *problem.model);
+  const double highest = 2.0 * problem.parts.front().omega.maxCoeff();
+  const Index modes =
+      std::min<Index>(most_modes, (problem.model->mode_frequencies.array() < highest).count());
+  if (!common || modes < 2) return;
+  const auto at = static_cast<Index>(*common), kept = theta.size() - 1, count = kept + modes;
+  const Unknown& ratio = problem.model->unknowns[*common];
+
+  Experiment other = experiment;
+  const ParameterChoice asked = other.parameters[*common];
+  other.damping = fem::ModalDamping{{ratio.to_physical(theta[at])}};
+  other.parameters.erase(other.parameters.begin() + static_cast<std::ptrdiff_t>(*common));
+  for (Index m = 0; m < modes; ++m) {
+    other.parameters.push_back(asked);
+    other.parameters.back().mode = static_cast<int>(m) + 1;
+    other.parameters.back().name.clear();
+  }
+  const JointModel model = models.of(other);
+  DrivenProblem there = problem;
+  there.model = &model;
+  std::vector<Index> from(static_cast<std::size_t>(count), at);  // of theta
+  for (Index j = 0; j < kept; ++j) from[static_cast<std::size_t>(j)] = j < at ? j : j + 1;
+  there.prior.mean = problem.prior.mean(from);
+  const MatrixXd before = problem.prior.marginal(0, theta.size());
+  MatrixXd covariance = MatrixXd::Zero(count, count);
+  covariance.topLeftCorner(kept, kept) = before(from, from).topLeftCorner(kept, kept);
+  covariance.diagonal().tail(modes).setConstant(before(at, at));
+  there.prior.covariance = covariance, there.prior.factor.resize(0, 0);
+
+  const VectorXd start = theta(from);
+  const LeftOver all(there, start);
+  const double test = left.together(all.slopes().rightCols(modes)),
+               whole = evaluate_driven(problem, theta).cost,
+               score = normal_of_chi_squared(test, static_cast<double>(modes - 1));
+  const DrivenFit fit = fit_driven_from(there, start, 20);
+  if (!(score > sure_score) || !(fit.cost < whole)) return;
+  const VectorXd deviation = fit.covariance(there.prior).diagonal().cwiseSqrt();
+  std::string sentence = "the damping ratio is not one of all modes: by the record";
+  for (Index m = 0; m < modes; ++m) {
+    const Unknown& own = model.unknowns[static_cast<std::size_t>(kept + m)];
+    const double eta = fit.theta[kept + m], value = own.to_physical(eta),
+                 upper = own.to_physical(eta + quantile_95 * deviation[kept + m]);
+    sentence +=
+        fmt::format("{} {:.3g} +- {:.2g} %{}", m == 0 ? "" : ",", 100.0 * value, 100.0 * (upper - value),
+                    m + 1 == modes ? fmt::format(" in modes 1 to {}", modes) : "");
+  }
+  sentence += ", which [[parameters]] with mode = 1, 2, ... determine";
+  VectorXd moved = VectorXd::Zero(theta.size());
+  for (Index j = 0; j < kept; ++j) moved[from[static_cast<std::size_t>(j)]] = fit.theta[j] - start[j];
+  faults.push_back({std::move(sentence), score, 1.0 - fit.cost / whole, std::move(moved)});
+}
+
 /// With the estimates as guesses: a model takes the modes of its damping, for one, from there.
 Experiment at_estimates(Experiment experiment, const JointModel& model, const VectorXd& theta) {
   const std::size_t count = std::min(experiment.parameters.size(), model.unknowns.size());
@@ -330,6 +434,7 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
     add_structure_changes(*problem, models, experiment, left, theta, much_is_left, measures_force(record),
                           faults);
     add_gains(record, left, faults);
+    add_modal_ratios(*problem, models, there, left, theta, faults);
     constexpr double misplaced = 0.15;  // a sensor a floor off leaves 20 % and more
     if (fit.left_share > misplaced)
       add_places(*problem, as_described, experiment, record, left, theta, faults);

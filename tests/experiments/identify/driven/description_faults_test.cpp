@@ -15,7 +15,8 @@ using testing::HasSubstr;
 
 const Progress silent = [](const std::string&) {};
 
-ComparedRun identified(const Record& record, double mass_1, double mass_2) {
+/// @param modes with a damping ratio of their own; 0: one ratio of all
+ComparedRun identified(const Record& record, double mass_1, double mass_2, int modes = 3) {
   std::string text = fmt::format(
       "[chain]\nmasses_kg = [{}, {}, 1]\nstiffnesses_n_per_m = [3000, 3000, 3000]\nheights_m = [3, 3, 3]\n"
       "[damping]\nlaw = \"modal\"\nratio = 0.02\n[model]\nname = \"beam\"\n[reduction]\nmethod = \"none\"\n",
@@ -23,7 +24,8 @@ ComparedRun identified(const Record& record, double mass_1, double mass_2) {
   for (int storey = 0; storey < 3; ++storey)
     text += fmt::format("[[parameters]]\nquantity = \"storey_stiffness\"\nfrom_m = {}\nto_m = {}\n",
                         3 * storey, 3 * storey + 3);
-  for (int mode = 1; mode <= 3; ++mode)
+  if (modes == 0) text += "[[parameters]]\nquantity = \"damping_ratio\"\n";
+  for (int mode = 1; mode <= modes; ++mode)
     text += fmt::format("[[parameters]]\nquantity = \"damping_ratio\"\nmode = {}\n", mode);
   return identify_with_model(read_experiment(TomlTable::parse(text, "building.toml")),
                              measured_record("building", record), {}, silent)
@@ -37,6 +39,15 @@ Record shaken(std::uint64_t seed) {
 TEST(DescriptionFaults, NothingWrongIsNothingNamed) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const ComparedRun run = identified(shaken(seed), 1.0, 1.0);
+    EXPECT_EQ(run.status, ComparedRun::Status::converged) << seed << ": " << run.reason;
+    for (const DescriptionFault& fault : run.faults) EXPECT_LT(fault.explained, 0.1) << fault.sentence;
+  }
+}
+
+TEST(DescriptionFaults, OneRatioOfAllModesIsNothingWrongWhereItIsTrue) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const test::ShakenBuilding building{0.05, 0.0, seed, Eigen::Vector3d::Constant(0.01)};
+    const ComparedRun run = identified(building.record(3000), 1.0, 1.0, 0);
     EXPECT_EQ(run.status, ComparedRun::Status::converged) << seed << ": " << run.reason;
     for (const DescriptionFault& fault : run.faults) EXPECT_LT(fault.explained, 0.1) << fault.sentence;
   }
@@ -63,6 +74,12 @@ TEST(DescriptionFaults, AGainOfOneSensorIsNamed) {
   Record record = shaken(1);
   record.samples.row(2) *= 1.1;
   expect_named(identified(record, 1.0, 1.0), "gain of floor_2 1.", 0.0);
+}
+
+// 1.2, 0.8 and 0.5 %, described as one.
+TEST(DescriptionFaults, ARatioOfEachModeIsNamed) {
+  expect_named(identified(shaken(1), 1.0, 1.0, 0),
+               "the damping ratio is not one of all modes: by the record 1.2", 0.9);
 }
 
 TEST(DescriptionFaults, APlaceIsNamed) {
