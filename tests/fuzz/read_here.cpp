@@ -15,4 +15,9 @@ CollectedSignals read_apart(const std::string& file, const std::string&, const R
   return signals;
 }
 
+std::vector<std::string> texts_apart(const std::string&, const std::string&, const ReadingLimits&,
+                                     const std::function<std::vector<std::string>()>& read) {
+  return read();
+}
+
 }  // namespace beamid::experiments

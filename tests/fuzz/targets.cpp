@@ -10,6 +10,7 @@
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/stream/sample_source.hpp"
 #include "experiments/identify/stream/streamed_identification.hpp"
+#include "experiments/modal/universal_modes.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/record/read_record.hpp"
 #include "experiments/results/report_page.hpp"
@@ -100,7 +101,20 @@ void read_as(const std::string& bytes, int way) {
 }
 
 constexpr const char *text = "delimited_text", *lvm = "lvm", *nied = "nied", *uff58 = "uff58", *mat = "mat",
-                     *hdf5 = "hdf5";
+                     *hdf5 = "hdf5", *npy = "npy", *sac = "sac", *at2 = "at2", *sound = "sound",
+                     *miniseed = "miniseed", *tdms = "tdms", *spreadsheet = "spreadsheet";
+
+/// Shapes of finite numbers at finite places, all of one size.
+void read_modes(const std::string& bytes, int) {
+  const fs::path file = folder().write("modes.uff", bytes);
+  refusable([&] {
+    holds_universal_modes(file);
+    const NodalModes modes = read_universal_modes(file);
+    promise(!modes.modes.empty() && modes.places.allFinite());
+    for (const NodalModes::Mode& mode : modes.modes)
+      promise(mode.frequency_hz > 0.0 && mode.shape.allFinite() && mode.shape.cols() == modes.places.cols());
+  });
+}
 
 // ---- The experiment of tutorial 2, for what is read beside one
 
@@ -245,6 +259,14 @@ const std::vector<Target>& targets() {
       {"uff58", read_as<uff58>, named_ways},
       {"mat", read_as<mat>, record_ways},
       {"hdf5", read_as<hdf5>, record_ways},
+      {"npy", read_as<npy>, record_ways},
+      {"sac", read_as<sac>, record_ways},
+      {"at2", read_as<at2>, record_ways},
+      {"sound", read_as<sound>, record_ways},
+      {"miniseed", read_as<miniseed>, record_ways},
+      {"tdms", read_as<tdms>, record_ways},
+      {"spreadsheet", read_as<spreadsheet>, record_ways},
+      {"modes", read_modes},
       {"experiment", read_experiment_file},
       {"plan", read_plan},
       {"journal", read_journal},
