@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "experiments/record/read_apart.hpp"
+#include "experiments/record/loaded_library.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/input_error.hpp"

@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -301,24 +300,6 @@ std::vector<std::string> texts_apart(const std::string& file, const std::string&
         return true;
       });
   return texts;
-}
-
-LoadedLibrary::LoadedLibrary(const std::string& file, const char* name, const char* package)
-    : handle_(dlopen(name, RTLD_NOW | RTLD_LOCAL)) {
-  if (handle_ == nullptr)
-    throw InputError({file, 0, 0}, fmt::format("cannot be read without {}; expected that library: it is in "
-                                               "Debian's package {}",
-                                               name, package));
-}
-
-bool LoadedLibrary::has(const char* name) const {
-  return dlsym(handle_, name) != nullptr;
-}
-
-void* LoadedLibrary::symbol(const char* name) const {
-  void* const found = dlsym(handle_, name);
-  if (found == nullptr) throw std::runtime_error(std::string("a library without ") + name);
-  return found;
 }
 
 }  // namespace beamid::experiments

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "experiments/record/loaded_library.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"

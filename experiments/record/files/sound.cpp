@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "experiments/record/loaded_library.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "experiments/record/delimited_text.hpp"
+#include "experiments/record/loaded_library.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
