@@ -101,7 +101,6 @@ class StepBack {
   }
   const MatrixXd& shown() const { return shown_; }  // S^-1 H (p' x n)
   const MatrixXd& l() const { return l_; }          // A (I - K H) (n x n)
-  MatrixXd information() const { return h_.transpose() * shown_; }
 
  private:
   const LinearGaussian& model_;
@@ -109,30 +108,68 @@ class StepBack {
   MatrixXd h_, shown_, l_;
 };
 
-// Of C x_k (c x N): P_k - P_k W P_k, the same from the steady state's end on.
+// F with P = F F^T, of a covariance that may be singular.
+MatrixXd root_of(const MatrixXd& covariance) {
+  const Eigen::LDLT<MatrixXd> factor(covariance);
+  const VectorXd size = factor.vectorD().cwiseMax(0.0).cwiseSqrt();
+  return factor.transpositionsP().transpose() * MatrixXd(MatrixXd(factor.matrixL()) * size.asDiagonal());
+}
+
+// What later readings say of a state, Y (n x n), backwards: with Q = L L^T and Y of the sample behind,
+//
+//     Y_k = H^T R^-1 H + A^T (Y^-1 + Q)^-1 A,    (Y^-1 + Q)^-1 = (I - K L^T) Y (I - K L^T)^T + K K^T,
+//     K = Y L (I + L^T Y L)^-1
+class LaterInformation {
+ public:
+  explicit LaterInformation(const LinearGaussian& model)
+      : model_(model), noise_(root_of(model.q)), y_(MatrixXd::Zero(model.a.rows(), model.a.rows())) {}
+
+  /// Of sample k, whose readings it takes in. @returns whether it is the same as of the sample behind
+  bool step(const KalmanStep& at) {
+    const Index n = y_.rows();
+    const MatrixXd shown = y_ * noise_;
+    const MatrixXd k = (MatrixXd::Identity(noise_.cols(), noise_.cols()) + noise_.transpose() * shown)
+                           .llt()
+                           .solve(shown.transpose())
+                           .transpose();
+    const MatrixXd kept = MatrixXd::Identity(n, n) - k * noise_.transpose();
+    MatrixXd next = model_.a.transpose() * (kept * y_ * kept.transpose() + k * k.transpose()) * model_.a;
+    if (!at.seen.empty()) {
+      constexpr double least = 1e-14;  // of what is expected of a reading, where it has no noise
+      const MatrixXd h = model_.h(at.seen, Eigen::all);
+      MatrixXd r = model_.r(at.seen, at.seen);
+      r.diagonal() = r.diagonal().cwiseMax(least * at.innovation_covariance.diagonal());
+      next += h.transpose() * r.llt().solve(h);
+    }
+    next = (0.5 * (next + next.transpose())).eval();
+    const bool same = settled(y_, next);
+    y_ = std::move(next);
+    return same;
+  }
+  const MatrixXd& information() const { return y_; }
+
+ private:
+  const LinearGaussian& model_;
+  MatrixXd noise_, y_;
+};
+
+// Of C x_k (c x N): (P_k^-1 + Y_k)^-1 = F (I + F^T Y F)^-1 F^T, where nothing cancels however little was
+// known before. The same from the steady state's end on.
 MatrixXd smoothed_deviations(const LinearGaussian& model, const KalmanPass& pass, const MatrixXd& rows) {
   const Index samples = pass.means.cols(), n = model.a.rows();
-  MatrixXd deviations(rows.rows(), samples), w = MatrixXd::Zero(n, n), information;
-  StepBack back(model, pass);
+  MatrixXd deviations(rows.rows(), samples);
+  LaterInformation later(model);
   bool steady = false;
   for (Index k = samples - 1; k >= 0; --k) {
-    const MatrixXd& p = pass.step(k).covariance;
-    const bool same = back.to(k);
-    if (!same) information = back.information();
-    if (!same || !steady) {
-      MatrixXd next = information + back.l().transpose() * w * back.l();
-      next = (0.5 * (next + next.transpose())).eval();
-      steady = same && settled(w, next);
-      w = std::move(next);
-    }
+    const bool same = k + 1 < samples && &pass.step(k) == &pass.step(k + 1);
     if (same && steady) {
       deviations.col(k) = deviations.col(k + 1);
       continue;
     }
-    const MatrixXd reach = rows * p;
-    deviations.col(k) = ((reach * rows.transpose()).diagonal() - (reach * w * reach.transpose()).diagonal())
-                            .cwiseMax(0.0)
-                            .cwiseSqrt();
+    steady = later.step(pass.step(k)) && same;
+    const MatrixXd root = root_of(pass.step(k).covariance);
+    const Eigen::LLT<MatrixXd> sum(MatrixXd::Identity(n, n) + root.transpose() * later.information() * root);
+    deviations.col(k) = sum.matrixL().solve((rows * root).transpose()).colwise().norm().transpose();
   }
   return deviations;
 }

@@ -60,11 +60,17 @@ struct SmoothedRows {
   Eigen::MatrixXd deviations;  ///< (c x N)
 };
 
-/// The fixed-interval smoother of Bryson and Frazier [bierman1977], without any inverse of a covariance of
-/// the state: with L = A (I - K H), backwards from r = 0, W = 0,
+/// The fixed-interval smoother. Means are those of Bryson and Frazier [bierman1977], without any inverse of a
+/// covariance of the state: with L = A (I - K H), backwards from r = 0,
 ///
-///     r <- H^T S^-1 e_k + L^T r,   W <- H^T S^-1 H + L^T W L,   x_k|N = x_k + P_k r,   P_k|N = P_k - P_k W
-///     P_k
+///     r <- H^T S^-1 e_k + L^T r,   x_k|N = x_k + P_k r
+///
+/// Covariances are those of two filters [fraser1969], Y_k what the readings from k on say of x_k, in which
+/// what was not known before cancels nothing: where a start is hardly known, P_k - P_k W P_k has no digits
+/// left.
+///
+///     P_k|N = (P_k^-1 + Y_k)^-1,   Y_k = H^T R^-1 H + A^T (Y_k+1^-1 + Q)^-1 A
+///
 /// @param rows C (c x n); @param feed D (c x m), empty: none
 SmoothedRows smoothed_rows(const LinearGaussian& model, const Measurements& record, const KalmanPass& pass,
                            const Eigen::MatrixXd& rows, const Eigen::MatrixXd& feed);

@@ -79,6 +79,25 @@ Dense all_at_once(const filters::LinearGaussian& model, const filters::Measureme
           0.5 * rest.dot(factor.solve(rest)) + MatrixXd(factor.matrixL()).diagonal().array().log().sum()};
 }
 
+// Oracle: a constant read N times has the deviation sigma / sqrt(N) at every sample; a known velocity changes
+// nothing. As P - P W P the variance at the start would have four digits.
+TEST(LinearGaussian, KeepsItsDigitsWhereTheStartIsHardlyKnown) {
+  filters::LinearGaussian model = some_model();
+  model.a = (MatrixXd(2, 2) << 1.0, 1.0, 0.0, 1.0).finished();
+  model.q.setZero();
+  model.h = (MatrixXd(2, 2) << 1.0, 0.0, 1.0, 0.0).finished();
+  model.r = (MatrixXd(2, 2) << 2e-6, 0.0, 0.0, 2e-6).finished();
+  model.start.covariance = (MatrixXd(2, 2) << 1e4, 0.0, 0.0, 0.0).finished();
+  const filters::Measurements record = some_record(40);
+  const filters::KalmanPass pass = filters::kalman_pass(model, record, 1.0);
+  const MatrixXd deviations =
+      filters::smoothed_rows(model, record, pass, MatrixXd::Identity(2, 2), MatrixXd()).deviations;
+  for (Index k = 0; k < record.size(); ++k) {
+    EXPECT_NEAR(deviations(0, k), 1e-3 / std::sqrt(40.0), 1e-3 * 1e-9) << k;
+    EXPECT_EQ(deviations(1, k), 0.0) << k;
+  }
+}
+
 TEST(LinearGaussian, IsTheJointGaussianOfAllStatesAndReadings) {
   // Oracle: the dense covariance of all states and readings. 300 samples: the gain has settled by then; the
   // gaps unsettle it.

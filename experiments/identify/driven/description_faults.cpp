@@ -434,10 +434,10 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
     add_structure_changes(*problem, models, experiment, left, theta, much_is_left, measures_force(record),
                           faults);
     add_gains(record, left, faults);
-    add_modal_ratios(*problem, models, there, left, theta, faults);
     constexpr double misplaced = 0.15;  // a sensor a floor off leaves 20 % and more
     if (fit.left_share > misplaced)
       add_places(*problem, as_described, experiment, record, left, theta, faults);
+    add_modal_ratios(*problem, models, there, left, theta, faults);
   } catch (const std::runtime_error&) {  // no motion at these unknowns
   }
   std::stable_sort(faults.begin(), faults.end(), [](const DescriptionFault& a, const DescriptionFault& b) {
