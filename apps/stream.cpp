@@ -161,6 +161,7 @@ int run_stream(const Values& values) {
   print_end(stream, failed);
   if (signal != 0) {
     std::cout << std::flush;
+    std::signal(signal, SIG_DFL);  // whatever a library has put there
     std::raise(signal);
   }
   return failed ? 1 : stream.reliable() && stream.saw_motion() ? 0 : 3;

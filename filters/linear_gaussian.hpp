@@ -66,7 +66,7 @@ struct SmoothedRows {
 ///     r <- H^T S^-1 e_k + L^T r,   x_k|N = x_k + P_k r
 ///
 /// Covariances are those of two filters [fraser1969], Y_k what the readings from k on say of x_k, in which
-/// what was not known before cancels nothing: where a start is hardly known, P_k - P_k W P_k has no digits
+/// what was not known before cancels nothing: where a start is poorly known, P_k - P_k W P_k has no digits
 /// left.
 ///
 ///     P_k|N = (P_k^-1 + Y_k)^-1,   Y_k = H^T R^-1 H + A^T (Y_k+1^-1 + Q)^-1 A

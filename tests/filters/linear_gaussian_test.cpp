@@ -81,7 +81,7 @@ Dense all_at_once(const filters::LinearGaussian& model, const filters::Measureme
 
 // Oracle: a constant read N times has the deviation sigma / sqrt(N) at every sample; a known velocity changes
 // nothing. As P - P W P the variance at the start would have four digits.
-TEST(LinearGaussian, KeepsItsDigitsWhereTheStartIsHardlyKnown) {
+TEST(LinearGaussian, KeepsItsDigitsWhereTheStartIsPoorlyKnown) {
   filters::LinearGaussian model = some_model();
   model.a = (MatrixXd(2, 2) << 1.0, 1.0, 0.0, 1.0).finished();
   model.q.setZero();
