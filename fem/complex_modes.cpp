@@ -1,10 +1,14 @@
 #include "fem/complex_modes.hpp"
 
 // GCC 12 takes a vector that this header assigns in a loop for one used after it was freed.
+#ifndef __clang__
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wuse-after-free"
+#endif
 #include <Spectra/GenEigsSolver.h>
+#ifndef __clang__
 #pragma GCC diagnostic pop
+#endif
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -138,7 +138,7 @@ TEST(LatentInputs, AreEstimatedAsWellAsTheirDeviationSays) {
 
   std::mt19937 random(11);
   std::normal_distribution<double> normal;
-  double squares = 0.0, errors = 0.0, deviation = 0.0;
+  double squares = 0.0, deviation = 0.0;
   for (int i = 0; i < records; ++i) {
     VectorXd z(4);
     z << 0.1 * normal(random), normal(random), 40.0 * normal(random), 40.0 * normal(random);
@@ -163,7 +163,6 @@ TEST(LatentInputs, AreEstimatedAsWellAsTheirDeviationSays) {
     const double error = found.means(0, samples / 2) - truth;
     deviation = found.deviations(0, samples / 2);
     squares += error * error / (deviation * deviation);
-    errors += error * error;
   }
   EXPECT_NEAR(squares / records, 1.0, 3.0 * std::sqrt(2.0 / records));
   EXPECT_LT(deviation, 0.1 * 40.0);

@@ -20,7 +20,7 @@ void vtk_asker() {}  // a place in this program or module
 
 void add_above(const fs::path& file, std::vector<fs::path>& places) {
   for (fs::path folder = file.parent_path();; folder = folder.parent_path()) {
-    places.push_back(folder / "lib/beamid" / vtk_library_name);
+    places.push_back(folder / "lib/beamid/vtk" / vtk_library_name);
     if (folder == folder.parent_path()) return;
   }
 }
