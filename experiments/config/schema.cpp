@@ -195,6 +195,7 @@ template const KeyTable::Codec& KeyTable::codec_of<bool>();
 template const KeyTable::Codec& KeyTable::codec_of<std::optional<bool>>();
 template const KeyTable::Codec& KeyTable::codec_of<std::string>();
 template const KeyTable::Codec& KeyTable::codec_of<std::optional<std::string>>();
+template const KeyTable::Codec& KeyTable::codec_of<std::vector<double>>();
 template const KeyTable::Codec& KeyTable::codec_of<std::optional<std::vector<double>>>();
 template const KeyTable::Codec& KeyTable::codec_of<std::vector<std::string>>();
 template const KeyTable::Codec& KeyTable::codec_of<std::pair<double, double>>();

@@ -207,6 +207,7 @@ bool rises(const std::vector<double>& values) {
 double seconds_of_epoch(const std::vector<double>& stamps) {
   // A step that would be 200 kHz in seconds is 2.3 Hz in days.
   constexpr double a_day = 86400.0, fastest = 5e-6, longest = 30.0;
+  if (stamps.empty()) return 1.0;
   const double first = stamps.front(), step = stamps.size() > 1 ? stamps[1] - first : 1.0;
   const bool date = (first > 3e4 && first < 7e4) || (first > 6.9e5 && first < 8e5);
   if (date && step > 0.0 && step < fastest && stamps.back() - first < longest) return a_day;

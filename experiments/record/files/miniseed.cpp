@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 
@@ -52,9 +53,10 @@ void collect_traces(CollectedSignals& signals) {
     end = std::max(end, trace->endtime);
   }
   if (rate == 0.0) throw refuse("no samples", "records of samples");
-  const auto place = [&](hptime_t instant) {
-    return static_cast<std::size_t>(
-        std::llround(static_cast<double>(instant - start) / static_cast<double>(HPTMODULUS) * rate));
+  const auto place = [&](hptime_t instant) {  // years apart in a damaged file
+    const auto apart =
+        static_cast<double>(static_cast<std::uint64_t>(instant) - static_cast<std::uint64_t>(start));
+    return static_cast<std::size_t>(std::min(apart / static_cast<double>(HPTMODULUS) * rate + 0.5, 1e15));
   };
   const std::size_t length = place(end) + 1;
   std::map<std::string, std::vector<double>> channels;
