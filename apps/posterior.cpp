@@ -80,7 +80,8 @@ Command posterior_command() {
       "MODES|RECORD --config FILE [--draws N] [--seed N] [--out DIR]",
       "the whole posterior of parameters from modes or a record: humps, evidence, draws",
       {{"modes", false, true,
-        "a TOML file of [[modes]], the results.json of beamid modal, or a Universal File with datasets 55; any other file is a record, read "
+        "a TOML file of [[modes]], the results.json of beamid modal, or a Universal File with datasets 55; "
+        "any other file is a record, read "
         "as [record] states"}},
       {update_options(), posterior_options(), output_options()},
       "  beamid posterior modes.toml --config building.toml\n"
