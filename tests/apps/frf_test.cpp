@@ -135,8 +135,7 @@ TEST(Frf, RefusesNoFrequencyOfAFreeBody) {
               "[frequency_response]\nfrom_hz = 0\nto_hz = 50\nspacing = \"linear\"\n");
   const Outcome outcome = place.run("frf --config free.toml");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.first_error_line(),
-              HasSubstr("frequency_response.from_hz is 0, where a structure"));
+  EXPECT_THAT(outcome.first_error_line(), HasSubstr("frequency_response.from_hz is 0, where a structure"));
 }
 
 }  // namespace

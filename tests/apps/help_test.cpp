@@ -59,13 +59,14 @@ TEST(UnknownCommand, IsAnsweredWithTheKnownOnes) {
   const Outcome outcome = Workplace().run("quaternion");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_EQ(outcome.first_error_line(),
-            "beamid: unknown command 'quaternion'; known: inspect, modal, identify, modes, simulate, "
-            "compare, report, prepare, track, backbone, stream, check, steps, sense, substructures, update, twins, "
-            "posterior, frf, frame, reduce, "
-            "identifiability, sweep, "
-            "efficiency, "
-            "atlas, budget, noise, paper, new, validate, list, completion, help");
+  EXPECT_EQ(
+      outcome.first_error_line(),
+      "beamid: unknown command 'quaternion'; known: inspect, modal, identify, modes, simulate, "
+      "compare, report, prepare, track, backbone, stream, check, steps, sense, substructures, update, twins, "
+      "posterior, frf, frame, reduce, "
+      "identifiability, sweep, "
+      "efficiency, "
+      "atlas, budget, noise, paper, new, validate, list, completion, help");
 }
 
 struct Kind {

@@ -101,7 +101,8 @@ TEST_F(CommandLine, AShortListStandsBesideTheSuggestion) {
 TEST_F(CommandLine, WhereNoNameIsNearAllAreListed) {
   EXPECT_THAT(refusal("list filters zzzzzzzz"),
               HasSubstr("unknown filter 'zzzzzzzz'; known: adaptive_ekf, ckf"));
-  EXPECT_THAT(refusal("zzzzzzzzzz"), HasSubstr("; known: inspect, modal, identify, modes, simulate, compare, report"));
+  EXPECT_THAT(refusal("zzzzzzzzzz"),
+              HasSubstr("; known: inspect, modal, identify, modes, simulate, compare, report"));
 }
 
 TEST_F(CommandLine, SaysWhatAValueIsAndWhatIsExpected) {

@@ -102,7 +102,8 @@ const std::vector<Allowed> allowed{
     {"experiments/results/gnuplot.cpp", R"(\bleft\b|\bcenter\b|\bpointsize\b)", "gnuplot's key words"},
     {"experiments/results/report_page.cpp", R"(:root \{[^]*)", "style sheet: CSS has its own spelling"},
     {"experiments/studies/reduce/figures.cpp", R"(\bdisplacement left\b)", "the side of a figure"},
-    {"experiments/modal/universal_modes.cpp", R"(si: meter \(newton\))", "the format's own name of the units"},
+    {"experiments/modal/universal_modes.cpp", R"(si: meter \(newton\))",
+     "the format's own name of the units"},
     {"apps/new.cpp", R"("left"|"left\.)", "name of a joint on the left"},
 };
 

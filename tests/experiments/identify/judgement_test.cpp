@@ -148,7 +148,8 @@ TEST(Judgement, NamesAnOvertoneAsTheCauseOfADivergence) {
   EXPECT_THAT(judgement.objections.at(0).text,
               HasSubstr("An overtone at 6.911 Hz, 2 times the frequency, has 80 %"));
   r.modal.companions[0].frequency_hz = 1.4 * r.modal.frequency_hz;
-  EXPECT_THAT(judge(simulated.experiment(), record, r).objections.at(0).text, HasSubstr("another mode at 4.84 Hz"));
+  EXPECT_THAT(judge(simulated.experiment(), record, r).objections.at(0).text,
+              HasSubstr("another mode at 4.84 Hz"));
 }
 
 TEST(Report, BeginsWithTheWarningsOfTheRecord) {

@@ -170,7 +170,7 @@ TEST(AmbientPair, IsTwoModesWhereTheBandHasTwo) {
         inside += (by_frequency < 1.96) + (by_damping < 1.96), asked += 2;
       }
     }
-  EXPECT_LE(refused, 2);  // at 5 % apart, where the bands of the two peaks overlap in part
+  EXPECT_LE(refused, 2);         // at 5 % apart, where the bands of the two peaks overlap in part
   EXPECT_GE(inside, asked - 7);  // 48 intervals of 95 %: more than 7 outside by chance in one of 300
 }
 
