@@ -66,17 +66,9 @@ class LeftOver {
     Eigen::ColPivHouseholderQR<MatrixXd> factors(own.rows(), own.cols());
     factors.setThreshold(1e-3);
     factors.compute(own);
-    const Index half = own.rows() / 2;
     const MatrixXd axes = factors.householderQ() * MatrixXd::Identity(own.rows(), factors.rank());
-    const VectorXd sum = axes.transpose() * at_once_, rest = at_once_ - axes * sum;
-    MatrixXd variance = MatrixXd::Zero(sum.size(), sum.size());
-    for (Index k = 0; k < half; ++k) {
-      const double weight = axes.row(k).squaredNorm() + axes.row(k + half).squaredNorm();
-      const VectorXd line =
-          (axes.row(k) * rest[k] + axes.row(k + half) * rest[k + half]) / std::max(1e-3, 1.0 - weight);
-      variance += line * line.transpose();
-    }
-    return sum.dot(variance.ldlt().solve(sum));
+    const VectorXd sum = axes.transpose() * at_once_;
+    return sum.dot(variance_along(axes, at_once_ - axes * sum).ldlt().solve(sum));
   }
 
   struct Score {
@@ -90,19 +82,13 @@ class LeftOver {
     const VectorXd own = direction - slopes_ * coefficients;
     const double squares = own.squaredNorm();
     if (!(squares > collinear * collinear * direction.squaredNorm())) return {};
-    const Index half = own.size() / 2;
-    const double sum = own.dot(at_once_), change = sum / squares;
+    const double size = std::sqrt(squares);
+    const VectorXd axis = own / size;
     // Of the change itself, by what is left with it: lines of their own noise, one that weighs much by more.
-    const VectorXd rest = at_once_ - change * own;
-    double variance = 0.0;
-    for (Index k = 0; k < half; ++k) {
-      const double weight = own[k] * own[k] + own[k + half] * own[k + half],
-                   product = own[k] * rest[k] + own[k + half] * rest[k + half];
-      variance += std::pow(product / std::max(1e-3, 1.0 - weight / squares), 2);
-    }
-    const double spread = std::sqrt(variance);
-    return Score{change, spread / squares, std::abs(sum) / std::max(spread, 1e-300),
-                 sum * sum / (squares * std::max(left().squaredNorm(), 1e-300)), -change * coefficients};
+    const double sum = axis.dot(at_once_), change = sum / size,
+                 spread = std::sqrt(variance_along(axis, at_once_ - sum * axis)(0, 0));
+    return Score{change, spread / size, std::abs(sum) / std::max(spread, 1e-300),
+                 sum * sum / std::max(left().squaredNorm(), 1e-300), -change * coefficients};
   }
 
  private:
@@ -114,6 +100,18 @@ class LeftOver {
   VectorXd at_once_;  // what no unknowns make, to first order
 
   const PartAt& part() const { return parts_.front(); }
+  /// sum_k a_k a_k^T (r_k / (1 - h_k))^2 over the lines, a_k the rows of orthonormal axes and h_k = |a_k|^2.
+  static MatrixXd variance_along(const MatrixXd& axes, const VectorXd& rest) {
+    const Index half = axes.rows() / 2;
+    MatrixXd variance = MatrixXd::Zero(axes.cols(), axes.cols());
+    for (Index k = 0; k < half; ++k) {
+      const double weight = axes.row(k).squaredNorm() + axes.row(k + half).squaredNorm();
+      const VectorXd line =
+          (axes.row(k) * rest[k] + axes.row(k + half) * rest[k + half]) / std::max(1e-3, 1.0 - weight);
+      variance += line * line.transpose();
+    }
+    return variance;
+  }
   VectorXd left_of(const JointModel& model) const {
     const LinearResponse there(dynamic_cast<const filters::LinearMotion&>(*model.motion),
                                state_of_unknowns(model, theta_));
@@ -214,12 +212,6 @@ std::string value_text(const Candidate& candidate, const fem::Structure& structu
                      quantile_95 * std::abs(slope) * deviation, candidate.value_unit);
 }
 
-/// A factor of all masses, which only a measured force distinguishes from one of all stiffnesses.
-bool weighs_all(const Candidate& candidate) {
-  return candidate.name == "floor_mass" || candidate.name == "beam_mass" || candidate.name == "member_mass" ||
-         candidate.name == "mass";
-}
-
 /// Whether the unknowns hold it already.
 bool is_asked(const Experiment& experiment, const Candidate& candidate) {
   return std::ranges::any_of(experiment.parameters, [&](const ParameterChoice& asked) {
@@ -235,7 +227,7 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
   const JointModel described = models.of(experiment.structure);
   for (const Candidate& candidate : candidates_of({experiment.structure})) {
     if (candidate.of_clock || is_asked(experiment, candidate)) continue;
-    if (!weighed && weighs_all(candidate)) continue;
+    if (!weighed && candidate.weighs_all) continue;
     try {
       const double step = 0.02 * candidate.scale();
       const JointModel model = models.of(candidate.changed(experiment.structure, step));
@@ -379,11 +371,12 @@ void add_modal_ratios(const DrivenProblem& problem, const OtherModels& models, c
 
   const VectorXd start = theta(from);
   const LeftOver all(there, start);
-  const double test = left.together(all.slopes().rightCols(modes)),
-               whole = evaluate_driven(problem, theta).cost,
-               score = normal_of_chi_squared(test, static_cast<double>(modes - 1));
+  const double score =
+      normal_of_chi_squared(left.together(all.slopes().rightCols(modes)), static_cast<double>(modes - 1));
+  if (!(score > sure_score)) return;
   const DrivenFit fit = fit_driven_from(there, start, 20);
-  if (!(score > sure_score) || !(fit.cost < whole)) return;
+  const double whole = evaluate_driven(problem, theta).cost;
+  if (!(fit.cost < whole)) return;
   const VectorXd deviation = fit.covariance(there.prior).diagonal().cwiseSqrt();
   std::string sentence = "the damping ratio is not one of all modes: by the record";
   for (Index m = 0; m < modes; ++m) {

@@ -139,6 +139,7 @@ std::vector<Candidate> beam_candidates(const Beam& beam) {
       beam_cause("beam_mass", "%", "kg", -0.9, 9, 0.05),
       [](const Beam& b, double x) { return with_beam_mass(b, 1 + x); },
       [](const Beam& b, double x) { return (1 + x) * b.mass(); });
+  all.back().weighs_all = true;
   add(beam_cause("free_length", "m", "m", -0.5 * length, length, 0.05 * length), with_length,
       [](const Beam& b, double x) { return b.length() + x; });
   all.back().exchangeable = true;

@@ -21,7 +21,9 @@ struct Candidate {
   double lower = 0, upper = 0;  ///< what is possible
   double plausible_lower = 0, plausible_upper = 0;  ///< what careful work may get wrong
   bool exchangeable = false;  ///< may be another one altogether: a weight, a length in the clamp
-  bool of_clock = false;      ///< frequencies become (1 + x) times as high, the structure stays as it is
+  bool weighs_all =
+      false;              ///< a factor of all masses: only a measured force separates it from all stiffnesses
+  bool of_clock = false;  ///< frequencies become (1 + x) times as high, the structure stays as it is
   std::function<fem::Structure(const fem::Structure&, double)> changed = {};
   std::function<double(const fem::Structure&, double)> value = {};  ///< of the quantity itself, at x
 

@@ -201,6 +201,7 @@ std::vector<Candidate> candidates_of_frame(const AnyFrame& frame) {
   all.push_back(frame_cause<AnyFrame>("member_mass", 0.05, [](AnyFrame& changed, double factor) {
     for (auto& member : changed.members) scale_mass(member.section, factor);
   }));
+  all.back().weighs_all = true;
   add_bodies(frame, all);
   add_supports(frame, all);
   if constexpr (std::is_same_v<AnyFrame, Frame>)

@@ -55,6 +55,7 @@ std::vector<Candidate> chain_candidates(const Beam& chain) {
   all.push_back(chain_cause("floor_mass", 0.05, [](Beam& changed, double factor) {
     for (fem::Body& floor : changed.bodies) floor.mass *= factor;
   }));
+  all.back().weighs_all = true;
   for (std::size_t i = 0; !single && !many && i < chain.bodies.size(); ++i) {
     all.push_back(chain_cause(fmt::format("floor_mass_{}", i + 1), 0.2,
                               [i](Beam& changed, double factor) { changed.bodies[i].mass *= factor; }));
@@ -75,6 +76,7 @@ std::vector<Candidate> system_candidates(const MatrixSystem& system) {
     changed.mass *= factor;
     for (MatrixSystem::Parameter& one : changed.parameters) one.mass *= factor;
   }));
+  all.back().weighs_all = true;
   for (std::size_t j = 0; j < system.parameters.size(); ++j) {
     if (system.parameters[j].value == 0.0) continue;  // it has no relative change
     all.push_back(system_cause(system.parameters[j].name, 0.3, [j](MatrixSystem& changed, double factor) {
