@@ -35,11 +35,11 @@ std::string dataset(int number, const std::string& content) {
   return fmt::format("{:6}\n{:6}\n{}{:6}\n", -1, number, content, -1);
 }
 
-/// E13.5, six in a line.
+/// E13.5, six in a line; -0 is 0.
 std::string number_lines(const std::vector<double>& values) {
   std::string text;
   for (std::size_t i = 0; i < values.size(); ++i)
-    text += fmt::format("{:13.5E}{}", values[i], i % 6 == 5 || i + 1 == values.size() ? "\n" : "");
+    text += fmt::format("{:13.5E}{}", values[i] + 0.0, i % 6 == 5 || i + 1 == values.size() ? "\n" : "");
   return text;
 }
 
@@ -98,7 +98,7 @@ std::string mode_dataset(const NodalModes& all, std::size_t number, const NodalM
   for (Eigen::Index i = 0; i < mode.shape.cols(); ++i) {
     content += fmt::format("{:10}\n", i + 1);
     std::vector<double> values;
-    for (const Complex value : (mode.shape.col(i).array() + 0.0).matrix()) {  // -0 is 0
+    for (const Complex value : mode.shape.col(i)) {
       values.push_back(value.real());
       if (all.complex) values.push_back(value.imag());
     }
@@ -109,8 +109,7 @@ std::string mode_dataset(const NodalModes& all, std::size_t number, const NodalM
 
 // Reading.
 
-/// Whole numbers and reals of the lines behind a header, as many as the lines hold. Words that touch are cut
-/// by the width of the format, 13 (single precision) or 20.
+/// Numbers of the lines behind a header, in columns of 13 (single precision) or 20.
 std::vector<double> numbers_behind(UniversalLines& lines, std::size_t count, std::size_t width) {
   std::vector<double> numbers;
   while (numbers.size() < count) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -131,7 +132,7 @@ VectorXd sketched_places(const std::vector<Channel>& channels) {
 
 }  // namespace
 
-std::optional<SwingModel> measured_shapes(const RecordModes& found) {
+std::optional<NodalModes> measured_shapes(const RecordModes& found) {
   const std::vector<Channel>& channels = found.record.channels;
   const auto count = static_cast<Index>(channels.size());
   const auto alike = [&](const Channel& channel) {
@@ -139,54 +140,45 @@ std::optional<SwingModel> measured_shapes(const RecordModes& found) {
   };
   if (count < 2 || found.modes.empty() || !std::all_of(channels.begin(), channels.end(), alike))
     return std::nullopt;
-  SwingModel model;
-  SwingModel::Part sensors{SwingModel::Kind::points, Eigen::Matrix3Xd::Zero(3, count), {}, {}};
-  sensors.points.row(0) = sketched_places(channels).transpose();
+  NodalModes modes{found.name, Eigen::Matrix3Xd::Zero(3, count), {}, {}, true};
+  modes.places.row(0) = sketched_places(channels).transpose();
   for (const ModeEstimate& mode : found.modes) {
     if (mode.pole.shape.size() != count) return std::nullopt;
-    const double f = mode.pole.frequency_hz();
-    const auto motion = static_cast<int>(sensors.motion.size());
-    model.modes.push_back({fmt::format("mode {}, {:.5g} Hz", model.modes.size() + 1, f), f,
-                           mode.pole.damping_ratio(), motion, motion + 1});
+    NodalModes::Mode one{mode.pole.frequency_hz(), mode.pole.damping_ratio(), {}, {}, {}};
+    if (mode.pole.frequency_deviation_hz > 0.0) one.frequency_deviation_hz = mode.pole.frequency_deviation_hz;
     // Turned so that the largest component is real, which leaves in quadrature what does not move in phase.
     Index largest = 0;
     mode.pole.shape.cwiseAbs().maxCoeff(&largest);
-    const Eigen::VectorXcd shape = mode.pole.shape / mode.pole.shape[largest];
-    for (const VectorXd& part : {VectorXd(shape.real()), VectorXd(shape.imag())}) {
-      sensors.motion.emplace_back(Eigen::Matrix3Xd::Zero(3, count));
-      sensors.motion.back().row(2) = part.transpose();
-    }
-  }
-  std::vector<unsigned> order(channels.size());
-  for (unsigned i = 0; i < order.size(); ++i) order[i] = i;
-  sensors.corners = order;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](unsigned a, unsigned b) { return sensors.points(0, a) < sensors.points(0, b); });
-  SwingModel::Part line = sensors;
-  line.kind = SwingModel::Kind::lines;
-  line.corners.clear();
-  for (std::size_t i = 0; i + 1 < order.size(); ++i)
-    line.corners.insert(line.corners.end(), {order[i], order[i + 1]});
-  model.parts = {std::move(line), std::move(sensors)};
-  return model;
-}
-
-std::optional<NodalModes> measured_nodal_modes(const RecordModes& found) {
-  const std::optional<SwingModel> sketch = measured_shapes(found);
-  if (!sketch) return std::nullopt;
-  const SwingModel::Part& sensors = sketch->parts.back();
-  NodalModes modes{found.name, sensors.points, {}, {}, true};
-  for (std::size_t i = 0; i + 1 < sketch->parts.front().corners.size(); i += 2)
-    modes.lines.emplace_back(sketch->parts.front().corners[i], sketch->parts.front().corners[i + 1]);
-  for (std::size_t m = 0; m < found.modes.size(); ++m) {
-    const ModeEstimate& mode = found.modes[m];
-    NodalModes::Mode one{mode.pole.frequency_hz(), mode.pole.damping_ratio(), {}, {}, {}};
-    if (mode.pole.frequency_deviation_hz > 0.0) one.frequency_deviation_hz = mode.pole.frequency_deviation_hz;
-    one.shape = sensors.motion[2 * m].cast<std::complex<double>>();
-    one.shape += std::complex<double>(0.0, 1.0) * sensors.motion[2 * m + 1];
+    one.shape = Eigen::Matrix3Xcd::Zero(3, count);
+    one.shape.row(2) = (mode.pole.shape / mode.pole.shape[largest]).transpose();
     modes.modes.push_back(std::move(one));
   }
+  std::vector<int> order(channels.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return modes.places(0, a) < modes.places(0, b); });
+  for (std::size_t i = 0; i + 1 < order.size(); ++i) modes.lines.emplace_back(order[i], order[i + 1]);
   return modes;
+}
+
+SwingModel swing_model(const NodalModes& modes) {
+  SwingModel model;
+  SwingModel::Part nodes{SwingModel::Kind::points, modes.places, {}, {}};
+  for (unsigned i = 0; i < modes.places.cols(); ++i) nodes.corners.push_back(i);
+  for (const NodalModes::Mode& mode : modes.modes) {
+    const auto motion = static_cast<int>(nodes.motion.size());
+    model.modes.push_back({fmt::format("mode {}, {:.5g} Hz", model.modes.size() + 1, mode.frequency_hz),
+                           mode.frequency_hz, mode.damping_ratio, motion, motion + 1});
+    nodes.motion.emplace_back(mode.shape.real());
+    nodes.motion.emplace_back(mode.shape.imag());
+  }
+  SwingModel::Part lines = nodes;
+  lines.kind = SwingModel::Kind::lines;
+  lines.corners.clear();
+  for (const auto& [from, to] : modes.lines)
+    lines.corners.insert(lines.corners.end(), {static_cast<unsigned>(from), static_cast<unsigned>(to)});
+  model.parts = {std::move(lines), std::move(nodes)};
+  return model;
 }
 
 std::vector<Figure> figures(const RecordModes& found, const std::string& suffix) {

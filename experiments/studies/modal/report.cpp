@@ -194,15 +194,12 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
     if (Table rejected = rejected_table(found, suffix); rejected.rows() > 0)
       results.table(std::move(rejected));
     for (Figure& figure : figures(found, suffix)) results.figures.push_back(std::move(figure));
-    if (const auto model = measured_shapes(found))
+    if (const auto shapes = measured_shapes(found))
       results.attachments.push_back(
-          {{"modes" + suffix + ".glb"}, [model, suffix](const std::filesystem::path& folder) {
-             write_file(folder / ("modes" + suffix + ".glb"), binary_gltf(*model));
-           }});
-    if (const auto nodal = measured_nodal_modes(found))
-      results.attachments.push_back(
-          {{"modes" + suffix + ".uff"}, [nodal, suffix](const std::filesystem::path& folder) {
-             write_file(folder / ("modes" + suffix + ".uff"), universal_file(*nodal));
+          {{"modes" + suffix + ".glb", "modes" + suffix + ".uff"},
+           [shapes, suffix](const std::filesystem::path& folder) {
+             write_file(folder / ("modes" + suffix + ".glb"), binary_gltf(swing_model(*shapes)));
+             write_file(folder / ("modes" + suffix + ".uff"), universal_file(*shapes));
            }});
   }
   if (records.size() > 1) add_merged(records, merged, results);

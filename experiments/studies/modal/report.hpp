@@ -54,12 +54,13 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
 /// Stabilisation diagram, measured and reproduced motion and spectrum, singular values; `suffix` of names.
 std::vector<Figure> figures(const RecordModes& found, const std::string& suffix);
 
-/// Measured mode shapes, with their phases, on a sketch: the sensors in a line, each moving across it. Absent
-/// for one channel, for strain, and where channels measure different quantities.
-std::optional<SwingModel> measured_shapes(const RecordModes& found);
+/// Measured mode shapes, with their phases, on a sketch: a node for each channel, in their order on a line,
+/// moving across it along z. Absent for one channel, for strain, and where channels measure different
+/// quantities.
+std::optional<NodalModes> measured_shapes(const RecordModes& found);
 
-/// The same for other programs: a node for each channel, moving along z, in the channels' order.
-std::optional<NodalModes> measured_nodal_modes(const RecordModes& found);
+/// The same as a model that swings: nodes, and the lines between them.
+SwingModel swing_model(const NodalModes& modes);
 
 /// Poles that are no modes, and why.
 nlohmann::ordered_json rejected_values(const Stabilisation& stabilisation);
