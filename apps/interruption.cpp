@@ -20,13 +20,17 @@ std::atomic<int> current{0};
 extern "C" void say_and_end(int signal) {
   const char* const text = sentences[static_cast<std::size_t>(current.load())].data();
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
+  end_by(signal);
+}
+
+}  // namespace
+
+void end_by(int signal) {
   struct sigaction fallback {};
   fallback.sa_handler = SIG_DFL;
   sigaction(signal, &fallback, nullptr);
   raise(signal);
 }
-
-}  // namespace
 
 Interruption::Interruption(const std::string& sentence) {
   say(sentence);

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 
 #include "apps/command.hpp"
 #include "apps/command_parts.hpp"
+#include "apps/interruption.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/config/experiment.hpp"
 #include "experiments/config/read_experiment.hpp"
@@ -161,8 +161,7 @@ int run_stream(const Values& values) {
   print_end(stream, failed);
   if (signal != 0) {
     std::cout << std::flush;
-    std::signal(signal, SIG_DFL);  // whatever a library has put there
-    std::raise(signal);
+    end_by(signal);
   }
   return failed ? 1 : stream.reliable() && stream.saw_motion() ? 0 : 3;
 }

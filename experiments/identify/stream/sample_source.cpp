@@ -72,7 +72,7 @@ volatile std::sig_atomic_t writing_end = -1;
 void write_number(int number) {
   const int before = errno;
   const char byte = static_cast<char>(number);
-  if (::write(writing_end, &byte, 1) < 0) errno = before;  // full: a signal is there already
+  [[maybe_unused]] const ssize_t written = ::write(writing_end, &byte, 1);  // full: a signal is there already
   errno = before;
 }
 
