@@ -64,12 +64,11 @@ ColumnDescription column(const std::string& word) {
 }
 
 /// @param quantity of which it is a unit; absent: time
-double factor(const std::string& symbol, const std::vector<Unit>& known, std::optional<Quantity> quantity) {
-  for (const Unit& unit : known)
-    if (unit.symbol == symbol) return unit.factor;
-  if (const auto converted = convertible_unit(symbol, quantity)) return *converted;
-  const std::string of = quantity ? to_string(*quantity) : "time";
-  throw UsageError(fmt::format("'{}' is no unit of {}; known: {}", symbol, of, joined(symbols(known))));
+double factor(const std::string& symbol, std::optional<Quantity> quantity) {
+  if (const auto found = unit_factor(symbol, quantity)) return *found;
+  throw UsageError(fmt::format("'{}' is no unit of {}; known: {}", symbol,
+                               quantity ? to_string(*quantity) : "time",
+                               joined(symbols(quantity ? units(*quantity) : time_units()))));
 }
 
 /// The k-th of the words, or the only one.
@@ -95,7 +94,7 @@ std::vector<ColumnDescription> channels(const Words& columns, const Words& quant
     channel.stated = !quantities.empty();
     if (!channel.stated) continue;
     channel.quantity = *find_quantity(word_for(quantities, k));
-    channel.factor = factor(word_for(units_given, k), units(channel.quantity), channel.quantity);
+    channel.factor = factor(word_for(units_given, k), channel.quantity);
   }
   return described;
 }
@@ -104,7 +103,7 @@ std::vector<ColumnDescription> channels(const Words& columns, const Words& quant
 ColumnDescription time_column(const std::string& word) {
   const std::size_t colon = word.rfind(':');
   ColumnDescription described = column(word.substr(0, colon));
-  if (colon != std::string::npos) described.factor = factor(word.substr(colon + 1), time_units(), {});
+  if (colon != std::string::npos) described.factor = factor(word.substr(colon + 1), {});
   return described;
 }
 

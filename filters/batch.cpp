@@ -61,7 +61,7 @@ void run_any(TrialGroup& group) {
 
 bool algorithms::processor_has_avx2() {
   if (std::getenv("BEAMID_BASELINE") != nullptr) return false;
-#ifdef __x86_64__  // compilers know the function for these processors only
+#ifdef __x86_64__  // compilers have the function for these processors only
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #else
   return false;

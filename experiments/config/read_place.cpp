@@ -250,17 +250,13 @@ const bool record_keys_registered[] = {register_keys([]() -> const KeyTable& { r
                                        register_keys([]() -> const KeyTable& { return channel_keys(); })};
 
 /// @param quantity that is measured; absent: time
-double factor_of(const TomlTable& table, std::optional<Quantity> quantity, const std::vector<Unit>& known) {
-  const std::string what = quantity ? to_string(*quantity) : "time";
-  const std::string expected = "a unit of " + what + ": " + joined(symbols(known));
+double factor_of(const TomlTable& table, std::optional<Quantity> quantity) {
+  const std::string expected = fmt::format("a unit of {}: {}", quantity ? to_string(*quantity) : "time",
+                                           joined(symbols(quantity ? units(*quantity) : time_units())));
   if (!table.contains("unit")) table.miss("unit", expected);
-  const std::optional<std::string> symbol = table.find_text("unit");
-  const auto unit =
-      std::find_if(known.begin(), known.end(), [&](const Unit& u) { return u.symbol == *symbol; });
-  if (unit != known.end()) return unit->factor;
-  const auto converted = convertible_unit(*symbol, quantity);
-  if (!converted) table.refuse("unit", expected);
-  return *converted;
+  const auto factor = unit_factor(*table.find_text("unit"), quantity);
+  if (!factor) table.refuse("unit", expected);
+  return *factor;
 }
 
 ColumnDescription read_column(const TomlTable& table) {
@@ -281,7 +277,7 @@ ColumnDescription read_channel(const TomlTable& table, const fem::Structure* str
       structure ? channel_keys().read(table, structure->extent()) : channel_keys().read(table);
   ColumnDescription channel = read_column(table);
   channel.quantity = *find_quantity(given.quantity);
-  channel.factor = factor_of(table, channel.quantity, units(channel.quantity));
+  channel.factor = factor_of(table, channel.quantity);
   channel.position = given.position;
   channel.distance = given.distance.value_or(0.0);
   channel.place = given.place;
@@ -310,7 +306,7 @@ DescribedRecord read_described(const TomlTable& table, const fem::Structure* str
   if (record.window) record.window_place = table.value_place("window_s");
   if (const auto time = table.find_table("time")) {
     record.time = read_column(*time);
-    record.time->factor = factor_of(*time, {}, time_units());
+    record.time->factor = factor_of(*time, {});
   }
   for (const TomlTable& channel : table.find_tables("channels")) {
     record.channels.push_back(read_channel(channel, structure));

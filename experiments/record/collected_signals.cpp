@@ -116,16 +116,19 @@ void CollectedSignals::find_time(RecordTable& table, const RecordFormat& format)
                     interval_name_, interval_, *at, mean));
 }
 
-RecordTable CollectedSignals::table(const RecordFormat& format) const {
+std::size_t CollectedSignals::common_length() const {
   std::map<std::size_t, std::size_t> numbers;  // of each length
   for (const Signal& signal : signals_) numbers[signal.values.size()] += signal.values.size();
   if (numbers.empty())
     throw InputError({file_},
                      "no signal of at least two numbers; expected vectors or matrices of real numbers");
-  const std::size_t length =
-      std::max_element(numbers.begin(), numbers.end(), [](const auto& a, const auto& b) {
-        return a.second < b.second;
-      })->first;
+  return std::max_element(numbers.begin(), numbers.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
+
+RecordTable CollectedSignals::table(const RecordFormat& format) const {
+  const std::size_t length = common_length();
   RecordTable table;
   table.file = file_;
   std::string others;

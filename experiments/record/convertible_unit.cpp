@@ -20,7 +20,7 @@
 namespace beamid::experiments {
 namespace {
 
-// Which spellings are asked for. UDUNITS-2 knows some hundred words, each with any prefix and each as a
+// Which spellings are looked up. UDUNITS-2 has some hundred words, each with any prefix and each as a
 // factor of a product: "rod" is 5.03 m, "kin" a thousand inches, "N1" a newton and "3 m" three metres.
 
 /// Of a quantity: its SI unit, and factors that records of it have. A unit outside is a slip of the keyboard

@@ -57,6 +57,9 @@ class CollectedSignals {
   /// contradict each other or times are in another unit, unless the format states them itself.
   RecordTable table(const RecordFormat& format) const;
 
+  /// Of the signals that become the table. @throws InputError when there is none of at least two samples.
+  std::size_t common_length() const;
+
   const std::string& file() const { return file_; }
   const std::vector<Signal>& signals() const { return signals_; }
   double interval() const { return interval_; }                        ///< [s]; 0: none stated

@@ -1,10 +1,13 @@
 // What every kind of record file comes to: named columns of numbers.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -133,6 +136,19 @@ std::string reader_of(const std::filesystem::path& file, const RecordFormat& for
 
 /// The file's columns, by reader_of(), with names and units cleaned (fields.hpp). @throws InputError.
 RecordTable read_table(const std::filesystem::path& file, const RecordFormat& format);
+
+// Binary files of either byte order.
+
+/// @param bytes sizeof(Number) of them. @param swapped in the order that is not this machine's
+template <class Number>
+Number number_of_bytes(const char* bytes, bool swapped) {
+  char parts[sizeof(Number)];
+  std::memcpy(parts, bytes, sizeof parts);
+  if (swapped) std::reverse(std::begin(parts), std::end(parts));
+  Number value;
+  std::memcpy(&value, parts, sizeof value);
+  return value;
+}
 
 // Where the fields of rows of text stand, found again when a message needs it.
 

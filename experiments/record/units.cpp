@@ -166,4 +166,10 @@ std::vector<std::string> symbols(const std::vector<Unit>& units) {
   return result;
 }
 
+std::optional<double> unit_factor(std::string_view symbol, std::optional<Quantity> quantity) {
+  for (const Unit& unit : quantity ? units(*quantity) : time_units())
+    if (unit.symbol == symbol) return unit.factor;
+  return convertible_unit(symbol, quantity);
+}
+
 }  // namespace beamid::experiments

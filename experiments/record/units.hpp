@@ -75,7 +75,7 @@ std::optional<StatedUnit> stated_unit(std::string_view spelling);
 // Units of the world beside those above (convertible_unit.cpp).
 
 /// What a value in a unit of any spelling is multiplied by to be in the SI unit of a quantity, by UDUNITS-2
-/// [udunits]: "in/s^2", "cm s-2", "gal", "lbf", "km/h", "hr". To be asked only where the table has no such
+/// [udunits]: "in/s^2", "cm s-2", "gal", "lbf", "km/h", "hr". To be used only where the table has no such
 /// unit and the spelling stands where a unit stands.
 ///
 /// @param quantity that is known already; absent: time
@@ -83,6 +83,11 @@ std::optional<StatedUnit> stated_unit(std::string_view spelling);
 /// has an offset, a number of its own ("10 mm"), or a size that no record of the quantity has; or where it is
 /// a word that a column's name has for something else ("rod", "foot", "force"). Gravity is in the table.
 std::optional<double> convertible_unit(std::string_view spelling, std::optional<Quantity> quantity);
+
+/// The factor to the SI unit of a symbol of the table, else of a convertible unit; nothing where it is
+/// neither.
+/// @param quantity absent: time
+std::optional<double> unit_factor(std::string_view symbol, std::optional<Quantity> quantity);
 
 /// Symbols, for messages and checks.
 std::vector<std::string> symbols(const std::vector<Unit>& units);

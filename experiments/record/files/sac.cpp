@@ -1,10 +1,8 @@
 // SAC files of seismology [sac]: a header of 632 bytes, then the samples, in either byte order.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
@@ -21,12 +19,7 @@ constexpr std::size_t sac_station = 440, sac_channel = 600, sac_name_length = 8;
 
 template <class Number>
 Number sac_number(std::string_view bytes, std::size_t at, bool swapped) {
-  char parts[sizeof(Number)];
-  std::memcpy(parts, bytes.data() + at, sizeof parts);
-  if (swapped) std::reverse(std::begin(parts), std::end(parts));
-  Number value;
-  std::memcpy(&value, parts, sizeof value);
-  return value;
+  return number_of_bytes<Number>(bytes.data() + at, swapped);
 }
 
 std::int32_t sac_integer(std::string_view bytes, std::size_t word, bool swapped) {

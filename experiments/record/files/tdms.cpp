@@ -90,13 +90,14 @@ class TdmsChannels {
   }
 
   RecordTable table(const RecordFormat& format) {
-    RecordTable table = signals_.table(format);
-    const std::set<std::string> names(table.names.begin(), table.names.end());
-    std::vector<const TdmsObject*> channels;  // that belong together
+    std::set<std::string> names;  // of the channels that belong together
+    for (const CollectedSignals::Signal& signal : signals_.signals())
+      if (signal.values.size() == signals_.common_length()) names.insert(signal.name);
+    std::vector<const TdmsObject*> channels;
     for (const TdmsObject* channel : content_.order)
       if (channel->fault.empty() && names.contains(name_of(*channel))) channels.push_back(channel);
     find_interval(channels, format);
-    if (signals_.interval() > 0) table = signals_.table(format);
+    RecordTable table = signals_.table(format);
     if (table.clock) check_starts(channels, table);
     if (!omitted_.empty()) table.remarks.push_back("Omitted: " + omitted_ + ".");
     if (!scaled_.empty()) table.remarks.push_back("Scaled as the file states: " + scaled_ + ".");
@@ -168,7 +169,7 @@ class TdmsChannels {
       if (first.empty()) signals_.set_interval("wf_increment", interval), first = name;
       if (std::abs(interval / signals_.interval() - 1.0) > 1e-9)
         throw refuse(fmt::format("{} at intervals of {} s and {} of {} s, both of {} samples", first,
-                                 signals_.interval(), name, interval, signals_.table(format).rows()),
+                                 signals_.interval(), name, interval, signals_.common_length()),
                      "channels of one length to have one rate");
     }
     for (const TdmsObject* channel : channels)

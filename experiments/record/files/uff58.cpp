@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <memory>
@@ -72,17 +71,11 @@ std::vector<double> read_binary_numbers(UniversalLines& lines, const UniversalFu
     lines.fail(
         fmt::format("{} bytes remain; expected {} for {} points", ahead.size(), bytes, function.points));
   std::vector<double> numbers(count);
+  const bool swapped = big_endian != (std::endian::native == std::endian::big);
   for (std::size_t i = 0; i < count; ++i) {
-    unsigned char raw[8];
-    std::memcpy(raw, ahead.data() + i * width, width);
-    if (big_endian != (std::endian::native == std::endian::big)) std::reverse(raw, raw + width);
-    if (function.single()) {
-      float value;
-      std::memcpy(&value, raw, width);
-      numbers[i] = static_cast<double>(value);
-    } else {
-      std::memcpy(&numbers[i], raw, width);
-    }
+    const char* const at = ahead.data() + i * width;
+    numbers[i] = function.single() ? static_cast<double>(number_of_bytes<float>(at, swapped))
+                                   : number_of_bytes<double>(at, swapped);
   }
   const std::size_t said = stated > 0 ? static_cast<std::size_t>(stated) : bytes;
   lines.skip_bytes(std::max(bytes, said <= ahead.size() ? said : bytes));

@@ -1,11 +1,11 @@
 #include "experiments/record/files/tdms/segments.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include <fmt/format.h>
 
+#include "experiments/record/record_table.hpp"
 #include "experiments/text/input_error.hpp"
 
 namespace beamid::experiments {
@@ -24,24 +24,14 @@ struct TdmsType {
 namespace {
 
 template <class Number>
-Number tdms_bits(const char* bytes, bool big) {
-  char parts[sizeof(Number)];
-  std::memcpy(parts, bytes, sizeof parts);
-  if (big) std::reverse(std::begin(parts), std::end(parts));
-  Number value;
-  std::memcpy(&value, parts, sizeof value);
-  return value;
-}
-
-template <class Number>
 double tdms_value(const char* bytes, bool big) {
-  return static_cast<double>(tdms_bits<Number>(bytes, big));
+  return static_cast<double>(number_of_bytes<Number>(bytes, big));
 }
 
 /// A stamp has 16 bytes: whole seconds since 1904, and behind or before them, by the byte order, units of
 /// 2^-64 s. A double resolves it to half a microsecond.
 std::int64_t whole_seconds(const char* stamp, bool big) {
-  return tdms_bits<std::int64_t>(stamp + (big ? 0 : 8), big);
+  return number_of_bytes<std::int64_t>(stamp + (big ? 0 : 8), big);
 }
 
 double part_of_second(const char* stamp, bool big) {
@@ -124,7 +114,7 @@ class TdmsSegments {
       throw refuse(
           fmt::format("{} bytes that are no segment of TDMS behind byte {}", bytes_.size() - start, start),
           "a whole file, each segment with its lead-in");
-    const auto flags = tdms_bits<std::uint32_t>(bytes_.data() + start + 4, false);
+    const auto flags = number_of_bytes<std::uint32_t>(bytes_.data() + start + 4, false);
     big_ = (flags & big_endian) != 0;
     at_ = start + 8, end_ = bytes_.size();
     const auto version = next<std::uint32_t>();
@@ -157,7 +147,7 @@ class TdmsSegments {
     for (std::size_t at = begin; (at = bytes_.find("TDSm", at)) != std::string::npos; ++at)
       for (const bool big : {false, true})
         if (bytes_.size() - at >= tdms_lead_in &&
-            tdms_bits<std::uint32_t>(&bytes_[at + 8], big) / 2 == 4712 / 2)
+            number_of_bytes<std::uint32_t>(&bytes_[at + 8], big) / 2 == 4712 / 2)
           throw refuse(fmt::format("a segment without an end, and another one at byte {}", at),
                        "it at the end");
   }
@@ -174,7 +164,7 @@ class TdmsSegments {
 
   template <class Number>
   Number next() {
-    return tdms_bits<Number>(take(sizeof(Number)), big_);
+    return number_of_bytes<Number>(take(sizeof(Number)), big_);
   }
 
   std::string next_text() {

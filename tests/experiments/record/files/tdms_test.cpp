@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -16,95 +15,12 @@
 #include "tests/experiments/config/temporary_file.hpp"
 #include "tests/experiments/record/files/damaged_file.hpp"
 #include "tests/experiments/record/files/written_record.hpp"
+#include "tests/experiments/record/files/written_tdms.hpp"
 
 namespace beamid::experiments::tdms_test {
 namespace {
 
 using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
-
-constexpr std::uint32_t metadata = 2, new_list = 4, raw = 8, interleaved = 32, big_endian = 64, daqmx = 128,
-                        usual = metadata | new_list | raw;
-constexpr std::uint32_t none = 0xFFFFFFFF, as_before = 0;
-constexpr std::uint32_t int16 = 2, int32 = 3, float32 = 9, float64 = 10, text_type = 0x20, stamp_type = 0x44;
-constexpr std::uint64_t endless = ~std::uint64_t{0};
-
-/// Writes numbers in one byte order.
-struct Writer {
-  bool big = false;
-
-  template <class Number>
-  std::string number(Number value) const {
-    std::string bytes(sizeof value, '\0');
-    std::memcpy(bytes.data(), &value, sizeof value);
-    if (big) std::reverse(bytes.begin(), bytes.end());
-    return bytes;
-  }
-  std::string u32(std::uint32_t value) const { return number(value); }
-  std::string u64(std::uint64_t value) const { return number(value); }
-  std::string text(const std::string& value) const {
-    return u32(static_cast<std::uint32_t>(value.size())) + value;
-  }
-  std::string stamp(std::int64_t seconds, double part) const {
-    const std::string whole = number(seconds), rest = u64(static_cast<std::uint64_t>(std::ldexp(part, 64)));
-    return big ? whole + rest : rest + whole;
-  }
-
-  std::string is(const std::string& key, double value) const {
-    return text(key) + u32(float64) + number(value);
-  }
-  std::string is(const std::string& key, const std::string& value) const {
-    return text(key) + u32(text_type) + text(value);
-  }
-  std::string is(const std::string& key, std::uint32_t value) const {
-    return text(key) + u32(7) + u32(value);
-  }
-  std::string starts(std::int64_t seconds, double part = 0.0) const {
-    return text("wf_start_time") + u32(stamp_type) + stamp(seconds, part);
-  }
-
-  /// @param index complete, by index() or u32(none)
-  std::string object(const std::string& path, const std::string& index,
-                     const std::vector<std::string>& properties = {}) const {
-    std::string bytes = text(path) + index + u32(static_cast<std::uint32_t>(properties.size()));
-    for (const std::string& property : properties) bytes += property;
-    return bytes;
-  }
-  std::string index(std::uint32_t type, std::uint64_t count) const {
-    return u32(20) + u32(type) + u32(1) + u64(count);
-  }
-  /// One value of `type` (by DAQmx's numbers) at byte `within` of the rows of a buffer.
-  std::string daqmx_index(std::uint32_t type, std::uint64_t count, std::uint32_t within,
-                          const std::vector<std::uint32_t>& widths, std::uint32_t buffer = 0) const {
-    std::string bytes = u32(0x1269) + u32(0xFFFFFFFF) + u32(1) + u64(count) + u32(1) + u32(type) +
-                        u32(buffer) + u32(within) + u32(0) + u32(0) +
-                        u32(static_cast<std::uint32_t>(widths.size()));
-    for (const std::uint32_t width : widths) bytes += u32(width);
-    return bytes;
-  }
-  std::string objects(const std::vector<std::string>& all) const {
-    std::string bytes = u32(static_cast<std::uint32_t>(all.size()));
-    for (const std::string& one : all) bytes += one;
-    return bytes;
-  }
-  /// @param described by objects(), or empty
-  std::string segment(std::uint32_t flags, const std::string& described, const std::string& values,
-                      bool closed = true) const {
-    const std::string contents = Writer{}.u32(flags | (big ? big_endian : 0U));
-    return "TDSm" + contents + u32(4713) + u64(closed ? described.size() + values.size() : endless) +
-           u64(described.size()) + described + values;
-  }
-};
-
-/// Of signal samples from..to-1, as numbers of that kind.
-template <class Number>
-std::string values_of(const Writer& write, double (*signal)(int), int from, int to, double unit = 1.0) {
-  std::string bytes;
-  for (int k = from; k < to; ++k) {
-    const double value = signal(k) / unit;
-    bytes += write.number(static_cast<Number>(std::is_integral_v<Number> ? std::round(value) : value));
-  }
-  return bytes;
-}
 
 const char *const tip = "/'Run 1'/'Tip'", *const hammer = "/'Run 1'/'Hammer'";
 
