@@ -2,15 +2,18 @@
 # the sensitivities of the former.
 find_package(SUNDIALS 6.4 REQUIRED COMPONENTS cvodes arkode nvecserial sunmatrixsparse sunlinsolklu)
 
-# beamid_link_sundials(TARGET PART...): with MPI where SUNDIALS was built with it, as Debian's 7 is. Its headers include
-# mpi.h then, which its own targets do not say.
-function(beamid_link_sundials target)
-  list(TRANSFORM ARGN PREPEND SUNDIALS:: OUTPUT_VARIABLE parts)
-  target_link_libraries(${target} PRIVATE ${parts})
+# beamid_use_sundials(TARGET PART...): its headers, and its PARTs at their first use. Where SUNDIALS was built with MPI, as
+# Debian's 7 is, its headers include mpi.h, which its own targets do not say.
+function(beamid_use_sundials target)
+  target_include_directories(${target} SYSTEM PRIVATE
+                             $<TARGET_PROPERTY:SUNDIALS::sunlinsolklu_shared,INTERFACE_INCLUDE_DIRECTORIES>)
+  foreach(part ${ARGN})
+    string(TOUPPER ${part} name)
+    beamid_needed(${target} ${name} SUNDIALS::${part}_shared)
+  endforeach()
   if(TARGET MPI::MPI_C)  # SUNDIALS looks for it; nothing before it does
     find_package(MPI REQUIRED COMPONENTS C)
     target_include_directories(${target} SYSTEM PRIVATE ${MPI_C_INCLUDE_DIRS})
     target_compile_definitions(${target} PRIVATE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
-    target_link_libraries(${target} PRIVATE ${MPI_C_LIBRARIES})
   endif()
 endfunction()

@@ -35,6 +35,12 @@ string(CONCAT about "beamid computes beams and plane frames, and identifies stif
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME beamid)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
+# What is loaded at its first use no program names. Of MPI only a process that mpirun started needs the library.
+get_property(needed GLOBAL PROPERTY BEAMID_NEEDED_PACKAGES)
+list(REMOVE_DUPLICATES needed)
+list(FILTER needed EXCLUDE REGEX "mpi")
+list(JOIN needed ", " needed)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS ${needed})
 set(recommended "gnuplot-nox | gnuplot, fonts-dejavu-core, libsndfile1, libmseed2, libfreexl1, libudunits2-0")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS ${recommended})
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS beamid-paraview)
@@ -49,7 +55,7 @@ set(CPACK_COMPONENT_PARAVIEW_DESCRIPTION
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbeamid-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libspectra-dev, libsuitesparse-dev, "
-  "libsundials-dev, libvtk9-dev, libtbb-dev, libboost-program-options-dev, libmatio-dev, libhdf5-dev, zlib1g-dev, "
+  "libvtk9-dev, libtbb-dev, libboost-program-options-dev, zlib1g-dev, ${needed}, "
   "libtomlplusplus-dev, nlohmann-json3-dev, libfmt-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "${about}This package holds headers, static libraries and a CMake package.")
@@ -63,7 +69,7 @@ if(TARGET beamid_python)
   string(REPLACE "." ";" next ${series})
   list(POP_FRONT next major minor)
   math(EXPR minor "${minor} + 1")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${series}), python3 (<< ${major}.${minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${series}), python3 (<< ${major}.${minor}), python3-numpy, ${needed}")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS ${recommended})
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib, beamid-paraview")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "${about}This package holds the Python module, beamid.")

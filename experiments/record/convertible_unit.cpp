@@ -12,10 +12,10 @@
 #include <string>
 #include <utility>
 
-#include "experiments/record/loaded_library.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/input_error.hpp"
+#include "filters/needed_library.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -94,36 +94,42 @@ bool is_written_as_unit(std::string_view text) {
 
 // The library, loaded when the first spelling is asked for: its table of units is read once.
 
+constexpr filters::NeededLibrary udunits{"libudunits2.so.0", "libudunits2-0"};
+BEAMID_NEEDED(udunits, ut_set_error_message_handler);
+BEAMID_NEEDED(udunits, ut_ignore);
+BEAMID_NEEDED(udunits, ut_read_xml);
+BEAMID_NEEDED(udunits, ut_parse);
+BEAMID_NEEDED(udunits, ut_free);
+BEAMID_NEEDED(udunits, ut_are_convertible);
+BEAMID_NEEDED(udunits, ut_get_converter);
+BEAMID_NEEDED(udunits, cv_convert_double);
+BEAMID_NEEDED(udunits, cv_free);
+
 class UnitSystem {
  public:
-  /// @throws InputError without the library, std::runtime_error without one of its functions.
-  UnitSystem() : library_("", "libudunits2.so.0", "libudunits2-0") {
-    library_.function<decltype(ut_set_error_message_handler)>("ut_set_error_message_handler")(
-        library_.function<decltype(ut_ignore)>("ut_ignore"));
-    system_ = library_.function<decltype(ut_read_xml)>("ut_read_xml")(nullptr);
+  /// @throws std::runtime_error without the library.
+  UnitSystem() {
+    ut_set_error_message_handler(ut_ignore);
+    system_ = ut_read_xml(nullptr);
   }
 
   /// Of a linear conversion, to the digits that its definition states: products such as 2.54 * 0.01 are
   /// rounded. Reciprocal units (Hz of s), logarithms and offsets have none.
   std::optional<double> factor(const std::string& from, const char* to) const {
     if (system_ == nullptr) return {};
-    auto* const parse = library_.function<decltype(ut_parse)>("ut_parse");
-    auto* const free_unit = library_.function<decltype(ut_free)>("ut_free");
-    ut_unit *const unit = parse(system_, from.c_str(), UT_UTF8), *const si = parse(system_, to, UT_UTF8);
+    ut_unit *const unit = ut_parse(system_, from.c_str(), UT_UTF8), *const si =
+                                                                        ut_parse(system_, to, UT_UTF8);
     std::optional<double> found;
-    if (unit != nullptr && si != nullptr &&
-        library_.function<decltype(ut_are_convertible)>("ut_are_convertible")(unit, si) != 0)
-      if (cv_converter* const converter =
-              library_.function<decltype(ut_get_converter)>("ut_get_converter")(unit, si)) {
-        auto* const convert = library_.function<decltype(cv_convert_double)>("cv_convert_double");
-        const double one = convert(converter, 1.0);
-        if (convert(converter, 0.0) == 0.0 && one > 0.0 && std::isfinite(one) &&
-            std::abs(convert(converter, -2.0) + 2.0 * one) <= 1e-14 * one)
+    if (unit != nullptr && si != nullptr && ut_are_convertible(unit, si) != 0)
+      if (cv_converter* const converter = ut_get_converter(unit, si)) {
+        const double one = cv_convert_double(converter, 1.0);
+        if (cv_convert_double(converter, 0.0) == 0.0 && one > 0.0 && std::isfinite(one) &&
+            std::abs(cv_convert_double(converter, -2.0) + 2.0 * one) <= 1e-14 * one)
           found = without_rounding_of_products(one);
-        library_.function<decltype(cv_free)>("cv_free")(converter);
+        cv_free(converter);
       }
-    if (unit != nullptr) free_unit(unit);
-    if (si != nullptr) free_unit(si);
+    if (unit != nullptr) ut_free(unit);
+    if (si != nullptr) ut_free(si);
     return found;
   }
 
@@ -134,7 +140,6 @@ class UnitSystem {
     return std::abs(decimal - factor) <= few_roundings * factor ? decimal : factor;
   }
 
-  LoadedLibrary library_;
   ut_system* system_ = nullptr;
 };
 

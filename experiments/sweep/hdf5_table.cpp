@@ -1,13 +1,12 @@
 #include "experiments/sweep/hdf5_table.hpp"
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <cstring>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 
+#include "experiments/record/files/hdf5/handle.hpp"
 #include "experiments/text/choice.hpp"
 
 namespace beamid::experiments {

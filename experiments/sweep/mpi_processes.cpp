@@ -1,4 +1,5 @@
-// The one file that knows MPI [mpi31]. Messages are bytes: a letter, and what it announces.
+// The one file that knows MPI [mpi31], which is loaded where mpirun has started several processes. Messages
+// are bytes: a letter, and what it announces.
 //
 //     to the first process:  r            ready
 //                            d rows       cases are finished: their rows as lines of CSV
@@ -21,6 +22,8 @@
 #include <iterator>
 #include <sstream>
 #include <thread>
+
+#include "filters/needed_library.hpp"
 #endif
 
 namespace beamid::experiments {
@@ -38,6 +41,21 @@ int set_by_mpirun() {
 #ifdef BEAMID_MPI
 
 namespace {
+
+// Its own modules take functions of it from the program: they are to be seen.
+constexpr filters::NeededLibrary mpi{BEAMID_MPI, RTLD_GLOBAL};
+BEAMID_NEEDED(mpi, MPI_Init);
+BEAMID_NEEDED(mpi, MPI_Finalize);
+BEAMID_NEEDED(mpi, MPI_Comm_rank);
+BEAMID_NEEDED(mpi, MPI_Comm_size);
+BEAMID_NEEDED(mpi, MPI_Send);
+BEAMID_NEEDED(mpi, MPI_Recv);
+BEAMID_NEEDED(mpi, MPI_Iprobe);
+BEAMID_NEEDED(mpi, MPI_Get_count);
+#ifdef OPEN_MPI  // what MPI_COMM_WORLD and MPI_CHAR stand for; numbers elsewhere
+BEAMID_NEEDED_VARIABLE(mpi, ompi_mpi_comm_world);
+BEAMID_NEEDED_VARIABLE(mpi, ompi_mpi_char);
+#endif
 
 struct Message {
   int rank = 0;  ///< whose

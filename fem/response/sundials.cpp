@@ -5,10 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <sunlinsol/sunlinsol_klu.h>
-
 #include "fem/response/method.hpp"
-#include "fem/response/sundials_versions.hpp"
 
 namespace beamid::fem {
 

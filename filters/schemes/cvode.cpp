@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "filters/needed_library.hpp"
 #include "filters/scheme.hpp"
 #include "filters/step_input.hpp"
 
@@ -17,6 +18,41 @@ namespace beamid::filters {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr NeededLibrary cvodes{BEAMID_CVODES};  // loaded when this scheme is first used
+BEAMID_NEEDED(cvodes, CVode);
+BEAMID_NEEDED(cvodes, CVodeCreate);
+BEAMID_NEEDED(cvodes, CVodeFree);
+BEAMID_NEEDED(cvodes, CVodeGetReturnFlagName);
+BEAMID_NEEDED(cvodes, CVodeGetSens);
+BEAMID_NEEDED(cvodes, CVodeInit);
+BEAMID_NEEDED(cvodes, CVodeReInit);
+BEAMID_NEEDED(cvodes, CVodeSStolerances);
+BEAMID_NEEDED(cvodes, CVodeSensEEtolerances);
+BEAMID_NEEDED(cvodes, CVodeSensInit);
+BEAMID_NEEDED(cvodes, CVodeSensReInit);
+BEAMID_NEEDED(cvodes, CVodeSensToggleOff);
+BEAMID_NEEDED(cvodes, CVodeSetNonlinearSolver);
+BEAMID_NEEDED(cvodes, CVodeSetNonlinearSolverSensStg);
+BEAMID_NEEDED(cvodes, CVodeSetSensErrCon);
+BEAMID_NEEDED(cvodes, CVodeSetStopTime);
+BEAMID_NEEDED(cvodes, CVodeSetUserData);
+BEAMID_NEEDED(cvodes, N_VCloneVectorArray);
+BEAMID_NEEDED(cvodes, N_VDestroy);
+BEAMID_NEEDED(cvodes, N_VDestroyVectorArray);
+BEAMID_NEEDED(cvodes, N_VGetArrayPointer);
+BEAMID_NEEDED(cvodes, N_VGetLength);
+BEAMID_NEEDED(cvodes, N_VNew_Serial);
+BEAMID_NEEDED(cvodes, SUNContext_Create);
+BEAMID_NEEDED(cvodes, SUNContext_Free);
+BEAMID_NEEDED(cvodes, SUNNonlinSolFree);
+BEAMID_NEEDED(cvodes, SUNNonlinSol_FixedPoint);
+BEAMID_NEEDED(cvodes, SUNNonlinSol_FixedPointSens);
+#if SUNDIALS_VERSION_MAJOR < 7
+BEAMID_NEEDED(cvodes, CVodeSetErrFile);
+#else
+BEAMID_NEEDED(cvodes, SUNContext_ClearErrHandlers);
+#endif
 
 void require(int flag, const char* call) {
   if (flag >= 0) return;
@@ -29,7 +65,7 @@ Eigen::Map<VectorXd> view(N_Vector vector) {
 }
 
 // Failures are thrown, not printed. SUNDIALS 6 is silenced by integrator, 7 by context; of what differs
-// between them (fem/response/sundials_versions.hpp) these are the two calls that this scheme needs.
+// between them (fem/response/sundials.hpp) these are the two calls that this scheme needs.
 SUNContext silent_context() {
   SUNContext context = nullptr;
 #if SUNDIALS_VERSION_MAJOR < 7

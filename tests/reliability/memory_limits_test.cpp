@@ -67,13 +67,13 @@ class MemoryLimit : public testing::TestWithParam<Asked> {
   Workplace place_;
 };
 
-/// The least of these limits under which the command starts. 200 MB are enough for each of these commands
+/// The least of these limits under which the command starts. 160 MB are enough for each of these commands
 /// with its defaults; OpenBLAS, where it is the system's BLAS, takes 128 MB of addresses while it is loaded,
 /// and tries without end where it does not get them.
 std::string limited(const Workplace& place) {
   static const std::string least = [&place] {
     const std::string start = "export OPENBLAS_NUM_THREADS=1; ulimit -v ";
-    for (const char* kilobytes : {"200000;", "350000;"})
+    for (const char* kilobytes : {"160000;", "350000;"})
       if (place.run("--version", start + kilobytes + " timeout 10").code == 0) return start + kilobytes;
     throw std::runtime_error("the command does not start within 350 MB");
   }();

@@ -1,22 +1,17 @@
 // MATLAB files of level 5 and 7.3, through matio.
 #include <fmt/format.h>
-#include <matio.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "experiments/record/files/hdf5/own_storage.hpp"
+#include "experiments/record/files/matio.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {
-
-struct Closing {
-  void operator()(mat_t* file) const { Mat_Close(file); }
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-};
 
 bool is_numeric(const matvar_t& variable) {
   switch (variable.class_type) {
@@ -88,10 +83,10 @@ class MatReader final : public RecordReader {
   static void collect(CollectedSignals& signals) {
     const std::string& name = signals.file();
     Mat_LogInitFunc("beamid", [](int, auto*) {});
-    const std::unique_ptr<mat_t, Closing> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
+    const std::unique_ptr<mat_t, MatioDeleter> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
     if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
     if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);
-    while (const std::unique_ptr<matvar_t, Closing> found{Mat_VarReadNextInfo(file.get())}) {
+    while (const std::unique_ptr<matvar_t, MatioDeleter> found{Mat_VarReadNextInfo(file.get())}) {
       const bool holds_others = found->class_type == MAT_C_STRUCT || found->class_type == MAT_C_CELL;
       if (found->name == nullptr || (!is_numeric(*found) && !holds_others)) continue;
       announce(*found, found->name, signals);

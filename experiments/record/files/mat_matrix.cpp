@@ -1,22 +1,17 @@
 #include "experiments/record/files/mat_matrix.hpp"
 
 #include <fmt/format.h>
-#include <matio.h>
 
 #include <memory>
 
 #include "experiments/record/files/hdf5/own_storage.hpp"
+#include "experiments/record/files/matio.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {
-
-struct ClosingMatrixFile {
-  void operator()(mat_t* file) const { Mat_Close(file); }
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-};
 
 bool is_matrix(const matvar_t& found) {
   return found.name != nullptr && found.rank == 2 && found.dims != nullptr && !found.isComplex &&
@@ -58,10 +53,10 @@ void add_sparse(const matvar_t& variable, std::vector<double>& rows, std::vector
 void collect_matrices(CollectedSignals& signals, const std::string& wanted) {
   const std::string& name = signals.file();
   Mat_LogInitFunc("beamid", [](int, auto*) {});
-  const std::unique_ptr<mat_t, ClosingMatrixFile> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
+  const std::unique_ptr<mat_t, MatioDeleter> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
   if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
   if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);
-  while (const std::unique_ptr<matvar_t, ClosingMatrixFile> found{Mat_VarReadNextInfo(file.get())}) {
+  while (const std::unique_ptr<matvar_t, MatioDeleter> found{Mat_VarReadNextInfo(file.get())}) {
     if (!is_matrix(*found) || (!wanted.empty() && wanted != found->name)) continue;
     const std::string own = found->name;
     if (found->class_type == MAT_C_DOUBLE) signals.announce(own, {found->dims[0], found->dims[1]});

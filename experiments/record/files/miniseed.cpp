@@ -9,13 +9,18 @@
 #include <limits>
 #include <map>
 
-#include "experiments/record/loaded_library.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"
+#include "filters/needed_library.hpp"
 
 namespace beamid::experiments {
 namespace {
+
+constexpr filters::NeededLibrary libmseed{"libmseed.so.2", "libmseed2"};
+BEAMID_NEEDED(libmseed, ms_readtraces);
+BEAMID_NEEDED(libmseed, ms_errorstr);
+BEAMID_NEEDED(libmseed, mst_convertsamples);
 
 /// "acceleration IU.ANMO.00.HNZ": the second letter of a channel's code says what its instrument measures.
 std::string name_of_trace(const MSTrace& trace) {
@@ -28,23 +33,19 @@ std::string name_of_trace(const MSTrace& trace) {
 
 /// Every channel on one grid of instants; what is missing between its traces is NaN.
 void collect_traces(CollectedSignals& signals) {
-  const LoadedLibrary library(signals.file(), "libmseed.so.2", "libmseed2");
   MSTraceGroup* group = nullptr;
-  const int failure = library.function<decltype(ms_readtraces)>("ms_readtraces")(
-      &group, signals.file().c_str(), -1, -1.0, -1.0, 0, 1, 1, 0);
+  const int failure = ms_readtraces(&group, signals.file().c_str(), -1, -1.0, -1.0, 0, 1, 1, 0);
   const auto refuse = [&](const std::string& found, const std::string& expected) {
     return InputError({signals.file(), 0, 0}, found + "; expected " + expected);
   };
   if (failure != MS_NOERROR || group == nullptr || group->traces == nullptr)
-    throw refuse(fmt::format("no MiniSEED that libmseed reads ({})",
-                             library.function<decltype(ms_errorstr)>("ms_errorstr")(failure)),
+    throw refuse(fmt::format("no MiniSEED that libmseed reads ({})", ms_errorstr(failure)),
                  "records of samples");
-  auto* const convert = library.function<decltype(mst_convertsamples)>("mst_convertsamples");
   double rate = 0.0;
   hptime_t start = std::numeric_limits<hptime_t>::max(), end = std::numeric_limits<hptime_t>::min();
   for (MSTrace* trace = group->traces; trace != nullptr; trace = trace->next) {
     if (trace->numsamples <= 0) continue;
-    if (!(trace->samprate > 0.0) || convert(trace, 'd', 0) != 0)
+    if (!(trace->samprate > 0.0) || mst_convertsamples(trace, 'd', 0) != 0)
       throw refuse(name_of_trace(*trace) + " holds no samples at a rate", "numbers at a sampling rate");
     if (rate == 0.0) rate = trace->samprate;
     if (std::abs(trace->samprate / rate - 1.0) > 1e-4)

@@ -5,33 +5,36 @@
 #include <algorithm>
 #include <vector>
 
-#include "experiments/record/loaded_library.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"
+#include "filters/needed_library.hpp"
 
 namespace beamid::experiments {
 namespace {
 
+constexpr filters::NeededLibrary sndfile{"libsndfile.so.1", "libsndfile1"};
+BEAMID_NEEDED(sndfile, sf_open);
+BEAMID_NEEDED(sndfile, sf_strerror);
+BEAMID_NEEDED(sndfile, sf_readf_double);
+BEAMID_NEEDED(sndfile, sf_close);
+
 /// The channels of a sound file; those of integers in fractions of full scale.
 void collect_sound(CollectedSignals& signals) {
-  const LoadedLibrary library(signals.file(), "libsndfile.so.1", "libsndfile1");
   SF_INFO info{};
-  SNDFILE* const sound =
-      library.function<decltype(sf_open)>("sf_open")(signals.file().c_str(), SFM_READ, &info);
+  SNDFILE* const sound = sf_open(signals.file().c_str(), SFM_READ, &info);
   if (sound == nullptr)
-    throw InputError({signals.file(), 0, 0},
-                     fmt::format("no sound that libsndfile reads ({}); expected WAV, AIFF or FLAC",
-                                 library.function<decltype(sf_strerror)>("sf_strerror")(nullptr)));
+    throw InputError(
+        {signals.file(), 0, 0},
+        fmt::format("no sound that libsndfile reads ({}); expected WAV, AIFF or FLAC", sf_strerror(nullptr)));
   const auto channels = static_cast<std::size_t>(std::max(info.channels, 0));
   signals.announce("its channels",
                    {channels, static_cast<std::size_t>(std::max<sf_count_t>(info.frames, 0))});
   constexpr sf_count_t at_once = 4096;
   std::vector<std::vector<double>> values(channels);
   std::vector<double> frames(static_cast<std::size_t>(at_once) * channels);
-  auto* const read = library.function<decltype(sf_readf_double)>("sf_readf_double");
   for (sf_count_t left = info.frames; left > 0;) {
-    const sf_count_t count = read(sound, frames.data(), std::min(left, at_once));
+    const sf_count_t count = sf_readf_double(sound, frames.data(), std::min(left, at_once));
     if (count <= 0)
       throw InputError({signals.file(), 0, 0}, fmt::format("{} frames; expected {}, as its header states",
                                                            info.frames - left, info.frames));
@@ -39,7 +42,7 @@ void collect_sound(CollectedSignals& signals) {
       values[k % channels].push_back(frames[k]);
     left -= count;
   }
-  library.function<decltype(sf_close)>("sf_close")(sound);
+  sf_close(sound);
   const int kind = info.format & SF_FORMAT_SUBMASK;
   const int digits = kind == SF_FORMAT_DOUBLE                               ? 15
                      : kind == SF_FORMAT_PCM_16 || kind == SF_FORMAT_PCM_S8 ? 5

@@ -18,11 +18,11 @@
 #include <vector>
 
 #include "experiments/record/delimited_text.hpp"
-#include "experiments/record/loaded_library.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
+#include "filters/needed_library.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -66,23 +66,28 @@ std::optional<WorkbookKind> workbook_kind(std::string_view beginning) {
 
 // A sheet as text.
 
+constexpr filters::NeededLibrary freexl{"libfreexl.so.1", "libfreexl1"};
+BEAMID_NEEDED(freexl, freexl_get_cell_value);
+BEAMID_NEEDED(freexl, freexl_get_info);
+BEAMID_NEEDED(freexl, freexl_get_worksheet_name);
+BEAMID_NEEDED(freexl, freexl_select_active_worksheet);
+BEAMID_NEEDED(freexl, freexl_version);
+BEAMID_NEEDED(freexl, freexl_worksheet_dimensions);
+
 /// The cells of the sheet that is selected.
 class SheetCells {
  public:
-  SheetCells(const LoadedLibrary& library, const void* workbook)
-      : workbook_(workbook),
-        value_(library.function<decltype(freexl_get_cell_value)>("freexl_get_cell_value")) {
+  explicit SheetCells(const void* workbook) : workbook_(workbook) {
     constexpr unsigned most_rows = 1U << 20, most_columns = 1U << 14;  // of any kind of workbook
     unsigned short columns = 0;
-    const bool found = library.function<decltype(freexl_worksheet_dimensions)>("freexl_worksheet_dimensions")(
-                           workbook, &rows, &columns) == FREEXL_OK;
+    const bool found = freexl_worksheet_dimensions(workbook, &rows, &columns) == FREEXL_OK;
     width = columns;
     if (!found || rows > most_rows || width > most_columns || width == 0) rows = 0, width = 0;
   }
 
   FreeXL_CellValue at(unsigned row, unsigned column) const {
     FreeXL_CellValue cell{};
-    if (value_(workbook_, row, static_cast<unsigned short>(column), &cell) != FREEXL_OK)
+    if (freexl_get_cell_value(workbook_, row, static_cast<unsigned short>(column), &cell) != FREEXL_OK)
       cell.type = FREEXL_CELL_NULL;
     return cell;
   }
@@ -105,7 +110,6 @@ class SheetCells {
 
  private:
   const void* workbook_;
-  decltype(freexl_get_cell_value)* value_;
 };
 
 unsigned rows_of_numbers(const SheetCells& cells) {
@@ -234,26 +238,22 @@ std::vector<std::string> read_sheet(const std::string& file, const WorkbookKind&
   const auto refuse = [&](const std::string& found, const std::string& expected) {
     return InputError({file, 0, 0}, fmt::format("{}; expected {}", found, expected));
   };
-  const LoadedLibrary library(file, "libfreexl.so.1", "libfreexl1");
-  if (!library.has(kind.open))
-    throw InputError(
-        {file, 0, 0},
-        fmt::format("{}: libfreexl {} of this system reads xls only; {}", kind.name,
-                    library.function<decltype(freexl_version)>("freexl_version")(), save_sheet_as_csv));
+  if (freexl.there() && !freexl.has(kind.open))
+    throw InputError({file, 0, 0}, fmt::format("{}: libfreexl {} of this system reads xls only; {}",
+                                               kind.name, freexl_version(), save_sheet_as_csv));
   const void* workbook = nullptr;
-  const int failure = library.function<decltype(freexl_open)>(kind.open)(file.c_str(), &workbook);
+  const int failure =
+      reinterpret_cast<decltype(&freexl_open)>(freexl.symbol(kind.open))(file.c_str(), &workbook);
   if (failure != FREEXL_OK)
     throw refuse(fmt::format("no workbook that libfreexl reads (error {})", failure),
                  fmt::format("{}, or {}", kind.name, save_sheet_as_csv));
   unsigned secret = 0;
-  if (library.function<decltype(freexl_get_info)>("freexl_get_info")(workbook, FREEXL_BIFF_PASSWORD,
-                                                                     &secret) == FREEXL_OK &&
+  if (freexl_get_info(workbook, FREEXL_BIFF_PASSWORD, &secret) == FREEXL_OK &&
       secret == FREEXL_BIFF_OBFUSCATED)
     throw refuse("a workbook with a password", "one without");
 
   const auto select = [&](unsigned sheet) {
-    return library.function<decltype(freexl_select_active_worksheet)>("freexl_select_active_worksheet")(
-               workbook, static_cast<unsigned short>(sheet)) == FREEXL_OK;
+    return freexl_select_active_worksheet(workbook, static_cast<unsigned short>(sheet)) == FREEXL_OK;
   };
   struct Sheet {
     unsigned number, rows;
@@ -261,13 +261,12 @@ std::vector<std::string> read_sheet(const std::string& file, const WorkbookKind&
   };
   std::vector<Sheet> sheets;  // that hold anything
   for (unsigned k = 0; k < most_sheets && select(k); ++k) {
-    const SheetCells cells(library, workbook);
+    const SheetCells cells(workbook);
     if (static_cast<std::size_t>(cells.rows) * cells.width > most_cells)
       throw refuse(fmt::format("sheet {} claims {} x {} cells", k + 1, cells.rows, cells.width),
                    fmt::format("at most {:.3g}, which a file of this size can hold", double(most_cells)));
     const char* name = nullptr;
-    library.function<decltype(freexl_get_worksheet_name)>("freexl_get_worksheet_name")(
-        workbook, static_cast<unsigned short>(k), &name);
+    freexl_get_worksheet_name(workbook, static_cast<unsigned short>(k), &name);
     if (cells.rows > 0) sheets.push_back({k, rows_of_numbers(cells), clean_text(name ? name : "")});
   }
   const auto with = [&](unsigned rows) {
@@ -279,7 +278,7 @@ std::vector<std::string> read_sheet(const std::string& file, const WorkbookKind&
     throw refuse(fmt::format("no sheet with two rows of numbers among {}", sheets.size()),
                  "values: results of formulas are pasted as values, or " + std::string(save_sheet_as_csv));
   select(chosen->number);
-  const SheetCells cells(library, workbook);
+  const SheetCells cells(workbook);
   refuse_formulas(file, cells);
   if (kind.open != xls.open) refuse_parts_of_texts(file, cells);
   if (kind.open == ods.open) refuse_repeated_rows(file, cells);

@@ -1,9 +1,6 @@
 // SUNDIALS ARKODE: diagonally implicit Runge-Kutta methods of adaptive step [reynolds2023]. Stable for
 // motions that are fast and lightly damped, which backward differentiation (cvode) is not.
-#include <arkode/arkode_arkstep.h>
-
 #include "fem/response/sundials.hpp"
-#include "fem/response/sundials_versions.hpp"
 
 namespace beamid::fem {
 namespace {

@@ -2,12 +2,9 @@
 // order and above they are unstable for motions that are fast and lightly damped, which is what the high
 // modes of a beam are: CVODE then has to follow every one of them. Meant for damped structures and as a
 // second opinion; see arkode. The solver comes from CVODES, which has it whole: a program must not link both.
-#include <cvodes/cvodes.h>
-
 #include <algorithm>
 
 #include "fem/response/sundials.hpp"
-#include "fem/response/sundials_versions.hpp"
 
 namespace beamid::fem {
 namespace {
