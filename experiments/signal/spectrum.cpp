@@ -72,6 +72,7 @@ AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double inter
   transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<std::complex<double>> spectrum;
   transform.fwd(spectrum, padded);
+  padded = {};
   const auto size = static_cast<Eigen::Index>(spectrum.size());
   AmplitudeSpectrum result{Eigen::VectorXd(size), Eigen::VectorXd(size)};
   for (Eigen::Index k = 0; k < size; ++k) {

@@ -79,6 +79,9 @@ BEAMID_ARKODE_FUNCTION(SetErrFile);
 #else
 #define BEAMID_ARKODE_FUNCTION(name) BEAMID_NEEDED(sundials_arkode, ARKode##name)
 BEAMID_NEEDED(sundials_cvodes, SUNContext_ClearErrHandlers);
+#ifdef OPEN_MPI  // what SUN_COMM_NULL stands for
+BEAMID_NEEDED_VARIABLE(sundials_cvodes, ompi_mpi_comm_null);
+#endif
 #endif
 BEAMID_ARKODE_FUNCTION(Free);
 BEAMID_ARKODE_FUNCTION(GetReturnFlagName);

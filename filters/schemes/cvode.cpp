@@ -52,6 +52,9 @@ BEAMID_NEEDED(cvodes, SUNNonlinSol_FixedPointSens);
 BEAMID_NEEDED(cvodes, CVodeSetErrFile);
 #else
 BEAMID_NEEDED(cvodes, SUNContext_ClearErrHandlers);
+#ifdef OPEN_MPI  // what SUN_COMM_NULL stands for
+BEAMID_NEEDED_VARIABLE(cvodes, ompi_mpi_comm_null);
+#endif
 #endif
 
 void require(int flag, const char* call) {

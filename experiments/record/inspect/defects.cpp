@@ -19,17 +19,25 @@ namespace beamid::experiments {
 
 namespace {
 
-/// Neighbouring samples of one value; NaN is one value.
-std::vector<Run> runs_of(const std::vector<double>& signal) {
-  std::vector<Run> runs;
-  for (std::size_t i = 0; i < signal.size(); ++i) {
-    const bool same =
-        i > 0 && (signal[i] == signal[i - 1] || (std::isnan(signal[i]) && std::isnan(signal[i - 1])));
-    if (same)
-      ++runs.back().length;
-    else
-      runs.push_back({i, 1, signal[i]});
+/// Visits neighbouring samples of one value, in order; NaN is one value. They are as many as samples in most
+/// signals, and are therefore not kept.
+template <class Visit>
+void for_each_run(const std::vector<double>& signal, const Visit& visit) {
+  for (std::size_t first = 0, end; first < signal.size(); first = end) {
+    const bool missing = std::isnan(signal[first]);
+    for (end = first + 1; end < signal.size(); ++end)
+      if (!(signal[end] == signal[first] || (missing && std::isnan(signal[end])))) break;
+    visit(Run{first, end - first, signal[first]});
   }
+}
+
+/// Those that `wanted` accepts.
+template <class Wanted>
+std::vector<Run> runs_where(const std::vector<double>& signal, const Wanted& wanted) {
+  std::vector<Run> runs;
+  for_each_run(signal, [&](const Run& run) {
+    if (wanted(run)) runs.push_back(run);
+  });
   return runs;
 }
 
@@ -86,14 +94,13 @@ bool beyond_a_rounded_peak(const std::vector<double>& signal, const Run& run, do
   return height > step && length - few > clearly * share * half_period;
 }
 
-/// Whether a value, the highest or the lowest, is a limit.
+/// Whether a value, the highest or the lowest, is a limit. @param runs of that value
 bool is_limit(const std::vector<double>& signal, const std::vector<Run>& runs, const ValueSteps& steps,
               double value, double middle) {
   constexpr std::size_t held = 3, met = 3, times_as_often = 3;
   const double least = jump * steps.near(value);
   std::size_t meetings = 0, samples = 0, stays = 0;
   for (const Run& run : runs) {
-    if (run.value != value) continue;
     samples += run.length;
     if (!held_by_hand(signal, run, middle) && beyond_a_rounded_peak(signal, run, steps.near(value), middle) &&
         ++stays >= met)
@@ -115,33 +122,33 @@ std::size_t samples_in(const std::vector<Run>& runs) {
   return sum;
 }
 
-std::vector<Run> clipped_runs(const std::vector<double>& signal) {
+std::vector<Run> clipped_runs(const std::vector<double>& signal, const ValueSteps& steps) {
   std::vector<Run> clipped;
-  const ValueSteps steps(signal);
   if (steps.distinct() < 2) return clipped;
-  const std::vector<Run> runs = runs_of(signal);
   const auto [lowest, highest, middle] = RunSpread(signal);
-  const bool low = is_limit(signal, runs, steps, lowest, middle),
-             high = is_limit(signal, runs, steps, highest, middle);
-  for (const Run& run : runs)
-    if ((low && run.value == lowest) || (high && run.value == highest)) clipped.push_back(run);
+  for (const double value : {lowest, highest}) {
+    const std::vector<Run> runs = runs_where(signal, [&](const Run& run) { return run.value == value; });
+    if (is_limit(signal, runs, steps, value, middle)) clipped.insert(clipped.end(), runs.begin(), runs.end());
+  }
+  std::ranges::sort(clipped, {}, &Run::first);
   return clipped;
 }
 
-std::vector<Run> dropped_runs(const std::vector<double>& signal) {
+std::vector<Run> dropped_runs(const std::vector<double>& signal, const ValueSteps& steps) {
   constexpr double shortest = 8, beyond_chance = 3, motion = 8;
   constexpr std::size_t looked_back = 16;
-  const std::vector<Run> runs = runs_of(signal);
-  std::vector<Run> dropped;
-  if (runs.size() < 2) return runs.size() == 1 && std::isnan(runs[0].value) ? runs : dropped;
   // Long runs would explain themselves: the share of repetitions is that of the shorter half of them.
   double repeated = 0, samples = 0;
-  for (const Run& run : runs)
-    if (static_cast<double>(run.length) < shortest)
-      repeated += static_cast<double>(run.length - 1), samples += static_cast<double>(run.length);
+  const std::vector<Run> runs = runs_where(signal, [&](const Run& run) {
+    const auto length = static_cast<double>(run.length);
+    if (length < shortest) repeated += length - 1, samples += length;
+    return std::isnan(run.value) || length >= shortest;
+  });
+  std::vector<Run> dropped;
+  if (!runs.empty() && runs[0].length == signal.size()) return std::isnan(runs[0].value) ? runs : dropped;
   const double share = std::clamp(repeated / std::max(samples, 1.0), 1e-6, 0.95);
   const double chance = std::log(static_cast<double>(signal.size())) / std::log(1 / share);
-  const ValueSteps steps(signal);
+  if (runs.empty()) return dropped;
   const auto [lowest, highest, middle] = RunSpread(signal);
   const auto moved_before = [&](const Run& run, double least) {
     double low = run.value, high = run.value;
@@ -169,13 +176,13 @@ std::vector<Run> spikes(const std::vector<double>& signal) {
   constexpr std::size_t reach = 32, widest = 2, fewest = 16;
   constexpr double times = 20, returned = 0.25, candidate = 5;
   std::vector<Run> found;
-  std::vector<double> finite, moves;
-  for (const double value : signal)
-    if (std::isfinite(value)) finite.push_back(value);
+  std::vector<double> finite(signal), moves;
+  std::erase_if(finite, [](double value) { return !std::isfinite(value); });
   if (finite.size() < fewest) return found;
   const double middle = median(finite);
+  moves.reserve(finite.size());
   for (std::size_t k = 1; k < finite.size(); ++k) moves.push_back(std::abs(finite[k] - finite[k - 1]));
-  const double usual_move = median(moves);
+  const double usual_move = median(std::move(moves));
   for (double& value : finite) value = std::abs(value - middle);
   const auto place = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() * 19 / 20);
   std::nth_element(finite.begin(), place, finite.end());
@@ -205,12 +212,11 @@ std::vector<Run> spikes(const std::vector<double>& signal) {
   return found;
 }
 
-std::vector<Run> repeated_samples(const std::vector<double>& signal) {
+std::vector<Run> repeated_samples(const std::vector<double>& signal, const ValueSteps& steps) {
   constexpr double against_rounding = 3, smallest_share = 0.003, fewest = 10;
-  const ValueSteps steps(signal);
   std::vector<Run> found;
   std::size_t repeats = 0, near_misses = 0, all_repeats = 0;
-  for (const Run& run : runs_of(signal)) all_repeats += run.length - 1;
+  for_each_run(signal, [&](const Run& run) { all_repeats += run.length - 1; });
   for (std::size_t k = 1; k + 1 < signal.size();) {
     std::size_t end = k;  // of the samples that equal the one before
     while (end < signal.size() && signal[end] == signal[k - 1]) ++end;
@@ -344,9 +350,8 @@ void leave_out(const std::vector<Run>& runs, std::vector<double>& samples) {
 bool is_dead(const std::vector<double>& samples) {
   constexpr double far_larger = 1e3, out_of_reach = 1e4, noise_only = 2;
   constexpr Index fewest = 64;
-  std::vector<double> finite;
-  for (const double value : samples)
-    if (std::isfinite(value)) finite.push_back(value);
+  std::vector<double> finite(samples);
+  std::erase_if(finite, [](double value) { return !std::isfinite(value); });
   if (finite.empty() ||
       *std::max_element(finite.begin(), finite.end()) == *std::min_element(finite.begin(), finite.end()))
     return true;
@@ -363,7 +368,7 @@ bool is_dead(const std::vector<double>& samples) {
 Defects find_defects(const std::vector<double>& samples, SignalKind kind) {
   Defects found;
   if (kind == SignalKind::force) {
-    found.clipped = clipped_runs(samples);
+    found.clipped = clipped_runs(samples, ValueSteps(samples));
     return found;
   }
   std::vector<double> left = samples;
@@ -371,17 +376,23 @@ Defects find_defects(const std::vector<double>& samples, SignalKind kind) {
   leave_out(found.spikes, left);
   found.dead = is_dead(left);
   if (found.dead) return found;
-  found.clipped = clipped_runs(left);
-  leave_out(found.clipped, left);
-  found.dropped = dropped_runs(left);
+  ValueSteps steps(left);  // sorts all samples: anew only where some are left out
+  const auto leave_out_of_steps = [&](const std::vector<Run>& runs) {
+    if (runs.empty()) return;
+    leave_out(runs, left);
+    steps = ValueSteps(left);
+  };
+  found.clipped = clipped_runs(left, steps);
+  leave_out_of_steps(found.clipped);
+  found.dropped = dropped_runs(left, steps);
   std::erase_if(found.dropped, [&](const Run& run) {  // what was left out above is told there
     return std::isnan(run.value) && !std::isnan(samples[run.first]);
   });
-  leave_out(found.dropped, left);
-  found.repeated = repeated_samples(left);
-  leave_out(found.repeated, left);
+  leave_out_of_steps(found.dropped);
+  found.repeated = repeated_samples(left, steps);
+  leave_out_of_steps(found.repeated);
   const VectorXd signal = bridged_straight(Eigen::Map<const VectorXd>(left.data(), std::ssize(left)));
-  found.rattle = find_rattle(signal, ValueSteps(left).near(signal.maxCoeff()));
+  found.rattle = find_rattle(signal, steps.near(signal.maxCoeff()));
   return found;
 }
 

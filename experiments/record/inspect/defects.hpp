@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -37,7 +38,7 @@ class ValueSteps {
   std::size_t place(double value) const;
 
   std::vector<double> values_;  ///< rising
-  std::vector<std::size_t> counts_;
+  std::vector<std::uint32_t> counts_;
 };
 
 // Samples that no sensor gives: at the converter's limit, held, absurd, not a number.
@@ -50,6 +51,8 @@ struct Run {
 /// Number of samples in all runs.
 std::size_t samples_in(const std::vector<Run>& runs);
 
+// `steps` are those of the signal's own values.
+
 /// Clipping: all samples at the signal's highest or lowest value, where that value is a limit. It is one
 /// where it is held for three samples, or met three times and three times as often as any of the eight values
 /// next to it, and is both reached and left by a jump of at least four of the smallest steps between values
@@ -58,14 +61,14 @@ std::size_t samples_in(const std::vector<Run>& runs);
 /// Where a limit hides among such steps, three runs show it that stay longer than a rounded sine can,
 /// clearly. What is held before a release is reached slowly, or held for fifteen times as long as the signal
 /// then takes to its median.
-std::vector<Run> clipped_runs(const std::vector<double>& signal);
+std::vector<Run> clipped_runs(const std::vector<double>& signal, const ValueSteps& steps);
 
 /// Drop-outs: samples that are not finite, and runs of one value three times as long as the signal's own
 /// repetitions explain: with a share r of samples that equal the one before, N samples hold runs up to about
 /// log N / log(1/r). At least eight samples, behind motion of eight steps or more in the sixteen samples
 /// before, begun or ended by a jump of four: a signal that has come to rest, or has not begun to move, is no
 /// drop-out. Nothing for a signal that is constant throughout or rests most of the time.
-std::vector<Run> dropped_runs(const std::vector<double>& signal);
+std::vector<Run> dropped_runs(const std::vector<double>& signal, const ValueSteps& steps);
 
 /// Spikes: one or two samples that are 20 times further from the median of their 64 neighbours than nine in
 /// ten of these, further than 95 % of the record from its median, and between samples that are not.
@@ -74,7 +77,7 @@ std::vector<Run> spikes(const std::vector<double>& signal);
 /// Samples that repeat the one before on a flank, where the signal moves by more than four steps on both
 /// sides: a reading that was sent twice. None where as many differences of one step show that rounding
 /// explains them (three times as many, 0.3 % of all and ten are needed), or where more than half repeat.
-std::vector<Run> repeated_samples(const std::vector<double>& signal);
+std::vector<Run> repeated_samples(const std::vector<double>& signal, const ValueSteps& steps);
 
 // Broadband noise while a vibration is large: a loose contact that hammers.
 

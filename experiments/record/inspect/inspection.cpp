@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,76 +24,18 @@ namespace beamid::experiments {
 
 using Eigen::Index, Eigen::VectorXd;
 
-std::vector<SignalEvent> find_events(const VectorXd& signal, double interval, double noise,
-                                     double frequency_hz) {
-  constexpr double rise = 2.5, above_noise = 10.0, smallest = 0.05, resting = 0.01, fewest_cycles = 5.0;
-  const Index size = signal.size();
-  std::vector<SignalEvent> events;
-  if (size < 16) return events;
-  const VectorXd deviation = signal.array() - median(signal);
-  const VectorXd distance = deviation.cwiseAbs();
-  const double largest = distance.maxCoeff();
-  const double at_rest = median(distance);
-  const bool pulse = at_rest < resting * largest && at_rest < 5 * noise;
-  const double cycles = frequency_hz * interval * static_cast<double>(size);
-  if (!pulse && cycles < fewest_cycles) return events;
-  Index window = 8;
-  if (!pulse && frequency_hz > 0)
-    window = std::clamp<Index>(static_cast<Index>(2 / (frequency_hz * interval)) + 1, 8, size / 10 + 8);
-  const double level = std::max(above_noise * noise, smallest * largest);
-  if (!(largest > level)) return events;
-  Index free_from = 0;
-  for (Index k = 1; k < size; ++k) {
-    if (k < free_from || distance[k] <= level) continue;
-    const Index from = std::max<Index>(0, k - window);
-    const double before = distance.segment(from, k - from).maxCoeff();
-    const Index ahead = std::min(window, size - k);
-    Index peak = 0;
-    const double after = distance.segment(k, ahead).maxCoeff(&peak);
-    if (after <= rise * before) continue;
-    Index start = k;  // back to where the rise begins
-    while (start > 0 && k - start < window && distance[start - 1] < distance[start] &&
-           distance[start] > 3 * noise)
-      --start;
-    events.push_back({start, deviation[k + peak], pulse});
-    free_from = k + std::max<Index>(peak, 1) + window;
-  }
-  return events;
-}
-
-void take_slow_release(const VectorXd& signal, double interval, double frequency_hz,
-                       std::vector<SignalEvent>& events) {
-  constexpr double deflected = 1.0 / 3;
-  constexpr Index fewest = 65, apart = 16;
-  if (signal.size() < fewest) return;
-  const VectorXd differences = signal.tail(signal.size() - 1) - signal.head(signal.size() - 1);
-  const VectorXd deviation = signal.array() - median(signal);
-  const double largest = deviation.cwiseAbs().maxCoeff();
-  for (const SignalEvent& event :
-       find_events(differences, interval, noise_floor(differences), frequency_hz)) {
-    const Index at = event.sample;
-    if (event.pulse || !(std::abs(deviation[at]) > deflected * largest)) continue;
-    std::erase_if(events, [&](const SignalEvent& pull) {
-      if (pull.sample >= at) return pull.sample - at < apart;
-      const auto held = deviation.segment((pull.sample + at) / 2, at - (pull.sample + at) / 2).array();
-      return held.minCoeff() * held.maxCoeff() > 0;
-    });
-    events.push_back({at, deviation[at], false});
-    break;
-  }
-  std::sort(events.begin(), events.end(), [](const auto& a, const auto& b) { return a.sample < b.sample; });
-}
-
 SamplingCheck check_sampling(const std::vector<double>& times, double resolution) {
   if (times.size() < 2) throw std::invalid_argument("fewer than two instants; expected at least two");
   std::vector<double> intervals;
+  intervals.reserve(times.size() - 1);
   for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
   SamplingCheck check;
   check.interval = median(intervals);
   const double tolerated = 0.05 * check.interval + 1.01 * resolution;
-  std::vector<double> from_median;
-  for (const double interval : intervals) from_median.push_back(std::abs(interval - check.interval));
-  const double scatter = median(from_median) / check.interval;  // where stamps jitter, late ones are no gaps
+  std::vector<double> from_median(intervals);
+  for (double& interval : from_median) interval = std::abs(interval - check.interval);
+  const double scatter = median(std::move(from_median)) / check.interval;
+  // Where stamps jitter, late ones are no gaps.
   const double late = (scatter > 0.05 ? 2.5 : 1.5) * check.interval + 1.01 * resolution;
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
@@ -113,34 +57,6 @@ SamplingCheck check_sampling(const std::vector<double>& times, double resolution
     if (interval > 0 && interval <= late) check.jitter += (interval - mean) * (interval - mean);
   check.jitter = std::sqrt(check.jitter / std::max(count, 1.0));
   return check;
-}
-
-std::optional<OffsetDrift> offset_drift(const VectorXd& signal, double period, double noise) {
-  constexpr Index most_parts = 20, fewest_parts = 5, fewest_samples = 16;
-  constexpr double share = 0.25, times_noise = 10;
-  // Whole periods, so that the part of one that is left over shifts no mean.
-  const double periods =
-      period > 0 ? std::max(2.0, std::floor(static_cast<double>(signal.size()) / most_parts / period)) : 0;
-  const Index length =
-      std::max<Index>(fewest_samples, period > 0 ? static_cast<Index>(std::round(periods * period))
-                                                 : signal.size() / most_parts);
-  const Index parts = signal.size() / length;
-  if (parts < fewest_parts) return {};
-  std::vector<double> middles;
-  for (Index part = 0; part < parts; ++part) middles.push_back(signal.segment(part * length, length).mean());
-  const auto [low, high] = std::minmax_element(middles.begin(), middles.end());
-  const double least = std::max(share * (signal.array() - median(signal)).abs().maxCoeff(),
-                                times_noise * noise / std::sqrt(static_cast<double>(length)));
-  if (!(*high - *low > least)) return {};
-  OffsetDrift found{*low, *high, false, 0};
-  const double end = median(
-      std::vector<double>(middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2), middles.end()));
-  Index settled = parts;
-  while (settled > 0 && std::abs(middles[static_cast<std::size_t>(settled - 1)] - end) < 0.5 * least)
-    --settled;
-  found.start_up = settled > 0 && settled <= parts / 2;
-  found.settled = settled * length;
-  return found;
 }
 
 namespace {
@@ -246,18 +162,24 @@ struct EvenSignal {
 
 EvenSignal even_signal(const std::vector<double>& time, const VectorXd& samples, double resolution) {
   constexpr Index fewest = 16;
-  std::vector<Index> kept;  // stamps that come after all before them
-  for (Index k = 0; k < samples.size(); ++k)
-    if (kept.empty() || time[k] > time[static_cast<std::size_t>(kept.back())]) kept.push_back(k);
+  const Eigen::Map<const VectorXd> stamps(time.data(), samples.size());
   Record record;
-  record.time = Eigen::Map<const VectorXd>(time.data(), samples.size())(kept);
-  record.samples = samples(kept).transpose();
+  if (std::adjacent_find(time.begin(), time.end(), std::greater_equal<>()) == time.end()) {
+    record.time = stamps;
+    record.samples = samples.transpose();
+  } else {
+    std::vector<Index> kept;  // stamps that come after all before them
+    for (Index k = 0; k < samples.size(); ++k)
+      if (kept.empty() || stamps[k] > stamps[kept.back()]) kept.push_back(k);
+    record.time = stamps(kept);
+    record.samples = samples(kept).transpose();
+  }
   record.channels.resize(1);
   record.time_resolution = resolution;
   if (record.size() >= fewest && !evenly_sampled(record))
     step_registry().make("resample", step_registry().completed("resample", {}))->apply(record);
   const double interval = record.size() > 1 ? record.interval() : 1;
-  return {record.time, bridged_straight(record.samples.row(0).transpose()), interval};
+  return {std::move(record.time), bridged_straight(record.samples.row(0).transpose()), interval};
 }
 
 /// Rests between pulses, as a hammer's force does: nothing in it is then too short or held for too long.
@@ -303,20 +225,20 @@ InspectedChannel make_channel(const RecordTable& table, std::size_t index,
 /// Defects, noise, frequency and events of the channel's samples at the instants found.
 void inspect_channel(const Inspection& found, InspectedChannel& channel) {
   constexpr Index fewest = 64;
-  std::vector<double> finite;
-  for (const double value : channel.samples)
-    if (std::isfinite(value)) finite.push_back(value);
+  std::vector<double> finite(channel.samples);
+  std::erase_if(finite, [](double value) { return !std::isfinite(value); });
+  const auto read = std::ssize(finite);
   channel.missing = channel.samples.size() - finite.size();
   if (finite.empty()) {
     channel.defects.dead = true;
     return;
   }
-  channel.offset = median(finite);
   channel.least = *std::min_element(finite.begin(), finite.end());
   channel.greatest = *std::max_element(finite.begin(), finite.end());
+  channel.offset = median(std::move(finite));
   const bool force = channel.quantity ? *channel.quantity == Quantity::force : rests(channel);
   channel.defects = find_defects(channel.samples, force ? SignalKind::force : SignalKind::motion);
-  if (channel.defects.dead || std::ssize(finite) < fewest) return;
+  if (channel.defects.dead || read < fewest) return;
   VectorXd samples = Eigen::Map<const VectorXd>(channel.samples.data(), std::ssize(channel.samples));
   for (const auto* runs : {&channel.defects.spikes, &channel.defects.dropped})
     for (const Run& run : *runs)

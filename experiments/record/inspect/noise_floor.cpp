@@ -90,20 +90,18 @@ double value_of(std::uint64_t ordered) {
   return std::bit_cast<double>((ordered & sign) != 0 ? ordered & ~sign : ~ordered);
 }
 
-// Sorts finite values by their digits, the last first: four times as fast as comparisons with a million of
-// them.
-void sort_values(std::vector<double>& values) {
+// Sorts values, as ordered bits, by their digits, the last first: four times as fast as comparisons with a
+// million of them.
+void sort_keys(std::vector<std::uint64_t>& keys) {
   constexpr std::size_t few = 4096;
-  if (values.size() < few) return std::sort(values.begin(), values.end());
+  if (keys.size() < few) return std::sort(keys.begin(), keys.end());
   constexpr int digit_bits = 11, digits = 6;
   constexpr std::size_t buckets = std::size_t{1} << digit_bits;
-  std::vector<std::uint64_t> keys(values.size()), moved(values.size());
+  std::vector<std::uint64_t> moved(keys.size());
   std::vector<std::array<std::size_t, buckets>> counts(digits);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    keys[i] = ordered_bits(values[i]);
+  for (const std::uint64_t key : keys)
     for (int d = 0; d < digits; ++d)
-      ++counts[static_cast<std::size_t>(d)][(keys[i] >> (d * digit_bits)) % buckets];
-  }
+      ++counts[static_cast<std::size_t>(d)][(key >> (d * digit_bits)) % buckets];
   for (int d = 0; d < digits; ++d) {
     auto& places = counts[static_cast<std::size_t>(d)];
     if (places[(keys[0] >> (d * digit_bits)) % buckets] == keys.size()) continue;  // all have this digit
@@ -112,19 +110,22 @@ void sort_values(std::vector<double>& values) {
     for (const std::uint64_t key : keys) moved[places[(key >> (d * digit_bits)) % buckets]++] = key;
     keys.swap(moved);
   }
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(keys[i]);
 }
 
 }  // namespace
 
 ValueSteps::ValueSteps(const std::vector<double>& signal) {
-  std::vector<double> sorted;
+  std::vector<std::uint64_t> keys;
+  keys.reserve(signal.size());
   for (const double value : signal)
-    if (std::isfinite(value)) sorted.push_back(value);
-  sort_values(sorted);
-  if (sorted.empty()) return;
-  const double same = 1e-12 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
-  for (const double value : sorted) {
+    if (std::isfinite(value)) keys.push_back(ordered_bits(value));
+  sort_keys(keys);
+  if (keys.empty()) return;
+  const double same = 1e-12 * std::max(std::abs(value_of(keys.front())), std::abs(value_of(keys.back())));
+  values_.reserve(keys.size());
+  counts_.reserve(keys.size());
+  for (const std::uint64_t key : keys) {
+    const double value = value_of(key);
     if (values_.empty() || value > values_.back() + same) values_.push_back(value), counts_.push_back(0);
     ++counts_.back();
   }
