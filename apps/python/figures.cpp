@@ -1,6 +1,9 @@
 #include "apps/python/figures.hpp"
 
 #include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "experiments/results/gnuplot.hpp"
 
 namespace beamid::python {
 namespace {
@@ -40,15 +43,23 @@ py::object shared(const Eigen::VectorXd& values, const py::object& owner) {
   return array;
 }
 
-py::dict curve_dict(const Curve& curve, const py::object& owner) {
+py::dict curve_dict(const Curve& curve, const std::string& colour, const py::object& owner) {
   py::dict one;
   one["label"] = curve.label;
   one["style"] = style_name(curve.style);
+  one["colour"] = colour;
   one["x"] = shared(curve.x, owner);
   one["y"] = shared(curve.y, owner);
   one["lower"] = shared(curve.lower, owner);
   one["upper"] = shared(curve.upper, owner);
   return one;
+}
+
+void add_axis(const experiments::Axis& axis, const std::string& name, py::dict& panel) {
+  panel[py::str(name + "_label")] = axis.label;
+  panel[py::str(name + "_logarithmic")] = axis.logarithmic;
+  panel[py::str(name + "_range")] = axis.range;
+  panel[py::str(name + "_names")] = axis.names;
 }
 
 }  // namespace
@@ -58,18 +69,24 @@ py::dict figures(const Outcome& outcome, const py::object& owner) {
   if (!outcome.results) return all;
   for (const experiments::Figure& figure : outcome.results->figures) {
     py::list panels;
-    for (const experiments::Panel& panel : figure.panels) {
+    const std::vector<std::vector<std::string>> colours = colours_of(figure);
+    for (std::size_t k = 0; k < figure.panels.size(); ++k) {
+      const experiments::Panel& panel = figure.panels[k];
       py::list curves;
-      for (const Curve& curve : panel.curves) curves.append(curve_dict(curve, owner));
+      for (std::size_t i = 0; i < panel.curves.size(); ++i)
+        curves.append(curve_dict(panel.curves[i], colours[k][i], owner));
       py::dict one;
       one["title"] = panel.title;
-      one["x_label"] = panel.x_axis.label;
-      one["y_label"] = panel.y_axis.label;
+      add_axis(panel.x_axis, "x", one);
+      add_axis(panel.y_axis, "y", one);
       one["curves"] = curves;
       panels.append(one);
     }
     py::dict one;
     one["caption"] = figure.caption;
+    one["rows"] = figure.rows;
+    one["columns"] = figure.columns;
+    one["width"] = figure.width;
     one["panels"] = panels;
     all[py::str(figure.name)] = one;
   }

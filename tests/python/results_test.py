@@ -57,6 +57,52 @@ class Results(unittest.TestCase):
         self.assertEqual(list(self.found.frame("runs")["filter"]), ["ekf"])
         self.assertEqual(list(self.found.frame().columns), list(next(iter(self.found.tables.values()))))
 
+    def test_a_figure_has_a_short_repr(self):
+        self.assertLess(len(repr(self.found.figures)), 1000)
+        self.assertIn("2 panels", repr(self.found.figures["reproduction"]))
+        self.assertEqual(repr(pickle.loads(pickle.dumps(self.found)).figures), repr(self.found.figures))
+
+    def test_a_plot_draws_the_curves_of_the_figure(self):
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("no python3-matplotlib")
+        matplotlib.use("Agg")
+        figure = self.found.figures["reproduction"]
+        drawn = self.found.plot("reproduction")
+        self.assertEqual(len(drawn.axes), len(figure["panels"]))
+        for axes, panel in zip(drawn.axes, figure["panels"]):
+            self.assertEqual(axes.get_xlabel(), panel["x_label"])
+            self.assertEqual(len(axes.lines), len(panel["curves"]))
+            for line, curve in zip(axes.lines, panel["curves"]):
+                np.testing.assert_array_equal(line.get_ydata(), curve["y"])
+        for name in self.found.figures:
+            self.found.plot(name).canvas.draw()
+        self.assertEqual(len(self.found.plot().axes), len(drawn.axes))
+        with self.assertRaisesRegex(beamid.InputError, "no figure 'spectra'; expected one of 'reproduction'"):
+            self.found.plot("spectra")
+        shown = self.found._repr_html_()
+        self.assertEqual(shown.count("<img "), 1)
+        self.assertLess(len(shown), 200_000)
+
+    def test_a_plot_of_a_record_has_a_panel_for_each_quantity(self):
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("no python3-matplotlib")
+        matplotlib.use("Agg")
+        time = np.arange(100_000) / 500
+        wave = np.sin(40 * time) * np.exp(-0.02 * time)
+        wave[70_001] = 7.0
+        drawn = beamid.Record(time, acceleration_g=np.c_[wave, -wave], displacement_mm=wave).plot()
+        self.assertEqual([axes.get_ylabel() for axes in drawn.axes], ["acceleration [g]", "displacement [mm]"])
+        self.assertEqual([len(axes.lines) for axes in drawn.axes], [2, 1])
+        shown = drawn.axes[0].lines[0].get_ydata()
+        self.assertLess(len(shown), 21_000)
+        self.assertEqual((shown.max(), shown.min()), (wave.max(), wave.min()))  # an envelope loses no peak
+        read = beamid.read(TUTORIAL / "tip_acceleration.csv")
+        np.testing.assert_array_equal(read.plot().axes[0].lines[0].get_ydata(), read.samples[:, 0])
+
     def test_the_covariance_is_of_the_estimates(self):
         self.assertEqual(self.found.parameters, ["bending_stiffness", "damping_ratio"])
         deviations = [self.found[name].standard_deviation for name in self.found.parameters]

@@ -5,6 +5,7 @@ import numpy as np
 
 from . import _beamid
 from ._errors import InputError, unknown
+from ._plots import plot_record
 from ._specification import quantities, tables
 from ._structures import checked
 from ._toml import toml_text
@@ -95,6 +96,17 @@ class Record:
         _beamid.write_columns(os.fspath(path), ",".join(names),
                               columns if self._time is None else [self._time, *columns])
 
+    def plot(self, figure=None):
+        """The samples over time, a panel for each quantity, as a matplotlib.figure.Figure.
+
+        :param figure: of Matplotlib, such as plt.figure(), to draw in
+        :raises ImportError: where Matplotlib is not installed
+        """
+        count = len(self._columns[0][0])
+        time = np.arange(count) / self.keys["sampling_rate_hz"] if self._time is None else self._time
+        labels = [(f"column {k + 1}", f"{quantity} [{symbol}]") for k, (_, (quantity, symbol)) in enumerate(self._columns)]
+        return plot_record(time, [column for column, _ in self._columns], labels, self.name, figure)
+
     @property
     def numbers(self):
         """How many there are, times included."""
@@ -157,6 +169,15 @@ class RecordFile:
     def remarks(self):
         """What was done to the samples, and what may be wrong with them."""
         return self._contents()["remarks"] + self._contents()["warnings"]
+
+    def plot(self, figure=None):
+        """The samples over time, prepared and cut, a panel for each quantity, as a matplotlib.figure.Figure.
+
+        :param figure: of Matplotlib, such as plt.figure(), to draw in
+        :raises ImportError: where Matplotlib is not installed
+        """
+        labels = [(channel["name"], f"{channel['quantity']} [{channel['unit']}]") for channel in self.channels]
+        return plot_record(self.time, list(self.samples.T), labels, self.name, figure)
 
     def replace(self, **keys):
         """The same file, read otherwise."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _beamid
 from ._errors import InputError
+from ._plots import figures, picture, plot_figure
 
 
 class Estimate(float):
@@ -83,6 +84,7 @@ class Results:
     found.innovations           (N, p) of the filter's last pass, and found.reproduced (N, p), the motion that the estimates
                                 make, both at found.time (N); numpy arrays that share memory with the results
     found.figures["spectrum"]   captions and curves, numpy arrays (N) that share memory with the results
+    found.plot("spectrum")      the same as a Matplotlib figure; without a name the first
     found.messages              notes, warnings and failures in the order of the report
     found.verdict               "status", "objections" (name, statistic, limit, sentence) and "limitations"
     found.code                  the command's exit code: 3 where there is no estimate to rely on
@@ -118,7 +120,16 @@ class Results:
 
     @functools.cached_property
     def figures(self):
-        return self._outcome.figures()
+        return figures(self._outcome.figures())
+
+    def plot(self, name=None, figure=None):
+        """A figure as a matplotlib.figure.Figure, in the style of the command's pictures.
+
+        :param name: of found.figures; without it the first
+        :param figure: of Matplotlib, such as plt.figure(), to draw in
+        :raises ImportError: where Matplotlib is not installed
+        """
+        return plot_figure(self.figures, name, figure)
 
     @functools.cached_property
     def arrays(self):
@@ -252,7 +263,7 @@ class Results:
         return self.report.rstrip("\n")
 
     def _repr_html_(self):
-        """For notebooks: a verdict, the estimates or the first table, and the report, folded."""
+        """For notebooks: a verdict, the estimates or the first table, the first figure, and the report, folded."""
         return _cell(self)
 
 
@@ -288,6 +299,7 @@ def _cell(found, most_rows=30):
         text += "<table>\n" + row(head, "th") + "".join(row(cells, "td") for cells in rows[:most_rows]) + "</table>\n"
         missing = max(len(names), len(rows)) - most_rows
         text += f"<p>and {missing} more</p>\n" if missing > 0 else ""
+    text += "".join(picture(figure) for figure in list(found.figures.values())[:1])
     return text + f"<details><summary>{escaped(found.command[:2000])}</summary><pre>{escaped(found.report[:100_000])}</pre></details>"
 
 
@@ -321,7 +333,7 @@ def _columns(rows):
 
 def _copied(value):
     if isinstance(value, dict):
-        return {key: _copied(one) for key, one in value.items()}
+        return type(value)({key: _copied(one) for key, one in value.items()})
     if isinstance(value, list):
         return [_copied(one) for one in value]
     return np.array(value) if isinstance(value, np.ndarray) else value

@@ -7,6 +7,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -137,11 +138,7 @@ class OtherModels {
     return of(other);
   }
   JointModel of(const Experiment& other) const { return made(other, record_); }
-  JointModel with_place(Index channel, double position) const {
-    Record other = record_;
-    other.channels[static_cast<std::size_t>(channel)].position = position;
-    return made(experiment_, other);
-  }
+  JointModel of(const Record& other) const { return made(experiment_, other); }
 
  private:
   const Experiment& experiment_;
@@ -215,8 +212,7 @@ std::string value_text(const Candidate& candidate, const fem::Structure& structu
 /// Whether the unknowns hold it already.
 bool is_asked(const Experiment& experiment, const Candidate& candidate) {
   return std::ranges::any_of(experiment.parameters, [&](const ParameterChoice& asked) {
-    return candidate.name.starts_with(asked.quantity) ||
-           (!asked.name.empty() && candidate.name == asked.name);
+    return candidate.name.starts_with(asked.quantity) || candidate.name == asked.name;
   });
 }
 
@@ -277,37 +273,53 @@ void add_gains(const Record& record, const LeftOver& left, std::vector<Descripti
   add(driver, left.gain_of_inputs());
 }
 
-/// Every sensor of a chain at every other floor.
+/// Every sensor of a chain at every other floor, and every two of one quantity exchanged.
 void add_places(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
                 const Record& record, const LeftOver& left, const VectorXd& theta,
                 std::vector<DescriptionFault>& faults) {
   constexpr std::size_t most_floors = 12;
-  if (!experiment.structure.is_chain()) return;
   std::vector<double> floors;
-  for (const fem::Body& body : experiment.structure.beam().bodies) floors.push_back(body.position);
-  if (floors.size() > most_floors) return;
-  const double whole = left.left().squaredNorm();
-  for (const Index channel : output_channels(record)) {
-    const Channel& described = record.channels[static_cast<std::size_t>(channel)];
-    for (std::size_t floor = 0; described.position && floor < floors.size(); ++floor) {
-      if (std::abs(floors[floor] - *described.position) < 1e-6 * floors.back()) continue;
-      try {
-        const JointModel model = models.with_place(channel, floors[floor]);
-        DrivenProblem there = problem;
-        there.model = &model;
-        double best = whole;
-        VectorXd moved = theta;
-        DrivenProblem anew = there;  // its weights become those of what that leaves
-        if (const auto fit = fit_driven(anew)) {
-          const double cost = evaluate_driven(there, fit->theta).cost;
-          if (cost < best) best = cost, moved = fit->theta;
-        }
-        if (1.0 - best / whole > worth_following)
-          faults.push_back({fmt::format("{} sits at {:g} m by the record, not at {:g} m", described.name,
-                                        floors[floor], *described.position),
-                            std::numeric_limits<double>::infinity(), 1.0 - best / whole, moved - theta});
-      } catch (const std::exception&) {  // no motion there
-      }
+  if (experiment.structure.is_chain())
+    for (const fem::Body& body : experiment.structure.beam().bodies) floors.push_back(body.position);
+  if (floors.empty() || floors.size() > most_floors) return;
+  Record other = record;
+  const auto add = [&, whole = left.left().squaredNorm()](const std::string& sentence) {
+    try {
+      const JointModel model = models.of(other);
+      DrivenProblem there = problem;
+      there.model = &model;
+      // The start came from sensors where they are not: what was known before is as described again.
+      for (std::size_t j = 0; j < model.unknowns.size(); ++j)
+        there.prior.mean[static_cast<Index>(j)] = model.unknowns[j].to_state(model.unknowns[j].guess);
+      auto [best, moved] = std::pair(whole, theta);
+      DrivenProblem anew = there;  // its weights become those of what that leaves
+      if (const auto fit = fit_driven(anew))
+        if (const double cost = evaluate_driven(there, fit->theta).cost; cost < best)
+          best = cost, moved = fit->theta;
+      if (1.0 - best / whole > worth_following)
+        faults.push_back(
+            {sentence, std::numeric_limits<double>::infinity(), 1.0 - best / whole, moved - theta});
+    } catch (const std::exception&) {  // no motion there
+    }
+  };
+  const std::vector<Index> outputs = output_channels(record);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    Channel& one = other.channels[static_cast<std::size_t>(outputs[i])];
+    const std::optional<double> described = one.position;
+    if (!described) continue;
+    for (const double floor : floors) {
+      if (std::abs(floor - *described) < 1e-6 * floors.back()) continue;
+      one.position = floor;
+      add(fmt::format("{} sits at {:g} m by the record, not at {:g} m", one.name, floor, *described));
+    }
+    one.position = described;
+    for (std::size_t j = i + 1; j < outputs.size(); ++j) {
+      Channel& two = other.channels[static_cast<std::size_t>(outputs[j])];
+      if (two.quantity != one.quantity || !two.position || two.position == one.position) continue;
+      std::swap(one.position, two.position);
+      add(fmt::format("{} and {} are exchanged: by the record the first sits at {:g} m, the second at {:g} m",
+                      one.name, two.name, *one.position, *two.position));
+      std::swap(one.position, two.position);
     }
   }
 }
@@ -422,20 +434,16 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
     const Experiment there = at_estimates(experiment, model, theta);
     const OtherModels models(there, record, reduction, folder),
         as_described(experiment, record, reduction, folder);
-    constexpr double much = 0.03;
-    const bool much_is_left = fit.left_share > much;
-    add_structure_changes(*problem, models, experiment, left, theta, much_is_left, measures_force(record),
-                          faults);
+    constexpr double much = 0.03, misplaced = 0.15;  // a sensor a floor off leaves 20 % and more
+    add_structure_changes(*problem, models, experiment, left, theta, fit.left_share > much,
+                          measures_force(record), faults);
     add_gains(record, left, faults);
-    constexpr double misplaced = 0.15;  // a sensor a floor off leaves 20 % and more
     if (fit.left_share > misplaced)
       add_places(*problem, as_described, experiment, record, left, theta, faults);
     add_modal_ratios(*problem, models, there, left, theta, faults);
   } catch (const std::runtime_error&) {  // no motion at these unknowns
   }
-  std::stable_sort(faults.begin(), faults.end(), [](const DescriptionFault& a, const DescriptionFault& b) {
-    return a.explained > b.explained;
-  });
+  std::ranges::stable_sort(faults, std::greater<>(), &DescriptionFault::explained);
   return faults;
 }
 

@@ -13,7 +13,7 @@
 
 namespace beamid::experiments {
 
-/// One described quantity, changed: a mass, a gain, a place.
+/// One described quantity, changed: a mass, a gain, a place; or two places, exchanged.
 struct DescriptionFault {
   std::string sentence;    ///< "floor_mass_2: 1155 kg as described, 1004 +- 3 kg by the record"
   double score = 0.0;      ///< |z| of the change; infinite for a place
@@ -30,8 +30,9 @@ struct DescriptionFault {
 /// with r' = r - d' x and h_k = d'_k^2 / d'^T d' of line k, whatever the noise of each [mackinnon1985]. x are
 /// the candidates of model_check/candidates.hpp that are not asked about, gains of channels and inputs. A
 /// change that explains a tenth or more is followed to its end, by fits of the unknowns with it. Of a chain
-/// each sensor is tried at every other floor, where 15 % or more of the motion is left. A damping ratio that
-/// is asked of all modes together is held against ratios of their own of the modes in the band, all at once.
+/// each sensor is tried at every other floor, and every two are exchanged, where 15 % or more of the motion
+/// is left. A damping ratio that is asked of all modes together is held against ratios of their own of the
+/// modes in the band, all at once.
 /// @param theta the unknowns that were found, in the model's coordinates (q)
 /// @returns the best first; empty where the record is none of a small linear model with measured inputs.
 std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,

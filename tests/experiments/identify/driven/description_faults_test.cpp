@@ -90,5 +90,13 @@ TEST(DescriptionFaults, APlaceIsNamed) {
   expect_named(identified(record, 1.0, 1.0), "floor_1 sits at 3 m by the record, not at 6 m", 0.0);
 }
 
+TEST(DescriptionFaults, TwoExchangedSensorsAreNamed) {
+  Record record = shaken(1);
+  std::swap(record.channels[1].position, record.channels[2].position);
+  expect_named(identified(record, 1.0, 1.0),
+               "floor_1 and floor_2 are exchanged: by the record the first sits at 3 m, the second at 6 m",
+               0.9);
+}
+
 }  // namespace
 }  // namespace beamid::experiments::description_faults_test
