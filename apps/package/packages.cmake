@@ -35,10 +35,9 @@ string(CONCAT about "beamid computes beams and plane frames, and identifies stif
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME beamid)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-# What is loaded at its first use no program names. Of MPI only a process that mpirun started needs the library.
+# No program names what is loaded at its first use.
 get_property(needed GLOBAL PROPERTY BEAMID_NEEDED_PACKAGES)
 list(REMOVE_DUPLICATES needed)
-list(FILTER needed EXCLUDE REGEX "mpi")
 list(JOIN needed ", " needed)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS ${needed})
 set(recommended "gnuplot-nox | gnuplot, fonts-dejavu-core, libsndfile1, libmseed2, libfreexl1, libudunits2-0")

@@ -12,10 +12,10 @@
 #include <string>
 #include <utility>
 
+#include <needed_library.hpp>
 #include "experiments/record/units.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/input_error.hpp"
-#include "filters/needed_library.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -94,7 +94,7 @@ bool is_written_as_unit(std::string_view text) {
 
 // The library, loaded when the first spelling is asked for: its table of units is read once.
 
-constexpr filters::NeededLibrary udunits{"libudunits2.so.0", "libudunits2-0"};
+constexpr NeededLibrary udunits{"libudunits2.so.0", "libudunits2-0"};
 BEAMID_NEEDED(udunits, ut_set_error_message_handler);
 BEAMID_NEEDED(udunits, ut_ignore);
 BEAMID_NEEDED(udunits, ut_read_xml);

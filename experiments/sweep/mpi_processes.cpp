@@ -1,4 +1,4 @@
-// The one file that knows MPI [mpi31], which is loaded where mpirun has started several processes. Messages
+// The one file that uses MPI [mpi31], which is loaded where mpirun has started several processes. Messages
 // are bytes: a letter, and what it announces.
 //
 //     to the first process:  r            ready
@@ -23,7 +23,7 @@
 #include <sstream>
 #include <thread>
 
-#include "filters/needed_library.hpp"
+#include <needed_library.hpp>
 #endif
 
 namespace beamid::experiments {
@@ -43,7 +43,7 @@ int set_by_mpirun() {
 namespace {
 
 // Its own modules take functions of it from the program: they are to be seen.
-constexpr filters::NeededLibrary mpi{BEAMID_MPI, RTLD_GLOBAL};
+constexpr NeededLibrary mpi{BEAMID_MPI, RTLD_GLOBAL};
 BEAMID_NEEDED(mpi, MPI_Init);
 BEAMID_NEEDED(mpi, MPI_Finalize);
 BEAMID_NEEDED(mpi, MPI_Comm_rank);

@@ -1,16 +1,11 @@
 // Adaptive integration over each step by SUNDIALS CVODES (Adams), the tangent by forward sensitivities:
 // dS/dt = J(z) S, S(0) = I [hindmarsh2005]. For nonlinear motion, and the check of every other scheme.
-#include <cvodes/cvodes.h>
-#include <nvector/nvector_serial.h>
-#include <sundials/sundials_config.h>
-#include <sundials/sundials_context.h>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+#include <sundials_functions.hpp>
 
 #include <cstdlib>
 #include <memory>
 #include <string>
 
-#include "filters/needed_library.hpp"
 #include "filters/scheme.hpp"
 #include "filters/step_input.hpp"
 
@@ -19,71 +14,10 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr NeededLibrary cvodes{BEAMID_CVODES};  // loaded when this scheme is first used
-BEAMID_NEEDED(cvodes, CVode);
-BEAMID_NEEDED(cvodes, CVodeCreate);
-BEAMID_NEEDED(cvodes, CVodeFree);
-BEAMID_NEEDED(cvodes, CVodeGetReturnFlagName);
-BEAMID_NEEDED(cvodes, CVodeGetSens);
-BEAMID_NEEDED(cvodes, CVodeInit);
-BEAMID_NEEDED(cvodes, CVodeReInit);
-BEAMID_NEEDED(cvodes, CVodeSStolerances);
-BEAMID_NEEDED(cvodes, CVodeSensEEtolerances);
-BEAMID_NEEDED(cvodes, CVodeSensInit);
-BEAMID_NEEDED(cvodes, CVodeSensReInit);
-BEAMID_NEEDED(cvodes, CVodeSensToggleOff);
-BEAMID_NEEDED(cvodes, CVodeSetNonlinearSolver);
-BEAMID_NEEDED(cvodes, CVodeSetNonlinearSolverSensStg);
-BEAMID_NEEDED(cvodes, CVodeSetSensErrCon);
-BEAMID_NEEDED(cvodes, CVodeSetStopTime);
-BEAMID_NEEDED(cvodes, CVodeSetUserData);
-BEAMID_NEEDED(cvodes, N_VCloneVectorArray);
-BEAMID_NEEDED(cvodes, N_VDestroy);
-BEAMID_NEEDED(cvodes, N_VDestroyVectorArray);
-BEAMID_NEEDED(cvodes, N_VGetArrayPointer);
-BEAMID_NEEDED(cvodes, N_VGetLength);
-BEAMID_NEEDED(cvodes, N_VNew_Serial);
-BEAMID_NEEDED(cvodes, SUNContext_Create);
-BEAMID_NEEDED(cvodes, SUNContext_Free);
-BEAMID_NEEDED(cvodes, SUNNonlinSolFree);
-BEAMID_NEEDED(cvodes, SUNNonlinSol_FixedPoint);
-BEAMID_NEEDED(cvodes, SUNNonlinSol_FixedPointSens);
-#if SUNDIALS_VERSION_MAJOR < 7
-BEAMID_NEEDED(cvodes, CVodeSetErrFile);
-#else
-BEAMID_NEEDED(cvodes, SUNContext_ClearErrHandlers);
-#ifdef OPEN_MPI  // what SUN_COMM_NULL stands for
-BEAMID_NEEDED_VARIABLE(cvodes, ompi_mpi_comm_null);
-#endif
-#endif
-
 void require(int flag, const char* call) {
   if (flag >= 0) return;
   const std::unique_ptr<char, decltype(&std::free)> name(CVodeGetReturnFlagName(flag), std::free);
   throw std::runtime_error(std::string(call) + " failed: " + name.get());
-}
-
-Eigen::Map<VectorXd> view(N_Vector vector) {
-  return {N_VGetArrayPointer(vector), N_VGetLength(vector)};
-}
-
-// Failures are thrown, not printed. SUNDIALS 6 is silenced by integrator, 7 by context; of what differs
-// between them (fem/response/sundials.hpp) these are the two calls that this scheme needs.
-SUNContext silent_context() {
-  SUNContext context = nullptr;
-#if SUNDIALS_VERSION_MAJOR < 7
-  require(SUNContext_Create(nullptr, &context), "SUNContext_Create");
-#else
-  require(SUNContext_Create(SUN_COMM_NULL, &context), "SUNContext_Create");
-  require(SUNContext_ClearErrHandlers(context), "SUNContext_ClearErrHandlers");
-#endif
-  return context;
-}
-
-void silence([[maybe_unused]] void* integrator) {
-#if SUNDIALS_VERSION_MAJOR < 7
-  require(CVodeSetErrFile(integrator, nullptr), "CVodeSetErrFile");
-#endif
 }
 
 // What the right-hand sides need to know.
@@ -120,13 +54,14 @@ int sensitivities(int count, sunrealtype t, N_Vector z, N_Vector, N_Vector* s, N
 class Integrator {
  public:
   Integrator(Index n, double tolerance, Motion& motion) : n_(static_cast<int>(n)) {
-    const SUNContext context = silent_context();
+    SUNContext context = nullptr;
+    require(create_sundials_context(&context), "SUNContext_Create");
     context_.reset(context);
     state_.reset(N_VNew_Serial(n_, context));
     sensitivity_.reset(N_VCloneVectorArray(n_, state_.get()));
     memory_.reset(CVodeCreate(CV_ADAMS, context));
     view(state_.get()).setZero();
-    silence(memory_.get());
+    require(silence_cvode(memory_.get(), context), "silence_cvode");
     require(CVodeInit(memory_.get(), right_hand_side, 0.0, state_.get()), "CVodeInit");
     require(CVodeSStolerances(memory_.get(), tolerance, tolerance), "CVodeSStolerances");
     require(CVodeSetUserData(memory_.get(), &motion), "CVodeSetUserData");

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "experiments/record/files/hdf5/handle.hpp"
-#include "experiments/record/files/hdf5/own_storage.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "experiments/record/files/hdf5/own_storage.hpp"
+#include "experiments/record/files/hdf5/handle.hpp"
 #include "experiments/record/files/matio.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/text/input_error.hpp"

@@ -3,11 +3,11 @@
 
 #include <matio.h>
 
-#include "filters/needed_library.hpp"
+#include <needed_library.hpp>
 
 namespace beamid::experiments {
 
-inline constexpr filters::NeededLibrary matio{BEAMID_MATIO};
+inline constexpr NeededLibrary matio{BEAMID_MATIO};
 BEAMID_NEEDED(matio, Mat_Open);
 BEAMID_NEEDED(matio, Mat_Close);
 BEAMID_NEEDED(matio, Mat_GetVersion);

@@ -9,15 +9,15 @@
 #include <limits>
 #include <map>
 
+#include <needed_library.hpp>
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"
-#include "filters/needed_library.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-constexpr filters::NeededLibrary libmseed{"libmseed.so.2", "libmseed2"};
+constexpr NeededLibrary libmseed{"libmseed.so.2", "libmseed2"};
 BEAMID_NEEDED(libmseed, ms_readtraces);
 BEAMID_NEEDED(libmseed, ms_errorstr);
 BEAMID_NEEDED(libmseed, mst_convertsamples);

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <vector>
 
+#include <needed_library.hpp>
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"
-#include "filters/needed_library.hpp"
 
 namespace beamid::experiments {
 namespace {
 
-constexpr filters::NeededLibrary sndfile{"libsndfile.so.1", "libsndfile1"};
+constexpr NeededLibrary sndfile{"libsndfile.so.1", "libsndfile1"};
 BEAMID_NEEDED(sndfile, sf_open);
 BEAMID_NEEDED(sndfile, sf_strerror);
 BEAMID_NEEDED(sndfile, sf_readf_double);

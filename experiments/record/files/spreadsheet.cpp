@@ -17,12 +17,12 @@
 #include <utility>
 #include <vector>
 
+#include <needed_library.hpp>
 #include "experiments/record/delimited_text.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
-#include "filters/needed_library.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -66,7 +66,7 @@ std::optional<WorkbookKind> workbook_kind(std::string_view beginning) {
 
 // A sheet as text.
 
-constexpr filters::NeededLibrary freexl{"libfreexl.so.1", "libfreexl1"};
+constexpr NeededLibrary freexl{"libfreexl.so.1", "libfreexl1"};
 BEAMID_NEEDED(freexl, freexl_get_cell_value);
 BEAMID_NEEDED(freexl, freexl_get_info);
 BEAMID_NEEDED(freexl, freexl_get_worksheet_name);

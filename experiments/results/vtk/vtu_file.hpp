@@ -21,7 +21,7 @@ struct PointArray {
 /// BendingStiffness, Damage and Mass (BeamGrid::Cell). All doubles keep every digit.
 ///
 /// What VTK does for it is in a library of its own, libbeamid_vtk.so. It is looked for as
-/// lib/beamid/vtk/libbeamid_vtk.so in every folder above the program or module that asks, then in /usr/local
+/// lib/beamid/vtk/libbeamid_vtk.so in every folder above the calling program or module, then in /usr/local
 /// and /usr, then where the system looks for libraries.
 /// @throws NotDrawn (drawing.hpp) when that library is missing or of another version.
 /// @throws std::runtime_error when the file cannot be written.

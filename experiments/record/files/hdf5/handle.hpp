@@ -1,13 +1,16 @@
-// The functions of HDF5, loaded when one is first called, and its identifiers and messages, kept in order.
+// The functions of HDF5, loaded when one is first called, its identifiers and messages, kept in order, and
+// whether a file holds its numbers itself.
 #pragma once
 
 #include <hdf5.h>
 
-#include "filters/needed_library.hpp"
+#include <string>
+
+#include <needed_library.hpp>
 
 namespace beamid::experiments {
 
-inline constexpr filters::NeededLibrary hdf5{BEAMID_HDF5};
+inline constexpr NeededLibrary hdf5{BEAMID_HDF5};
 BEAMID_NEEDED(hdf5, H5check_version);
 BEAMID_NEEDED(hdf5, H5open);
 BEAMID_NEEDED(hdf5, H5free_memory);
@@ -101,5 +104,14 @@ class Quiet {
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };
+
+/// Refuses a dataset that takes its numbers from another file: by external storage, or as a virtual dataset.
+/// A record that somebody sends must not be able to show any file that its reader may read.
+/// @throws InputError
+void require_own_storage(hid_t dataset, const std::string& path, const std::string& file);
+
+/// The same for all datasets of a file, for libraries that open it by themselves; links to other files are
+/// refused, too. @throws InputError, also where HDF5 cannot walk through the file.
+void require_own_storage(const std::string& file);
 
 }  // namespace beamid::experiments

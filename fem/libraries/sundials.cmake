@@ -2,12 +2,12 @@
 # the sensitivities of the former.
 find_package(SUNDIALS 6.4 REQUIRED COMPONENTS cvodes arkode nvecserial sunmatrixsparse sunlinsolklu)
 
-# beamid_use_sundials(TARGET PART...): its headers, and its PARTs at their first use. Where SUNDIALS was built with MPI, as
+# beamid_use_sundials(TARGET): its headers, and its libraries at their first use (sundials_functions.hpp). Where SUNDIALS was built with MPI, as
 # Debian's 7 is, its headers include mpi.h, which its own targets do not say.
 function(beamid_use_sundials target)
   target_include_directories(${target} SYSTEM PRIVATE
                              $<TARGET_PROPERTY:SUNDIALS::sunlinsolklu_shared,INTERFACE_INCLUDE_DIRECTORIES>)
-  foreach(part ${ARGN})
+  foreach(part cvodes arkode sunlinsolklu)
     string(TOUPPER ${part} name)
     beamid_needed(${target} ${name} SUNDIALS::${part}_shared)
   endforeach()

@@ -1,10 +1,9 @@
-#include "experiments/record/files/hdf5/own_storage.hpp"
+#include "experiments/record/files/hdf5/handle.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
 
-#include "experiments/record/files/hdf5/handle.hpp"
 #include "experiments/text/input_error.hpp"
 
 namespace beamid::experiments {

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace beamid::filters {
+namespace beamid {
 
 /// A shared library of the system. It is loaded at its first use and stays until the program ends.
 class NeededLibrary {
@@ -51,17 +51,18 @@ class NeededLibrary {
   int visibility_;
 };
 
-/// A function of such a library, looked up at its first call. Called, or handed on as a pointer, it throws
-/// what NeededLibrary::symbol throws.
-template <class Function>
-class NeededFunction {
+/// A symbol of such a library, looked up at its first use.
+class NeededSymbol {
  public:
-  constexpr NeededFunction(const NeededLibrary& library, const char* name) : library_(library), name_(name) {}
+  constexpr NeededSymbol(const NeededLibrary& library, const char* name) : library_(library), name_(name) {}
 
-  operator Function*() const {
-    Function* known = found_.load(std::memory_order_relaxed);
+ protected:
+  /// @param in_program whether a definition in the program counts before that of the library
+  void* address(bool in_program = false) const {
+    void* known = found_.load(std::memory_order_relaxed);
     if (known == nullptr) {
-      known = reinterpret_cast<Function*>(library_.symbol(name_));
+      if (in_program && library_.there()) known = dlsym(RTLD_DEFAULT, name_);
+      if (known == nullptr) known = library_.symbol(name_);
       found_.store(known, std::memory_order_relaxed);
     }
     return known;
@@ -70,34 +71,33 @@ class NeededFunction {
  private:
   const NeededLibrary& library_;
   const char* name_;
-  mutable std::atomic<Function*> found_{nullptr};
+  mutable std::atomic<void*> found_{nullptr};
 };
 
-/// A variable of such a library. A program that links the library, too, may hold the variable itself (a copy
-/// relocation), and the library uses that one.
-template <class Value>
-class NeededVariable {
+/// A function. Called, or handed on as a pointer, it throws what NeededLibrary::symbol throws.
+template <class Function>
+class NeededFunction : NeededSymbol {
  public:
-  constexpr NeededVariable(const NeededLibrary& library, const char* name) : library_(library), name_(name) {}
-
-  operator const Value&() const { return *static_cast<const Value*>(&*this); }
-
-  void* operator&() const {  // also of a type that its header does not define
-    void* const linked = library_.there() ? dlsym(RTLD_DEFAULT, name_) : nullptr;
-    return linked != nullptr ? linked : library_.symbol(name_);
-  }
-
- private:
-  const NeededLibrary& library_;
-  const char* name_;
+  using NeededSymbol::NeededSymbol;
+  operator Function*() const { return reinterpret_cast<Function*>(address()); }
 };
 
-}  // namespace beamid::filters
+/// A variable. A program that links the library, too, may hold the variable itself (a copy relocation), and
+/// the library uses that one.
+template <class Value>
+class NeededVariable : NeededSymbol {
+ public:
+  using NeededSymbol::NeededSymbol;
+  operator const Value&() const { return *static_cast<const Value*>(address(true)); }
+  void* operator&() const { return address(true); }  // also of a type that its header does not define
+};
+
+}  // namespace beamid
 
 // By a second macro each: the library's header may have a macro of that name, for a versioned one.
 #define BEAMID_NEEDED_NAMED(library, function) \
-  inline constinit const ::beamid::filters::NeededFunction<decltype(::function)> function(library, #function)
+  inline constinit const ::beamid::NeededFunction<decltype(::function)> function(library, #function)
 #define BEAMID_NEEDED_VARIABLE_NAMED(library, variable) \
-  inline constinit const ::beamid::filters::NeededVariable<decltype(::variable)> variable(library, #variable)
+  inline constinit const ::beamid::NeededVariable<decltype(::variable)> variable(library, #variable)
 #define BEAMID_NEEDED(library, function) BEAMID_NEEDED_NAMED(library, function)
 #define BEAMID_NEEDED_VARIABLE(library, variable) BEAMID_NEEDED_VARIABLE_NAMED(library, variable)
