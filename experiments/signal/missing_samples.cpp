@@ -81,6 +81,11 @@ std::vector<std::pair<Index, Index>> gaps_in(const VectorXd& signal) {
   return gaps;
 }
 
+std::vector<double> finite(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  return values;
+}
+
 VectorXd bridged_straight(const VectorXd& signal) {
   VectorXd result = signal;
   for (const auto& [first, count] : gaps_in(signal)) {

@@ -10,6 +10,9 @@ namespace beamid::experiments {
 /// Runs of samples that are not finite: first sample and number.
 std::vector<std::pair<Eigen::Index, Eigen::Index>> gaps_in(const Eigen::VectorXd& signal);
 
+/// Those of several values that are finite, in their order.
+std::vector<double> finite(std::vector<double> values);
+
 /// A signal (N) with straight lines across what is missing, level beyond the first and last finite sample.
 /// @throws std::invalid_argument when no sample is finite.
 Eigen::VectorXd bridged_straight(const Eigen::VectorXd& signal);

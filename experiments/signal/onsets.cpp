@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <stdexcept>
 #include <string>
 
@@ -43,24 +42,16 @@ Spread quiet_part(const Eigen::VectorXd& signal, double interval, const OnsetSet
   return spread;
 }
 
-/// The largest of the last `length` values.
-class SlidingMaximum {
- public:
-  explicit SlidingMaximum(Index length) : length_(length) {}
-
-  double value() const { return kept_.empty() ? 0 : kept_.front().second; }
-  void add(Index k, double value) {
-    while (!kept_.empty() && kept_.back().second <= value) kept_.pop_back();
-    kept_.emplace_back(k, value);
-    if (kept_.front().first <= k - length_) kept_.pop_front();
-  }
-
- private:
-  Index length_;
-  std::deque<std::pair<Index, double>> kept_;
-};
-
 }  // namespace
+
+Index SlidingMaximum::over(Index from, Index to) {
+  for (; next_ < to; ++next_) {
+    while (!places_.empty() && values_[places_.back()] < values_[next_]) places_.pop_back();
+    places_.push_back(next_);
+  }
+  while (places_.front() < from) places_.pop_front();
+  return places_.front();
+}
 
 Onsets find_onsets(const Eigen::VectorXd& signal, double interval, const OnsetSettings& settings) {
   if (signal.size() < 2 * fewest)
@@ -73,12 +64,12 @@ Onsets find_onsets(const Eigen::VectorXd& signal, double interval, const OnsetSe
   const Eigen::VectorXd size = (signal.array() - quiet.mean).abs();
   const double level = std::max(settings.threshold * found.noise, settings.smallest * size.maxCoeff());
   const auto apart = std::max<Index>(1, static_cast<Index>(std::ceil(settings.apart / interval)));
-  SlidingMaximum before(apart);
-  for (Index k = 0; k < size.size(); ++k) {
+  SlidingMaximum before(size);
+  for (Index k = quiet.count; k < size.size(); ++k) {
     const bool separate = found.samples.empty() || k - found.samples.back() >= apart;
-    if (k >= quiet.count && separate && size[k] > level && size[k] > settings.rise * before.value())
+    if (separate && size[k] > level &&
+        size[k] > settings.rise * size[before.over(std::max<Index>(0, k - apart), k)])
       found.samples.push_back(k);
-    before.add(k, size[k]);
   }
   return found;
 }

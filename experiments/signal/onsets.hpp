@@ -2,9 +2,25 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <deque>
 #include <vector>
 
 namespace beamid::experiments {
+
+/// The largest value in a window that moves forward, in constant time a step.
+class SlidingMaximum {
+ public:
+  explicit SlidingMaximum(const Eigen::VectorXd& values) : values_(values) {}
+
+  /// The first place of the largest value from `from` to before `to`, at least one; neither may fall from
+  /// call to call.
+  Eigen::Index over(Eigen::Index from, Eigen::Index to);
+
+ private:
+  const Eigen::VectorXd& values_;
+  std::deque<Eigen::Index> places_;  // of values that fall
+  Eigen::Index next_ = 0;
+};
 
 struct OnsetSettings {
   double threshold = 8;       ///< times the noise before the first event

@@ -9,7 +9,7 @@ import numpy as np
 from ._errors import InputError
 
 COLOURS = {"blue": "#0072b2", "vermillion": "#d55e00", "green": "#009e73", "purple": "#cc79a7", "orange": "#e69f00",
-           "sky": "#56b4e9", "black": "#000000", "grey": "#7f7f7f"}  # told apart by colour-blind readers [okabe2008]
+           "sky": "#56b4e9", "black": "#000000", "grey": "#7f7f7f"}  # distinct for colour-blind readers [okabe2008]
 LINES = {"line": {"linewidth": 1.4}, "thin": {"linewidth": 0.8}, "dashed": {"linewidth": 1.2, "linestyle": "--"},
          "dotted": {"linewidth": 1.2, "linestyle": ":"}}
 
@@ -36,18 +36,6 @@ class Figure(dict):
     def __repr__(self):
         curves = sum(len(panel["curves"]) for panel in self["panels"])
         return f"<figure of {len(self['panels'])} panels and {curves} curves: {self['caption'] or self['panels'][0]['y_label']}>"
-
-
-class Figures(dict):
-    """Figures by name, with a short repr."""
-
-    def __repr__(self):
-        return "{" + ", ".join(f"{name!r}: {figure!r}" for name, figure in self.items()) + "}"
-
-
-def figures(found):
-    """Of the core's dictionaries."""
-    return Figures({name: Figure(figure) for name, figure in found.items()})
 
 
 def plot_figure(found, name, figure):

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _beamid
 from ._errors import InputError
-from ._plots import figures, picture, plot_figure
+from ._plots import Figure, picture, plot_figure
 
 
 class Estimate(float):
@@ -120,7 +120,7 @@ class Results:
 
     @functools.cached_property
     def figures(self):
-        return figures(self._outcome.figures())
+        return {name: Figure(one) for name, one in self._outcome.figures().items()}
 
     def plot(self, name=None, figure=None):
         """A figure as a matplotlib.figure.Figure, in the style of the command's pictures.

@@ -292,7 +292,7 @@ void add_places(const DrivenProblem& problem, const OtherModels& models, const E
       for (std::size_t j = 0; j < model.unknowns.size(); ++j)
         there.prior.mean[static_cast<Index>(j)] = model.unknowns[j].to_state(model.unknowns[j].guess);
       auto [best, moved] = std::pair(whole, theta);
-      DrivenProblem anew = there;  // its weights become those of what that leaves
+      DrivenProblem anew = there;  // its weights become those of its own residual
       if (const auto fit = fit_driven(anew))
         if (const double cost = evaluate_driven(there, fit->theta).cost; cost < best)
           best = cost, moved = fit->theta;
@@ -434,7 +434,7 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
     const Experiment there = at_estimates(experiment, model, theta);
     const OtherModels models(there, record, reduction, folder),
         as_described(experiment, record, reduction, folder);
-    constexpr double much = 0.03, misplaced = 0.15;  // a sensor a floor off leaves 20 % and more
+    constexpr double much = 0.03, misplaced = 0.15;  // a sensor one floor off: a residual of 20 % and more
     add_structure_changes(*problem, models, experiment, left, theta, fit.left_share > much,
                           measures_force(record), faults);
     add_gains(record, left, faults);

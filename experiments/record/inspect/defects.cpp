@@ -56,8 +56,8 @@ Ends jumps(const std::vector<double>& signal, const Run& run, double least) {
 
 /// Of the finite values, one at least.
 struct RunSpread {
-  explicit RunSpread(std::vector<double> values) {
-    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  explicit RunSpread(const std::vector<double>& signal) {
+    std::vector<double> values = finite(signal);
     lowest = *std::min_element(values.begin(), values.end());
     highest = *std::max_element(values.begin(), values.end());
     middle = median(std::move(values));
@@ -176,16 +176,15 @@ std::vector<Run> spikes(const std::vector<double>& signal) {
   constexpr std::size_t reach = 32, widest = 2, fewest = 16;
   constexpr double times = 20, returned = 0.25, candidate = 5;
   std::vector<Run> found;
-  std::vector<double> finite(signal), moves;
-  std::erase_if(finite, [](double value) { return !std::isfinite(value); });
-  if (finite.size() < fewest) return found;
-  const double middle = median(finite);
-  moves.reserve(finite.size());
-  for (std::size_t k = 1; k < finite.size(); ++k) moves.push_back(std::abs(finite[k] - finite[k - 1]));
+  std::vector<double> read = finite(signal), moves;
+  if (read.size() < fewest) return found;
+  const double middle = median(read);
+  moves.reserve(read.size());
+  for (std::size_t k = 1; k < read.size(); ++k) moves.push_back(std::abs(read[k] - read[k - 1]));
   const double usual_move = median(std::move(moves));
-  for (double& value : finite) value = std::abs(value - middle);
-  const auto place = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() * 19 / 20);
-  std::nth_element(finite.begin(), place, finite.end());
+  for (double& value : read) value = std::abs(value - middle);
+  const auto place = read.begin() + static_cast<std::ptrdiff_t>(read.size() * 19 / 20);
+  std::nth_element(read.begin(), place, read.end());
   const double usual = *place;
   std::vector<double> beside;
   for (std::size_t k = 1; k + 1 < signal.size(); ++k)
@@ -350,13 +349,12 @@ void leave_out(const std::vector<Run>& runs, std::vector<double>& samples) {
 bool is_dead(const std::vector<double>& samples) {
   constexpr double far_larger = 1e3, out_of_reach = 1e4, noise_only = 2;
   constexpr Index fewest = 64;
-  std::vector<double> finite(samples);
-  std::erase_if(finite, [](double value) { return !std::isfinite(value); });
-  if (finite.empty() ||
-      *std::max_element(finite.begin(), finite.end()) == *std::min_element(finite.begin(), finite.end()))
+  const std::vector<double> read = finite(samples);
+  if (read.empty() ||
+      *std::max_element(read.begin(), read.end()) == *std::min_element(read.begin(), read.end()))
     return true;
-  const Eigen::Map<const VectorXd> signal(finite.data(), static_cast<Index>(finite.size()));
-  const double middle = median(finite), power = (signal.array() - middle).square().mean();
+  const Eigen::Map<const VectorXd> signal(read.data(), static_cast<Index>(read.size()));
+  const double middle = median(read), power = (signal.array() - middle).square().mean();
   if (std::abs(middle) > out_of_reach * std::sqrt(power)) return true;
   if (signal.size() < fewest || !(std::abs(middle) > far_larger * std::sqrt(power))) return false;
   const double noise = noise_floor(signal);

@@ -225,20 +225,19 @@ InspectedChannel make_channel(const RecordTable& table, std::size_t index,
 /// Defects, noise, frequency and events of the channel's samples at the instants found.
 void inspect_channel(const Inspection& found, InspectedChannel& channel) {
   constexpr Index fewest = 64;
-  std::vector<double> finite(channel.samples);
-  std::erase_if(finite, [](double value) { return !std::isfinite(value); });
-  const auto read = std::ssize(finite);
-  channel.missing = channel.samples.size() - finite.size();
-  if (finite.empty()) {
+  std::vector<double> read = finite(channel.samples);
+  const auto count = std::ssize(read);
+  channel.missing = channel.samples.size() - read.size();
+  if (read.empty()) {
     channel.defects.dead = true;
     return;
   }
-  channel.least = *std::min_element(finite.begin(), finite.end());
-  channel.greatest = *std::max_element(finite.begin(), finite.end());
-  channel.offset = median(std::move(finite));
+  channel.least = *std::min_element(read.begin(), read.end());
+  channel.greatest = *std::max_element(read.begin(), read.end());
+  channel.offset = median(std::move(read));
   const bool force = channel.quantity ? *channel.quantity == Quantity::force : rests(channel);
   channel.defects = find_defects(channel.samples, force ? SignalKind::force : SignalKind::motion);
-  if (channel.defects.dead || read < fewest) return;
+  if (channel.defects.dead || count < fewest) return;
   VectorXd samples = Eigen::Map<const VectorXd>(channel.samples.data(), std::ssize(channel.samples));
   for (const auto* runs : {&channel.defects.spikes, &channel.defects.dropped})
     for (const Run& run : *runs)

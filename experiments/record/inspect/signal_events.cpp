@@ -1,42 +1,17 @@
 // Releases, hits and a wandering offset in one channel.
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <optional>
 #include <vector>
 
 #include "experiments/record/inspect/inspection.hpp"
 #include "experiments/record/inspect/noise_floor.hpp"
+#include "experiments/signal/onsets.hpp"
 #include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 
 using Eigen::Index, Eigen::VectorXd;
-
-namespace {
-
-/// The largest value in a window that moves forward, in constant time a step.
-class SlidingMaximum {
- public:
-  explicit SlidingMaximum(const VectorXd& values) : values_(values) {}
-
-  /// The first place of the largest value from `from` to before `to`; neither may fall from call to call.
-  Index over(Index from, Index to) {
-    for (; next_ < to; ++next_) {
-      while (!places_.empty() && values_[places_.back()] < values_[next_]) places_.pop_back();
-      places_.push_back(next_);
-    }
-    while (places_.front() < from) places_.pop_front();
-    return places_.front();
-  }
-
- private:
-  const VectorXd& values_;
-  std::deque<Index> places_;  // of values that fall
-  Index next_ = 0;
-};
-
-}  // namespace
 
 std::vector<SignalEvent> find_events(const VectorXd& signal, double interval, double noise,
                                      double frequency_hz) {
