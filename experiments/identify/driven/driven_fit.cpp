@@ -8,11 +8,13 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
+#include <boost/math/distributions/students_t.hpp>
 
 #include "experiments/identify/driven/driven_part.hpp"
 #include "experiments/identify/engine/low_mode_fit.hpp"
 #include "experiments/identify/verdict/noise_near_mode.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "experiments/signal/in_double.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "filters/levenberg_marquardt.hpp"
@@ -79,6 +81,34 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
 double section_factor(const SectionScatter& scatter, Index unknown, double deviation) {
   const double scattered = std::sqrt(std::max(0.0, scatter.covariance(unknown, unknown)));
   return deviation > 0.0 ? student_factor(scatter.freedom[unknown]) * scattered / deviation : 1.0;
+}
+
+SizeTrend trend_with_size(const SectionScatter& scatter, Index unknown) {
+  const Index sections = scatter.sections;
+  const double freedom = static_cast<double>(sections - 2);
+  const VectorXd value = scatter.estimates.row(unknown), own = scatter.own_deviation.row(unknown).cwiseAbs2(),
+                 doublings = scatter.size.cwiseMax(1e-300).array().log2();
+  Eigen::Matrix2d normal;
+  Eigen::Vector2d line;
+  const auto fit = [&](double tau_square) {  // sum of squares over their variances
+    const VectorXd weight = (own.array() + tau_square).cwiseMax(1e-300).inverse();
+    normal << weight.sum(), weight.dot(doublings), weight.dot(doublings), weight.dot(doublings.cwiseAbs2());
+    line = normal.ldlt().solve(Eigen::Vector2d(weight.dot(value), weight.dot(value.cwiseProduct(doublings))));
+    return weight.dot((value.array() - line[0] - line[1] * doublings.array()).square().matrix());
+  };
+  if (fit(0.0) > freedom) {
+    double low = 0.0, high = (value.array() - value.mean()).square().sum();
+    for (int halving = 0; halving < 60; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (fit(middle) > freedom ? low : high) = middle;
+    }
+    fit(high);
+  }
+  SizeTrend trend{line[0], line[1], std::sqrt(std::max(0.0, normal.inverse()(1, 1)))};
+  if (!std::isfinite(trend.slope) || !(trend.deviation > 0.0)) return {};
+  const boost::math::students_t_distribution<double, InDouble> law(freedom);
+  trend.probability = 2.0 * cdf(complement(law, std::abs(trend.slope) / trend.deviation));
+  return trend;
 }
 
 namespace {

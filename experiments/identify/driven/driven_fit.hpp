@@ -44,6 +44,22 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
 /// What sections say of one unknown, over a deviation beside which it stands, for 95 % intervals.
 double section_factor(const SectionScatter& scatter, Eigen::Index unknown, double deviation);
 
+/// How an unknown follows the size A_i of the motion over the sections of a record,
+///
+///     eta_i = a + b log2 A_i + e_i,    var e_i = v_i + tau^2
+///
+/// with v_i what a section's lines say and tau^2 >= 0 what makes the sum of the squares over their variances
+/// S - 2 (random effects [dersimonian1986]). Sizes that hardly differ determine no slope.
+struct SizeTrend {
+  double at_mean = 0.0;      ///< a, at the size of the whole record
+  double slope = 0.0;        ///< b, of eta by every doubling
+  double deviation = 0.0;    ///< standard deviation of b
+  double probability = 1.0;  ///< of a larger |b| without a trend, by Student's t of S - 2 degrees of freedom
+
+  bool exists(Eigen::Index unknowns) const { return probability < 0.01 / static_cast<double>(unknowns); }
+};
+SizeTrend trend_with_size(const SectionScatter& scatter, Eigen::Index unknown);
+
 /// With y_k and u_k the lines of outputs and inputs, G_k(theta) of the model (supported_response.hpp), Z_k
 /// what a part of a record that does not repeat itself adds to a line, W the channels' weights [pintelon2012,
 /// ch. 6]:

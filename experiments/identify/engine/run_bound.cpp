@@ -85,6 +85,25 @@ void by_sections(ComparedRun& run, std::vector<double>& factors) {
                   run.sections->sections, run.sections->periods, widened));
 }
 
+// Where the estimates of the sections follow the size of their motion, which of them are meant.
+void follow_size(ComparedRun& run) {
+  std::string following;
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    const auto place = static_cast<Eigen::Index>(j);
+    const SizeTrend trend = trend_with_size(*run.sections, place);
+    if (!trend.exists(run.unknown_state.mean.size())) continue;
+    const Unknown& unknown = run.unknowns[j];
+    const double at = unknown.to_physical(trend.at_mean),
+                 change = 100.0 * (unknown.to_physical(trend.at_mean + trend.slope) / at - 1.0),
+                 half = 100.0 * quantile_95 * trend.deviation * std::abs(unknown.slope(trend.at_mean) / at);
+    following += fmt::format("{}{} changes by {:+.2g} % (+- {:.2g} %)", following.empty() ? "" : ", ",
+                             run.parameters[j].estimate.name, change, half);
+  }
+  if (!following.empty())
+    run.remarks.push_back("The estimates follow the size of the motion. Where it is twice as large, " +
+                          following + ". The estimates are a mean over the record's sizes.");
+}
+
 // A filter more certain than record and prior allow has been linearised elsewhere, or has lost its spread:
 // its deviation becomes the least there is.
 double to_bound(ComparedParameter& p, double factor) {
@@ -121,7 +140,10 @@ void widen(ComparedRun& run, std::size_t j, double factor) {
 void widen_intervals(const RunContext& context, ComparedRun& run) {
   std::vector<double> factors =
       run.noise_in.empty() && context.analysis.modal ? by_mode(context, run) : by_influence(run);
-  if (run.sections) by_sections(run, factors);
+  if (run.sections) {
+    by_sections(run, factors);
+    follow_size(run);
+  }
   for (std::size_t j = 0; j < factors.size(); ++j) widen(run, j, factors[j]);
   if (!run.mode) return;
   run.mode->damping_ratio_deviation *= run.interval_factor;

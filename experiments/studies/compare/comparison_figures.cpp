@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -59,6 +61,55 @@ Figure parameter_figure(const Comparison& comparison, const Runs& runs) {
   figure.height = forest_height(runs.size(), figure.panels.size());
   figure.caption =
       "Estimates of all runs with their 95 % intervals; an arrow: beyond the axis, the number at the right.";
+  return figure;
+}
+
+// What each section of a driven record says by itself of an unknown, over the size of its motion.
+Panel section_panel(const ComparedRun& run, std::size_t j) {
+  const SectionScatter& by = *run.sections;
+  const Unknown& unknown = run.unknowns[j];
+  const auto place = static_cast<Index>(j);
+  VectorXd value(by.sections), lower(by.sections), upper(by.sections);
+  for (Index i = 0; i < by.sections; ++i) {
+    const double at = by.estimates(place, i), half = quantile_95 * by.own_deviation(place, i);
+    value[i] = unknown.to_physical(at);
+    lower[i] = unknown.to_physical(at - half);
+    upper[i] = unknown.to_physical(at + half);
+  }
+  std::string name = unknown.name;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  if (!unknown.unit.empty()) name += " [" + unknown.unit + "]";
+  Panel panel{"", {"motion of a section over that of the record (rms)", true}, {name}};
+  panel.bars("section alone", by.size, value, lower, upper, Colour::blue)
+      .level("whole record", run.parameters[j].estimate.value);
+  if (const SizeTrend trend = trend_with_size(by, place); trend.exists(run.unknown_state.mean.size())) {
+    constexpr Index points = 50;
+    const VectorXd doublings =
+        VectorXd::LinSpaced(points, std::log2(by.size.minCoeff()), std::log2(by.size.maxCoeff()));
+    panel.line(
+        "trend", doublings.unaryExpr([](double d) { return std::exp2(d); }),
+        doublings.unaryExpr([&](double d) { return unknown.to_physical(trend.at_mean + trend.slope * d); }),
+        Colour::vermillion);
+  }
+  // A section that determines little has bars beyond all others; the frame is of the estimates.
+  const double room = 0.25 * std::max(value.maxCoeff() - value.minCoeff(), 1e-3 * std::abs(value.mean()));
+  const double lowest = value.minCoeff();
+  panel.up(lowest > 0.0 ? std::max(0.0, lowest - room) : lowest - room, value.maxCoeff() + room);
+  return panel;
+}
+
+std::optional<Figure> section_figure(const ComparedRun& run) {
+  constexpr std::size_t most_panels = 8;
+  if (!run.sections || !run.sections->estimates.allFinite()) return {};
+  Figure figure{"sections", {}, 0, 2, 900};
+  for (std::size_t j = 0; j < std::min(most_panels, run.parameters.size()); ++j)
+    figure.panels.push_back(section_panel(run, j));
+  figure.rows = static_cast<int>((figure.panels.size() + 1) / 2);
+  figure.caption = fmt::format(
+      "What each of the {} sections of the record says by itself, one step from the whole record's estimate, "
+      "with "
+      "95 % intervals of its noise alone.",
+      run.sections->sections);
   return figure;
 }
 
@@ -135,6 +186,8 @@ std::vector<Figure> figures(const Comparison& comparison) {
     if (run->parameters.size() == runs.front()->parameters.size() && run->answers()) alike.push_back(run);
   if (!alike.empty() && !alike.front()->parameters.empty())
     all.push_back(parameter_figure(comparison, alike));
+  if (runs.size() == 1)
+    if (auto sections = section_figure(*runs[0])) all.push_back(std::move(*sections));
   return all;
 }
 

@@ -86,6 +86,32 @@ Json input_values(const ComparedRun& run, const std::vector<std::string>& output
   return json;
 }
 
+// What the sections of a driven record say one by one, and how that follows the size of their motion.
+Json section_values(const ComparedRun& run) {
+  const SectionScatter& by = *run.sections;
+  Json json{{"periods", by.periods}, {"relative_size", std::vector<double>(by.size.begin(), by.size.end())}};
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    const Unknown& unknown = run.unknowns[j];
+    const auto place = static_cast<Index>(j);
+    Json values = Json::array(), deviations = Json::array();
+    for (Index i = 0; i < by.sections; ++i) {
+      values.push_back(unknown.to_physical(by.estimates(place, i)));
+      deviations.push_back(std::abs(unknown.slope(by.estimates(place, i))) * by.own_deviation(place, i));
+    }
+    const SizeTrend trend = trend_with_size(by, place);
+    const double at = unknown.to_physical(trend.at_mean);
+    json["parameters"][run.parameters[j].estimate.name] = {
+        {"estimates", std::move(values)},
+        {"standard_deviations", std::move(deviations)},
+        {"change_by_twice_the_motion",
+         optional_number(unknown.to_physical(trend.at_mean + trend.slope) / at - 1.0)},
+        {"change_standard_deviation",
+         optional_number(trend.deviation * std::abs(unknown.slope(trend.at_mean) / at))},
+        {"probability_without_trend", trend.probability}};
+  }
+  return json;
+}
+
 Json run_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
   Json json{{"reduction", run.reduction},
             {"filter", run.filter},
@@ -113,6 +139,7 @@ Json run_values(const ComparedRun& run, const std::vector<std::string>& outputs)
   json["response_error_percent"] = run.response_error_percent;
   json["frequency_hz"] = optional_number(run.frequency_hz);
   json["noise"] = std::vector<double>(run.noise.begin(), run.noise.end());
+  if (run.sections) json["sections"] = section_values(run);
   json["log_likelihood"] = run.run.log_likelihood;
   json["mean_normalised_square"] = run.run.normalised_squares.mean();
   json.update(input_values(run, outputs));
