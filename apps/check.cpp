@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
@@ -14,6 +16,8 @@
 #include "experiments/config/structure_description.hpp"
 #include "experiments/identify/model_check/model_check.hpp"
 #include "experiments/identify/verdict/plausibility.hpp"
+#include "experiments/modal/study/driven_study.hpp"
+#include "experiments/modal/study/record_kind.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/check/report.hpp"
 #include "experiments/studies/prepare/preparation_report.hpp"
@@ -52,14 +56,37 @@ std::vector<Request> requests_of(const Values& values) {
   return requests;
 }
 
-ModalStudySettings modal_settings(const Values& values) {
+/// @returns absent where each record decides
+std::optional<ModalStudySettings> modal_settings(const Values& values) {
+  if (!values.has("method")) return {};
   ModalStudySettings settings;
   settings.method = parse_choice(values.text("method"), "--method", modal_method_registry());
   if (modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response))
     throw UsageError("--method " + settings.method.name +
-                     " needs a measured force; expected one of motion alone, era or ssi_cov");
-  settings.band_hz = values.from_to("band");
+                     " needs hits with a measured force; expected era, ssi_cov or output_error");
   return settings;
+}
+
+/// By the method asked for; else of a record whose inputs drive it from them, of another as a free decay.
+RecordModes modes_of(const std::string& name, const Record& record, bool windowed,
+                     std::optional<ModalStudySettings> asked,
+                     std::optional<std::pair<double, double>> band_hz) {
+  ModalStudySettings settings = asked.value_or(ModalStudySettings());
+  settings.band_hz = band_hz;
+  const bool by_input =
+      asked && modal_method_registry().find(asked->method.name).contracts.contains(contract::measured_input);
+  std::optional<DrivenStudy> driven;
+  if (by_input) driven = study_driven(name, record, settings);
+  if (!asked && is_driven(record) && !is_struck(record)) {
+    DrivenOrDecaying found = driven_or_decaying(name, record, windowed, settings);
+    if (!found.driven && found.decaying) return *std::move(found.decaying);
+    driven = std::move(found.driven);
+  }
+  if (!driven) return find_modes(name, record, windowed, settings);
+  RecordModes found = modes_of(*driven);
+  found.record.objections.insert(found.record.objections.end(), found.objections.begin(),
+                                 found.objections.end());
+  return found;
 }
 
 ModelCheckSettings check_settings(const Values& values) {
@@ -101,7 +128,8 @@ CheckedStructure structure_of_modes(const Request& request) {
 }
 
 /// What the records of one structure show, merged.
-CheckedStructure structure_of(const Request& request, const ModalStudySettings& settings,
+CheckedStructure structure_of(const Request& request, const std::optional<ModalStudySettings>& settings,
+                              std::optional<std::pair<double, double>> band_hz,
                               std::vector<UsedRecord>& used) {
   if (std::any_of(request.records.begin(), request.records.end(), holds_modes))
     return structure_of_modes(request);
@@ -112,8 +140,8 @@ CheckedStructure structure_of(const Request& request, const ModalStudySettings& 
     try {
       Record& record = used.back().prepared.record;
       record = made_analysable(with_places(record, request.experiment));
-      found.push_back(
-          find_modes(used.back().name, record, request.experiment.format.window.has_value(), settings));
+      found.push_back(modes_of(used.back().name, record, request.experiment.format.window.has_value(),
+                               settings, band_hz));
     } catch (const std::invalid_argument& error) {
       throw InputError({file.string()}, error.what());
     }
@@ -163,19 +191,21 @@ OptionGroup check_options() {
            .several()
            .repeated()
            .such_as(candidates),
-       modal_method_option("of modal analysis: era for free decays, ssi_cov for random vibration")
-           .by_default("era"),
+       modal_method_option(
+           "of modal analysis: era for free decays, ssi_cov for random vibration, output_error for a "
+           "measured base or shaker; else era, or output_error where the record has such an input"),
        band_option("frequencies to look at [Hz]")}};
 }
 
 int run_check(const Values& values) {
-  const ModalStudySettings modal = modal_settings(values);
+  const std::optional<ModalStudySettings> modal = modal_settings(values);
   const ModelCheckSettings settings = check_settings(values);
   const std::vector<Request> requests = requests_of(values);
   return deliver(values, [&] {
     std::vector<CheckedStructure> structures;
     std::vector<UsedRecord> used;
-    for (const Request& request : requests) structures.push_back(structure_of(request, modal, used));
+    for (const Request& request : requests)
+      structures.push_back(structure_of(request, modal, values.from_to("band"), used));
     try {
       Results results = report(check_model(std::move(structures), settings));
       for (const Request& request : requests) {

@@ -58,9 +58,12 @@ Results identify_one(const IdentifyRequest& one, const std::string& law, const f
       results = report(experiment, found.compared.record, name, oscillator_in(found));
       add_clocks(results, found);
     } else {
-      const LikeliestSet answer = likeliest_set(experiment, folder, [&](const Experiment& started) {
-        return identify_with_model(started, one.compared(), folder, progress);
-      });
+      const LikeliestSet answer = likeliest_set(
+          experiment, folder,
+          [&](const Experiment& started) {
+            return identify_with_model(started, one.compared(), folder, progress);
+          },
+          progress);
       results = identification_report(experiment, answer.found);
       if (!answer.exchanged.empty()) results.paragraph(answer.exchanged);
       add_twins(results, answer.found.runs.at(0), answer.twins);

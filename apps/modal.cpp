@@ -104,23 +104,23 @@ std::optional<Results> driven_results(const std::vector<RecordRequest>& requests
                                       const std::vector<Record>& records, const ModalStudySettings& settings,
                                       bool decides, std::vector<RecordModes>& decaying) {
   std::vector<DrivenStudy> found;
-  for (std::size_t r = 0; r < records.size(); ++r) {
+  for (std::size_t r = 0; r < records.size() && !decides; ++r) {
     try {
       found.push_back(study_driven(names[r], records[r], settings));
-      if (decides && found.back().modes.empty()) return {};
     } catch (const std::invalid_argument& error) {
-      if (decides) return {};
       throw InputError({requests[r].file.string()}, error.what());
     }
   }
-  if (decides) try {
-      ModalStudySettings decay = settings;
-      decay.method = ModalStudySettings().method;
-      decaying = modes_without_input(requests, names, records, decay);
-      for (std::size_t r = 0; r < records.size(); ++r)
-        if (!decaying[r].modes.empty() && decaying[r].left() < found[r].fit.left_share) return {};
-    } catch (const InputError&) {  // no decay
-    }
+  for (std::size_t r = 0; r < records.size() && decides; ++r) {
+    DrivenOrDecaying one =
+        driven_or_decaying(names[r], records[r], requests[r].format.window.has_value(), settings);
+    if (one.decaying) decaying.push_back(*std::move(one.decaying));
+    if (one.driven) found.push_back(*std::move(one.driven));
+  }
+  if (found.size() < records.size()) {
+    if (decaying.size() < records.size()) decaying.clear();  // asked anew
+    return {};
+  }
   return report(settings, found);
 }
 

@@ -79,6 +79,8 @@ bool CollectedSignals::set(const std::string& name, double value) {
   if (!(value > 0 && std::isfinite(value)))
     throw InputError({file_}, fmt::format("{} is {}; expected a positive number", name, value));
   const double stated = what == SamplingName::rate ? 1 / value : value;
+  constexpr double longest = 0.5;  // [s]; more is one of milliseconds
+  if (what == SamplingName::interval && stated > longest) return true;
   if (interval_ > 0 && std::abs(stated - interval_) > 1e-9 * interval_)
     throw InputError({file_}, fmt::format("{} means an interval of {} s beside one of {} s; expected one",
                                           name, stated, interval_));
@@ -97,8 +99,6 @@ void CollectedSignals::find_time(RecordTable& table, const RecordFormat& format)
   const std::string named = time_name(*at).unit;
   std::string& unit = table.units[column];
   if (unit.empty()) unit = named;
-  if (unit.empty() && !format.time)
-    table.remarks.push_back(fmt::format("'{}' states no unit: its times are taken as seconds.", *at));
   const auto factor = seconds_per(unit, "'" + *at + "'", file_, format);
   if (!factor) return;
   if (!named.empty() && *factor != *seconds_per(named, *at, file_, format))
@@ -144,11 +144,16 @@ RecordTable CollectedSignals::table(const RecordFormat& format) const {
   }
   find_time(table, format);
   table.by_people = true;
+  const bool bare_times = table.time && !format.time && table.units[*table.time].empty();
   for (std::size_t i = 0; i < table.width(); ++i) {
     const auto meaning = parse_column_name(table.names[i]);
     const auto unit = stated_unit(table.units[i]);
     if ((meaning && meaning->quantity) || (unit && unit->quantity)) table.by_people = false;
   }
+  if (table.by_people && bare_times) table.time.reset();  // recognised as those of a text
+  if (bare_times && !table.by_people)
+    table.remarks.push_back(
+        fmt::format("'{}' states no unit: its times are taken as seconds.", table.names[*table.time]));
   const auto stated = [&](std::size_t i) { return table.time != i && !table.units[i].empty(); };
   bool units = false;
   for (std::size_t i = 0; i < table.width(); ++i) units = units || stated(i);

@@ -17,7 +17,7 @@ namespace beamid::experiments {
 
 namespace {
 
-constexpr std::size_t most_early_lines = 1000, most_header_lines = 4;
+constexpr std::size_t most_early_lines = 20000, most_header_lines = 4;
 constexpr const char* rows_expected = "; expected rows of numbers in columns";
 
 /// A number with either decimal sign, or a date or time.
@@ -68,7 +68,9 @@ DelimitedText::DelimitedText(std::string file, std::string_view text, char separ
   const std::string_view typical = typical_line(text);
   semicolon_comments_ = separator_ != ';' && separator_of(typical) != ';';
   split_fields(typical, separator_ == '\0' ? separator_of(typical) : separator_, fields_);
-  labelled_ = !fields_.empty() && std::ranges::all_of(fields_, label_length);
+  labelled_ = std::ranges::any_of(fields_, label_length) && std::ranges::all_of(fields_, [](auto field) {
+                return label_length(field) > 0 || parse_stamp(field);
+              });
   if (tolerant_ && header_lines == 0)
     find_rows();
   else if (header_lines > 0 || !find_body())
@@ -402,7 +404,11 @@ bool DelimitedText::next() {
     split_row();
     if (fields_.size() == width_ && (header_text_.empty() || trimmed(line_) != header_text_)) return true;
     const bool repeated = !header_text_.empty() && trimmed(line_) == header_text_;
-    if (!tolerant_ && !repeated && !only_words_follow())
+    constexpr std::size_t fewest = 16;
+    if (rest_.empty() && fields_.size() < width_ && line_number_ > header_line_ + fewest &&
+        all_numbers(fields_, decimal_)) {
+      for (const std::string_view field : fields_) short_end_.push_back(parse_number(field, decimal_).value);
+    } else if (!tolerant_ && !repeated && !only_words_follow())
       throw InputError(row_place(), fmt::format("{}; expected {} as in the first row",
                                                 count_of_columns(fields_.size()), width_));
     skipped_.push_back(line_number_);

@@ -30,7 +30,8 @@ namespace beamid::experiments {
 ///
 /// A tolerant walk begins at the first two rows in succession that are numbers throughout and equally long.
 /// The lines before them that hold as many fields and no number name the columns and then their units; rows
-/// of another length are left out and remembered.
+/// of another length are left out and remembered. So is a last line that is shorter, as where a logger was
+/// switched off.
 class DelimitedText {
  public:
   /// @param text must outlive this object.
@@ -68,6 +69,9 @@ class DelimitedText {
   /// @throws InputError where it is none.
   double number(std::size_t column) const;
 
+  /// Of a last line that is shorter than the others; empty without one.
+  const std::vector<double>& short_end() const { return short_end_; }
+
  private:
   struct EarlyLine {
     std::string_view text;
@@ -102,6 +106,7 @@ class DelimitedText {
   char separator_, decimal_;
   bool tolerant_;
   std::vector<std::size_t> skipped_;
+  std::vector<double> short_end_;
   std::vector<Comment> comments_;  ///< before the first row
   bool semicolon_comments_ = false, labelled_ = false;
   bool first_row_pending_ = false;

@@ -15,6 +15,7 @@
 #include "experiments/record/record_table.hpp"
 #include "experiments/record/stamps.hpp"
 #include "experiments/signal/interpolation.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/input_error.hpp"
 
@@ -171,6 +172,15 @@ struct Stamps {
     const double mean = (values().back() - values().front()) / static_cast<double>(values().size() - 1);
     return resolution() < 0.5 * mean;
   }
+  /// Several samples of one stamp, or hardly apart, as of one transfer.
+  bool come_in_bursts() const {
+    constexpr double hardly = 0.25, often = 0.3;  // of the mean step, of the samples
+    const double close =
+        hardly * (values().back() - values().front()) / static_cast<double>(values().size() - 1);
+    std::size_t count = 0;
+    for (std::size_t k = 1; k < values().size(); ++k) count += values()[k] - values()[k - 1] < close ? 1 : 0;
+    return static_cast<double>(count) > often * static_cast<double>(values().size());
+  }
   double rounding(std::size_t sample) const { return precision().resolution(values()[sample]) * factor(); }
 };
 
@@ -182,6 +192,46 @@ void check_interval(double interval, double rate, const std::string& file) {
                      fmt::format("samples at an interval of {:.6g} s; expected {:.6g} s within 2 %, by "
                                  "the sampling rate of {:.6g} Hz",
                                  interval, 1 / rate, rate));
+}
+
+/// Stamps of transfers, each of a few samples: where steps beyond 2.5 of the usual one end at most 64 samples
+/// each, and take half of the time.
+/// @throws InputError there
+void refuse_bursts(const Stamps& stamps) {
+  constexpr std::size_t fewest = 10, most_samples = 64;
+  constexpr double pause = 2.5, much = 0.5;  // of the usual step, of the time
+  const std::vector<double>& times = stamps.values();
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
+  const double usual = median(steps), longest = pause * usual;
+  std::size_t pauses = 0;
+  double passed = 0.0;
+  for (const double step : steps)
+    if (step > longest) ++pauses, passed += step;
+  const double length = times.back() - times.front();
+  if (pauses < fewest || steps.size() > most_samples * pauses || passed < much * length) return;
+  throw InputError(
+      stamps.table->place(0, stamps.column->index),
+      fmt::format(
+          "times in {} bursts of about {} samples, {:.3g} s apart in a burst: they are those of transfers; "
+          "expected "
+          "the sampling rate: --rate HZ (the mean is about {:.3g}), or record.sampling_rate_hz in the "
+          "configuration",
+          pauses + 1, (times.size() + pauses / 2) / (pauses + 1), usual * stamps.factor(),
+          static_cast<double>(steps.size()) / (length * stamps.factor())));
+}
+
+/// Whether stamps that come in bursts, or late, run at the stated rate: the line through all of them does, to
+/// half an interval over the record.
+bool run_at(const Stamps& stamps, double rate) {
+  const std::vector<double>& times = stamps.values();
+  const auto size = static_cast<Eigen::Index>(times.size());
+  const Eigen::ArrayXd off = (Eigen::Map<const Eigen::ArrayXd>(times.data(), size) - times[0]) *
+                                 stamps.factor() -
+                             Eigen::ArrayXd::LinSpaced(size, 0.0, static_cast<double>(size - 1)) / rate,
+                       count = Eigen::ArrayXd::LinSpaced(size, -0.5, 0.5);
+  const double drift = (count * (off - off.mean())).sum() / count.square().sum();  // over the record
+  return std::abs(drift) < 0.5 / rate + stamps.rounding(0);
 }
 
 /// Counted at the stated rate from the first stamp, no sample may be half an interval away from its own.
@@ -196,7 +246,7 @@ void check_stamps(const Stamps& stamps, double rate) {
     throw InputError(
         stamps.table->place(k, stamps.column->index),
         fmt::format(
-            "time {:.9g} s of sample {}, which {:.9g} Hz, as stated, puts at {:.9g} s: the stamps run at "
+            "time {:.13g} s of sample {}, which {:.9g} Hz, as stated, puts at {:.13g} s: the stamps run at "
             "{:.9g} Hz in the mean; expected them within half an interval. Without a stated rate the stamps "
             "are taken as they are",
             stamp, k + 1, rate, counted,
@@ -229,13 +279,18 @@ Eigen::VectorXd instants(const Stamps& stamps, std::vector<std::string>& remarks
   }
   const std::vector<double>& times = stamps.values();
   if (rate) {
-    check_stamps(stamps, *rate);
+    if (stamps.come_in_bursts() && run_at(stamps, *rate))
+      remarks.push_back(fmt::format(
+          "The stamps come in bursts and run at {:.6g} Hz in the mean: samples are counted.", *rate));
+    else
+      check_stamps(stamps, *rate);
     return counted(times[0] * stamps.factor(), 1 / *rate, size, table.file);
   }
   auto fault = find_order_fault(times);
   if (!fault && !(stamps.format->irregular && stamps.show_intervals()))
     fault = find_sampling_fault(times, stamps.precision());
   if (fault) throw InputError(table.place(fault->sample, stamps.column->index), fault->message);
+  refuse_bursts(stamps);
   const auto in_seconds = [&](const std::vector<double>& values) -> Eigen::VectorXd {
     return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(size)) *
            stamps.factor();
@@ -284,7 +339,15 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
                 MalformedRows malformed) {
   std::vector<bool> kept(table.rows(), true);
   std::vector<std::size_t> lines = table.skipped_lines;
-  for (std::size_t row = 0; row < table.rows(); ++row)
+  constexpr std::size_t fewest = 16;
+  std::size_t rows = table.rows();
+  while (time && table.cell && rows > fewest && !std::isfinite(table.columns[*time][rows - 1])) {
+    const std::string cell = table.cell(rows - 1, *time).text;  // "Max", "Mean" below the record
+    if (says_missing(cell) || cell.find_first_of("0123456789") != cell.npos) break;
+    kept[--rows] = false;
+    lines.push_back(rows < table.lines.size() ? table.lines[rows] : rows + 1);
+  }
+  for (std::size_t row = 0; row < rows; ++row)
     for (const auto& [column, factor] : used) {
       if (std::isfinite(table.columns[column][row] * factor)) continue;
       if (malformed == MalformedRows::as_missing && column != time && is_missing(table, row, column))
@@ -296,6 +359,24 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
   std::sort(lines.begin(), lines.end());
   if (lines.empty()) return;
   table.remarks.push_back(skipped_text(lines, "is not a row of numbers like the others"));
+  table.keep(kept);
+}
+
+/// A row that a logger wrote twice: the same stamp, the same readings.
+void leave_out_repeated(RecordTable& table, const std::vector<Used>& used, std::size_t time) {
+  std::vector<bool> kept(table.rows(), true);
+  std::vector<std::size_t> lines;
+  for (std::size_t row = 1; row < table.rows(); ++row) {
+    if (table.columns[time][row] != table.columns[time][row - 1]) continue;
+    const bool same = std::ranges::all_of(used, [&](const Used& one) {
+      return table.columns[one.index][row] == table.columns[one.index][row - 1];
+    });
+    if (!same) return;  // stamps of several samples
+    kept[row] = false;
+    lines.push_back(row < table.lines.size() ? table.lines[row] : row + 1);
+  }
+  if (lines.empty() || 10 * lines.size() > table.rows()) return;
+  table.remarks.push_back(skipped_text(lines, "repeats the line before it"));
   table.keep(kept);
 }
 
@@ -320,6 +401,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
         table.rows() ? table.row_place(table.rows() - 1) : Place{table.file},
         fmt::format("{} of numbers; expected at least two", table.rows() ? "one row" : "no row"));
   if (columns.recognised) leave_out_dead(table, columns);
+  if (columns.recognised && columns.time) leave_out_repeated(table, used, columns.time->index);
 
   Record record;
   const Stamps stamps{&table, columns.time, &format};

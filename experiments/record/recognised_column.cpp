@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <regex>
 #include <set>
 #include <utility>
@@ -63,15 +64,19 @@ bool any_word(const std::vector<std::string>& words, const std::set<std::string>
 }
 
 const std::set<std::string> times{
-    "t",        "time",    "stamp",   "times",   "timestamp", "zeit",     "zeitstempel", "temps",   "tiempo",
-    "tempo",    "seconds", "secs",    "elapsed", "sekunden",  "secondes", "segundos",    "secondi", "date",
-    "datetime", "datum",   "fecha",   "uhrzeit", "epoch",     "unix",     "second",      "sec",     "sekunde",
-    "seconde",  "segundo", "secondo", "hora",    "heure",     "ora",      "tijd",        "tid",     "aika",
-    "czas",     "时间",    "時間",    "時刻",    "время",     "zeitpunkt"};
+    "t",       "time",      "stamp",    "times",   "timestamp", "zeit",     "zeitstempel", "temps",
+    "tiempo",  "tempo",     "seconds",  "secs",    "elapsed",   "sekunden", "secondes",    "segundos",
+    "secondi", "date",      "datetime", "datum",   "fecha",     "uhrzeit",  "epoch",       "unix",
+    "second",  "sec",       "sekunde",  "seconde", "segundo",   "secondo",  "hora",        "heure",
+    "ora",     "tijd",      "tid",      "aika",    "czas",      "时间",     "時間",        "時刻",
+    "время",   "zeitpunkt", "uptime",   "ts",      "ticks",     "laufzeit"};
 // Time, and its unit [s].
 const std::vector<std::pair<std::string_view, double>> clocks{
-    {"millis", 1e-3}, {"milliseconds", 1e-3}, {"msec", 1e-3},        {"micros", 1e-6}, {"microseconds", 1e-6},
-    {"usec", 1e-6},   {"nanos", 1e-9},        {"nanoseconds", 1e-9}, {"minutes", 60.0}};
+    {"millis", 1e-3},        {"milliseconds", 1e-3}, {"msec", 1e-3},          {"micros", 1e-6},
+    {"microseconds", 1e-6},  {"usec", 1e-6},         {"nanos", 1e-9},         {"nanoseconds", 1e-9},
+    {"minutes", 60.0},       {"nanosec", 1e-9},      {"millisekunden", 1e-3}, {"mikrosekunden", 1e-6},
+    {"millisecondes", 1e-3}, {"millisecondi", 1e-3}, {"milisegundos", 1e-3},  {"milissegundos", 1e-3},
+    {"hours", 3600.0},       {"stunden", 3600.0},    {"minuten", 60.0},       {"days", 86400.0}};
 const std::set<std::string> counts{"sample",      "samples",  "index",   "idx",           "n",
                                    "nr",          "no",       "packet",  "packetcounter", "seq",
                                    "sequence",    "counter",  "count",   "row",           "id",
@@ -79,20 +84,25 @@ const std::set<std::string> counts{"sample",      "samples",  "index",   "idx", 
                                    "echantillon", "campione", "amostra", "nummer",        "number",
                                    "point"};
 const std::set<std::string> no_motion{
-    "euler",      "roll",    "pitch",        "yaw",      "gyr",        "gyro",     "gyroscope",
-    "mag",        "magnet",  "magnetometer", "quat",     "quaternion", "temp",     "temperature",
-    "temperatur", "heading", "azimuth",      "battery",  "pressure",   "humidity", "status",
-    "light",      "sound",   "altitude",     "latitude", "longitude",  "gps",      "proximity",
-    "druck",      "feuchte", "helligkeit",   "current",  "rpm"};
-// Of what a sensor of motion may put out.
-const std::set<std::string> readings{"V", "mV", "uV", "LSB", "counts"};
+    "euler",    "roll",         "pitch",    "yaw",        "gyr",    "gyro",        "gyroscope",  "mag",
+    "magnet",   "magnetometer", "quat",     "quaternion", "temp",   "temperature", "temperatur", "heading",
+    "azimuth",  "battery",      "pressure", "humidity",   "status", "light",       "sound",      "altitude",
+    "latitude", "longitude",    "gps",      "proximity",  "druck",  "feuchte",     "helligkeit", "current",
+    "rpm",      "weight",       "gewicht",  "batt",       "vbat",   "vbatt",       "ptemp",      "utc",
+    "gmt",      "rotation",     "moment",   "torque"};
+// Of these not even with a quantity behind them: "angular_velocity".
+const std::set<std::string> no_motion_at_all{"angular", "orientation", "gyro",    "gyroscope",
+                                             "euler",   "quaternion",  "battery", "rotation"};
+const std::set<std::string> readings{"V", "mV", "uV", "LSB", "counts"};  // of a sensor of motion
 // These, and units of what is no motion.
-const std::set<std::string> other_units{"lux", "lx",   "dB",  "dBA", "%",    "°C", "degC", "C",
-                                        "K",   "hPa",  "Pa",  "V",   "mV",   "uV", "LSB",  "counts",
-                                        "kPa", "mbar", "bar", "rpm", "RPM",  "µT", "uT",   "T",
-                                        "A",   "mA",   "Hz",  "W",   "km/h", "°",  "deg",  "lumen"};
+const std::set<std::string> other_units{"lux", "lx",    "dB",  "dBA", "%",     "°C",  "degC",   "C",   "K",
+                                        "hPa", "Pa",    "V",   "mV",  "uV",    "LSB", "counts", "kPa", "mbar",
+                                        "bar", "rpm",   "RPM", "µT",  "uT",    "T",   "A",      "mA",  "Hz",
+                                        "W",   "km/h",  "°",   "deg", "lumen", "dps", "dBm",    "bpm", "MPa",
+                                        "GPa", "N/mm2", "Nm",  "kNm", "Ohm",   "kV",  "kHz"};
 
 std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::string_view name) {
+  const bool compass = words.size() == 2 && words[0].size() == 1 && words[1].size() == 1;  // "U-D"
   const bool base = any_word(words, {"base", "ground", "table", "boden", "sol", "suelo", "suolo"});
   for (const std::string& word : words) {
     static const std::set<std::string> axes{"a",   "ax",  "ay",   "az",   "gfx",
@@ -102,8 +112,9 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::
       return base ? Quantity::base_acceleration : Quantity::acceleration;
     if (begins(word, {"vel", "geschw", "vitesse", "veloc"}) || (word == "v" && name.find('V') == name.npos))
       return Quantity::velocity;
-    if (begins(word, {"disp", "depla", "despl", "spost", "desloc", "ausl", "verschieb", "position"}) ||
-        word == "weg" || word == "u")
+    if (begins(word,
+               {"disp", "depla", "despl", "spost", "desloc", "ausl", "verschieb", "position", "defl"}) ||
+        word == "weg" || (word == "u" && !compass))
       return Quantity::displacement;
     if (begins(word, {"force", "kraft", "fuerza", "forza", "forca", "load", "hammer"}) || word == "f")
       return Quantity::force;
@@ -114,7 +125,7 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::
 
 // A name and the unit that stands in or behind it.
 std::pair<std::string, std::string> parted(std::string_view name) {
-  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}, std::pair{'<', '>'}}) {
     const std::size_t from = name.rfind(open), to = name.rfind(close);
     if (from != std::string_view::npos && to != std::string_view::npos && to > from)
       return {std::string(name.substr(0, from)) + std::string(name.substr(to + 1)),
@@ -125,8 +136,9 @@ std::pair<std::string, std::string> parted(std::string_view name) {
     std::string_view unit = name.substr(at + 1);
     unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
     const bool slash_of_unit = name[at] == '/' && stated_unit(name.substr(name.find_last_of(",_ ", at) + 1));
-    if (!unit.empty() && !slash_of_unit && stated_unit(unit))
-      return {std::string(name.substr(0, at)), std::string(unit)};
+    const bool known =
+        stated_unit(unit) || unit == "ns" || unit == "dps" || unit == "uT" || unit == "MS" || unit == "mS";
+    if (!unit.empty() && !slash_of_unit && known) return {std::string(name.substr(0, at)), std::string(unit)};
   }
   return {std::string(name), ""};
 }
@@ -137,6 +149,7 @@ std::optional<double> seconds_per_unit(std::string_view unit) {
       {"ns", 1e-9}, {"min", 60.0}, {"h", 3600.0}, {"µs", 1e-6}, {"μs", 1e-6}};
   for (const auto& [symbol, seconds] : more)
     if (unit == symbol) return seconds;
+  if (unit == "mS" || unit == "MS") return 1e-3;
   const auto stated = stated_unit(unit);
   return stated && !stated->quantity ? std::optional(stated->factor) : std::nullopt;
 }
@@ -144,6 +157,9 @@ std::optional<double> seconds_per_unit(std::string_view unit) {
 // mg and counts beside what stated_unit() knows.
 std::optional<StatedUnit> unit_of(const std::string& unit) {
   if (unit == "mg") return StatedUnit{Quantity::acceleration, 1e-3 * standard_gravity};
+  if (unit == "ug" || unit == "µg") return StatedUnit{Quantity::acceleration, 1e-6 * standard_gravity};
+  if (unit == "gal" || unit == "Gal") return StatedUnit{Quantity::acceleration, 1e-2};
+  if (unit == "m·s⁻²" || unit == "m s⁻²" || unit == "m·s-2") return StatedUnit{Quantity::acceleration, 1.0};
   if (unit == "G") return StatedUnit{Quantity::acceleration, standard_gravity};
   if (unit == "microstrain" || unit == "µε" || unit == "με" || unit == "ue")
     return StatedUnit{Quantity::strain, 1e-6};
@@ -184,8 +200,9 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
   };
   for (const auto& [word, seconds] : clocks)
     if (any_word(words, {std::string(word)})) return is_time(seconds);
-  if (const auto seconds = seconds_per_unit(stated); seconds && words.empty())
-    return is_time(seconds);  // "[s]"
+  if (const auto seconds = seconds_per_unit(stated);
+      seconds && (words.empty() || (words.size() == 1 && words[0] == "in")))
+    return is_time(seconds);  // "[s]", "in s"
   if (const auto seconds = seconds_per_unit(trimmed(name)); seconds && stated.empty())
     return is_time(seconds);
   if (any_word(words, times) && any_word(words_of(stated), counts))
@@ -197,9 +214,17 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
     return is_time(seconds);
   if (any_word(words, times) && !unit_of(stated))
     if (const auto seconds = convertible_unit(stated, {})) return is_time(seconds);  // "Time [hr]"
-  const auto quantity = quantity_of(words, plain);
-  if (!quantity && any_word(words, no_motion)) return RecognisedColumn{Kind::other};
-  if (!quantity && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts))
+  if (any_word(words, no_motion_at_all)) return RecognisedColumn{Kind::other};
+  auto quantity = quantity_of(words, plain);
+  const bool volts = readings.contains(stated) || stated == "kV";
+  if (volts && quantity == Quantity::displacement && words.front() == "u") quantity.reset();  // a voltage
+  static const std::set<std::string> frequencies{"freq",       "frequency", "frequenz",
+                                                 "frecuencia", "frequenza", "frequencia"};
+  if (!quantity && any_word(words, frequencies)) return RecognisedColumn{Kind::frequency};
+  if (!quantity && (any_word(words, no_motion) || seconds_per_unit(stated)))
+    return RecognisedColumn{Kind::other};
+  if (!quantity && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts) &&
+      (words.size() == 1 || words.front().size() > 1))
     return RecognisedColumn{Kind::count};
   const auto known = unit_of(stated);
   if (!quantity && !stated.empty() &&
@@ -252,24 +277,25 @@ SamplingName sampling_name(std::string_view name) {
                                            "samplingfreq",
                                            "sampfreq",
                                            "fshz",
-                                           "rate"},
-      intervals{"dt",
-                "ts",
-                "deltat",
-                "deltax",
-                "tinterval",
-                "increment",
-                "xincrement",
-                "xinc",
-                "tinc",
-                "wfincrement",
-                "timestep",
-                "timeincrement",
-                "samplinginterval",
-                "samplingintervals",
-                "sampleinterval",
-                "sampleperiod",
-                "samplingperiod"};
+                                           "rate"};
+  static const std::set<std::string> intervals{"dt",
+                                               "ts",
+                                               "deltat",
+                                               "deltax",
+                                               "tinterval",
+                                               "increment",
+                                               "hresolution",
+                                               "xincrement",
+                                               "xinc",
+                                               "tinc",
+                                               "wfincrement",
+                                               "timestep",
+                                               "timeincrement",
+                                               "samplinginterval",
+                                               "samplingintervals",
+                                               "sampleinterval",
+                                               "sampleperiod",
+                                               "samplingperiod"};
   std::string letters;
   for (const char c : name)
     if (std::isalnum(static_cast<unsigned char>(c)))
@@ -299,8 +325,12 @@ std::optional<double> interval_in_cells(std::string_view text, char decimal) {
     };
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (k + 1 < cells.size() && names_interval(cells[k]))
-        if (const auto number = positive(cells[k + 1]))
-          return *number * (k + 2 < cells.size() ? seconds_per_unit(cells[k + 2]).value_or(1.0) : 1.0);
+        if (const auto number = positive(cells[k + 1])) {
+          const std::string_view behind = k + 2 < cells.size() ? cells[k + 2] : "";
+          const auto seconds = seconds_per_unit(behind);
+          if (!seconds && (stated_unit(behind) || other_units.contains(std::string(behind)))) continue;
+          return *number * seconds.value_or(1.0);
+        }
       if (k < above.size() && names_interval(above[k]))
         if (const auto number = positive(cells[k])) return number;
     }
@@ -308,41 +338,113 @@ std::optional<double> interval_in_cells(std::string_view text, char decimal) {
   return {};
 }
 
+// "400", "0,4", "1.2e3"; absent where its sign may part thousands: "1,200", and "1.200", for few records
+// have 1.2 Hz.
+std::optional<double> stated_number(std::string text, char decimal) {
+  const std::size_t sign = text.find_first_of(".,");
+  if (sign == text.npos) return parse_number(text).value;
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", sign + 1), text.size());
+  if (end < text.size() && text[end] != 'e') return {};
+  const bool thousands = end - sign == 4 && sign > 0 && sign <= 3 && text[0] != '0',
+             strange = text[sign] != decimal;
+  text[sign] = '.';
+  const ParsedNumber number = parse_number(text);
+  constexpr double slow = 10.0;
+  if (!number.finite || (thousands && (number.value < slow || (strange && decimal == ',')))) return {};
+  return thousands && strange ? std::nullopt : std::optional(number.value);
+}
+
+// What stands behind a word for a rate or an interval: signs, a number, a unit before or behind it.
+struct Statement {
+  double value = 0.0;
+  std::string unit;          // small letters
+  bool other_thing = false;  // directly behind the number
+};
+
+std::optional<Statement> statement_behind(std::string_view rest, char decimal) {
+  static const std::regex form(
+      "^([^0-9]{0,24}?)([0-9][0-9.,]*(?:e[-+]?[0-9]+)?|[.][0-9]+)(?![0-9:])\"?(\\s*)([,;\t]?\\s*\"?)([a-"
+      "z\xc2\xb5\xce\xbc/]*)");
+  std::match_results<std::string_view::const_iterator> match;
+  if (!std::regex_search(rest.begin(), rest.end(), match, form)) return {};
+  std::string digits = match[2];
+  if (match[1].str().find(',') != std::string::npos)
+    digits.resize(std::min(digits.find(','), digits.size()));  // cells
+  while (digits.ends_with('.') || digits.ends_with(',')) digits.pop_back();
+  const auto value = stated_number(digits, decimal);
+  if (!value || !(*value > 0.0)) return {};
+  static const std::regex before("(?:^|[^a-z])(k?hz|[mun]?s|\xc2\xb5s|\xce\xbcs|sec|seconds)(?![a-z])");
+  const std::string between = match[1];
+  if (std::smatch unit; std::regex_search(between, unit, before)) return Statement{*value, unit[1], false};
+  const bool apart = match[4].length() > 0 || digits.size() < static_cast<std::size_t>(match[2].length());
+  return Statement{*value, match[5], !apart};
+}
+
+std::optional<double> samples_per_second(const std::string& unit) {
+  static const std::set<std::string> ones{
+      "hz", "hertz", "sps", "s/s", "sa/s", "samples/s", "samples/sec", "samples/second", "scans/s", "fps"},
+      thousands{"khz", "ks/s", "ksps", "ksa/s"};
+  return ones.contains(unit)        ? std::optional(1.0)
+         : thousands.contains(unit) ? std::optional(1e3)
+                                    : std::nullopt;
+}
+
+// Of one line, the rate that a word for one states, or for an interval.
+std::optional<double> rate_of_line(const std::string& line, char decimal) {
+  static const std::regex sure(
+      R"(\b(sampl\w*[ _-]*(?:rate|freq\w*)|samples per second|abtast(?:rate|frequenz)|messrate|odr|fps|fs|)"
+      R"(fre[cq]uen\w* (?:d'echantillonnage|de muestreo|di campionamento|de amostragem))(?![a-z]))"),
+      with_unit(
+          R"((?:\b(?:scan|acquisition|logging|recording|output data|data)[ _-]*rate|^\W*rate|\bsampling)\b)"),
+      period(R"(\b(dt|delta[ _]?t|[tx]inc(?:r|rement)?|hresolution|sampl\w*[ _-]*(?:interval|period)|)"
+             R"(abtast(?:intervall|zeit)|time[ _]?step|equal intervals of)(?![a-z]))"),
+      alone(R"(\b([0-9]+(?:\.[0-9]+)?) ?sps\b)"),
+      of_another(
+          R"(\b(gps|update|trigger|sweep|max\w*|min|minimum|total|aggregate|adc|internal|refresh|display|)"
+          R"(video|screen|filter|baud|frame|bit|over)[ _-]*(?:[a-z]+[ _-]+)?$)");
+  constexpr double slowest = 1.0, longest_bare = 0.5;  // [Hz], [s]
+  std::smatch match;
+  if (std::regex_search(line, match, alone)) return std::stod(match[1]);
+  for (const std::regex* const word : {&sure, &with_unit, &period}) {
+    if (!std::regex_search(line, match, *word) || std::regex_search(match.prefix().str(), of_another))
+      continue;
+    const std::string rest = match.suffix();
+    const auto stated = statement_behind(rest, decimal);
+    if (!stated) continue;
+    if (word == &period) {
+      const auto seconds = seconds_per_unit(stated->unit);
+      if (!seconds && (stated->other_thing ? !stated->unit.empty() : false)) continue;
+      if (!seconds && stated->value > longest_bare) continue;
+      const double rate = 1.0 / (stated->value * seconds.value_or(1.0));
+      if (rate > slowest) return rate;
+      continue;
+    }
+    const auto unit = samples_per_second(stated->unit);
+    if (!unit && (word == &with_unit || (stated->other_thing && !stated->unit.empty()))) continue;
+    if (const double rate = stated->value * unit.value_or(1.0); rate > slowest) return rate;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<double> stated_rate(std::string_view lines, char decimal) {
-  static const std::string number = R"(([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)(?![0-9.,~]*[0-9]))";
-  static const std::regex rate(
-      R"((?:sampl\w*[ _-]*(?:rate|freq\w*)|abtastrate|abtastfrequenz|messrate|data_rate|\bfs\b|\brate\b)[^0-9.\n]{0,20})" +
-          number + R"([\s,;]*(k?)hz)",
-      std::regex::icase),
-      bare(
-          R"((?:\bfs\b|sampl\w*[ _-]*(?:rate|freq\w*))\s*(?:[\[(]\s*(k?)hz\s*[\])]\s*)?[:=,;\t]\s*)" + number,
-          std::regex::icase),
-      interval(R"((?:\bdt\b|delta[ _]?t|sampl\w*[ _-]*(?:interval|period)|time[ _]?step)([^0-9.\n]{0,12}))" +
-                   number + R"(\s*(ns|us|µs|ms|sec|s)?(?![a-zµ]))",
-               std::regex::icase);
-  std::string text(lines);
-  if (decimal == ',') {  // a point parts thousands
-    std::replace(text.begin(), text.end(), '.', '~');
-    std::replace(text.begin(), text.end(), ',', '.');
+  static const std::regex fewer(R"(\b(?:decim\w*|downsampl\w*|averag\w*)[^0-9\n]{0,20}([0-9]+))");
+  const std::string text = folded(lines);
+  if (std::smatch match; std::regex_search(text, match, fewer) && std::stod(match[1]) > 1.0) return {};
+  std::optional<double> found;
+  for (std::string_view rest = text; !rest.empty();) {
+    constexpr std::size_t longest = 400;
+    const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    const auto rate = rate_of_line(std::string(line.substr(0, longest)), decimal);
+    constexpr double tolerated = 0.02;
+    if (rate && found && std::abs(*rate / *found - 1.0) > tolerated) return {};  // which of them
+    if (rate && !found) found = rate;
   }
-  std::smatch match;
-  double found = 0.0;
-  if (std::regex_search(text, match, rate))
-    found = std::stod(match[1]) * (match[2].length() > 0 ? 1e3 : 1.0);
-  else if (std::regex_search(text, match, bare))
-    found = std::stod(match[2]) * (match[1].length() > 0 ? 1e3 : 1.0);
-  else if (std::regex_search(text, match, interval) && std::stod(match[2]) > 0.0) {
-    const std::string before = match[1], behind = match[3];
-    double unit = seconds_per_unit(behind).value_or(1.0);
-    for (const char* const symbol : {"ms", "us", "µs", "ns"})
-      if (behind.empty() && before.find(symbol) != before.npos) unit = *seconds_per_unit(symbol);
-    found = 1.0 / (std::stod(match[2]) * unit);
-  } else if (const auto in_cells = interval_in_cells(lines, decimal)) {
-    found = 1.0 / *in_cells;
-  }
-  return found > 0.0 ? std::optional(found) : std::nullopt;
+  if (found) return found;
+  const auto interval = interval_in_cells(lines, decimal);
+  return interval && *interval < 1.0 ? std::optional(1.0 / *interval) : std::nullopt;
 }
 
 }  // namespace beamid::experiments

@@ -12,10 +12,11 @@ namespace beamid::experiments {
 
 struct RecognisedColumn {
   enum class Kind {
-    time,    ///< stamps; `factor` to seconds
-    count,   ///< of samples or packets: no time
-    signal,  ///< a channel of motion or force
-    other    ///< an orientation, a rate of turn, a temperature: no channel
+    time,       ///< stamps; `factor` to seconds
+    count,      ///< of samples or packets: no time
+    frequency,  ///< the first of a spectrum
+    signal,     ///< a channel of motion or force
+    other       ///< an orientation, a rate of turn, a temperature: no channel
   };
   Kind kind = Kind::signal;
   Quantity quantity = Quantity::acceleration;
@@ -45,7 +46,9 @@ SamplingName sampling_name(std::string_view name);
 
 /// The rate that lines of text state [Hz]: "Sample rate: 400 Hz", "fs = 400", "dt = 0.0025",
 /// "Sampling interval (s): 0.0025"; or a cell "Increment", "XInc", "Sample Interval", "dt:" and a number in
-/// the next cell or below it.
+/// the next cell or below it. Words for it are of the six languages; a number with another unit ("fs = 10
+/// V"), of another thing ("GPS rate", "trigger rate", "total sampling rate"), or of 1 Hz or less is none.
+/// Absent also where two lines contradict each other, or samples were decimated.
 /// @param decimal sign of the file's numbers
 std::optional<double> stated_rate(std::string_view lines, char decimal = '.');
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "experiments/record/record.hpp"
@@ -26,6 +27,23 @@ struct RecordColumns {
 /// What a column's name says ("acceleration_g"), or the unit that the file gives it.
 /// @throws InputError at the header where they contradict each other.
 std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index);
+
+/// Empty where the file gives none.
+std::string column_name_of(const RecordTable& table, std::size_t index);
+
+/// Where the configuration states what no file does, for messages.
+inline constexpr const char* in_configuration = "record.channels in the configuration";
+
+// Columns of a file that nobody described (columns_of_header.cpp).
+
+/// Times and channels by the names of the columns, or without any by their numbers; what was recognised is a
+/// remark.
+/// @param stamped whether times are stated elsewhere
+/// @throws InputError at the header, with the one question that is left
+RecordColumns columns_of_header(RecordTable& table, bool stamped);
+
+/// Times alone, where channels are stated. @throws InputError likewise.
+void find_times(RecordTable& table, RecordColumns& columns);
 
 /// The column that a description names. @throws InputError at the header or the first row.
 std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted);

@@ -18,7 +18,8 @@
 namespace beamid::experiments {
 namespace {
 
-constexpr const char* too_coarse = " (times printed this coarsely need record.sampling_rate_hz)";
+constexpr const char* too_coarse =
+    " (times printed this coarsely need the sampling rate: --rate HZ, or record.sampling_rate_hz)";
 
 }  // namespace
 
@@ -59,9 +60,12 @@ std::optional<SamplingFault> find_order_fault(const std::vector<double>& times) 
   std::size_t i = 1;
   while (i < times.size() && later(i)) ++i;
   if (i >= times.size()) return std::nullopt;
+  constexpr std::size_t many = 8;
   std::size_t equal = 0;
   for (std::size_t j = 1; j < times.size(); ++j) equal += times[j] == times[j - 1] ? 1 : 0;
-  const bool coarse = 2 * equal > times.size();  // the seconds of a clock, printed without their decimals
+  const bool coarse =
+      2 * equal > times.size() ||
+      (equal > many && 8 * equal > times.size());  // the seconds of a clock, printed without their decimals
   return SamplingFault{i, fmt::format("time {} after {}; expected increasing times{}", times[i], times[i - 1],
                                       coarse ? too_coarse : "")};
 }

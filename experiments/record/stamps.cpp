@@ -109,15 +109,18 @@ std::optional<double> take_time_of_day(StampText& text, bool dated, int& decimal
   };
   std::size_t digits = 0;
   const int first = ahead.number(2);
-  if (first < 0 || !ahead.take(':')) return {};
+  const char sign = first < 0 ? '\0' : ahead.take_any(dated ? ":." : ":");
+  if (sign == '\0') return {};
   const int second = ahead.number(2, &digits);
   if (second < 0 || digits != 2) return {};
   double seconds = 0.0;
-  if (ahead.take(':')) {
+  if (ahead.take(sign)) {
     const int third = ahead.number(2, &digits);
     if (third < 0 || digits != 2 || first > 24 || second > 59 || third > 60) return {};
     seconds = an_hour * first + 60.0 * second + third;
-    if (ahead.take_any(".,:") != '\0') seconds += fraction();
+    const char point = ahead.take_any(".,:");
+    if (point != '\0') seconds += fraction();
+    if (point == ':' && decimals == 2) return {};  // hundredths, or frames of a film
   } else if (!dated && ahead.take_any(".,") != '\0' && second < 60) {
     seconds = 60.0 * first + second + fraction();
   } else {
@@ -141,11 +144,26 @@ std::optional<double> take_time_of_day(StampText& text, bool dated, int& decimal
 /// Of "+01:00" or "-0530" [s]; 0 without one.
 double take_offset(StampText& text) {
   if (text.take('Z')) return 0.0;
+  if (text.rest.starts_with(" +") || text.rest.starts_with(" -")) text.take(' ');
   const char sign = text.take_any("+-");
   if (sign == '\0') return 0.0;
   const int hours = text.number(2);
   text.take(':');
   return (sign == '-' ? -1.0 : 1.0) * (an_hour * std::max(0, hours) + 60.0 * std::max(0, text.number(2)));
+}
+
+/// "20261126T100000.000Z" with its signs.
+std::string with_signs(std::string_view text) {
+  const auto digits = [&](std::size_t from, std::size_t count) {
+    return text.size() >= from + count &&
+           text.substr(from, count).find_first_not_of("0123456789") == text.npos;
+  };
+  if (text.size() < 15 || text[8] != 'T' || !digits(0, 8) || !digits(9, 6)) return std::string(text);
+  const auto part = [&](std::size_t from, std::size_t count) {
+    return std::string(text.substr(from, count));
+  };
+  return part(0, 4) + '-' + part(4, 2) + '-' + part(6, 2) + 'T' + part(9, 2) + ':' + part(11, 2) + ':' +
+         std::string(text.substr(13));
 }
 
 /// "0.0025 sec", "2.5 ms": a duration as MATLAB prints one. Its decimals are those of the seconds.
@@ -167,13 +185,16 @@ std::optional<Stamp> elapsed(std::string_view text) {
 std::optional<Stamp> parse_stamp(std::string_view field) {
   StampText text{trimmed(field)};
   if (const auto duration = elapsed(text.rest)) return duration;
+  if (text.rest.starts_with("0 days ")) text.rest.remove_prefix(7);  // of pandas
+  std::string spelled;
+  if (text.rest.size() > 8 && text.rest[8] == 'T') text.rest = spelled = with_signs(text.rest);
   if (text.rest.size() < 6 || !text.at_digit()) return {};  // "1:23.4"
   Stamp stamp;
   const auto days = take_date(text);
   if (days) {
     stamp.seconds = *days * a_day;
     if (text.rest.empty()) return stamp;
-    if (text.take_any("T ,_") == '\0') return {};
+    if (text.take_any("T ,_-") == '\0') return {};
     text.take(' ');
   }
   const auto of_day = take_time_of_day(text, days.has_value(), stamp.decimals);
@@ -181,7 +202,9 @@ std::optional<Stamp> parse_stamp(std::string_view field) {
   stamp.kind = days ? Stamp::Kind::date_and_time : Stamp::Kind::time_of_day;
   stamp.seconds += *of_day;
   if (days) stamp.seconds -= take_offset(text);
-  if (days && text.take(' ') && (text.rest == "UTC" || text.rest == "GMT")) text.rest = {};
+  const bool zone = text.rest.size() >= 4 && text.rest.size() <= 5 && text.rest.front() == ' ' &&
+                    std::ranges::all_of(text.rest.substr(1), [](char c) { return c >= 'A' && c <= 'Z'; });
+  if (days && zone) text.rest = {};  // "UTC", "CET", "CEST": one offset throughout
   return text.rest.empty() ? std::optional(stamp) : std::nullopt;
 }
 
@@ -209,10 +232,14 @@ double seconds_of_epoch(const std::vector<double>& stamps) {
   constexpr double a_day = 86400.0, fastest = 5e-6, longest = 30.0;
   if (stamps.empty()) return 1.0;
   const double first = stamps.front(), step = stamps.size() > 1 ? stamps[1] - first : 1.0;
-  const bool date = (first > 3e4 && first < 7e4) || (first > 6.9e5 && first < 8e5);
+  const bool date = (first > 3e4 && first < 7e4) || (first > 6.9e5 && first < 8e5) ||
+                    (first > 2.4e6 && first < 2.5e6);  // of a workbook, of MATLAB, of Julius
   if (date && step > 0.0 && step < fastest && stamps.back() - first < longest) return a_day;
+  if ((first > 6.2e17 && first < 6.8e17) || (first > 1.2e17 && first < 1.5e17))
+    return 1e-7;                                    // since 1 and 1601
+  constexpr double earliest = 9.4e8, latest = 4e9;  // 1999, 2096
   for (const double unit : {1e-9, 1e-6, 1e-3})
-    if (first * unit > 3e8 && first * unit < 4e9) return unit;
+    if (first * unit > earliest && first * unit < latest) return unit;
   return 1.0;
 }
 

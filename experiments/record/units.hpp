@@ -72,7 +72,7 @@ struct StatedUnit {
 /// Nothing for a spelling that does not tell a quantity of a record, such as "V" or "deg".
 std::optional<StatedUnit> stated_unit(std::string_view spelling);
 
-// Units of the world beside those above (convertible_unit.cpp).
+// Units of the world beside those above.
 
 /// What a value in a unit of any spelling is multiplied by to be in the SI unit of a quantity, by UDUNITS-2
 /// [udunits]: "in/s^2", "cm s-2", "gal", "lbf", "km/h", "hr". To be used only where the table has no such

@@ -27,7 +27,7 @@ const std::vector<ObjectionKind>& objection_kinds() {
       {"moved_mass", any, "share of the mass that the base moves, 0.95",
        "The reduced model lacks modes that a moving base excites."},
       {"not_determined", any, "standard deviation over the prior one, 0.7",
-       "The record shows almost no effect of a parameter; the value is the prior's."},
+       "The record determines a parameter no better than it was known beforehand."},
       {"not_settled", any, "last move of an unknown, 5 of its standard deviations",
        "The passes have not converged."},
       {"not_unique", any, "difference of -2 log posterior, 6",

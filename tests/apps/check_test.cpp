@@ -1,5 +1,9 @@
 // beamid check, end to end: what a user gets.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <complex>
+#include <numbers>
 
 #include "tests/apps/run_command.hpp"
 
@@ -68,8 +72,8 @@ TEST_F(Check, RefusesWhatMakesNoSense) {
            {"check a.csv b.csv c.csv --config cantilever.toml cantilever.toml",
             "beamid: check: 3 records for 2 --config files; expected one for each, or one file for all"},
            {"check --config cantilever.toml --method frf_lscf",
-            "beamid: check: --method frf_lscf needs a measured force; expected one of motion alone, era or "
-            "ssi_cov"}}) {
+            "beamid: check: --method frf_lscf needs hits with a measured force; expected era, ssi_cov or "
+            "output_error"}}) {
     const Outcome outcome = place_.run(words);
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.first_error_line(), message);
@@ -101,6 +105,49 @@ TEST(CheckOfMeasuredRecords, FindsNoSingleCauseForFourTipMasses) {
       EXPECT_EQ(change["estimate"].get<double>(), 0);
     }
   }
+}
+
+// A storey of 3 Hz and 1 % under a base that moves most at 1.7 Hz, where the largest motion is. Oracle: its
+// exact response to a sum of sines.
+class UnderAMovingBase : public testing::Test {
+ protected:
+  UnderAMovingBase() {
+    constexpr double pi = std::numbers::pi, natural = 2.0 * pi * 3.0, ratio = 0.01;
+    std::string record = "time_s,base_acceleration_m_per_s2,acceleration_m_per_s2\n";
+    for (int k = 0; k < 6000; ++k) {
+      double base = 0.0, storey = 0.0;
+      for (int line = 1; line < 400; ++line) {
+        const double hz = 0.0251 * line, omega = 2.0 * pi * hz, size = std::abs(hz - 1.7) < 0.03 ? 4.0 : 0.1;
+        const std::complex<double> i(0.0, 1.0),
+            spring = natural * natural + 2.0 * i * ratio * natural * omega,
+            wave = size * std::exp(i * (omega * 0.01 * k + 1.3 * line * line));
+        base += wave.real();
+        storey += (spring / (spring - omega * omega) * wave).real();
+      }
+      record += fmt::format("{:.2f},{:.8g},{:.8g}\n", 0.01 * k, base, storey);
+    }
+    place_.write("shaken.csv", record);
+    place_.write("storey.toml",
+                 fmt::format("[chain]\nmasses_kg = [10]\nstiffnesses_n_per_m = [{:.9g}]\nheights_m = [3]\n"
+                             "[record]\nfile = \"shaken.csv\"\n",
+                             10.0 * natural * natural));
+  }
+  Workplace place_;
+};
+
+TEST_F(UnderAMovingBase, CheckTakesTheModesOfTheResponseToIt) {
+  const Outcome outcome = place_.run("check --config storey.toml --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found["status"], "agrees");
+  ASSERT_EQ(found["modes"].size(), 1u) << found["modes"];
+  EXPECT_NEAR(found["modes"][0]["identified_hz"].get<double>(), 3.0, 3e-3);
+}
+
+TEST_F(UnderAMovingBase, TrackRefusesMotionThatTheBaseMakes) {
+  const Outcome outcome = place_.run("track --config storey.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.first_error_line(), HasSubstr("an input is measured that drives the motion"));
 }
 
 }  // namespace

@@ -251,8 +251,20 @@ bool judge_faults(ComparedRun& run) {
   };
   std::string named;
   std::size_t count = 0;
+  bool moves = false;
   for (const DescriptionFault& fault : run.faults)
-    if (fault.explained > mostly && count < most_named) named += (count++ == 0 ? "" : "; or ") + share(fault);
+    if (fault.explained > mostly && count < most_named) {
+      named += (count++ == 0 ? "" : "; or ") + share(fault);
+      moves = moves || std::isinf(fault.score) || farthest(fault).first > quantile_95;
+    }
+  constexpr double slight = 3.0;  // % of the motion
+  if (count > 0 && !moves && run.misfit_percent < slight) {
+    run.objections.emplace_back("description",
+                                "One thing described otherwise explains the residual: " + named +
+                                    ". Allowed for, it moves no estimate out of its interval.",
+                                run.faults.front().explained, mostly);
+    return true;
+  }
   if (count == 0 && run.status == ComparedRun::Status::converged)
     for (const DescriptionFault& fault : run.faults) {
       const auto [moved, unknown] = farthest(fault);

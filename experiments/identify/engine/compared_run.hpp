@@ -8,6 +8,7 @@
 #include "experiments/identify/engine/analysis.hpp"
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/engine/first_guess.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
 
@@ -55,6 +56,7 @@ struct RunContext {
   const Experiment& experiment;
   const ComparedRecord& compared;
   const RecordAnalysis& analysis;
+  Progress progress = unwatched;
 };
 
 /// Filters the record as often as the settings say, then reproduces it and works out the Cramer-Rao bound.

@@ -166,6 +166,7 @@ void look_for_faults(const RunContext& context, const ReducedBeam& made, const C
   if (!context.analysis.forced() || !run.answers() || !made.started || !run.model ||
       !context.compared.clocks.empty() || has_noise(run.settings.input_noise))
     return;
+  context.progress("what may be described wrongly");
   const filters::Gaussian known =
       known_about_start(*made.started, *made.setting, measurements(context.analysis.record).outputs);
   run.faults = description_faults(context.experiment, context.analysis.record, reduction, folder, *run.model,
@@ -256,7 +257,9 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
     comparison.compared.notes.push_back("For the modal analysis and first estimates: " +
                                         analysis.even.remark);
   comparison.objections = analysis.objections;
-  const RunContext context{experiment, comparison.compared, analysis};
+  const bool one_run =
+      experiment.reductions.size() * experiment.filters.size() * experiment.discretisations.size() == 1;
+  const RunContext context{experiment, comparison.compared, analysis, one_run ? progress : unwatched};
   Countdown countdown(
       progress, experiment.reductions.size() * experiment.filters.size() * experiment.discretisations.size(),
       "runs");

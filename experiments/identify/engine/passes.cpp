@@ -193,6 +193,7 @@ void Passes::begin_at(const VectorXd& state) {
 }
 
 bool Passes::filter_once() {
+  context_.progress(fmt::format("pass {} of the filter over {} samples", ++begun_, record_.size()));
   const JointModel& model = *run_.model;
   run_.settings.initial = next_;
   run_.noise = assumed_noise(known_, noise_shown());

@@ -100,6 +100,7 @@ class Passes {
   void score(const Eigen::VectorXd& bound);
 
   const RunContext& context_;
+  int begun_ = 0;  // passes
   const ModelSetting& setting_;
   const StartedModel& started_;
   const RunSettings& settings_;

@@ -126,6 +126,7 @@ void Passes::mend_by_output_error() {
   // A filter, linearised from sample to sample, is surer of a storey's law than the record allows.
   const bool laws = has_storey_laws(*run_.model);
   if (has_noise(run_.settings.input_noise) || run_.run.last.covariance.size() == 0) return;
+  context_.progress(fmt::format("all {} samples at once", record_.size()));
   const bool driven = is_linear_and_driven(), free = is_free_mode(), asked = driven || free;
   const double apart = free ? 0.25 : 0.5;  // of a deviation
   const bool astray =

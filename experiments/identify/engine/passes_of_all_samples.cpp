@@ -39,6 +39,7 @@ void Passes::look_for_input_noise() {
   if (run_.diagnostics && run_.diagnostics->consistency &&
       run_.diagnostics->consistency->whiteness_p_value > not_white)
     return;
+  context_.progress("noise of the inputs");
   IdentificationSettings noisy = run_.settings;
   noisy.discretisation = finest_discretisation(*run_.model, dt_);
   run_.likeliest_input_noise =

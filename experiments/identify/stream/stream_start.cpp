@@ -20,7 +20,7 @@ void require_free_motion(const Record& earlier) {
   const std::vector<Index> forces = input_channels(earlier);
   if (!forces.empty())
     throw std::invalid_argument(
-        fmt::format("a stream takes free motion; found the measured force '{}', of which a band-limited path "
+        fmt::format("a stream takes free motion; found the measured input '{}', of which a band-limited path "
                     "needs the samples to come. Omit its channel, or identify a record",
                     earlier.channels[static_cast<std::size_t>(forces.front())].name));
 }

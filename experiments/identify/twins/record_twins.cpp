@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -92,19 +93,21 @@ class RecordFit {
     }
   }
 
-  /// Whether the lines of a driven record alone decide against a set, or lead it to the estimate, in a
-  /// hundredth of the time that all samples take: of a record with more than its noise left they do, where a
-  /// search of a clean one would have to be finer than their slopes are.
-  bool is_ruled_out(const VectorXd& unknowns) const {
+  /// Where the lines of a driven record with more than its noise left lead a set, in a hundredth of the time
+  /// that all samples take. A clean one would have to be searched finer than their slopes are: the set
+  /// itself.
+  /// @returns absent where they decide against it, or lead it to the estimate
+  std::optional<VectorXd> led_by_lines(const VectorXd& unknowns) const {
     constexpr double plain = 0.05, more = 1.1;  // of the lines, what the estimate leaves; times that
-    if (!lines_ || left_ < plain) return false;
+    if (!lines_ || left_ < plain) return unknowns;
     try {
       DrivenProblem from_there = *lines_;
       from_there.prior.mean = unknowns;
       const DrivenFit fit = fit_driven_from(from_there, unknowns);
-      return fit.converged && (fit.left_share > more * left_ || is_here(fit.theta));
+      if (fit.converged && (fit.left_share > more * left_ || is_here(fit.theta))) return {};
+      return fit.converged ? fit.theta : unknowns;
     } catch (const std::runtime_error&) {  // no motion there
-      return false;
+      return unknowns;
     }
   }
 
@@ -174,6 +177,16 @@ bool differ(const VectorXd& a, const VectorXd& b, const std::vector<Index>& plac
                      [&](Index j) { return std::abs(a[j] - b[j]) > 0.02 * std::abs(b[j]); });
 }
 
+// Outside the 95 % interval of one of the stiffnesses: within all of them it is the same answer.
+bool is_another(const VectorXd& values, const ComparedRun& run, const std::vector<Index>& places) {
+  return std::any_of(places.begin(), places.end(), [&](Index j) {
+    const auto place = static_cast<std::size_t>(j);
+    if (place >= run.parameters.size()) return true;
+    const Estimate& known = run.parameters[place].estimate;
+    return values[j] < known.lower_95 || values[j] > known.upper_95;
+  });
+}
+
 std::vector<VectorXd> same_frequencies(const UpdateStudy& study, const FoundStructure& found,
                                        const ComparedRun& run) {
   std::vector<VectorXd> others;
@@ -233,7 +246,7 @@ std::size_t RecordTwins::undecided() const {
 }
 
 RecordTwins record_twins(const Experiment& experiment, const Comparison& comparison,
-                         const std::filesystem::path& folder) {
+                         const std::filesystem::path& folder, const Progress& progress) {
   RecordTwins result;
   const ComparedRun& run = comparison.runs.front();
   const FoundStructure found = structure_found(experiment, run);
@@ -246,7 +259,12 @@ RecordTwins record_twins(const Experiment& experiment, const Comparison& compari
   if (others.empty()) return result;
 
   const RecordFit record(experiment, comparison, folder);
-  std::erase_if(others, [&](const VectorXd& other) { return record.is_ruled_out(other); });
+  Countdown tried(progress, 2 * others.size(), "other sets of the same frequencies");
+  for (VectorXd& other : std::exchange(others, {})) {
+    tried.begin("set");
+    if (auto led = record.led_by_lines(other)) others.push_back(std::move(*led));
+    tried.count();
+  }
   if (others.empty()) return result;
   const std::optional<filters::BatchEstimate> best = record.from(run.unknown_state.mean);
   if (!best) return result;
@@ -254,15 +272,21 @@ RecordTwins record_twins(const Experiment& experiment, const Comparison& compari
   const double prior = distance_to_prior(run, run.unknown_state.mean),
                widened = run.interval_factor * run.interval_factor;
   for (const VectorXd& other : others) {
+    tried.begin("set");
     const std::optional<filters::BatchEstimate> fit = record.from(other);
-    if (!fit) continue;
+    tried.count();
+    // Intervals that hold a scatter of sections are wide in one unknown; a residual half as large again in
+    // squares explains a record less, however wide they are.
+    constexpr double as_well = 1.5;
+    if (!fit || fit->costs.back() > as_well * best->costs.back()) continue;
     RecordTwin twin{unknown_values(*run.model, fit->state),
                     2.0 * (fit->costs.back() - best->costs.back()) / widened,
                     distance_to_prior(run, fit->state(run.model->unknown_places)) - prior};
     const bool known = std::any_of(result.sets.begin(), result.sets.end(), [&](const RecordTwin& one) {
       return !differ(one.values, twin.values, found.places);
     });
-    if (twin.chi_square <= as_well_chi_square && differ(twin.values, here, found.places) && !known)
+    if (twin.chi_square <= as_well_chi_square && differ(twin.values, here, found.places) &&
+        is_another(twin.values, run, found.places) && !known)
       result.sets.push_back(std::move(twin));
   }
   std::sort(result.sets.begin(), result.sets.end(),
@@ -275,16 +299,17 @@ RecordTwins record_twins(const Experiment& experiment, const Comparison& compari
 }
 
 LikeliestSet likeliest_set(const Experiment& experiment, const std::filesystem::path& folder,
-                           const std::function<Comparison(const Experiment&)>& identify) {
+                           const std::function<Comparison(const Experiment&)>& identify,
+                           const Progress& progress) {
   LikeliestSet result{identify(experiment), {}, {}};
-  result.twins = record_twins(experiment, result.found, folder);
+  result.twins = record_twins(experiment, result.found, folder, progress);
   if (const RecordTwin* const better = result.twins.better()) {
     const double less = -better->more();
     const Experiment from_there = started_from(experiment, result.found.runs.front(), *better);
     Comparison again = identify(from_there);
     const ComparedRun &before = result.found.runs.front(), &after = again.runs.front();
     if (after.has_estimate() && (after.answers() || !before.answers())) {
-      result.twins = record_twins(from_there, again, folder);
+      result.twins = record_twins(from_there, again, folder, progress);
       result.found = std::move(again);
       result.exchanged = fmt::format(
           "The search from the initial estimates ended in a set of parameters with the same frequencies "

@@ -10,6 +10,7 @@
 
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/twins/deciding_measurement.hpp"
+#include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
 
@@ -49,7 +50,7 @@ struct RecordTwins {
 /// tried.
 /// @param folder as of compare()
 RecordTwins record_twins(const Experiment& experiment, const Comparison& comparison,
-                         const std::filesystem::path& folder);
+                         const std::filesystem::path& folder, const Progress& progress = unwatched);
 
 /// What is reported of a record whose structure has several sets of parameters with the same frequencies.
 struct LikeliestSet {
@@ -63,6 +64,7 @@ struct LikeliestSet {
 /// there, with prior deviations as stated. The status becomes `not_unique` where a set is left that nothing
 /// decides against.
 LikeliestSet likeliest_set(const Experiment& experiment, const std::filesystem::path& folder,
-                           const std::function<Comparison(const Experiment&)>& identify);
+                           const std::function<Comparison(const Experiment&)>& identify,
+                           const Progress& progress = unwatched);
 
 }  // namespace beamid::experiments

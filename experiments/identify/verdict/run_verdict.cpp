@@ -10,6 +10,7 @@
 
 #include "experiments/identify/engine/analysis.hpp"
 #include "experiments/identify/engine/compared_run.hpp"
+#include "experiments/identify/engine/measured_force.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/engine/record_identification.hpp"
 #include "experiments/identify/engine/run_bound.hpp"
@@ -130,7 +131,12 @@ std::string described_response_text(const RunContext& context, const ComparedRun
         "The structure as described, moved by the measured input, moves {:.3g} times as much as the record "
         "shows{}{}. The unit, gain or sign of the input or of the motion is the likely cause: check "
         "[record].",
-        gain, turned ? ", and against it" : "", usual_scale(gain, near));
+        gain, turned ? ", and against it" : "",
+        measures_force(context.analysis.record) ? usual_scale(gain, near)
+        : std::abs(std::log(gain) - std::log(9.80665)) < near ||
+                std::abs(std::log(gain) + std::log(9.80665)) < near
+            ? ", about 9.80665 or its inverse: an acceleration in g taken for m/s2 or the other way round"
+            : "");
   } catch (const std::exception&) {  // a guess that has no motion
     return {};
   }
@@ -324,9 +330,10 @@ void judge_what_is_said(ComparedRun& run) {
       text += fmt::format("{}{} ({:.2g})", text.empty() ? "" : ", ", p.estimate.name, share);
   if (!text.empty())
     run.objections.emplace_back("not_determined",
-                                "NOT DETERMINED: the record shows almost no effect of " + text +
-                                    "; what is printed is the prior, in brackets the standard deviation "
-                                    "over the prior one.",
+                                "NOT DETERMINED: " + text +
+                                    ": the record determines no more than was known beforehand; in brackets "
+                                    "the standard deviation over the "
+                                    "prior one.",
                                 largest, next_to_nothing);
 }
 

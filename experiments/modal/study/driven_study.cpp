@@ -205,6 +205,66 @@ void complete_modes(const VectorXd& powers, DrivenStudy& study) {
   });
 }
 
+/// Deviations from the scatter over sections where it is larger, then the modes.
+void complete(const std::vector<DrivenLines>& sections, const VectorXd& powers, DrivenStudy& study) {
+  if (!sections.empty()) {
+    study.sections = static_cast<int>(sections.size());
+    const MatrixXd scatter = scatter_over(sections, study.fit);
+    const double student = student_factor(static_cast<double>(sections.size()) - 2.0);
+    for (Index a = 0; a < scatter.rows(); ++a) {
+      const double by_lines = std::sqrt(study.fit.covariance(a, a)),
+                   by_sections = student * std::sqrt(std::max(0.0, scatter(a, a)));
+      if (by_sections > by_lines) {
+        study.fit.covariance.row(a) *= by_sections / by_lines;
+        study.fit.covariance.col(a) *= by_sections / by_lines;
+      }
+    }
+  }
+  complete_modes(powers, study);
+}
+
+/// Why a mode is one of the motion's nonlinearity, or of its noise, rather than of the structure; empty: it
+/// is the structure's. A mode that no order showed answers little in every channel beside the modes that
+/// answer most; so does one beside a stronger one of its shape.
+std::string doubt_about(const DrivenStudy& study, std::size_t k) {
+  constexpr double least = 0.03, least_of_same = 0.1, near = 0.1, same = 0.95, least_known = 0.3;
+  const DrivenMode& mode = study.modes[k];
+  VectorXd largest = VectorXd::Zero(mode.participation.size());
+  for (const DrivenMode& other : study.modes) largest = largest.cwiseMax(other.participation.cwiseAbs());
+  const double answer = mode.participation.cwiseAbs().cwiseQuotient(largest.cwiseMax(1e-300)).maxCoeff();
+  if (mode.orders.empty() && study.modes.size() > 1 &&
+      (answer < least || mode.pole.damping_ratio_deviation > least_known * mode.pole.damping_ratio()))
+    return fmt::format("no order shows it, and its participation is {:.2g} % of what others have",
+                       100.0 * answer);
+  for (const DrivenMode& other : study.modes)
+    if (&other != &mode && study.outputs.size() > 1 && mode.orders.size() < other.orders.size() &&
+        std::abs(other.pole.frequency_hz() / mode.pole.frequency_hz() - 1.0) < near &&
+        mode.participation.norm() < least_of_same * other.participation.norm() &&
+        modal_assurance(mode.pole.shape, other.pole.shape) > same)
+      return fmt::format(
+          "moves as the mode at {:.4g} Hz does: a frequency or a damping that follows the amplitude",
+          other.pole.frequency_hz());
+  return {};
+}
+
+/// Takes doubtful modes out. @returns whether there were any
+bool leave_out_doubtful(DrivenStudy& study) {
+  std::vector<DrivenMode> kept;
+  for (std::size_t k = 0; k < study.modes.size(); ++k) {
+    const std::string why = doubt_about(study, k);
+    if (why.empty())
+      kept.push_back(study.modes[k]);
+    else
+      study.stabilisation.rejected.push_back({study.modes[k].pole, study.modes[k].orders, why});
+  }
+  const bool any = kept.size() < study.modes.size();
+  study.modes = std::move(kept);
+  std::vector<Complex> rates;
+  for (const DrivenMode& mode : study.modes) rates.push_back(mode.pole.rate);
+  if (any) study.fit = fit_driven_poles(study.lines, rates);
+  return any;
+}
+
 void judge(DrivenStudy& study) {
   constexpr double healthy = 0.7, least = 0.9;
   const double explained = study.explained();
@@ -274,22 +334,44 @@ DrivenStudy study_driven(const std::string& name, const Record& record, const Mo
   double lowest = 1e300;
   for (const Complex& rate : study.fit.rates) lowest = std::min(lowest, std::abs(rate) / (2.0 * pi));
   const auto sections = sections_of(outputs, inputs, interval, lowest, study.band_hz);
-  if (!sections.empty()) {
-    study.sections = static_cast<int>(sections.size());
-    const MatrixXd scatter = scatter_over(sections, study.fit);
-    const double student = student_factor(static_cast<double>(sections.size()) - 2.0);
-    for (Index a = 0; a < scatter.rows(); ++a) {
-      const double by_lines = std::sqrt(study.fit.covariance(a, a)),
-                   by_sections = student * std::sqrt(std::max(0.0, scatter(a, a)));
-      if (by_sections > by_lines) {
-        study.fit.covariance.row(a) *= by_sections / by_lines;
-        study.fit.covariance.col(a) *= by_sections / by_lines;
-      }
-    }
-  }
-  complete_modes(powers, study);
+  complete(sections, powers, study);
+  while (leave_out_doubtful(study) && !study.modes.empty()) complete(sections, powers, study);
   judge(study);
   return study;
+}
+
+DrivenOrDecaying driven_or_decaying(const std::string& name, const Record& record, bool windowed,
+                                    const ModalStudySettings& settings) {
+  DrivenOrDecaying found;
+  ModalStudySettings by_input = settings, decay = settings;
+  by_input.method = {"output_error", {}};
+  decay.method = ModalStudySettings().method;
+  try {
+    DrivenStudy study = study_driven(name, record, by_input);
+    if (!study.modes.empty()) found.driven = std::move(study);
+  } catch (const std::invalid_argument&) {  // too short, or gaps
+  }
+  if (found.driven) try {
+      RecordModes modes = find_modes(name, record, windowed, decay);
+      if (modes.modes.empty()) return found;
+      if (modes.left() < found.driven->fit.left_share) found.driven.reset();
+      found.decaying = std::move(modes);
+    } catch (const std::invalid_argument&) {  // no decay
+    }
+  return found;
+}
+
+RecordModes modes_of(const DrivenStudy& study) {
+  RecordModes found;
+  found.name = study.name;
+  found.record = motion_of(study.record);
+  found.remarks = study.remarks;
+  found.objections = study.objections;
+  found.free_decay = false;
+  found.band_hz = study.band_hz;
+  for (const DrivenMode& mode : study.modes)
+    found.modes.push_back({mode.pole, mode.orders, mode.share * mode.share});
+  return found;
 }
 
 }  // namespace beamid::experiments

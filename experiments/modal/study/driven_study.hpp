@@ -1,6 +1,7 @@
 // Modes of one record whose inputs were measured: a moving base, a shaker, several of them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,5 +45,20 @@ struct DrivenStudy {
 /// start the fit of all lines, and each has to be more than the noise around it.
 /// @throws std::invalid_argument when record, band and orders do not fit, or no input was measured.
 DrivenStudy study_driven(const std::string& name, const Record& record, const ModalStudySettings& settings);
+
+/// A record as its inputs explain it, and as a free decay: one of them where one explains less, or is
+/// impossible.
+struct DrivenOrDecaying {
+  std::optional<DrivenStudy> driven;    ///< present: the inputs make the motion
+  std::optional<RecordModes> decaying;  ///< present where it was asked for and has modes
+};
+
+/// Of a record for which is_driven() holds: the high-passed force of one hit rings as long as the motion
+/// does.
+DrivenOrDecaying driven_or_decaying(const std::string& name, const Record& record, bool windowed,
+                                    const ModalStudySettings& settings);
+
+/// The same as modes of the motion alone, for what takes modes of any record. There is no target.
+RecordModes modes_of(const DrivenStudy& study);
 
 }  // namespace beamid::experiments

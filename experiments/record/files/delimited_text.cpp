@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <regex>
 #include <string>
 
 #include "experiments/record/recognised_column.hpp"
@@ -85,10 +87,77 @@ const bool delimited_text_registered = record_reader_registry().add(
      {},
      [](const filters::Options&) { return std::make_unique<DelimitedTextReader>(); }});
 
+/// A monitor's "10:00:00.000 -> 7.51,3.0" with the arrow as one more separator, as wide as it was.
+std::shared_ptr<const std::string> without_arrows(const std::shared_ptr<const std::string>& content) {
+  constexpr std::size_t looked_at = 40, early = 4000;
+  static const std::regex stamped(R"((?:^|\n)[0-9]{1,2}:[0-9]{2}:[0-9]{2}[.,][0-9]+ (-?)> )");
+  std::smatch match;
+  const std::string beginning = content->substr(0, early);
+  if (!std::regex_search(beginning, match, stamped)) return content;
+  const std::string arrow = match[1].length() > 0 ? " -> " : " > ";
+  const std::string_view first =
+      std::string_view(beginning).substr(static_cast<std::size_t>(match.position(0) + match.length(0)));
+  const char found = separator_of(first.substr(0, first.find_first_of("\r\n")));
+  std::string parted(arrow.size(), ' ');
+  if (found != '\0' && found != ' ') parted[0] = found;
+  auto plain = std::make_shared<std::string>(*content);
+  std::size_t at = plain->find(arrow);
+  for (std::size_t line = 0; line < plain->size() && at != plain->npos;) {
+    const std::size_t end = std::min(plain->find('\n', line), plain->size());
+    if (at < end && at - line < looked_at) plain->replace(at, arrow.size(), parted);
+    line = end + 1;
+    if (at < line) at = plain->find(arrow, line);
+  }
+  return plain;
+}
+
+/// Rows without names or times that go on from one to the next: one series, written several numbers to a
+/// line. The text above them states how many there are, or the step from a row's last number to the next
+/// row's first is that within the rows, and smaller than that down a column.
+bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
+  constexpr std::size_t fewest_columns = 3, fewest_rows = 20;
+  constexpr double alike = 0.25, less = 0.6;
+  const std::size_t width = table.width(), rows = table.rows();
+  if (!table.names.empty() || table.time || width < fewest_columns || rows < fewest_rows) return false;
+  for (const std::vector<double>& column : table.columns)
+    if (rises(column) || !std::ranges::all_of(column, [](double value) { return std::isfinite(value); }))
+      return false;
+  double within = 0.0, down = 0.0, over = 0.0;
+  for (std::size_t row = 0; row + 1 < rows; ++row) {
+    for (std::size_t k = 0; k < width; ++k) {
+      if (k + 1 < width) within += std::abs(table.columns[k + 1][row] - table.columns[k][row]);
+      down += std::abs(table.columns[k][row + 1] - table.columns[k][row]);
+    }
+    over += std::abs(table.columns[0][row + 1] - table.columns[width - 1][row]);
+  }
+  within /= static_cast<double>(width - 1), down /= static_cast<double>(width);
+  if (!(within > 0.0)) return false;
+  const std::regex count("(^|[^0-9.])" + std::to_string(rows * width + last) + "($|[^0-9.])");
+  if (std::regex_search(above.begin(), above.end(), count))
+    return within < 1.05 * down && over < 2.0 * within;
+  return std::abs(over / within - 1.0) < alike && within < less * down;
+}
+
+void join_rows(RecordTable& table, const std::vector<double>& last) {
+  const std::size_t width = table.width(), rows = table.rows();
+  std::vector<double> all;
+  all.reserve(rows * width + last.size());
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t k = 0; k < width; ++k) all.push_back(table.columns[k][row]);
+  all.insert(all.end(), last.begin(), last.end());
+  table.remarks.push_back(fmt::format(
+      "Each row of {} numbers goes on from the row before: one series of {} numbers.", width, all.size()));
+  table.columns.assign(1, std::move(all));
+  table.precision.resize(1);
+  table.lines.clear(), table.skipped_lines.clear();
+  table.cell = nullptr;
+}
+
 }  // namespace
 
-RecordTable table_of_text(const std::string& file, const std::shared_ptr<const std::string>& content,
+RecordTable table_of_text(const std::string& file, const std::shared_ptr<const std::string>& as_read,
                           const RecordFormat& format) {
+  const std::shared_ptr<const std::string> content = without_arrows(as_read);
   DelimitedText text(file, *content, format.separator, format.header_lines, format.decimal,
                      format.malformed == MalformedRows::skip);
   RecordTable table;
@@ -106,7 +175,9 @@ RecordTable table_of_text(const std::string& file, const std::shared_ptr<const s
   constexpr double half_a_day = 43200.0;
   constexpr std::size_t looked_at_for_a_rate = 4000;
   std::vector<double> days(text.width(), 0.0);  // that have passed [s]
+  std::size_t above = 0;                        // characters before the first row
   while (text.next()) {
+    if (table.lines.empty()) above = static_cast<std::size_t>(text.line().data() - content->data());
     cells.add(text.line(), text.line_number());
     table.lines.push_back(text.line_number());
     for (std::size_t column = 0; column < text.width(); ++column) {
@@ -143,6 +214,10 @@ RecordTable table_of_text(const std::string& file, const std::shared_ptr<const s
     table.stated_rate =
         stated_rate(std::string_view(*content).substr(0, looked_at_for_a_rate), text.decimal());
   table.skipped_lines = text.skipped_lines();
+  if (const std::string_view head =
+          std::string_view(*content).substr(0, std::min(above, looked_at_for_a_rate));
+      format.channels.empty() && go_on(table, head, text.short_end().size()))
+    join_rows(table, text.short_end());
   if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");
   return table;
 }

@@ -147,6 +147,7 @@ LvmSegment LvmLines::read_segment() {
 std::vector<double> LvmLines::numbers(const std::vector<std::string>& words) const {
   std::vector<double> values;
   for (const std::string& word : words) {
+    if (trimmed(word).empty()) continue;  // of a second X column
     const ParsedNumber parsed = parse_number(word, decimal_);
     if (!parsed.finite) throw bad(fmt::format("'{}' in a segment's header; expected a number", word));
     values.push_back(parsed.value);
@@ -372,6 +373,7 @@ class LvmFile {
       table_.precision.push_back(precision_[k + 1]);
       fields.push_back(y_[k]);
     }
+    table_.by_people = std::ranges::all_of(segment_.units, &std::string::empty);
     if (segments_ > 1) table_.remarks.push_back(fmt::format("{} segments are joined.", segments_));
     table_.cell = cells_.cells(lines_.separator(), fields);
   }

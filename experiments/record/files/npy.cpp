@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -31,9 +33,67 @@ struct NumberType {
   int digits;  ///< that it holds
 };
 constexpr NumberType types[] = {
-    {"<f8", 8, number_at<double>, 16},       {"<f4", 4, number_at<float>, 7},
-    {"<i2", 2, number_at<std::int16_t>, 5},  {"<i4", 4, number_at<std::int32_t>, 10},
-    {"<i8", 8, number_at<std::int64_t>, 16}, {"<u2", 2, number_at<std::uint16_t>, 5}};
+    {"f8", 8, number_at<double>, 16},       {"f4", 4, number_at<float>, 7},
+    {"i1", 1, number_at<std::int8_t>, 3},   {"u1", 1, number_at<std::uint8_t>, 3},
+    {"i2", 2, number_at<std::int16_t>, 5},  {"u2", 2, number_at<std::uint16_t>, 5},
+    {"i4", 4, number_at<std::int32_t>, 10}, {"u4", 4, number_at<std::uint32_t>, 10},
+    {"i8", 8, number_at<std::int64_t>, 16}, {"u8", 8, number_at<std::uint64_t>, 16}};
+
+/// A number of an array: "<f8", ">i2", "|u1".
+struct Numbers {
+  const NumberType* type = nullptr;
+  bool swapped = false;  ///< the high byte first
+
+  explicit Numbers(std::string_view description) {
+    for (const NumberType& one : types)
+      if (description.size() == 3 && description.substr(1) == one.name) type = &one;
+    swapped = description.starts_with('>');
+  }
+  double read(const char* bytes) const {
+    if (!swapped) return type->read(bytes);
+    char turned[8];
+    std::reverse_copy(bytes, bytes + type->size, turned);
+    return type->read(turned);
+  }
+};
+
+/// A structured array: a column for every field, "[('t', '<f8'), ('acc', '<f4')]"; what is no number is
+/// passed over.
+/// @param refuse makes the error
+template <class Refuse>
+void add_records(RecordTable& table, std::string_view data, const std::string& header, const Refuse& refuse) {
+  struct Field {
+    std::size_t offset;
+    Numbers numbers;
+  };
+  static const std::regex field(R"(\('([^']*)',\s*'([<>|=][a-zA-Z])([0-9]{1,6})'(,?\s*\([^)]*\))?\))"),
+      one(R"('shape'\s*:\s*\((\d{1,18}),\s*\))");
+  std::smatch shape;
+  if (!std::regex_search(header, shape, one)) throw refuse("records in more dimensions");
+  std::vector<Field> fields;
+  std::size_t length = 0;
+  const std::size_t before = table.columns.size(), rows = std::stoull(shape[1]);
+  for (std::sregex_iterator at(header.begin(), header.end(), field), end; at != end; ++at) {
+    const std::string kind = (*at)[2];
+    if ((*at)[4].length() > 0) throw refuse("records that hold arrays");
+    const std::size_t size = std::stoull((*at)[3]) * (kind[1] == 'U' ? 4 : 1);
+    if (const Numbers numbers(kind + (*at)[3].str()); numbers.type) {
+      fields.push_back({length, numbers});
+      table.names.push_back((*at)[1]);
+      table.precision.push_back(PrintedPrecision::of_digits(numbers.type->digits));
+    }
+    length += size;
+    if (size > data.size()) throw refuse("fewer bytes than the header states");
+  }
+  if (fields.empty() || rows == 0 || rows > data.size() / length)
+    throw refuse("fewer records of numbers than the header states");
+  if (before > 0 && table.rows() != rows) throw refuse("another length than the arrays before it");
+  for (const Field& one_field : fields) {
+    std::vector<double>& column = table.columns.emplace_back();
+    for (std::size_t row = 0; row < rows; ++row)
+      column.push_back(one_field.numbers.read(data.data() + row * length + one_field.offset));
+  }
+}
 
 /// The columns of one array, named `name`, behind those that are there; a number alone states the rate or the
 /// interval.
@@ -41,7 +101,7 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
   const auto refuse = [&](const std::string& found) {
     return InputError({table.file}, (name.empty() ? "" : "'" + name + "': ") + found +
                                         "; expected a NumPy array of one or two dimensions of "
-                                        "little-endian numbers (<f8, <f4, <i2, <i4, <i8, <u2)");
+                                        "real numbers of up to eight bytes, or of records of such numbers");
   };
   const bool wide = bytes.size() > 8 && bytes[6] >= 2;  // version 2: four bytes of length
   const std::size_t start = wide ? 12 : 10;
@@ -54,25 +114,39 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
   if (bytes.size() < start + length) throw refuse("a header that is cut short");
   const std::string header = bytes.substr(start, length);
   std::smatch type, shape;
-  if (!std::regex_search(header, type, std::regex(R"('descr'\s*:\s*'([^']+)')")) ||
-      (!std::regex_search(header, shape, std::regex(R"('shape'\s*:\s*\((\d+),\s*(\d*)\s*\))")) &&
+  const bool of_records = std::regex_search(header, std::regex(R"('descr'\s*:\s*\[)"));
+  if ((!of_records && !std::regex_search(header, type, std::regex(R"('descr'\s*:\s*'([^']+)')"))) ||
+      (!std::regex_search(header, shape, std::regex(R"('shape'\s*:\s*\((\d{1,18}),\s*(\d{0,18})\s*\))")) &&
        !std::regex_search(header, shape, std::regex(R"('shape'\s*:\s*\((\s*)(\s*)\))"))))
-    throw refuse("an array of records or of more dimensions");
-  const NumberType* numbers = nullptr;
-  for (const NumberType& one : types)
-    if (one.name == type[1].str()) numbers = &one;
-  if (!numbers) throw refuse(fmt::format("numbers of type '{}'", type[1].str()));
+    throw refuse("an array of more dimensions");
+  if (of_records) {
+    add_records(table, std::string_view(bytes).substr(start + length), header, refuse);
+    return;
+  }
+  const Numbers numbers(type[1].str());
+  if (!numbers.type) throw refuse(fmt::format("numbers of type '{}'", type[1].str()));
   const bool by_columns = header.find("'fortran_order': True") != std::string::npos;
   if (shape[1].length() == 0) {  // a number alone
-    if (bytes.size() < start + length + numbers->size) throw refuse("a header without its number");
-    const double value = numbers->read(bytes.data() + start + length);
+    if (bytes.size() < start + length + numbers.type->size) throw refuse("a header without its number");
+    const double value = numbers.read(bytes.data() + start + length);
     const SamplingName what = sampling_name(name);
-    if (value > 0.0 && what == SamplingName::rate) table.stated_rate = value;
-    if (value > 0.0 && what == SamplingName::interval) table.stated_rate = 1.0 / value;
+    constexpr double longest = 0.5, alike = 0.02;  // [s]; a longer interval is one of milliseconds
+    if (what == SamplingName::none || !(value > (what == SamplingName::rate ? 1.0 / longest : 0.0)) ||
+        (what == SamplingName::interval && value > longest))
+      return;
+    const double rate = what == SamplingName::rate ? value : 1.0 / value;
+    if (table.stated_rate && std::abs(rate / *table.stated_rate - 1.0) > alike) {
+      table.remarks.push_back(
+          fmt::format("'{}' states {:.6g} Hz, and another number {:.6g} Hz: neither is used.", name, rate,
+                      *table.stated_rate));
+      table.stated_rate.reset();
+      return;
+    }
+    table.stated_rate = rate;
     return;
   }
   const std::size_t rows = std::stoull(shape[1]), width = shape[2].length() > 0 ? std::stoull(shape[2]) : 1;
-  const std::size_t count = (bytes.size() - start - length) / numbers->size;
+  const std::size_t count = (bytes.size() - start - length) / numbers.type->size;
   if (width == 0 || rows == 0 || rows > count / width) throw refuse("fewer numbers than the header states");
 
   const char* const data = bytes.data() + start + length;
@@ -81,13 +155,13 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
   if (first > 0 && rows != table.rows() && !(lying && width == table.rows()))
     throw refuse("another length than the arrays before it");
   table.columns.resize(first + added);
-  table.precision.resize(first + added, PrintedPrecision::of_digits(numbers->digits));
+  table.precision.resize(first + added, PrintedPrecision::of_digits(numbers.type->digits));
   for (std::size_t k = 0; k < added && !name.empty(); ++k)
     table.names.push_back(added > 1 ? fmt::format("{}_{}", name, k + 1) : name);
   for (std::size_t row = 0; row < rows; ++row)
     for (std::size_t column = 0; column < width; ++column) {
       const std::size_t at = by_columns ? column * rows + row : row * width + column;
-      table.columns[first + (lying ? row : column)].push_back(numbers->read(data + at * numbers->size));
+      table.columns[first + (lying ? row : column)].push_back(numbers.read(data + at * numbers.type->size));
     }
 }
 

@@ -346,6 +346,8 @@ void leave_out(const std::vector<Run>& runs, std::vector<double>& samples) {
                 std::numeric_limits<double>::quiet_NaN());
 }
 
+}  // namespace
+
 bool is_dead(const std::vector<double>& samples) {
   constexpr double far_larger = 1e3, out_of_reach = 1e4, noise_only = 2;
   constexpr Index fewest = 64;
@@ -360,8 +362,6 @@ bool is_dead(const std::vector<double>& samples) {
   const double noise = noise_floor(signal);
   return power < noise_only * noise * noise;
 }
-
-}  // namespace
 
 Defects find_defects(const std::vector<double>& samples, SignalKind kind) {
   Defects found;

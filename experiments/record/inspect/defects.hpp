@@ -102,9 +102,11 @@ enum class SignalKind {
   force,   ///< may rest at zero between pulses as short as one sample
 };
 
+/// Constant on an offset ten thousand times larger than what moves, or a thousand times and noise.
+bool is_dead(const std::vector<double>& samples);
+
 struct Defects {
-  bool dead = false;  ///< constant but for spikes, on an offset ten thousand times larger, or a thousand
-                      ///< times and noise
+  bool dead = false;  ///< is_dead() but for spikes
   std::vector<Run> spikes, clipped, dropped, repeated;
   std::optional<Rattle> rattle;
 };

@@ -64,7 +64,7 @@ Figure parameter_figure(const Comparison& comparison, const Runs& runs) {
   return figure;
 }
 
-// What each section of a driven record says by itself of an unknown, over the size of its motion.
+// The estimates of an unknown by each section of a driven record alone, over the size of its motion.
 Panel section_panel(const ComparedRun& run, std::size_t j) {
   const SectionScatter& by = *run.sections;
   const Unknown& unknown = run.unknowns[j];
@@ -106,7 +106,8 @@ std::optional<Figure> section_figure(const ComparedRun& run) {
     figure.panels.push_back(section_panel(run, j));
   figure.rows = static_cast<int>((figure.panels.size() + 1) / 2);
   figure.caption = fmt::format(
-      "What each of the {} sections of the record says by itself, one step from the whole record's estimate, "
+      "The estimates of each of the {} sections of the record alone, one step from the whole record's "
+      "estimate, "
       "with "
       "95 % intervals of its noise alone.",
       run.sections->sections);

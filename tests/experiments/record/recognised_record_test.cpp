@@ -2,6 +2,10 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
 #include "experiments/record/read_record.hpp"
 #include "experiments/record/units.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
@@ -232,6 +236,170 @@ TEST(RecognisedRecord, ReadsUtf16) {
   for (int k = 0; k < 20; ++k) plain += fmt::format("{:.3f};{}\n", 0.005 * k, k % 7);
   for (const char byte : plain) text += byte, text += '\0';
   EXPECT_EQ(recognised(text).size(), 20);
+}
+
+// A decay of 5 Hz, written as the caller likes; 400 Hz.
+std::string signal_rows(int rows, const std::function<std::string(int, double)>& row) {
+  std::string text;
+  for (int k = 0; k < rows; ++k) text += row(k, std::exp(-0.002 * k) * std::cos(0.08 * k)) + "\n";
+  return text;
+}
+
+std::string question_of(const std::string& content, const RecordFormat& format = {}) {
+  try {
+    return fmt::format("read at {:.6g} Hz", 1.0 / recognised(content, format).interval());
+  } catch (const InputError& asked) {
+    return asked.what();
+  }
+}
+
+TEST(RecognisedRecord, TakesARateThatWordsForOneState) {
+  const std::string rows = signal_rows(40, [](int, double a) { return fmt::format("{:.5f}", a); });
+  for (const char* const head :
+       {"Sampling rate: 400 Hz", "Abtastfrequenz = 0,4 kHz", "Messrate: 400,00 Hz",
+        "Frequence d'echantillonnage : 400 Hz", "Fréquence d'échantillonnage : 400 Hz",
+        "Frecuencia de muestreo = 400 Hz", "Frequenza di campionamento: 400 Hz", "Samples per second: 400",
+        "ODR = 400 Hz", "Scan rate: 400 scans/s", "FPS: 400", "Sampling: 0.4 kS/s", "\"SampleRate\",400,400",
+        "\"HResolution\",2.5E-03,2.5E-03", "TIMESERIES X_Y_Z, 40 samples, 400 sps, SLIST",
+        "ADC sampling rate: 3200 Hz\nOutput data rate: 400 Hz", "points at equal intervals of .0025 sec",
+        "fs = 400"})
+    EXPECT_EQ(question_of(std::string(head) + "\nAcc (g)\n" + rows), "read at 400 Hz") << head;
+}
+
+// A rate of something else is no sampling rate, and of two the file does not say which.
+TEST(RecognisedRecord, AsksForTheRateWhereTheNumberIsOfSomethingElse) {
+  const std::string rows = signal_rows(40, [](int, double a) { return fmt::format("{:.5f}", a); });
+  for (const char* const head :
+       {"GPS rate: 10 Hz", "Update rate: 1 Hz (display)", "Trigger rate: 1 Hz", "Sweep rate: 2 Hz/s",
+        "Max sample rate: 3200 Hz", "Total sampling rate: 1200 Hz (3 channels)", "Full scale fs = 10 V",
+        "FS = 5 g", "dt = 2.5", "dt = 20 K", "dt: 2.5 s (heating)", "Increment: 1 mm", "Abtastrate: 1.200 Hz",
+        "Sampling rate: 1,200 Hz", "Sampling rate: 2000 Hz\nDecimation: 5",
+        "Sample rate: 400 Hz\nSample rate: 200 Hz", "Refresh rate 60 Hz"})
+    EXPECT_THAT(question_of(std::string(head) + "\nAcc (g)\n" + rows), testing::HasSubstr("--rate HZ"))
+        << head;
+}
+
+TEST(RecognisedRecord, AsksForTheUnitOfTimesWhoseStepsAreThoseOfAnother) {
+  const auto stamped = [](const std::string& header, double first, double step) {
+    return header + "\n" + signal_rows(40, [&](int k, double a) {
+             return fmt::format("{:.9g},{:.5f}", first + step * k, a);
+           });
+  };
+  EXPECT_THAT(question_of(stamped("time,acc", 0.0, 0.2)), testing::HasSubstr("--time 1:ms (5000 Hz)"));
+  EXPECT_THAT(question_of(stamped("time,acc", 0.0, 2.5e6)), testing::HasSubstr("--time 1:ns (400 Hz)"));
+  EXPECT_THAT(question_of(stamped("Time,acc", 0.4166667, 5.787037e-8)), testing::HasSubstr("--time 1:d ("));
+  const auto whole = [](const std::string& header, std::int64_t first, std::int64_t step) {
+    return header + "\n" +
+           signal_rows(40, [&](int k, double a) { return fmt::format("{},{:.5f}", first + step * k, a); });
+  };
+  // Nanoseconds since a telephone was switched on have the size of microseconds since 1970.
+  EXPECT_THAT(question_of(whole("timestamp,acc", 1728000000000000, 2500000)),
+              testing::HasSubstr("--time 1:ns (400 Hz)"));
+  EXPECT_EQ(question_of(whole("sensor_timestamp_ns,acc", 1728000000000000, 2500000)), "read at 400 Hz");
+  EXPECT_THAT(question_of(whole("Ticks,acc", 639272484000000000, 25000)),
+              testing::StartsWith("read at 400.0"));
+  for (const char* const header : {"Time(mS),a", "TIME_MS,a", "Zeit in Millisekunden,a", "uptime_ms,a",
+                                   "Laufzeit [ms],a", "Time <ms>,a", "ticks_ms,a"})
+    EXPECT_EQ(question_of(stamped(header, 0.0, 2.5)), "read at 400 Hz") << header;
+  // The answer is taken, and a stated rate in place of it.
+  RecordFormat stated;
+  stated.time = ColumnDescription{};
+  stated.time->number = 1;
+  stated.time->factor = 1e-3;
+  EXPECT_EQ(question_of(stamped("t,a", 0.0, 2.5), stated), "read at 400 Hz");
+  RecordFormat with_rate;
+  with_rate.sampling_rate = 400.0;
+  EXPECT_EQ(question_of(stamped("t,a", 0.0, 2.5), with_rate), "read at 400 Hz");
+}
+
+TEST(RecognisedRecord, JoinsNumbersThatAreWrittenSeveralToALine) {
+  std::string rows;
+  for (int k = 0; k < 320; ++k) rows += fmt::format("{:.5f}{}", std::sin(0.05 * k), k % 8 == 7 ? "\n" : " ");
+  for (const char* const head :
+       {"Sampling rate: 400 Hz\nNumber of points: 320\n", "Sampling rate: 400 Hz\n"}) {
+    const Record record = recognised(head + rows + "0.1 0.2 0.3\n");
+    ASSERT_EQ(record.channels.size(), 1u) << head;
+    EXPECT_EQ(record.size(), 323);
+    EXPECT_NEAR(record.samples(0, 100), std::sin(5.0), 1e-5);
+  }
+  // Eight sensors beside each other are no series.
+  std::string sensors;
+  for (int k = 0; k < 40; ++k) {
+    for (int i = 0; i < 8; ++i)
+      sensors += fmt::format("{:.5f} ", (1.0 + 0.3 * i) * std::sin(0.05 * k + 0.7 * i * i));
+    sensors += "\n";
+  }
+  EXPECT_EQ(recognised("Sampling rate: 400 Hz\n" + sensors).channels.size(), 8u);
+}
+
+TEST(RecognisedRecord, ReadsMonitorsAndTakesTheTimesThatRise) {
+  const auto stamp = [](int k) { return fmt::format("10:00:{:06.3f}", 0.01 * k); };
+  const auto monitor = [&](const char* arrow, const char* form) {
+    return signal_rows(
+        40, [&](int k, double a) { return stamp(k) + arrow + fmt::format(fmt::runtime(form), a); });
+  };
+  for (const char* const arrow : {" -> ", " > "})
+    for (const char* const form :
+         {"{0:.3f},{0:.4f}", "{0:.3f}\t{0:.4f}", "{0:.3f}", "X: {0:.3f}\tY: {0:.4f}"})
+      EXPECT_THAT(question_of(monitor(arrow, form)), testing::StartsWith("read at 100")) << arrow << form;
+  const std::string bridge =
+      "Date,Time,Elapsed (s),Acc (g)\n" + signal_rows(40, [](int k, double a) {
+        return fmt::format("2026-11-26,10:00:{:02d},{:.3f},{:.5f}", k / 20, 0.05 * k, a);
+      });
+  EXPECT_EQ(question_of(bridge), "read at 20 Hz");
+  const std::string two_clocks =
+      "Time_A,Sensor_A,Time_B,Sensor_B\n" + signal_rows(40, [](int k, double a) {
+        return fmt::format("{:.4f},{:.5f},{:.4f},{:.5f}", 0.0025 * k, a, 0.01 * k, a);
+      });
+  EXPECT_THAT(question_of(two_clocks), testing::HasSubstr("times of two clocks"));
+  const std::string spectrum =
+      "Freq,Mag\n" + signal_rows(40, [](int k, double a) { return fmt::format("{},{:.5f}", 0.1 * k, a); });
+  EXPECT_THAT(question_of(spectrum), testing::HasSubstr("a spectrum"));
+}
+
+TEST(RecognisedRecord, RefusesStampsOfTransfersAndTakesAStatedRateForThem) {
+  std::string bursts = "time (s),acc\n" + signal_rows(640, [](int k, double a) {
+                         return fmt::format("{:.5f},{:.5f}", 0.08 * (k / 16) + 0.00012 * (k % 16), a);
+                       });
+  RecordFormat as_they_are;
+  as_they_are.irregular = true;
+  EXPECT_THAT(question_of(bursts, as_they_are),
+              testing::AllOf(testing::HasSubstr("bursts"), testing::HasSubstr("--rate")));
+  RecordFormat with_rate;
+  with_rate.sampling_rate = 200.0;
+  EXPECT_EQ(question_of(bursts, with_rate), "read at 200 Hz");
+  with_rate.sampling_rate = 210.0;  // which the stamps contradict
+  EXPECT_THAT(question_of(bursts, with_rate), testing::HasSubstr("as stated"));
+}
+
+TEST(RecognisedRecord, PassesOverWhatIsNoPartOfTheRecord) {
+  const auto row = [](int k, double a) {
+    return fmt::format("{:.4f},{:.5f},{:.2f},{:.2f}", 0.0025 * k, a, 21.0, 0.3 * k);
+  };
+  std::string text = "Time (s),Acc (g),PTemp_C,gyro x\n" + signal_rows(80, row);
+  text += "Max,1.0,21.0,9.0\nMean,0.1,21.0,4.0\n";
+  const Record with_footer = recognised(text);
+  EXPECT_EQ(with_footer.size(), 80);
+  ASSERT_EQ(with_footer.channels.size(), 1u);
+  EXPECT_EQ(with_footer.channels[0].name, "Acc (g)");
+  std::string cut =
+      "Time (s),Acc (g),b (g)\n" +
+      signal_rows(80, [](int k, double a) { return fmt::format("{:.4f},{:.5f},{:.5f}", 0.0025 * k, a, a); }) +
+      "0.2000,0.1";
+  EXPECT_EQ(recognised(cut).size(), 80);
+}
+
+TEST(RecognisedRecord, ReadsStampsWithZonesAndOfOtherForms) {
+  const auto question = [](const char* form) {
+    return question_of("stamp,acc\n" + signal_rows(40, [&](int k, double a) {
+                         return fmt::format(fmt::runtime(form), fmt::format("{:06.3f}", 0.01 * k),
+                                            fmt::format("{:.4f}", a));
+                       }));
+  };
+  for (const char* const form :
+       {"2026-11-26 10:00:{} +0100,{}", "2026-11-26 10:00:{} CET,{}", "2026-11-26T10.00.{},{}",
+        "20261126T1000{}Z,{}", "2026-11-26-10:00:{},{}", "0 days 00:00:{},{}"})
+    EXPECT_THAT(question(form), testing::StartsWith("read at 100")) << form;
 }
 
 }  // namespace

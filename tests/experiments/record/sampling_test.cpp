@@ -63,7 +63,7 @@ TEST(Sampling, StampsPrintedWithoutTheirDecimalsAreSaidToBe) {
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->message,
             "time 1700000000 after 1700000000; expected increasing times (times printed this coarsely need "
-            "record.sampling_rate_hz)");
+            "the sampling rate: --rate HZ, or record.sampling_rate_hz)");
 }
 
 }  // namespace

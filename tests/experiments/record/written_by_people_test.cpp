@@ -208,7 +208,7 @@ std::string difference(const Record& record, const Written& written) {
 }
 
 TEST(WrittenByPeople, IsReadAsItWasWrittenOrRefused) {
-  constexpr int cases = 4000;
+  constexpr int cases = 20000;
   int right = 0, stated = 0;
   std::string refused;
   for (unsigned seed = 0; seed < cases; ++seed) {

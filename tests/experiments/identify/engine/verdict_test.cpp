@@ -186,7 +186,7 @@ TEST(Verdict, WhatTheRecordDoesNotTellIsNamed) {
   ASSERT_TRUE(run.has_estimate()) << run.reason;
   EXPECT_THAT(texts(run.objections),
               Contains(HasSubstr(
-                  "NOT DETERMINED: the record shows almost no effect of root_rotational_stiffness (1)")));
+                  "NOT DETERMINED: root_rotational_stiffness (1): the record determines no more")));
   const Comparison known =
       compared(cantilever("[simulation]\nduration_s = 4\nsampling_rate_hz = 100\n" + sensor + ask_stiffness,
                           {"modal_truncation"}));

@@ -53,7 +53,7 @@ TEST_P(EveryFilter, RefusesAMeasuredForce) {
     StreamedIdentification(experiment_, forced);
     ADD_FAILURE() << "no error";
   } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("a stream takes free motion; found the measured force 'hammer'"),
+    EXPECT_NE(std::string(error.what()).find("a stream takes free motion; found the measured input 'hammer'"),
               std::string::npos)
         << error.what();
   }

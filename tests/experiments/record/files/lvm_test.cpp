@@ -136,6 +136,23 @@ TEST(LvmReader, RefusesBadFieldsAtTheirPlaces) {
             "open.lvm:2:1: the file ends in its header; expected ***End_of_Header***");
 }
 
+// A channel without a label is what its name says of it, and cells that a second X column has in the header
+// hold nothing.
+TEST(LvmReader, ReadsChannelsWithoutUnitsAndEmptyCellsOfAHeader) {
+  std::string unlabelled = lvm("Multi", ',');
+  const std::size_t label = unlabelled.find("Y_Unit_Label");
+  unlabelled.erase(label, unlabelled.find("X_Dimension") - label);
+  for (const char* const row : {"X0\t0,000000\t", "Delta_X\t0,010000\t"})
+    unlabelled.replace(unlabelled.find(row), std::string(row).size(), std::string(row) + "\t");
+  const TemporaryFile file("unlabelled.lvm", unlabelled);
+  const Record record = read_record(file.path());
+  ASSERT_EQ(record.channels.size(), 2U);
+  EXPECT_EQ(record.channels[0].quantity, Quantity::acceleration);
+  EXPECT_EQ(record.channels[1].quantity, Quantity::force);  // "Hammer"
+  EXPECT_NEAR(record.interval(), 0.01, 1e-9);
+  EXPECT_NEAR(record.samples(0, 3), first_signal(3), 1e-8);
+}
+
 TEST(LvmReader, LetsAStatedRateReplaceARoundedInterval) {
   const TemporaryFile file("test.lvm", lvm("No"));
   RecordFormat format;

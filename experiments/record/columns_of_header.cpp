@@ -1,0 +1,374 @@
+// What a file that nobody described says of its columns: by their names as people write them, or by their
+// numbers.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "experiments/record/recognised_column.hpp"
+#include "experiments/record/record_columns.hpp"
+#include "experiments/record/stamps.hpp"
+#include "experiments/record/units.hpp"
+#include "experiments/text/fields.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+// Fewer than half of its cells hold numbers. @throws InputError at a cell that begins as a number does: a
+// column of such is one that was parted wrongly, or of numbers in another form.
+bool holds_words(const RecordTable& table, std::size_t index) {
+  const std::vector<double>& values = table.columns[index];
+  const auto numbers = std::ranges::count_if(values, [](double value) { return std::isfinite(value); });
+  if (2 * static_cast<std::size_t>(numbers) >= values.size()) return false;
+  for (std::size_t row = 0; table.cell && row < values.size(); ++row) {
+    if (std::isfinite(values[row])) continue;
+    const std::string text = table.cell(row, index).text;
+    const std::size_t first = text.find_first_not_of("\"'+-.,");
+    if (first != text.npos && text[first] >= '0' && text[first] <= '9') throw table.fault(row, index);
+  }
+  return true;
+}
+
+std::string unit_of_time(double factor) {
+  return factor == 1.0       ? "s"
+         : factor == 1e-3    ? "ms"
+         : factor == 1e-6    ? "us"
+         : factor == 1e-9    ? "ns"
+         : factor == 1e-7    ? "100 ns"
+         : factor == 60.0    ? "min"
+         : factor == 3600.0  ? "h"
+         : factor == 86400.0 ? "days"
+                             : fmt::format("{:g} s", factor);
+}
+
+// "column 2 is", "columns 2 to 4 are".
+std::string numbers_of(const std::vector<RecordColumn>& columns) {
+  std::string list;
+  for (const RecordColumn& column : columns)
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", column.index + 1);
+  return fmt::format("column{} {} {}", columns.size() == 1 ? "" : "s", list,
+                     columns.size() == 1 ? "is" : "are");
+}
+
+bool is_plausible(double step, double taken) {
+  constexpr double fastest = 5e-6;  // [s]
+  const bool by_size = taken != 1.0, of_days = taken == 86400.0;
+  return !(step > 0.0) || of_days || (step * taken < (by_size ? 0.5 : 0.1) && step * taken > fastest);
+}
+
+// Times of no stated unit whose rate would be below 10 Hz or above 200 kHz, were they in units of `taken`
+// [s]: most are in another.
+// @throws InputError the question
+void require_plausible_step(const RecordTable& table, std::size_t index, double taken) {
+  constexpr double fastest = 5e-6, largest = 20.0;  // [s]
+  const double step = mean_step(table.columns[index]);
+  if (is_plausible(step, taken)) return;
+  const std::string name = column_name_of(table, index);
+  std::string answers;
+  for (const auto& [unit, factor] : {std::pair{"ns", 1e-9},
+                                     {"us", 1e-6},
+                                     {"ms", 1e-3},
+                                     {"s", 1.0},
+                                     {"min", 60.0},
+                                     {"h", 3600.0},
+                                     {"d", 86400.0}}) {
+    const double seconds = step * factor;
+    if (seconds < largest && seconds > fastest)
+      answers += fmt::format("{}--time {}:{} ({:.6g} Hz)", answers.empty() ? "" : ", ", index + 1, unit,
+                             1.0 / seconds);
+  }
+  throw InputError({table.file, table.header_line, 0},
+                   fmt::format("column {}{} rises by {:.6g} from row to row and states no unit; expected the "
+                               "unit of its times: {}{}record.time in the configuration",
+                               index + 1, name.empty() ? "" : " '" + name + "'", step, answers,
+                               answers.empty() ? "--rate HZ, or " : ", or "));
+}
+
+bool holds_stamps(const RecordTable& table, std::size_t index) {
+  return table.cell && table.rows() > 0 && parse_stamp(unquoted(table.cell(0, index).text));
+}
+
+// Of several columns of times the first that rises: "Date", "Time", "Elapsed (s)".
+std::optional<std::size_t> rising_time(const RecordTable& table) {
+  for (std::size_t index = 0; index < std::min(table.names.size(), table.width()); ++index) {
+    const auto found =
+        recognise_column(table.names[index], index < table.units.size() ? table.units[index] : "");
+    const bool time = table.time == index || (found && found->kind == RecognisedColumn::Kind::time) ||
+                      holds_stamps(table, index);
+    if (time && rises(table.columns[index]) &&
+        !(found && !found->states_unit && counts_samples(table.columns[index])))
+      return index;
+  }
+  return {};
+}
+
+// Of columns whose names are not this project's own, what was recognised.
+class Recognition {
+ public:
+  // @param stamped whether times are stated elsewhere
+  Recognition(RecordTable& table, bool stamped) : rising_(rising_time(table)), stamped_(stamped) {
+    if (!table.time || !rising_ || table.time == rising_ || rises(table.columns[*table.time])) return;
+    if (holds_stamps(table, *rising_))
+      table.time = rising_;
+    else
+      table.time.reset();
+  }
+
+  // @returns whether the column means something, if only that it is no channel
+  bool take(RecordTable& table, std::size_t index, RecordColumns& columns) {
+    const std::string& name = table.names[index];
+    auto found = recognise_column(name, index < table.units.size() ? table.units[index] : "");
+    if (!found) return false;
+    const auto named = [&](const char* one) {
+      return std::ranges::find(table.names, one) != table.names.end();
+    };
+    if ((name == "gx" || name == "gy" || name == "gz") && (named("ax") || named("ay")))
+      found->kind = RecognisedColumn::Kind::other;  // of a gyroscope
+    const auto add = [&](std::string& list) {
+      list += (list.empty() ? "" : ", ") +
+              (name.empty() ? fmt::format("column {}", index + 1) : "'" + name + "'");
+    };
+    const std::vector<double>& values = table.columns[index];
+    if (holds_words(table, index)) {
+      add(words_);
+      if (!first_words_) first_words_ = index;
+      return true;
+    }
+    if (name.empty()) {  // the index of a table
+      if (counts_samples(values))
+        counted_ = counted_.value_or(index);
+      else if (index == 0 && rises(values))
+        unnamed_ = index;
+      else
+        add(other_);
+      return true;
+    }
+    if (index == 0 && found->kind == RecognisedColumn::Kind::signal && !found->states_quantity &&
+        !found->states_unit && runs_evenly(values)) {  // no motion does
+      if (counts_samples(values))
+        counted_ = counted_.value_or(index);
+      else
+        unnamed_ = index;
+      return true;
+    }
+    switch (found->kind) {
+      case RecognisedColumn::Kind::count:
+        if (!counted_) counted_ = index;
+        break;
+      case RecognisedColumn::Kind::frequency:
+        if (index == 0 && rises(values) && !stamped_)
+          throw InputError(
+              {table.file, table.header_line, 0},
+              fmt::format("column 1 '{}' is a frequency: a spectrum; expected a record, samples in time",
+                          name));
+        [[fallthrough]];
+      case RecognisedColumn::Kind::other:
+        add(other_);
+        break;
+      case RecognisedColumn::Kind::time:
+        if (columns.time || table.time || (rising_ && index != rising_)) {
+          require_one_clock(table, columns, index, *found);
+          add(other_);
+        } else if (!found->states_unit && counts_samples(table.columns[index])) {
+          counted_ = index;
+        } else {
+          const bool certain = found->states_unit && mean_step(table.columns[index]) >= found->least_step;
+          take_stamps(table, index, certain ? std::optional(found->factor) : std::nullopt, columns);
+          unit_is_sure_ = certain;
+        }
+        break;
+      case RecognisedColumn::Kind::signal: {
+        columns.channels.push_back({index, found->factor, {found->quantity, name}});
+        columns.recognised = true;
+        const bool as_it_is = !found->states_unit;
+        read_ += fmt::format("{}'{}' as {}{}", read_.empty() ? "" : ", ", name, to_string(found->quantity),
+                             as_it_is ? ", its unit taken for " + std::string(si_unit(found->quantity)) : "");
+      }
+    }
+    return true;
+  }
+
+  // Stamps alone, where channels are stated.
+  void take_time(RecordTable& table, RecordColumns& columns) {
+    for (std::size_t index = 0; index < std::min(table.names.size(), table.width()); ++index) {
+      const auto found =
+          recognise_column(table.names[index], index < table.units.size() ? table.units[index] : "");
+      if (found && (found->kind == RecognisedColumn::Kind::time ||
+                    found->kind == RecognisedColumn::Kind::count || (index == 0 && table.names[0].empty())))
+        take(table, index, columns);
+    }
+    other_.clear(), words_.clear();
+    report(table, columns);
+  }
+
+  // Says it in one line, and asks the one question that is left.
+  void report(RecordTable& table, RecordColumns& columns) {
+    if (columns.channels.empty() && first_words_) {
+      std::size_t row = 0;
+      while (std::isfinite(table.columns[*first_words_][row])) ++row;
+      throw table.fault(row, *first_words_);
+    }
+    if (unnamed_ && !columns.time && !table.time && !stamped_) take_stamps(table, *unnamed_, {}, columns);
+    const std::string stamps = table.time && table.by_people && !column_name_of(table, *table.time).empty()
+                                   ? "'" + column_name_of(table, *table.time) + "' as dates or times of day, "
+                                   : "";
+    if (!read_.empty()) table.remarks.push_back("Read: " + stamps + read_ + ".");
+    if (!words_.empty()) table.remarks.push_back("Text in place of numbers, omitted: " + words_ + ".");
+    if (!other_.empty()) table.remarks.push_back("No channels of motion, omitted: " + other_ + ".");
+    if (!columns.time && !table.time) columns.counted = counted_;
+    drop_first_zeros(table, columns);
+  }
+
+ private:
+  std::string read_, other_, words_;
+  std::optional<std::size_t> rising_, counted_, unnamed_, first_words_;
+  bool stamped_, unit_is_sure_ = false;
+
+  // @param factor to seconds, where the file states it
+  void take_stamps(const RecordTable& table, std::size_t index, std::optional<double> factor,
+                   RecordColumns& columns) {
+    if (!factor) {
+      factor = seconds_of_epoch(table.columns[index]);
+      if ((stamped_ || table.stated_rate) && !is_plausible(mean_step(table.columns[index]), *factor)) {
+        counted_ = index;  // what is known of the rate is elsewhere
+        return;
+      }
+      require_plausible_step(table, index, *factor);
+    }
+    columns.time = RecordColumn{index, *factor, {}};
+    const std::string name = column_name_of(table, index);
+    read_ += fmt::format("{}{} as time in {}", read_.empty() ? "" : ", ",
+                         name.empty() ? fmt::format("column {}", index + 1) : "'" + name + "'",
+                         unit_of_time(*factor));
+  }
+
+  // Two columns of times, each for the channels beside it.
+  // @throws InputError where they run at different rates, whatever their units
+  void require_one_clock(const RecordTable& table, const RecordColumns& columns, std::size_t index,
+                         const RecognisedColumn& other) const {
+    constexpr double alike = 0.02;
+    if (!columns.time || stamped_ || (!unit_is_sure_ && other.states_unit)) return;
+    const std::vector<double>&one = table.columns[columns.time->index], &two = table.columns[index];
+    if (!rises(one) || !rises(two)) return;
+    double ratio = mean_step(two) / mean_step(one);
+    if (unit_is_sure_ && other.states_unit)
+      ratio *= other.factor / columns.time->factor;
+    else if (unit_is_sure_ != other.states_unit || std::max(ratio, 1.0 / ratio) > 50.0)
+      return;  // in other units
+    if (std::abs(ratio - 1.0) < alike) return;
+    throw InputError(
+        {table.file, table.header_line, 0},
+        fmt::format("columns {} and {} are times of two clocks, the second at {:.4g} times the rate of the "
+                    "first; expected "
+                    "the channels of one: --time {}:s --column N, or --time {}:s --column N",
+                    columns.time->index + 1, index + 1, 1.0 / ratio, columns.time->index + 1, index + 1));
+  }
+
+  // A logger's first sample, before its sensor has answered.
+  static void drop_first_zeros(RecordTable& table, const RecordColumns& columns) {
+    constexpr std::size_t enough = 16;
+    if (columns.channels.empty() || table.rows() < enough) return;
+    for (const RecordColumn& column : columns.channels)
+      if (table.columns[column.index][0] != 0.0 || table.columns[column.index][1] == 0.0) return;
+    if (columns.channels.size() < 2 && table.width() < 3) return;
+    std::vector<bool> kept(table.rows(), true);
+    kept[0] = false;
+    table.keep(kept);
+    table.remarks.emplace_back("The first sample, zero in every channel, is omitted.");
+  }
+};
+
+// The first column that rises is time.
+// @param columns of which `time` or `counted` is set
+// @returns the first column behind it
+std::size_t take_first_rising(const RecordTable& table, bool stamped, RecordColumns& columns) {
+  std::size_t first = 0;
+  while (first + 1 < table.width() && holds_words(table, first)) ++first;
+  if (table.width() <= first + 1 || table.time || !rises(table.columns[first])) return first;
+  if (counts_samples(table.columns[first])) {
+    columns.counted = first;
+    if (table.width() > first + 2 && runs_evenly(table.columns[first + 1]) &&
+        !counts_samples(table.columns[first + 1]))
+      ++first;  // counts, then times
+  }
+  if (columns.counted != first && !stamped) {
+    const double unit = seconds_of_epoch(table.columns[first]);
+    require_plausible_step(table, first, unit);
+    columns.time = RecordColumn{first, unit, {}};
+    columns.counted = {};
+  }
+  return first + 1;
+}
+
+// The first column that rises is time, the rest are signals.
+RecordColumns columns_without_header(RecordTable& table, bool stamped) {
+  RecordColumns columns;
+  columns.recognised = true;
+  const std::size_t first = take_first_rising(table, stamped, columns);
+  const auto never_moves = [](const std::vector<double>& values) {  // dates beside times of day
+    return std::ranges::all_of(values, [&](double value) { return value == 0.0; });
+  };
+  for (std::size_t index = first; index < table.width(); ++index)
+    if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index))
+      columns.channels.push_back({index, 1.0, {Quantity::acceleration, fmt::format("column_{}", index + 1)}});
+  table.remarks.push_back(fmt::format(
+      "No header: {}{} taken for acceleration in m/s2. Frequency and damping ratio do not depend on it.",
+      columns.time ? fmt::format("column {} is taken for time in {}, ", columns.time->index + 1,
+                                 unit_of_time(columns.time->factor))
+                   : "",
+      numbers_of(columns.channels)));
+  return columns;
+}
+
+}  // namespace
+
+void find_times(RecordTable& table, RecordColumns& columns) {
+  if (table.names.empty())
+    take_first_rising(table, false, columns);
+  else
+    Recognition(table, false).take_time(table, columns);
+}
+
+RecordColumns columns_of_header(RecordTable& table, bool stamped) {
+  RecordColumns columns;
+  const Place header{table.file, table.header_line, 0};
+  if (table.names.empty() && table.by_people) return columns_without_header(table, stamped);
+  if (table.names.size() != table.width())
+    throw InputError(header,
+                     fmt::format("a header of {} names for {}; expected one each, with its unit ({}), or {}",
+                                 table.names.size(), count_of_columns(table.width()), known_column_names(),
+                                 in_configuration));
+  std::string unknown;
+  Recognition recognition(table, stamped);
+  for (std::size_t index = 0; index < table.width(); ++index) {
+    if (table.time == index) continue;
+    const auto meaning = stated_meaning(table, index);
+    if (!meaning && table.by_people && recognition.take(table, index, columns)) continue;
+    if (!meaning && table.units.empty())
+      throw InputError(header, fmt::format("unknown column '{}'; expected names with units ({}), or {}",
+                                           table.names[index], known_column_names(), in_configuration));
+    if (!meaning)
+      unknown +=
+          fmt::format("{}'{}' [{}]", unknown.empty() ? "" : ", ", table.names[index], table.units[index]);
+    else if (meaning->quantity)
+      columns.channels.push_back(
+          {index,
+           meaning->factor,
+           {*meaning->quantity, meaning->label.empty() ? to_string(*meaning->quantity) : meaning->label}});
+    else if (columns.time)
+      throw InputError(header, "two columns of time; expected one");
+    else
+      columns.time = RecordColumn{index, meaning->factor, {}};
+  }
+  recognition.report(table, columns);
+  if (columns.channels.empty() && !unknown.empty())
+    throw InputError(
+        header, fmt::format("no unit states what is measured: {}; expected {}", unknown, in_configuration));
+  if (columns.channels.empty()) throw InputError(header, "no column but time; expected a measured quantity");
+  if (!unknown.empty())
+    table.remarks.push_back(
+        fmt::format("Omitted, as the unit does not determine the quantity: {}.", unknown));
+  return columns;
+}
+
+}  // namespace beamid::experiments
