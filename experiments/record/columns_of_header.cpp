@@ -209,9 +209,11 @@ class Recognition {
       throw table.fault(row, *first_words_);
     }
     if (unnamed_ && !columns.time && !table.time && !stamped_) take_stamps(table, *unnamed_, {}, columns);
-    const std::string stamps = table.time && table.by_people && !column_name_of(table, *table.time).empty()
-                                   ? "'" + column_name_of(table, *table.time) + "' as dates or times of day, "
-                                   : "";
+    const std::string stamps =
+        table.time && table.by_people && !column_name_of(table, *table.time).empty()
+            ? "'" + column_name_of(table, *table.time) +
+                  (holds_stamps(table, *table.time) ? "' as dates or times of day, " : "' as time in s, ")
+            : "";
     if (!read_.empty()) table.remarks.push_back("Read: " + stamps + read_ + ".");
     if (!words_.empty()) table.remarks.push_back("Text in place of numbers, omitted: " + words_ + ".");
     if (!other_.empty()) table.remarks.push_back("No channels of motion, omitted: " + other_ + ".");

@@ -65,6 +65,7 @@ bool counts_columns(const std::vector<std::string_view>& fields) {
 DelimitedText::DelimitedText(std::string file, std::string_view text, char separator, int header_lines,
                              char decimal, bool tolerant)
     : file_(std::move(file)), rest_(text), separator_(separator), decimal_(decimal), tolerant_(tolerant) {
+  if (separator_ == '\0' && decimal_ != '.' && is_column_with_commas(text)) separator_ = ';', decimal_ = ',';
   const std::string_view typical = typical_line(text);
   semicolon_comments_ = separator_ != ';' && separator_of(typical) != ';';
   split_fields(typical, separator_ == '\0' ? separator_of(typical) : separator_, fields_);
@@ -150,7 +151,8 @@ bool DelimitedText::find_body() {
     --first;
 
   const auto names_width = [&](std::size_t line) {
-    return named(lines[line].text, width).size() == width &&
+    return !(is_statement(lines[line].text) && !labelled_) &&
+           named(lines[line].text, width).size() == width &&
            (!holds_reading(fields[line]) || counts_columns(fields[line]));
   };
   const auto names = [&](std::size_t line) { return names_columns(named(lines[line].text, width)); };
@@ -161,13 +163,14 @@ bool DelimitedText::find_body() {
   std::optional<std::size_t> header, nearest;
   for (std::size_t k = first; k-- > 0 && first - k <= most_header_lines && !header;) {
     if (!names_width(k)) {
-      if (holds_reading(fields[k])) break;
+      if (holds_reading(fields[k]) && !is_statement(lines[k].text)) break;
       continue;
     }
     if (names(k)) header = k;
     if (!nearest && first - k <= 2) nearest = k;
   }
-  if (first > 0 && holds_reading(fields[first - 1]) && !names_width(first - 1))
+  if (first > 0 && holds_reading(fields[first - 1]) && !names_width(first - 1) &&
+      !is_statement(lines[first - 1].text))
     for (std::size_t k = 0; k < first; ++k)  // a line between names and rows is one of the rows
       if (lines[first - 1].width == width || (names_width(k) && names(k))) return false;
   if (!header && nearest && *nearest > 0 && first - *nearest == 1 && names_width(*nearest - 1)) --*nearest;
@@ -175,7 +178,8 @@ bool DelimitedText::find_body() {
   if (!header && first > 0) {  // names of more or fewer columns than the rows have
     const char parted_by = separator_of(lines[first - 1].text);
     if (fields[first - 1].size() > 1 && !holds_reading(fields[first - 1]) &&
-        names_columns(fields[first - 1]) && (parted_by != ' ' || separator_of(lines[first].text) == ' '))
+        !is_statement(lines[first - 1].text) && names_columns(fields[first - 1]) &&
+        (parted_by != ' ' || separator_of(lines[first].text) == ' '))
       return false;
   }
 

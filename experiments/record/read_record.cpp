@@ -271,7 +271,10 @@ Eigen::VectorXd counted(double start, double interval, std::size_t size, const s
 Eigen::VectorXd instants(const Stamps& stamps, std::vector<std::string>& remarks) {
   const RecordTable& table = *stamps.table;
   const std::size_t size = table.rows();
-  const std::optional<double>& rate = stamps.format->sampling_rate;
+  std::optional<double> rate = stamps.format->sampling_rate;
+  if (!rate && stamps.column && table.stated_rate && !rises(stamps.values()) &&
+      run_at(stamps, *table.stated_rate))
+    rate = table.stated_rate;  // stamps that are printed too coarsely
   if (!stamps.column) {
     if (!table.clock) return counted(0, 1 / *rate, size, table.file);
     if (rate) check_interval(table.clock->interval, *rate, table.file);
@@ -280,8 +283,10 @@ Eigen::VectorXd instants(const Stamps& stamps, std::vector<std::string>& remarks
   const std::vector<double>& times = stamps.values();
   if (rate) {
     if (stamps.come_in_bursts() && run_at(stamps, *rate))
-      remarks.push_back(fmt::format(
-          "The stamps come in bursts and run at {:.6g} Hz in the mean: samples are counted.", *rate));
+      remarks.push_back(
+          fmt::format("The stamps come in bursts, or are printed coarsely, and run at {:.6g} Hz in the mean: "
+                      "samples are counted.",
+                      *rate));
     else
       check_stamps(stamps, *rate);
     return counted(times[0] * stamps.factor(), 1 / *rate, size, table.file);

@@ -52,4 +52,22 @@ SamplingName sampling_name(std::string_view name);
 /// @param decimal sign of the file's numbers
 std::optional<double> stated_rate(std::string_view lines, char decimal = '.');
 
+/// "Sampling rate 400 Hz", "dt=0.0025 s, N=4000", "Channels: 4": no names of columns, and no row.
+bool is_statement(std::string_view line);
+
+/// A text of one column with a decimal comma ("1,50123", "-0,01234"): as many digits follow in every line,
+/// some begin with 0, and the whole numbers do not count.
+bool is_column_with_commas(std::string_view text);
+
+// Units of time, and letters without their accents, for the words above.
+
+/// "ns", "ms", "s", "min", "h" [s]; absent: another.
+std::optional<double> seconds_per_unit(std::string_view unit);
+
+/// Small letters, without accents: "Deplacement" -> "deplacement".
+std::string folded(std::string_view text);
+
+/// Whether a unit is one of what is no motion: "lux", "MPa", "V".
+bool is_other_unit(std::string_view unit);
+
 }  // namespace beamid::experiments

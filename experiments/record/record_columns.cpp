@@ -119,6 +119,10 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   RecordColumns columns;
   // Times that are stated elsewhere need no column.
   const bool stamped = format.time || format.sampling_rate;
+  for (std::size_t index = 0; table.by_people && index < table.width(); ++index)
+    if (go_on_past_32_bits(table.columns[index]))
+      table.remarks.push_back(
+          fmt::format("Column {} starts again after 2^32 counts: it goes on from there.", index + 1));
   if (format.channels.empty()) columns = columns_of_header(table, stamped);
   for (const ColumnDescription& wanted : format.channels)
     columns.channels.push_back(find_column(table, wanted));
@@ -132,6 +136,24 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
       columns.time = RecordColumn{index, meaning->factor, {}};
   if (!columns.time && !format.channels.empty() && table.by_people && !table.clock && !format.sampling_rate)
     find_times(table, columns);
+  if (columns.time && columns.time->index != table.time && table.stated_rate && !stamped) {
+    const double step = mean_step(table.columns[columns.time->index]) * columns.time->factor,
+                 ratio = step * *table.stated_rate;
+    constexpr double tolerated = 0.02;
+    const bool bare = table.names.empty() && std::abs(ratio - 1.0) > tolerated;
+    if (step > 0.0 && (bare || std::abs(ratio / 1000.0 - 1.0) < tolerated))
+      throw InputError(
+          {table.file, table.header_line, 0},
+          fmt::format(
+              "column {} runs at {:.6g} Hz in its unit, and the file states {:.6g} Hz; expected the unit "
+              "of its times: --time {}:ms or --time {}:s",
+              columns.time->index + 1, 1.0 / step, *table.stated_rate, columns.time->index + 1,
+              columns.time->index + 1));
+    if (step > 0.0 && std::abs(ratio - 1.0) > tolerated && rises(table.columns[columns.time->index]))
+      table.warnings.push_back(
+          fmt::format("The file states {:.6g} Hz, and its stamps run at {:.6g} Hz: the stamps are taken.",
+                      *table.stated_rate, 1.0 / step));
+  }
   if (!columns.time && !table.clock && !format.sampling_rate && table.stated_rate) {
     table.clock = Clock{0.0, 1.0 / *table.stated_rate};
     table.remarks.push_back(fmt::format(

@@ -243,6 +243,35 @@ double seconds_of_epoch(const std::vector<double>& stamps) {
   return 1.0;
 }
 
+bool go_on_past_32_bits(std::vector<double>& values) {
+  constexpr double range = 4294967296.0, like_others = 20.0;
+  constexpr std::size_t most_drops = 100;
+  if (values.size() < 3) return false;
+  std::vector<std::size_t> drops;
+  double rise = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!(values[k] >= 0.0 && values[k] < range) || values[k] != std::floor(values[k])) return false;
+    if (k == 0) continue;
+    if (const double step = values[k] - values[k - 1]; step > 0.0)
+      rise += step;
+    else
+      drops.push_back(k);
+    if (drops.size() > most_drops) return false;
+  }
+  if (drops.empty() || !(rise > 0.0)) return false;
+  const double usual = rise / static_cast<double>(values.size() - 1 - drops.size());
+  for (const std::size_t k : drops)
+    if (const double step = values[k] - values[k - 1] + range; !(step > 0.0 && step < like_others * usual))
+      return false;
+  double offset = 0.0;
+  std::size_t next = 0;
+  for (std::size_t k = drops[0]; k < values.size(); ++k) {
+    if (next < drops.size() && k == drops[next]) offset += range, ++next;
+    values[k] += offset;
+  }
+  return true;
+}
+
 double mean_step(const std::vector<double>& stamps) {
   return stamps.size() < 2 ? 0.0 : (stamps.back() - stamps.front()) / static_cast<double>(stamps.size() - 1);
 }

@@ -40,6 +40,10 @@ bool rises(const std::vector<double>& values);
 /// Rises by equal steps, to 5 %.
 bool runs_evenly(const std::vector<double>& values);
 
+/// Goes on with a counter of 32 bits that started again: whole numbers below 2^32 that rise but for drops
+/// which 2^32 makes a step like the others. @returns whether it did
+bool go_on_past_32_bits(std::vector<double>& values);
+
 /// 0 of fewer than two.
 double mean_step(const std::vector<double>& stamps);
 

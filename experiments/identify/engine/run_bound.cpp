@@ -121,8 +121,13 @@ void set_interval(ComparedRun& run, std::size_t j, double spread) {
   const auto place = static_cast<Eigen::Index>(j);
   const double mean = run.unknown_state.mean[place];
   const double half = quantile_95 * spread * std::sqrt(run.unknown_state.covariance(place, place));
-  run.parameters[j].estimate.lower_95 = unknown.to_physical(mean - half);
-  run.parameters[j].estimate.upper_95 = unknown.to_physical(mean + half);
+  Estimate& estimate = run.parameters[j].estimate;
+  estimate.lower_95 = unknown.to_physical(mean - half);
+  estimate.upper_95 = unknown.to_physical(mean + half);
+  if (unknown.quantity != "damping_ratio" || !(estimate.value < 1.0)) return;
+  constexpr double none = 1e-6;  // a decay over a hundred thousand cycles
+  if (estimate.lower_95 < none) estimate.lower_95 = 0.0;
+  estimate.upper_95 = std::min(estimate.upper_95, 1.0);
 }
 
 double overconfidence(double deviation, double bound, double prior_deviation) {

@@ -113,7 +113,8 @@ std::shared_ptr<const std::string> without_arrows(const std::shared_ptr<const st
 
 /// Rows without names or times that go on from one to the next: one series, written several numbers to a
 /// line. The text above them states how many there are, or the step from a row's last number to the next
-/// row's first is that within the rows, and smaller than that down a column.
+/// row's first is that within the rows, and smaller than that down a column. Columns of a series are of one
+/// mean and one size.
 bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
   constexpr std::size_t fewest_columns = 3, fewest_rows = 20;
   constexpr double alike = 0.25, less = 0.6;
@@ -122,6 +123,19 @@ bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
   for (const std::vector<double>& column : table.columns)
     if (rises(column) || !std::ranges::all_of(column, [](double value) { return std::isfinite(value); }))
       return false;
+  double mean = 0.0, square = 0.0;
+  for (const std::vector<double>& column : table.columns)
+    for (const double value : column) mean += value, square += value * value;
+  const double count_of_all = static_cast<double>(rows * width);
+  mean /= count_of_all;
+  const double size = std::sqrt(square / count_of_all - mean * mean);
+  for (const std::vector<double>& column : table.columns) {  // of one series all are alike
+    double own = 0.0, own_square = 0.0;
+    for (const double value : column) own += value, own_square += value * value;
+    own /= static_cast<double>(rows);
+    const double own_size = std::sqrt(std::max(0.0, own_square / static_cast<double>(rows) - own * own));
+    if (std::abs(own - mean) > 0.25 * size || std::abs(own_size - size) > 0.2 * size) return false;
+  }
   double within = 0.0, down = 0.0, over = 0.0;
   for (std::size_t row = 0; row + 1 < rows; ++row) {
     for (std::size_t k = 0; k < width; ++k) {
@@ -130,12 +144,14 @@ bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
     }
     over += std::abs(table.columns[0][row + 1] - table.columns[width - 1][row]);
   }
-  within /= static_cast<double>(width - 1), down /= static_cast<double>(width);
-  if (!(within > 0.0)) return false;
+  within /= static_cast<double>(width - 1) * static_cast<double>(rows - 1),
+      over /= static_cast<double>(rows - 1);
+  down /= static_cast<double>(width) * static_cast<double>(rows - 1);
+  if (!(within > 0.0) || std::abs(over / within - 1.0) > alike || within > 0.9 * size) return false;
+  static const std::regex of_all("channel|kan(a|\xc3\xa4)l|canal|total", std::regex::icase);
   const std::regex count("(^|[^0-9.])" + std::to_string(rows * width + last) + "($|[^0-9.])");
-  if (std::regex_search(above.begin(), above.end(), count))
-    return within < 1.05 * down && over < 2.0 * within;
-  return std::abs(over / within - 1.0) < alike && within < less * down;
+  return within < less * down || (std::regex_search(above.begin(), above.end(), count) &&
+                                  !std::regex_search(above.begin(), above.end(), of_all));
 }
 
 void join_rows(RecordTable& table, const std::vector<double>& last) {

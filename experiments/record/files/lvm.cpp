@@ -373,7 +373,12 @@ class LvmFile {
       table_.precision.push_back(precision_[k + 1]);
       fields.push_back(y_[k]);
     }
-    table_.by_people = std::ranges::all_of(segment_.units, &std::string::empty);
+    // Without labels the names are all there is; a cell that holds nothing is no gap here, but damage.
+    table_.by_people =
+        std::ranges::all_of(segment_.units, &std::string::empty) &&
+        std::ranges::all_of(table_.columns, [](const std::vector<double>& column) {
+          return std::ranges::all_of(column, [](double value) { return std::isfinite(value); });
+        });
     if (segments_ > 1) table_.remarks.push_back(fmt::format("{} segments are joined.", segments_));
     table_.cell = cells_.cells(lines_.separator(), fields);
   }

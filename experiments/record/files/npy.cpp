@@ -124,6 +124,8 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
     return;
   }
   const Numbers numbers(type[1].str());
+  const bool text = type[1].str().find_first_of("US") == 1;
+  if (!numbers.type && text && !name.empty()) return;  // labels in an archive
   if (!numbers.type) throw refuse(fmt::format("numbers of type '{}'", type[1].str()));
   const bool by_columns = header.find("'fortran_order': True") != std::string::npos;
   if (shape[1].length() == 0) {  // a number alone

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -9,14 +10,10 @@
 #include "experiments/record/read_record.hpp"
 #include "experiments/record/units.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
+#include "tests/experiments/record/recognised_text.hpp"
 
 namespace beamid::experiments::recognised_record_test {
 namespace {
-
-Record recognised(const std::string& content, const RecordFormat& format = {}) {
-  const TemporaryFile file("record.txt", content);
-  return read_record(file.path(), format);
-}
 
 TEST(RecognisedRecord, RecognisesHeadersAsPeopleWriteThem) {
   struct Case {
@@ -238,47 +235,6 @@ TEST(RecognisedRecord, ReadsUtf16) {
   EXPECT_EQ(recognised(text).size(), 20);
 }
 
-// A decay of 5 Hz, written as the caller likes; 400 Hz.
-std::string signal_rows(int rows, const std::function<std::string(int, double)>& row) {
-  std::string text;
-  for (int k = 0; k < rows; ++k) text += row(k, std::exp(-0.002 * k) * std::cos(0.08 * k)) + "\n";
-  return text;
-}
-
-std::string question_of(const std::string& content, const RecordFormat& format = {}) {
-  try {
-    return fmt::format("read at {:.6g} Hz", 1.0 / recognised(content, format).interval());
-  } catch (const InputError& asked) {
-    return asked.what();
-  }
-}
-
-TEST(RecognisedRecord, TakesARateThatWordsForOneState) {
-  const std::string rows = signal_rows(40, [](int, double a) { return fmt::format("{:.5f}", a); });
-  for (const char* const head :
-       {"Sampling rate: 400 Hz", "Abtastfrequenz = 0,4 kHz", "Messrate: 400,00 Hz",
-        "Frequence d'echantillonnage : 400 Hz", "Fréquence d'échantillonnage : 400 Hz",
-        "Frecuencia de muestreo = 400 Hz", "Frequenza di campionamento: 400 Hz", "Samples per second: 400",
-        "ODR = 400 Hz", "Scan rate: 400 scans/s", "FPS: 400", "Sampling: 0.4 kS/s", "\"SampleRate\",400,400",
-        "\"HResolution\",2.5E-03,2.5E-03", "TIMESERIES X_Y_Z, 40 samples, 400 sps, SLIST",
-        "ADC sampling rate: 3200 Hz\nOutput data rate: 400 Hz", "points at equal intervals of .0025 sec",
-        "fs = 400"})
-    EXPECT_EQ(question_of(std::string(head) + "\nAcc (g)\n" + rows), "read at 400 Hz") << head;
-}
-
-// A rate of something else is no sampling rate, and of two the file does not say which.
-TEST(RecognisedRecord, AsksForTheRateWhereTheNumberIsOfSomethingElse) {
-  const std::string rows = signal_rows(40, [](int, double a) { return fmt::format("{:.5f}", a); });
-  for (const char* const head :
-       {"GPS rate: 10 Hz", "Update rate: 1 Hz (display)", "Trigger rate: 1 Hz", "Sweep rate: 2 Hz/s",
-        "Max sample rate: 3200 Hz", "Total sampling rate: 1200 Hz (3 channels)", "Full scale fs = 10 V",
-        "FS = 5 g", "dt = 2.5", "dt = 20 K", "dt: 2.5 s (heating)", "Increment: 1 mm", "Abtastrate: 1.200 Hz",
-        "Sampling rate: 1,200 Hz", "Sampling rate: 2000 Hz\nDecimation: 5",
-        "Sample rate: 400 Hz\nSample rate: 200 Hz", "Refresh rate 60 Hz"})
-    EXPECT_THAT(question_of(std::string(head) + "\nAcc (g)\n" + rows), testing::HasSubstr("--rate HZ"))
-        << head;
-}
-
 TEST(RecognisedRecord, AsksForTheUnitOfTimesWhoseStepsAreThoseOfAnother) {
   const auto stamped = [](const std::string& header, double first, double step) {
     return header + "\n" + signal_rows(40, [&](int k, double a) {
@@ -310,26 +266,6 @@ TEST(RecognisedRecord, AsksForTheUnitOfTimesWhoseStepsAreThoseOfAnother) {
   RecordFormat with_rate;
   with_rate.sampling_rate = 400.0;
   EXPECT_EQ(question_of(stamped("t,a", 0.0, 2.5), with_rate), "read at 400 Hz");
-}
-
-TEST(RecognisedRecord, JoinsNumbersThatAreWrittenSeveralToALine) {
-  std::string rows;
-  for (int k = 0; k < 320; ++k) rows += fmt::format("{:.5f}{}", std::sin(0.05 * k), k % 8 == 7 ? "\n" : " ");
-  for (const char* const head :
-       {"Sampling rate: 400 Hz\nNumber of points: 320\n", "Sampling rate: 400 Hz\n"}) {
-    const Record record = recognised(head + rows + "0.1 0.2 0.3\n");
-    ASSERT_EQ(record.channels.size(), 1u) << head;
-    EXPECT_EQ(record.size(), 323);
-    EXPECT_NEAR(record.samples(0, 100), std::sin(5.0), 1e-5);
-  }
-  // Eight sensors beside each other are no series.
-  std::string sensors;
-  for (int k = 0; k < 40; ++k) {
-    for (int i = 0; i < 8; ++i)
-      sensors += fmt::format("{:.5f} ", (1.0 + 0.3 * i) * std::sin(0.05 * k + 0.7 * i * i));
-    sensors += "\n";
-  }
-  EXPECT_EQ(recognised("Sampling rate: 400 Hz\n" + sensors).channels.size(), 8u);
 }
 
 TEST(RecognisedRecord, ReadsMonitorsAndTakesTheTimesThatRise) {
@@ -370,6 +306,15 @@ TEST(RecognisedRecord, RefusesStampsOfTransfersAndTakesAStatedRateForThem) {
   EXPECT_EQ(question_of(bursts, with_rate), "read at 200 Hz");
   with_rate.sampling_rate = 210.0;  // which the stamps contradict
   EXPECT_THAT(question_of(bursts, with_rate), testing::HasSubstr("as stated"));
+}
+
+// Microseconds of an Arduino start again every 71 minutes.
+TEST(RecognisedRecord, GoesOnWhereACounterOf32BitsStartsAgain) {
+  const std::string text =
+      "micros,ax\n" + signal_rows(60, [](int k, double a) {
+        return fmt::format("{},{:.5f}", (4294900000u + 2500u * static_cast<unsigned>(k)), a);
+      });
+  EXPECT_EQ(question_of(text), "read at 400 Hz");
 }
 
 TEST(RecognisedRecord, PassesOverWhatIsNoPartOfTheRecord) {
