@@ -187,9 +187,8 @@ bool says_missing(std::string_view field) {
   if (field.empty()) return true;
   std::string text = unquoted(field);
   for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  static const std::set<std::string> nothing{"",     "nan",      "na",  "n/a", "#n/a", "null",
-                                             "none", "overflow", "ovf", "ol",  "-",    "--",
-                                             "∞",    "-∞"};
+  static const std::set<std::string> nothing{"",         "nan", "na", "n/a", "#n/a", "null", "none",
+                                             "overflow", "ovf", "ol", "-",   "--",   "∞",    "-∞"};
   return nothing.contains(text);
 }
 
