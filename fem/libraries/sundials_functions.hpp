@@ -1,6 +1,6 @@
-// The functions of SUNDIALS that fem and filters use, loaded when an integrator of it is first used: Debian 13 builds
-// SUNDIALS with MPI, and a program that links it starts a tenth of a second later. SUNDIALS 6 (Debian 12) and 7 (Debian 13)
-// under the names of 7: all in which they differ is here and in sundials.cmake.
+// The functions of SUNDIALS that fem and filters use, loaded when an integrator of it is first used: Debian
+// 13 builds SUNDIALS with MPI, and a program that links it starts a tenth of a second later. SUNDIALS 6
+// (Debian 12) and 7 (Debian 13) under the names of 7: all in which they differ is here and in sundials.cmake.
 #pragma once
 
 #include <arkode/arkode_arkstep.h>
@@ -79,9 +79,9 @@ BEAMID_NEEDED(sundials_klu, SUNLinSol_KLU);
 BEAMID_NEEDED(sundials_arkode, ARKStepCreate);
 
 #if SUNDIALS_VERSION_MAJOR < 7
-#define BEAMID_ARKODE_FUNCTION(name)                                                                      \
+#define BEAMID_ARKODE_FUNCTION(name)                                                             \
   inline constinit const NeededFunction<decltype(::ARKStep##name)> ARKode##name(sundials_arkode, \
-                                                                                         "ARKStep" #name)
+                                                                                "ARKStep" #name)
 BEAMID_NEEDED(sundials_cvodes, CVodeSetErrFile);
 BEAMID_ARKODE_FUNCTION(SetErrFile);
 #else

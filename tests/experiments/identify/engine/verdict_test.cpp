@@ -184,9 +184,9 @@ TEST(Verdict, WhatTheRecordDoesNotTellIsNamed) {
                  {"modal_truncation"}, "root_rotational_stiffness_n_m_per_rad = 1e9\n"));
   const ComparedRun& run = found.runs[0];
   ASSERT_TRUE(run.has_estimate()) << run.reason;
-  EXPECT_THAT(texts(run.objections),
-              Contains(HasSubstr(
-                  "NOT DETERMINED: root_rotational_stiffness (1): the record determines no more")));
+  EXPECT_THAT(
+      texts(run.objections),
+      Contains(HasSubstr("NOT DETERMINED: root_rotational_stiffness (1): the record determines no more")));
   const Comparison known =
       compared(cantilever("[simulation]\nduration_s = 4\nsampling_rate_hz = 100\n" + sensor + ask_stiffness,
                           {"modal_truncation"}));
