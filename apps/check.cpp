@@ -56,28 +56,24 @@ std::vector<Request> requests_of(const Values& values) {
   return requests;
 }
 
-/// @returns absent where each record decides
-std::optional<ModalStudySettings> modal_settings(const Values& values) {
-  if (!values.has("method")) return {};
+ModalStudySettings modal_settings(const Values& values) {
   ModalStudySettings settings;
-  settings.method = parse_choice(values.text("method"), "--method", modal_method_registry());
+  if (values.has("method"))
+    settings.method = parse_choice(values.text("method"), "--method", modal_method_registry());
   if (modal_method_registry().find(settings.method.name).contracts.contains(contract::frequency_response))
     throw UsageError("--method " + settings.method.name +
                      " needs hits with a measured force; expected era, ssi_cov or output_error");
+  settings.band_hz = values.from_to("band");
   return settings;
 }
 
-/// By the method asked for; else of a record whose inputs drive it from them, of another as a free decay.
+/// @param decides whether the record decides on the method: from inputs that drive it, else as a free decay
 RecordModes modes_of(const std::string& name, const Record& record, bool windowed,
-                     std::optional<ModalStudySettings> asked,
-                     std::optional<std::pair<double, double>> band_hz) {
-  ModalStudySettings settings = asked.value_or(ModalStudySettings());
-  settings.band_hz = band_hz;
-  const bool by_input =
-      asked && modal_method_registry().find(asked->method.name).contracts.contains(contract::measured_input);
+                     const ModalStudySettings& settings, bool decides) {
   std::optional<DrivenStudy> driven;
-  if (by_input) driven = study_driven(name, record, settings);
-  if (!asked && is_driven(record) && !is_struck(record)) {
+  if (modal_method_registry().find(settings.method.name).contracts.contains(contract::measured_input))
+    driven = study_driven(name, record, settings);
+  if (decides && is_driven(record) && !is_struck(record)) {
     DrivenOrDecaying found = driven_or_decaying(name, record, windowed, settings);
     if (!found.driven && found.decaying) return *std::move(found.decaying);
     driven = std::move(found.driven);
@@ -128,8 +124,7 @@ CheckedStructure structure_of_modes(const Request& request) {
 }
 
 /// What the records of one structure show, merged.
-CheckedStructure structure_of(const Request& request, const std::optional<ModalStudySettings>& settings,
-                              std::optional<std::pair<double, double>> band_hz,
+CheckedStructure structure_of(const Request& request, const ModalStudySettings& settings, bool decides,
                               std::vector<UsedRecord>& used) {
   if (std::any_of(request.records.begin(), request.records.end(), holds_modes))
     return structure_of_modes(request);
@@ -141,7 +136,7 @@ CheckedStructure structure_of(const Request& request, const std::optional<ModalS
       Record& record = used.back().prepared.record;
       record = made_analysable(with_places(record, request.experiment));
       found.push_back(modes_of(used.back().name, record, request.experiment.format.window.has_value(),
-                               settings, band_hz));
+                               settings, decides));
     } catch (const std::invalid_argument& error) {
       throw InputError({file.string()}, error.what());
     }
@@ -198,14 +193,14 @@ OptionGroup check_options() {
 }
 
 int run_check(const Values& values) {
-  const std::optional<ModalStudySettings> modal = modal_settings(values);
+  const ModalStudySettings modal = modal_settings(values);
   const ModelCheckSettings settings = check_settings(values);
   const std::vector<Request> requests = requests_of(values);
   return deliver(values, [&] {
     std::vector<CheckedStructure> structures;
     std::vector<UsedRecord> used;
     for (const Request& request : requests)
-      structures.push_back(structure_of(request, modal, values.from_to("band"), used));
+      structures.push_back(structure_of(request, modal, !values.has("method"), used));
     try {
       Results results = report(check_model(std::move(structures), settings));
       for (const Request& request : requests) {

@@ -104,21 +104,22 @@ std::optional<Results> driven_results(const std::vector<RecordRequest>& requests
                                       const std::vector<Record>& records, const ModalStudySettings& settings,
                                       bool decides, std::vector<RecordModes>& decaying) {
   std::vector<DrivenStudy> found;
-  for (std::size_t r = 0; r < records.size() && !decides; ++r) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    if (decides) {
+      DrivenOrDecaying one =
+          driven_or_decaying(names[r], records[r], requests[r].format.window.has_value(), settings);
+      if (one.decaying) decaying.push_back(*std::move(one.decaying));
+      if (one.driven) found.push_back(*std::move(one.driven));
+      continue;
+    }
     try {
       found.push_back(study_driven(names[r], records[r], settings));
     } catch (const std::invalid_argument& error) {
       throw InputError({requests[r].file.string()}, error.what());
     }
   }
-  for (std::size_t r = 0; r < records.size() && decides; ++r) {
-    DrivenOrDecaying one =
-        driven_or_decaying(names[r], records[r], requests[r].format.window.has_value(), settings);
-    if (one.decaying) decaying.push_back(*std::move(one.decaying));
-    if (one.driven) found.push_back(*std::move(one.driven));
-  }
   if (found.size() < records.size()) {
-    if (decaying.size() < records.size()) decaying.clear();  // asked anew
+    if (decaying.size() < records.size()) decaying.clear();  // computed anew
     return {};
   }
   return report(settings, found);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_columns.hpp"
 #include "experiments/record/stamps.hpp"
 #include "experiments/record/units.hpp"
@@ -50,8 +49,9 @@ std::string numbers_of(const std::vector<RecordColumn>& columns) {
                      columns.size() == 1 ? "is" : "are");
 }
 
+constexpr double fastest = 5e-6;  // [s], of 200 kHz
+
 bool is_plausible(double step, double taken) {
-  constexpr double fastest = 5e-6;  // [s]
   const bool by_size = taken != 1.0, of_days = taken == 86400.0;
   return !(step > 0.0) || of_days || (step * taken < (by_size ? 0.5 : 0.1) && step * taken > fastest);
 }
@@ -60,7 +60,7 @@ bool is_plausible(double step, double taken) {
 // [s]: most are in another.
 // @throws InputError the question
 void require_plausible_step(const RecordTable& table, std::size_t index, double taken) {
-  constexpr double fastest = 5e-6, largest = 20.0;  // [s]
+  constexpr double largest = 20.0;  // [s]
   const double step = mean_step(table.columns[index]);
   if (is_plausible(step, taken)) return;
   const std::string name = column_name_of(table, index);
@@ -91,8 +91,7 @@ bool holds_stamps(const RecordTable& table, std::size_t index) {
 // Of several columns of times the first that rises: "Date", "Time", "Elapsed (s)".
 std::optional<std::size_t> rising_time(const RecordTable& table) {
   for (std::size_t index = 0; index < std::min(table.names.size(), table.width()); ++index) {
-    const auto found =
-        recognise_column(table.names[index], index < table.units.size() ? table.units[index] : "");
+    const auto found = recognised(table, index);
     const bool time = table.time == index || (found && found->kind == RecognisedColumn::Kind::time) ||
                       holds_stamps(table, index);
     if (time && rises(table.columns[index]) &&
@@ -117,7 +116,7 @@ class Recognition {
   // @returns whether the column means something, if only that it is no channel
   bool take(RecordTable& table, std::size_t index, RecordColumns& columns) {
     const std::string& name = table.names[index];
-    auto found = recognise_column(name, index < table.units.size() ? table.units[index] : "");
+    auto found = recognised(table, index);
     if (!found) return false;
     const auto named = [&](const char* one) {
       return std::ranges::find(table.names, one) != table.names.end();
@@ -191,8 +190,7 @@ class Recognition {
   // Stamps alone, where channels are stated.
   void take_time(RecordTable& table, RecordColumns& columns) {
     for (std::size_t index = 0; index < std::min(table.names.size(), table.width()); ++index) {
-      const auto found =
-          recognise_column(table.names[index], index < table.units.size() ? table.units[index] : "");
+      const auto found = recognised(table, index);
       if (found && (found->kind == RecognisedColumn::Kind::time ||
                     found->kind == RecognisedColumn::Kind::count || (index == 0 && table.names[0].empty())))
         take(table, index, columns);

@@ -168,17 +168,13 @@ struct Stamps {
     return std::max(precision().resolution(values().front()), precision().resolution(values().back()));
   }
   /// Whether their rounding leaves an interval to be seen.
-  bool show_intervals() const {
-    const double mean = (values().back() - values().front()) / static_cast<double>(values().size() - 1);
-    return resolution() < 0.5 * mean;
-  }
-  /// Several samples of one stamp, or hardly apart, as of one transfer.
+  bool show_intervals() const { return resolution() < 0.5 * mean_step(values()); }
+  /// Several samples of one stamp, or next to each other, as of one transfer.
   bool come_in_bursts() const {
-    constexpr double hardly = 0.25, often = 0.3;  // of the mean step, of the samples
-    const double close =
-        hardly * (values().back() - values().front()) / static_cast<double>(values().size() - 1);
+    constexpr double close = 0.25, often = 0.3;  // of the mean step, of the samples
+    const double next = close * mean_step(values());
     std::size_t count = 0;
-    for (std::size_t k = 1; k < values().size(); ++k) count += values()[k] - values()[k - 1] < close ? 1 : 0;
+    for (std::size_t k = 1; k < values().size(); ++k) count += values()[k] - values()[k - 1] < next ? 1 : 0;
     return static_cast<double>(count) > often * static_cast<double>(values().size());
   }
   double rounding(std::size_t sample) const { return precision().resolution(values()[sample]) * factor(); }

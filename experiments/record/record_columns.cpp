@@ -39,10 +39,9 @@ RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
                        wanted.noise * wanted.factor}};
   if (!wanted.stated) {
     auto meaning = stated_meaning(table, column.index);
-    const std::string unit = column.index < table.units.size() ? table.units[column.index] : "";
-    if (const auto named = recognise_column(column_name_of(table, column.index), unit);
-        !meaning && table.by_people && named && named->kind == RecognisedColumn::Kind::signal &&
-        named->states_quantity)
+    if (const auto named = recognised(table, column.index); !meaning && table.by_people && named &&
+                                                            named->kind == RecognisedColumn::Kind::signal &&
+                                                            named->states_quantity)
       meaning = ColumnMeaning{named->quantity, "", named->factor};
     if (!meaning || !meaning->quantity)
       throw InputError(
@@ -58,10 +57,36 @@ RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
   return column;
 }
 
+// Stamps that run at another rate than the text above them states.
+// @throws InputError where the unit of times may be the reason, or nothing names them as times
+void compare_with_stated_rate(RecordTable& table, const RecordColumns& columns) {
+  if (!columns.time || columns.time->index == table.time || !table.stated_rate) return;
+  const double step = mean_step(table.columns[columns.time->index]) * columns.time->factor,
+               ratio = step * *table.stated_rate;
+  constexpr double tolerated = 0.02;
+  const bool bare = table.names.empty() && std::abs(ratio - 1.0) > tolerated;
+  if (step > 0.0 && (bare || std::abs(ratio / 1000.0 - 1.0) < tolerated))
+    throw InputError(
+        {table.file, table.header_line, 0},
+        fmt::format(
+            "column {} runs at {:.6g} Hz in its unit, and the file states {:.6g} Hz; expected the unit "
+            "of its times: --time {}:ms or --time {}:s",
+            columns.time->index + 1, 1.0 / step, *table.stated_rate, columns.time->index + 1,
+            columns.time->index + 1));
+  if (step > 0.0 && std::abs(ratio - 1.0) > tolerated && rises(table.columns[columns.time->index]))
+    table.warnings.push_back(
+        fmt::format("The file states {:.6g} Hz, and its stamps run at {:.6g} Hz: the stamps are taken.",
+                    *table.stated_rate, 1.0 / step));
+}
+
 }  // namespace
 
 std::string column_name_of(const RecordTable& table, std::size_t index) {
   return index < table.names.size() ? table.names[index] : "";
+}
+
+std::optional<RecognisedColumn> recognised(const RecordTable& table, std::size_t index) {
+  return recognise_column(column_name_of(table, index), index < table.units.size() ? table.units[index] : "");
 }
 
 std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_t index) {
@@ -136,24 +161,7 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
       columns.time = RecordColumn{index, meaning->factor, {}};
   if (!columns.time && !format.channels.empty() && table.by_people && !table.clock && !format.sampling_rate)
     find_times(table, columns);
-  if (columns.time && columns.time->index != table.time && table.stated_rate && !stamped) {
-    const double step = mean_step(table.columns[columns.time->index]) * columns.time->factor,
-                 ratio = step * *table.stated_rate;
-    constexpr double tolerated = 0.02;
-    const bool bare = table.names.empty() && std::abs(ratio - 1.0) > tolerated;
-    if (step > 0.0 && (bare || std::abs(ratio / 1000.0 - 1.0) < tolerated))
-      throw InputError(
-          {table.file, table.header_line, 0},
-          fmt::format(
-              "column {} runs at {:.6g} Hz in its unit, and the file states {:.6g} Hz; expected the unit "
-              "of its times: --time {}:ms or --time {}:s",
-              columns.time->index + 1, 1.0 / step, *table.stated_rate, columns.time->index + 1,
-              columns.time->index + 1));
-    if (step > 0.0 && std::abs(ratio - 1.0) > tolerated && rises(table.columns[columns.time->index]))
-      table.warnings.push_back(
-          fmt::format("The file states {:.6g} Hz, and its stamps run at {:.6g} Hz: the stamps are taken.",
-                      *table.stated_rate, 1.0 / step));
-  }
+  if (!stamped) compare_with_stated_rate(table, columns);
   if (!columns.time && !table.clock && !format.sampling_rate && table.stated_rate) {
     table.clock = Clock{0.0, 1.0 / *table.stated_rate};
     table.remarks.push_back(fmt::format(

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/record/units.hpp"
@@ -30,6 +31,9 @@ std::optional<ColumnMeaning> stated_meaning(const RecordTable& table, std::size_
 
 /// Empty where the file gives none.
 std::string column_name_of(const RecordTable& table, std::size_t index);
+
+/// What its name and its unit say of a column, as people write them.
+std::optional<RecognisedColumn> recognised(const RecordTable& table, std::size_t index);
 
 /// Where the configuration states what no file does, for messages.
 inline constexpr const char* in_configuration = "record.channels in the configuration";

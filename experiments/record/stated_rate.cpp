@@ -111,7 +111,7 @@ std::optional<double> stated_number(std::string text, char decimal) {
 struct Statement {
   double value = 0.0;
   std::string unit;          // small letters
-  bool other_thing = false;  // directly behind the number
+  bool other_thing = false;  // a word stands directly behind the number
 };
 
 std::optional<Statement> statement_behind(std::string_view rest, char decimal) {
@@ -137,7 +137,7 @@ std::optional<Statement> statement_behind(std::string_view rest, char decimal) {
   const std::string between = match[1];
   if (std::smatch unit; std::regex_search(between, unit, before)) return Statement{*value, unit[1], false};
   const bool apart = match[4].length() > 0 || digits.size() < static_cast<std::size_t>(match[2].length());
-  return Statement{*value, match[5], !apart};
+  return Statement{*value, match[5], !apart && match[5].length() > 0};
 }
 
 std::optional<double> samples_per_second(const std::string& unit) {
@@ -182,8 +182,7 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
     if (!stated) continue;
     if (word == &period) {
       const auto seconds = seconds_per_unit(stated->unit);
-      if (!seconds && (stated->other_thing ? !stated->unit.empty() : false)) continue;
-      if (!seconds && stated->value > longest_bare) continue;
+      if (!seconds && (stated->other_thing || stated->value > longest_bare)) continue;
       take(1.0 / (stated->value * seconds.value_or(1.0)));
       continue;
     }
@@ -195,7 +194,7 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
                            !std::regex_search(behind, explained))
       return -1.0;  // which of them
     const auto unit = samples_per_second(stated->unit);
-    if (!unit && (word == &with_unit || (stated->other_thing && !stated->unit.empty()))) continue;
+    if (!unit && (word == &with_unit || stated->other_thing)) continue;
     take(stated->value * unit.value_or(1.0));
   }
   return contradicts ? -1.0 : found;

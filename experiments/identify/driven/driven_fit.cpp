@@ -111,6 +111,12 @@ SizeTrend trend_with_size(const SectionScatter& scatter, Index unknown) {
   return trend;
 }
 
+SizeChange by_twice_the_motion(const SizeTrend& trend, const Unknown& unknown) {
+  const double at = unknown.to_physical(trend.at_mean);
+  return {unknown.to_physical(trend.at_mean + trend.slope) / at - 1.0,
+          trend.deviation * std::abs(unknown.slope(trend.at_mean) / at)};
+}
+
 namespace {
 
 using Complex = std::complex<double>;

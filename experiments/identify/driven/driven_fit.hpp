@@ -49,7 +49,7 @@ double section_factor(const SectionScatter& scatter, Eigen::Index unknown, doubl
 ///     eta_i = a + b log2 A_i + e_i,    var e_i = v_i + tau^2
 ///
 /// with v_i what a section's lines say and tau^2 >= 0 what makes the sum of the squares over their variances
-/// S - 2 (random effects [dersimonian1986]). Sizes that hardly differ determine no slope.
+/// S - 2 (random effects [dersimonian1986]). Sizes that are alike determine no slope.
 struct SizeTrend {
   double at_mean = 0.0;      ///< a, at the size of the whole record
   double slope = 0.0;        ///< b, of eta by every doubling
@@ -59,6 +59,12 @@ struct SizeTrend {
   bool exists(Eigen::Index unknowns) const { return probability < 0.01 / static_cast<double>(unknowns); }
 };
 SizeTrend trend_with_size(const SectionScatter& scatter, Eigen::Index unknown);
+
+/// By what share of itself an unknown changes where the motion is twice as large.
+struct SizeChange {
+  double share = 0.0, deviation = 0.0;
+};
+SizeChange by_twice_the_motion(const SizeTrend& trend, const Unknown& unknown);
 
 /// With y_k and u_k the lines of outputs and inputs, G_k(theta) of the model (supported_response.hpp), Z_k
 /// what a part of a record that does not repeat itself adds to a line, W the channels' weights [pintelon2012,

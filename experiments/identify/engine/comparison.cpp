@@ -257,12 +257,10 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
     comparison.compared.notes.push_back("For the modal analysis and first estimates: " +
                                         analysis.even.remark);
   comparison.objections = analysis.objections;
-  const bool one_run =
-      experiment.reductions.size() * experiment.filters.size() * experiment.discretisations.size() == 1;
-  const RunContext context{experiment, comparison.compared, analysis, one_run ? progress : unwatched};
-  Countdown countdown(
-      progress, experiment.reductions.size() * experiment.filters.size() * experiment.discretisations.size(),
-      "runs");
+  const std::size_t runs =
+      experiment.reductions.size() * experiment.filters.size() * experiment.discretisations.size();
+  const RunContext context{experiment, comparison.compared, analysis, runs == 1 ? progress : unwatched};
+  Countdown countdown(progress, runs, "runs");
   for (const Choice& reduction : experiment.reductions) {
     countdown.begin(to_text(reduction));
     ReducedBeam made = reduced_beam(context, reduction, folder);

@@ -92,12 +92,10 @@ void follow_size(ComparedRun& run) {
     const auto place = static_cast<Eigen::Index>(j);
     const SizeTrend trend = trend_with_size(*run.sections, place);
     if (!trend.exists(run.unknown_state.mean.size())) continue;
-    const Unknown& unknown = run.unknowns[j];
-    const double at = unknown.to_physical(trend.at_mean),
-                 change = 100.0 * (unknown.to_physical(trend.at_mean + trend.slope) / at - 1.0),
-                 half = 100.0 * quantile_95 * trend.deviation * std::abs(unknown.slope(trend.at_mean) / at);
+    const SizeChange change = by_twice_the_motion(trend, run.unknowns[j]);
     following += fmt::format("{}{} changes by {:+.2g} % (+- {:.2g} %)", following.empty() ? "" : ", ",
-                             run.parameters[j].estimate.name, change, half);
+                             run.parameters[j].estimate.name, 100.0 * change.share,
+                             100.0 * quantile_95 * change.deviation);
   }
   if (!following.empty())
     run.remarks.push_back("The estimates follow the size of the motion. Where it is twice as large, " +

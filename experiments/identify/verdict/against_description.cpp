@@ -94,7 +94,7 @@ std::string scale_text(const CommonFactor& found, bool contradicts) {
       "[record], or {}",
       listed(found.names), found.factor,
       found.factor < 0.0 ? ", the force or the motion with its sign turned"
-                         : usual_scale(found.factor, std::min(3.0 * found.deviation, 0.1)),
+                         : usual_scale(found.factor, std::min(3.0 * found.deviation, 0.1), true),
       contradicts ? fmt::format(", {:.2g} prior standard deviations", found.size() / found.deviation) : "",
       found.factor, found.names.size() == 2 ? "both" : "all",
       contradicts ? "describe the structure with the masses that it has" : "weigh the structure");
@@ -118,20 +118,25 @@ double deviations_from_prior(const Unknown& unknown, const Estimate& e) {
 
 }  // namespace
 
-std::string usual_scale(double factor, double near) {
+std::string usual_scale(double factor, double near, bool by_force) {
   struct Usual {
     double factor;
-    const char* name;
+    const char* number;
+    const char* of_force;
+    const char* of_motion;  // empty: of a force alone
   };
-  for (const auto& [usual, name] :
-       {Usual{9.80665, "9.80665, a force in N taken for kgf or an acceleration in g taken for m/s2"},
-        Usual{1.0 / 9.80665,
-              "1 / 9.80665, a force in kgf taken for N or an acceleration in m/s2 taken for g"},
-        Usual{4.44822, "4.448, a force in N taken for pounds-force"},
-        Usual{1.0 / 4.44822, "1 / 4.448, a force in pounds-force taken for N"},
-        Usual{1000.0, "1000, a force in N taken for kN or a motion in m taken for mm"},
-        Usual{0.001, "0.001, a force in kN taken for N or a motion in mm taken for m"}})
-    if (std::abs(std::log(factor / usual)) < near) return fmt::format(", as with {}", name);
+  for (const auto& [usual, number, of_force, of_motion] :
+       {Usual{9.80665, "9.80665", "a force in N taken for kgf", "an acceleration in g taken for m/s2"},
+        Usual{1.0 / 9.80665, "1 / 9.80665", "a force in kgf taken for N",
+              "an acceleration in m/s2 taken for g"},
+        Usual{4.44822, "4.448", "a force in N taken for pounds-force", ""},
+        Usual{1.0 / 4.44822, "1 / 4.448", "a force in pounds-force taken for N", ""},
+        Usual{1000.0, "1000", "a force in N taken for kN", "a motion in m taken for mm"},
+        Usual{0.001, "0.001", "a force in kN taken for N", "a motion in mm taken for m"}}) {
+    if (std::abs(std::log(factor / usual)) >= near) continue;
+    if (!by_force) return *of_motion ? fmt::format(", as with {}, {}", number, of_motion) : "";
+    return fmt::format(", as with {}, {}{}{}", number, of_force, *of_motion ? " or " : "", of_motion);
+  }
   return {};
 }
 

@@ -132,11 +132,7 @@ std::string described_response_text(const RunContext& context, const ComparedRun
         "shows{}{}. The unit, gain or sign of the input or of the motion is the likely cause: check "
         "[record].",
         gain, turned ? ", and against it" : "",
-        measures_force(context.analysis.record) ? usual_scale(gain, near)
-        : std::abs(std::log(gain) - std::log(9.80665)) < near ||
-                std::abs(std::log(gain) + std::log(9.80665)) < near
-            ? ", about 9.80665 or its inverse: an acceleration in g taken for m/s2 or the other way round"
-            : "");
+        usual_scale(gain, near, measures_force(context.analysis.record)));
   } catch (const std::exception&) {  // a guess that has no motion
     return {};
   }

@@ -84,7 +84,8 @@ AgainstDescription against_description(const std::vector<ComparedParameter>& par
 
 /// ", as with 9.80665, a force in N taken for kgf ...": of a force's reading over the force, or a motion over
 /// its reading, what makes such a factor within exp(+-near); empty: nothing usual.
-std::string usual_scale(double factor, double near);
+/// @param by_force whether a force was measured; else the motion alone can be in another unit
+std::string usual_scale(double factor, double near, bool by_force);
 
 /// Puts it among the warnings of a run; its status becomes contradicted where the priors exclude the factor.
 void judge_description(const RunContext& context, ComparedRun& run);

@@ -60,6 +60,11 @@ std::vector<DrivenMode> candidates(const StabilisationSettings& settings, const 
   return found;
 }
 
+std::string follows_amplitude(double other_hz) {
+  return fmt::format(
+      "moves as the mode at {:.4g} Hz does: a frequency or a damping that follows the amplitude", other_hz);
+}
+
 /// The mode that moves as mode m does, and near it: within a tenth of the frequency or three widths. -1:
 /// none.
 Index companion_of(const DrivenPoles& fit, Index m) {
@@ -93,9 +98,7 @@ std::string objection_to(const ModalStudySettings& settings, const DrivenStudy& 
     return fmt::format("frequency known to {:.2g} % only", 100.0 * deviation);
   if (const Index other = companion_of(fit, m);
       other >= 0 && study.modes[static_cast<std::size_t>(m)].orders.empty())
-    return fmt::format(
-        "moves as the mode at {:.4g} Hz does: a frequency or a damping that follows the amplitude",
-        std::abs(fit.rates[static_cast<std::size_t>(other)]) / (2.0 * pi));
+    return follows_amplitude(std::abs(fit.rates[static_cast<std::size_t>(other)]) / (2.0 * pi));
   if (fit.share[m] < settings.smallest_amplitude * fit.share.maxCoeff())
     return fmt::format("motion below {:.2g} % of the strongest", 100.0 * settings.smallest_amplitude);
   return {};
@@ -241,9 +244,7 @@ std::string doubt_about(const DrivenStudy& study, std::size_t k) {
         std::abs(other.pole.frequency_hz() / mode.pole.frequency_hz() - 1.0) < near &&
         mode.participation.norm() < least_of_same * other.participation.norm() &&
         modal_assurance(mode.pole.shape, other.pole.shape) > same)
-      return fmt::format(
-          "moves as the mode at {:.4g} Hz does: a frequency or a damping that follows the amplitude",
-          other.pole.frequency_hz());
+      return follows_amplitude(other.pole.frequency_hz());
   return {};
 }
 
@@ -261,7 +262,7 @@ bool leave_out_doubtful(DrivenStudy& study) {
   study.modes = std::move(kept);
   std::vector<Complex> rates;
   for (const DrivenMode& mode : study.modes) rates.push_back(mode.pole.rate);
-  if (any) study.fit = fit_driven_poles(study.lines, rates);
+  if (any && !rates.empty()) study.fit = fit_driven_poles(study.lines, rates);
   return any;
 }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -111,58 +113,51 @@ std::shared_ptr<const std::string> without_arrows(const std::shared_ptr<const st
   return plain;
 }
 
+/// Rows of a table as columns (width x rows): its numbers in the order of the text.
+Eigen::MatrixXd series_of(const RecordTable& table) {
+  Eigen::MatrixXd series(static_cast<Eigen::Index>(table.width()), static_cast<Eigen::Index>(table.rows()));
+  for (std::size_t k = 0; k < table.width(); ++k)
+    series.row(static_cast<Eigen::Index>(k)) =
+        Eigen::Map<const Eigen::RowVectorXd>(table.columns[k].data(), series.cols());
+  return series;
+}
+
 /// Rows without names or times that go on from one to the next: one series, written several numbers to a
 /// line. The text above them states how many there are, or the step from a row's last number to the next
 /// row's first is that within the rows, and smaller than that down a column. Columns of a series are of one
 /// mean and one size.
 bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
   constexpr std::size_t fewest_columns = 3, fewest_rows = 20;
-  constexpr double alike = 0.25, less = 0.6;
-  const std::size_t width = table.width(), rows = table.rows();
-  if (!table.names.empty() || table.time || width < fewest_columns || rows < fewest_rows) return false;
-  for (const std::vector<double>& column : table.columns)
-    if (rises(column) || !std::ranges::all_of(column, [](double value) { return std::isfinite(value); }))
-      return false;
-  double mean = 0.0, square = 0.0;
-  for (const std::vector<double>& column : table.columns)
-    for (const double value : column) mean += value, square += value * value;
-  const double count_of_all = static_cast<double>(rows * width);
-  mean /= count_of_all;
-  const double size = std::sqrt(square / count_of_all - mean * mean);
-  for (const std::vector<double>& column : table.columns) {  // of one series all are alike
-    double own = 0.0, own_square = 0.0;
-    for (const double value : column) own += value, own_square += value * value;
-    own /= static_cast<double>(rows);
-    const double own_size = std::sqrt(std::max(0.0, own_square / static_cast<double>(rows) - own * own));
-    if (std::abs(own - mean) > 0.25 * size || std::abs(own_size - size) > 0.2 * size) return false;
-  }
-  double within = 0.0, down = 0.0, over = 0.0;
-  for (std::size_t row = 0; row + 1 < rows; ++row) {
-    for (std::size_t k = 0; k < width; ++k) {
-      if (k + 1 < width) within += std::abs(table.columns[k + 1][row] - table.columns[k][row]);
-      down += std::abs(table.columns[k][row + 1] - table.columns[k][row]);
-    }
-    over += std::abs(table.columns[0][row + 1] - table.columns[width - 1][row]);
-  }
-  within /= static_cast<double>(width - 1) * static_cast<double>(rows - 1),
-      over /= static_cast<double>(rows - 1);
-  down /= static_cast<double>(width) * static_cast<double>(rows - 1);
-  if (!(within > 0.0) || std::abs(over / within - 1.0) > alike || within > 0.9 * size) return false;
+  constexpr double alike = 0.25, less = 0.6, one_mean = 0.25, one_size = 0.2, smooth = 0.9;
+  if (!table.names.empty() || table.time || table.width() < fewest_columns || table.rows() < fewest_rows)
+    return false;
+  if (std::ranges::any_of(table.columns, rises)) return false;
+  const Eigen::MatrixXd series = series_of(table);
+  if (!series.allFinite()) return false;
+  const Eigen::Index width = series.rows(), rows = series.cols();
+  const double mean = series.mean(), size = std::sqrt((series.array() - mean).square().mean());
+  const Eigen::VectorXd means = series.rowwise().mean(),
+                        sizes = (series.colwise() - means).cwiseAbs2().rowwise().mean().cwiseSqrt();
+  if (!((means.array() - mean).abs() <= one_mean * size).all() ||
+      !((sizes.array() - size).abs() <= one_size * size).all())
+    return false;
+  const double within = (series.bottomRows(width - 1) - series.topRows(width - 1)).cwiseAbs().mean(),
+               down = (series.rightCols(rows - 1) - series.leftCols(rows - 1)).cwiseAbs().mean(),
+               over = (series.row(0).tail(rows - 1) - series.row(width - 1).head(rows - 1)).cwiseAbs().mean();
+  if (!(within > 0.0) || std::abs(over / within - 1.0) > alike || within > smooth * size) return false;
   static const std::regex of_all("channel|kan(a|\xc3\xa4)l|canal|total", std::regex::icase);
-  const std::regex count("(^|[^0-9.])" + std::to_string(rows * width + last) + "($|[^0-9.])");
+  const std::regex count("(^|[^0-9.])" + std::to_string(table.rows() * table.width() + last) + "($|[^0-9.])");
   return within < less * down || (std::regex_search(above.begin(), above.end(), count) &&
                                   !std::regex_search(above.begin(), above.end(), of_all));
 }
 
 void join_rows(RecordTable& table, const std::vector<double>& last) {
-  const std::size_t width = table.width(), rows = table.rows();
-  std::vector<double> all;
-  all.reserve(rows * width + last.size());
-  for (std::size_t row = 0; row < rows; ++row)
-    for (std::size_t k = 0; k < width; ++k) all.push_back(table.columns[k][row]);
+  const Eigen::MatrixXd series = series_of(table);
+  std::vector<double> all(series.data(), series.data() + series.size());
   all.insert(all.end(), last.begin(), last.end());
-  table.remarks.push_back(fmt::format(
-      "Each row of {} numbers goes on from the row before: one series of {} numbers.", width, all.size()));
+  table.remarks.push_back(
+      fmt::format("Each row of {} numbers goes on from the row before: one series of {} numbers.",
+                  table.width(), all.size()));
   table.columns.assign(1, std::move(all));
   table.precision.resize(1);
   table.lines.clear(), table.skipped_lines.clear();

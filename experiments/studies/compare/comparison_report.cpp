@@ -99,14 +99,12 @@ Json section_values(const ComparedRun& run) {
       deviations.push_back(std::abs(unknown.slope(by.estimates(place, i))) * by.own_deviation(place, i));
     }
     const SizeTrend trend = trend_with_size(by, place);
-    const double at = unknown.to_physical(trend.at_mean);
+    const SizeChange change = by_twice_the_motion(trend, unknown);
     json["parameters"][run.parameters[j].estimate.name] = {
         {"estimates", std::move(values)},
         {"standard_deviations", std::move(deviations)},
-        {"change_by_twice_the_motion",
-         optional_number(unknown.to_physical(trend.at_mean + trend.slope) / at - 1.0)},
-        {"change_standard_deviation",
-         optional_number(trend.deviation * std::abs(unknown.slope(trend.at_mean) / at))},
+        {"change_by_twice_the_motion", optional_number(change.share)},
+        {"change_standard_deviation", optional_number(change.deviation)},
         {"probability_without_trend", trend.probability}};
   }
   return json;
