@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "experiments/record/record_columns.hpp"
@@ -47,6 +48,13 @@ std::string numbers_of(const std::vector<RecordColumn>& columns) {
     list += fmt::format("{}{}", list.empty() ? "" : ", ", column.index + 1);
   return fmt::format("column{} {} {}", columns.size() == 1 ? "" : "s", list,
                      columns.size() == 1 ? "is" : "are");
+}
+
+// One more from row to row, from wherever: no sensor does.
+bool counts_rows(const std::vector<double>& values) {
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (values[k] != values[k - 1] + 1.0) return false;
+  return values.size() > 1;
 }
 
 constexpr double fastest = 5e-6;  // [s], of 200 kHz
@@ -121,8 +129,9 @@ class Recognition {
     const auto named = [&](const char* one) {
       return std::ranges::find(table.names, one) != table.names.end();
     };
-    if ((name == "gx" || name == "gy" || name == "gz") && (named("ax") || named("ay")))
-      found->kind = RecognisedColumn::Kind::other;  // of a gyroscope
+    if (name.size() == 2 && std::string_view("gmw").find(name[0]) != std::string_view::npos &&
+        std::string_view("xyz").find(name[1]) != std::string_view::npos && (named("ax") || named("ay")))
+      found->kind = RecognisedColumn::Kind::other;  // of a gyroscope or a compass
     const auto add = [&](std::string& list) {
       list += (list.empty() ? "" : ", ") +
               (name.empty() ? fmt::format("column {}", index + 1) : "'" + name + "'");
@@ -142,6 +151,9 @@ class Recognition {
         add(other_);
       return true;
     }
+    if (index > 0 && table.width() > 2 && found->kind == RecognisedColumn::Kind::signal &&
+        counts_rows(values))
+      found->kind = RecognisedColumn::Kind::count;
     if (index == 0 && found->kind == RecognisedColumn::Kind::signal && !found->states_quantity &&
         !found->states_unit && runs_evenly(values)) {  // no motion does
       if (counts_samples(values))
@@ -177,6 +189,9 @@ class Recognition {
         }
         break;
       case RecognisedColumn::Kind::signal: {
+        if (const auto& unit = table.stated_unit;
+            unit && !found->states_unit && (!found->states_quantity || found->quantity == unit->first))
+          found->quantity = unit->first, found->factor = unit->second, found->states_unit = true;
         columns.channels.push_back({index, found->factor, {found->quantity, name}});
         columns.recognised = true;
         const bool as_it_is = !found->states_unit;
@@ -227,6 +242,12 @@ class Recognition {
   // @param factor to seconds, where the file states it
   void take_stamps(const RecordTable& table, std::size_t index, std::optional<double> factor,
                    RecordColumns& columns) {
+    if (factor && !(*factor > 0.0) && !stamped_)
+      throw InputError(
+          {table.file, table.header_line, 0},
+          fmt::format("column {} '{}' is in a unit that was not understood; expected the unit of its times: "
+                      "--time {}:s, --time {}:ms, --rate HZ, or record.time in the configuration",
+                      index + 1, column_name_of(table, index), index + 1, index + 1));
     if (!factor) {
       factor = seconds_of_epoch(table.columns[index]);
       if ((stamped_ || table.stated_rate) && !is_plausible(mean_step(table.columns[index]), *factor)) {
@@ -278,6 +299,39 @@ class Recognition {
   }
 };
 
+// Whether a column is the root of the sum of squares of two or three others, in a row: what phones add.
+bool is_magnitude(const RecordTable& table, const std::vector<RecordColumn>& channels, std::size_t which) {
+  constexpr double tolerated = 1e-4;  // of squares
+  const std::vector<double>& values = table.columns[channels[which].index];
+  if (std::ranges::any_of(values, [](double value) { return value < 0.0; })) return false;
+  for (std::size_t first = 0; first + 1 < channels.size(); ++first)
+    for (const std::size_t count : {2u, 3u}) {
+      if (first + count > channels.size() || (which >= first && which < first + count)) continue;
+      double left = 0.0, all = 0.0;
+      for (std::size_t row = 0; row < values.size(); ++row) {
+        double square = 0.0;
+        for (std::size_t i = first; i < first + count; ++i)
+          square += std::pow(table.columns[channels[i].index][row], 2);
+        if (!std::isfinite(square + values[row])) continue;
+        left += std::pow(values[row] - std::sqrt(square), 2), all += values[row] * values[row];
+      }
+      if (all > 0.0 && left < tolerated * all) return true;
+    }
+  return false;
+}
+
+void leave_out_magnitudes(RecordTable& table, RecordColumns& columns) {
+  std::string magnitudes;
+  for (std::size_t k = columns.channels.size(); k-- > 0 && columns.channels.size() > 2;)
+    if (is_magnitude(table, columns.channels, k)) {
+      magnitudes += (magnitudes.empty() ? "'" : ", '") + columns.channels[k].channel.name + "'";
+      columns.channels.erase(columns.channels.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  if (!magnitudes.empty())
+    table.remarks.push_back(
+        "The magnitude of other columns, which has no frequency of its own, omitted: " + magnitudes + ".");
+}
+
 // The first column that rises is time.
 // @param columns of which `time` or `counted` is set
 // @returns the first column behind it
@@ -308,15 +362,20 @@ RecordColumns columns_without_header(RecordTable& table, bool stamped) {
   const auto never_moves = [](const std::vector<double>& values) {  // dates beside times of day
     return std::ranges::all_of(values, [&](double value) { return value == 0.0; });
   };
+  const auto [quantity, factor] = table.stated_unit.value_or(std::pair{Quantity::acceleration, 1.0});
   for (std::size_t index = first; index < table.width(); ++index)
-    if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index))
-      columns.channels.push_back({index, 1.0, {Quantity::acceleration, fmt::format("column_{}", index + 1)}});
+    if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index) &&
+        !(table.width() > first + 1 && counts_rows(table.columns[index])))
+      columns.channels.push_back({index, factor, {quantity, fmt::format("column_{}", index + 1)}});
   table.remarks.push_back(fmt::format(
-      "No header: {}{} taken for acceleration in m/s2. Frequency and damping ratio do not depend on it.",
+      "No header: {}{} {}.",
       columns.time ? fmt::format("column {} is taken for time in {}, ", columns.time->index + 1,
                                  unit_of_time(columns.time->factor))
                    : "",
-      numbers_of(columns.channels)));
+      numbers_of(columns.channels),
+      table.stated_unit ? "in the unit that the lines above state"
+                        : "taken for acceleration in m/s2. Frequency and damping ratio do not depend on it"));
+  leave_out_magnitudes(table, columns);
   return columns;
 }
 
@@ -361,6 +420,7 @@ RecordColumns columns_of_header(RecordTable& table, bool stamped) {
       columns.time = RecordColumn{index, meaning->factor, {}};
   }
   recognition.report(table, columns);
+  if (columns.recognised) leave_out_magnitudes(table, columns);
   if (columns.channels.empty() && !unknown.empty())
     throw InputError(
         header, fmt::format("no unit states what is measured: {}; expected {}", unknown, in_configuration));

@@ -190,8 +190,14 @@ bool DelimitedText::find_body() {
       std::min(found.rest_.size(), std::size_t{found.rest_.starts_with("\r\n") ? 2u : 1u}));
   found.choose_separator();
   if (header) {
-    if (*header + 1 < first && names_width(*header + 1))
-      for (const std::string_view unit : found.named(lines[*header + 1].text, width))
+    const auto holds_units = [&](std::size_t line) {
+      return line != *header && names_width(line) && are_units(named(lines[line].text, width));
+    };
+    std::size_t units = *header + 1;
+    for (std::size_t k = first; k-- > (*header > 0 ? *header - 1 : 0);)
+      if (holds_units(k)) units = k;
+    if (units < first && names_width(units))
+      for (const std::string_view unit : found.named(lines[units].text, width))
         found.units_.emplace_back(unquoted(unit));
     found.header_line_ = lines[*header].number;
     found.header_text_ = trimmed(lines[*header].text);
@@ -360,6 +366,7 @@ void DelimitedText::split_row() {
   if (fields_.size() >= width_ || separator_ == ' ') return;
   std::vector<std::string_view> all;
   split_fields(line_, separator_, all, true);
+  while (all.size() > width_ && trimmed(all.back()).empty()) all.pop_back();
   if (all.size() == width_) fields_ = std::move(all);
 }
 

@@ -69,13 +69,14 @@ const std::set<std::string> times{
     "secondi", "date",      "datetime", "datum",   "fecha",     "uhrzeit",  "epoch",       "unix",
     "second",  "sec",       "sekunde",  "seconde", "segundo",   "secondo",  "hora",        "heure",
     "ora",     "tijd",      "tid",      "aika",    "czas",      "时间",     "時間",        "時刻",
-    "время",   "zeitpunkt", "uptime",   "ts",      "ticks",     "laufzeit"};
+    "время",   "zeitpunkt", "uptime",   "ts",      "ticks",     "laufzeit", "tow"};
 // Time, and its unit [s].
 const std::vector<std::pair<std::string_view, double>> clocks{
     {"millis", 1e-3},        {"milliseconds", 1e-3}, {"msec", 1e-3},          {"micros", 1e-6},
     {"microseconds", 1e-6},  {"usec", 1e-6},         {"nanos", 1e-9},         {"nanoseconds", 1e-9},
     {"minutes", 60.0},       {"nanosec", 1e-9},      {"millisekunden", 1e-3}, {"mikrosekunden", 1e-6},
     {"millisecondes", 1e-3}, {"millisecondi", 1e-3}, {"milisegundos", 1e-3},  {"milissegundos", 1e-3},
+    {"heures", 3600.0},      {"horas", 3600.0},      {"ore", 3600.0},         {"microsegundos", 1e-6},
     {"hours", 3600.0},       {"stunden", 3600.0},    {"minuten", 60.0},       {"days", 86400.0}};
 const std::set<std::string> counts{"sample",      "samples",  "index",   "idx",           "n",
                                    "nr",          "no",       "packet",  "packetcounter", "seq",
@@ -89,10 +90,12 @@ const std::set<std::string> no_motion{
     "azimuth",  "battery",      "pressure", "humidity",   "status", "light",       "sound",      "altitude",
     "latitude", "longitude",    "gps",      "proximity",  "druck",  "feuchte",     "helligkeit", "current",
     "rpm",      "weight",       "gewicht",  "batt",       "vbat",   "vbatt",       "ptemp",      "utc",
-    "gmt",      "rotation",     "moment",   "torque"};
+    "gmt",      "rotation",     "moment",   "torque",     "rssi",   "trigger",     "trig",       "flag",
+    "flags",    "valid",        "quality",  "steps",      "heart",  "accuracy",    "tacho",      "crc",
+    "checksum", "marker",       "event",    "events",     "mic",    "micl"};
 // Of these not even with a quantity behind them: "angular_velocity".
-const std::set<std::string> no_motion_at_all{"angular", "orientation", "gyro",    "gyroscope",
-                                             "euler",   "quaternion",  "battery", "rotation"};
+const std::set<std::string> no_motion_at_all{"angular",    "orientation", "gyro",     "gyroscope", "euler",
+                                             "quaternion", "battery",     "rotation", "wind",      "cpu"};
 const std::set<std::string> readings{"V", "mV", "uV", "LSB", "counts"};  // of a sensor of motion
 // These, and units of what is no motion.
 const std::set<std::string> other_units{"lux", "lx",    "dB",  "dBA", "%",     "°C",  "degC",   "C",   "K",
@@ -123,6 +126,66 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::
   return {};
 }
 
+// mg and counts beside what stated_unit() knows.
+std::optional<StatedUnit> unit_of(const std::string& unit) {
+  static const std::set<std::string> milligravities{"mg", "mG", "milli-g", "milli g", "mgn"};
+  if (milligravities.contains(unit)) return StatedUnit{Quantity::acceleration, 1e-3 * standard_gravity};
+  if (unit == "mGal" || unit == "mgal") return StatedUnit{Quantity::acceleration, 1e-5};
+  if (unit == "g's" || unit == "gs" || unit == "g_n")
+    return StatedUnit{Quantity::acceleration, standard_gravity};
+  if (unit == "ug" || unit == "µg") return StatedUnit{Quantity::acceleration, 1e-6 * standard_gravity};
+  if (unit == "gal" || unit == "Gal") return StatedUnit{Quantity::acceleration, 1e-2};
+  if (unit == "m·s⁻²" || unit == "m s⁻²" || unit == "m·s-2") return StatedUnit{Quantity::acceleration, 1.0};
+  if (unit == "G") return StatedUnit{Quantity::acceleration, standard_gravity};
+  if (unit == "microstrain" || unit == "µε" || unit == "με" || unit == "ue")
+    return StatedUnit{Quantity::strain, 1e-6};
+  return stated_unit(unit);
+}
+
+// Of a word, folded [s].
+std::optional<double> unit_of_time(const std::string& word) {
+  static const std::vector<std::pair<std::string_view, double>> units{
+      {"s", 1.0},     {"sec", 1.0},        {"ms", 1e-3},     {"milli", 1e-3},
+      {"us", 1e-6},   {"\xc2\xb5s", 1e-6}, {"micro", 1e-6},  {"ns", 1e-9},
+      {"min", 60.0},  {"mins", 60.0},      {"minute", 60.0}, {"h", 3600.0},
+      {"hr", 3600.0}, {"hrs", 3600.0},     {"hour", 3600.0}, {"std", 3600.0},
+  };
+  for (const auto* const list : {&units, &clocks})
+    for (const auto& [symbol, seconds] : *list)
+      if (word == symbol) return seconds;
+  return {};
+}
+
+// Of words that name times, the one that is a unit of it: "time_min", "t_ms", "ms since start", "tUs".
+std::optional<double> unit_among(const std::vector<std::string>& words) {
+  static const std::set<std::string> began{"since", "from", "after"};
+  if (words.size() == 1 && words[0].size() > 2 && words[0][0] == 't')
+    return words[0] == "tns" || words[0] == "tmin" || words[0] == "tms" || words[0] == "tus"
+               ? unit_of_time(words[0].substr(1))
+               : std::nullopt;
+  if (words.size() < 2 || (!any_word(words, times) && !any_word(words, began))) return {};
+  std::optional<double> found;
+  for (const std::string& word : words)
+    if (const auto seconds = unit_of_time(word)) {
+      if (found) return {};
+      found = seconds;
+    }
+  return found;
+}
+
+std::string without_brackets(std::string text) {
+  if (text.size() > 2 && (text.front() == '[' || text.front() == '(')) text = text.substr(1, text.size() - 2);
+  return text;
+}
+
+// The micro sign for a Greek mu.
+std::string with_one_micro(std::string_view text) {
+  std::string result(text);
+  for (std::size_t at; (at = result.find("\xce\xbc")) != std::string::npos;)
+    result.replace(at, 2, "\xc2\xb5");
+  return result;
+}
+
 // A name and the unit that stands in or behind it.
 std::pair<std::string, std::string> parted(std::string_view name) {
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}, std::pair{'<', '>'}}) {
@@ -132,12 +195,18 @@ std::pair<std::string, std::string> parted(std::string_view name) {
               std::string(name.substr(from + 1, to - from - 1))};
   }
   for (std::size_t at = name.size(); at-- > 1;) {
-    if (name[at] != '/' && name[at] != ',' && name[at] != '_' && name[at] != ' ') continue;
+    if (name[at] != '/' && name[at] != ',' && name[at] != '_' && name[at] != ' ' && name[at] != '-') continue;
     std::string_view unit = name.substr(at + 1);
     unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
     const bool slash_of_unit = name[at] == '/' && stated_unit(name.substr(name.find_last_of(",_ ", at) + 1));
-    const bool known =
-        stated_unit(unit) || unit == "ns" || unit == "dps" || unit == "uT" || unit == "MS" || unit == "mS";
+    const auto of_acceleration = [&] {  // no letter of a channel, no north
+      const auto found = unit_of(std::string(unit));
+      return found && found->quantity == Quantity::acceleration &&
+             (unit != "G" || quantity_of(words_of(name.substr(0, at)), name) == Quantity::acceleration);
+    };
+    const bool known = (name[at] != '-' && (stated_unit(unit) || unit == "ns" || unit == "dps" ||
+                                            unit == "uT" || unit == "MS" || unit == "mS")) ||
+                       of_acceleration();
     if (!unit.empty() && !slash_of_unit && known) return {std::string(name.substr(0, at)), std::string(unit)};
   }
   return {std::string(name), ""};
@@ -151,6 +220,7 @@ std::optional<double> seconds_per_unit(std::string_view unit) {
   for (const auto& [symbol, seconds] : more)
     if (unit == symbol) return seconds;
   if (unit == "mS" || unit == "MS") return 1e-3;
+  if (unit == "uS" || unit == "US") return 1e-6;
   const auto stated = stated_unit(unit);
   return stated && !stated->quantity ? std::optional(stated->factor) : std::nullopt;
 }
@@ -161,16 +231,15 @@ bool is_other_unit(std::string_view unit) {
 
 namespace {
 
-// mg and counts beside what stated_unit() knows.
-std::optional<StatedUnit> unit_of(const std::string& unit) {
-  if (unit == "mg") return StatedUnit{Quantity::acceleration, 1e-3 * standard_gravity};
-  if (unit == "ug" || unit == "µg") return StatedUnit{Quantity::acceleration, 1e-6 * standard_gravity};
-  if (unit == "gal" || unit == "Gal") return StatedUnit{Quantity::acceleration, 1e-2};
-  if (unit == "m·s⁻²" || unit == "m s⁻²" || unit == "m·s-2") return StatedUnit{Quantity::acceleration, 1.0};
-  if (unit == "G") return StatedUnit{Quantity::acceleration, standard_gravity};
-  if (unit == "microstrain" || unit == "µε" || unit == "με" || unit == "ue")
-    return StatedUnit{Quantity::strain, 1e-6};
-  return stated_unit(unit);
+// "accG", "a_mm_s2", "acc_cms2", "acc_ft_s2": of an acceleration, signs left out or no gap before it.
+std::optional<double> unit_at_the_end(std::string_view name) {
+  static const std::regex per_square(R"((?:^|[^A-Za-z])(mm|cm|m|ft|in)_?/?s_?\^?2$)"),
+      gravity(R"([a-z](m?G|mg)$)");
+  std::match_results<std::string_view::const_iterator> match;
+  if (std::regex_search(name.begin(), name.end(), match, per_square))
+    return convertible_unit(match[1].str() + "/s2", Quantity::acceleration);
+  if (std::regex_search(name.begin(), name.end(), match, gravity)) return unit_of(match[1])->factor;
+  return {};
 }
 
 // The factor of a unit that no table here has: of the column's own, or in brackets; else behind a slash, or
@@ -190,10 +259,13 @@ std::optional<double> factor_elsewhere(std::string_view name, std::string_view u
 
 }  // namespace
 
-std::optional<RecognisedColumn> recognise_column(std::string_view name, std::string_view unit) {
-  if (name.find("_per_") != std::string_view::npos) return {};  // of this project's own kind
+std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
+                                                 std::string_view written_unit) {
+  const std::string name = with_one_micro(written_name),
+                    unit = without_brackets(with_one_micro(written_unit));
+  if (name.find("_per_") != std::string::npos) return {};  // of this project's own kind
   auto [plain, stated] = parted(name);
-  if (!unit.empty()) stated = std::string(unit);
+  if (!unit.empty()) stated = unit;
   const std::vector<std::string> words = words_of(plain);
   // Microseconds at 120 Hz at most; other instruments of the maker count 0.1 ms under this name.
   if (plain.find("SampleTimeFine") != std::string::npos)
@@ -212,6 +284,19 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
     return is_time(seconds);  // "[s]", "in s"
   if (const auto seconds = seconds_per_unit(trimmed(name)); seconds && stated.empty())
     return is_time(seconds);
+  if (const auto seconds = seconds_per_unit(stated);
+      seconds && (begins(words[0], {"x"}) || any_word(words, counts)))
+    return is_time(seconds);  // "X [s]", "sample_us"
+  if (const auto seconds = unit_among(words); seconds && stated.empty()) return is_time(seconds);
+  if (any_word(words, times) && !stated.empty() &&
+      !seconds_per_unit(stated)) {  // "Zeit (Millisekunden)", "t [1/100 s]"
+    const std::vector<std::string> inside = words_of(stated);
+    const bool scaled = stated.find_first_of("0123456789") != std::string::npos;
+    double seconds = 0.0;
+    for (const std::string& word : inside) seconds = std::max(seconds, unit_of_time(word).value_or(0.0));
+    if (seconds > 0.0 && inside.size() == 1 && !scaled) return is_time(seconds);
+    if (seconds > 0.0 && scaled) return RecognisedColumn{Kind::time, {}, 0.0, true, true};
+  }
   if (any_word(words, times) && any_word(words_of(stated), counts))
     return RecognisedColumn{Kind::count};  // "time (samples)"
   static const std::set<std::string> epochs{"unix", "epoch",    "utc", "gmt", "local",
@@ -221,27 +306,30 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
     return is_time(seconds);
   if (any_word(words, times) && !unit_of(stated))
     if (const auto seconds = convertible_unit(stated, {})) return is_time(seconds);  // "Time [hr]"
-  if (any_word(words, no_motion_at_all)) return RecognisedColumn{Kind::other};
-  auto quantity = quantity_of(words, plain);
+  static const std::regex of_quaternion("^[qQ][0-3wxyz]$");
+  if (any_word(words, no_motion_at_all) || std::regex_match(plain, of_quaternion))
+    return RecognisedColumn{Kind::other};
+  const std::optional<Quantity> by_name = quantity_of(words, plain);
   const bool volts = readings.contains(stated) || stated == "kV";
-  if (volts && quantity == Quantity::displacement && words.front() == "u") quantity.reset();  // a voltage
+  const bool is_voltage = volts && by_name == Quantity::displacement && words.front() == "u",
+             named = by_name.has_value() && !is_voltage;
   static const std::set<std::string> frequencies{"freq",       "frequency", "frequenz",
                                                  "frecuencia", "frequenza", "frequencia"};
-  if (!quantity && any_word(words, frequencies)) return RecognisedColumn{Kind::frequency};
-  if (!quantity && (any_word(words, no_motion) || seconds_per_unit(stated)))
+  if (!named && any_word(words, frequencies)) return RecognisedColumn{Kind::frequency};
+  if (!named && (any_word(words, no_motion) || seconds_per_unit(stated)))
     return RecognisedColumn{Kind::other};
-  if (!quantity && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts) &&
+  if (!named && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts) &&
       (words.size() == 1 || words.front().size() > 1))
     return RecognisedColumn{Kind::count};
   const auto known = unit_of(stated);
-  if (!quantity && !stated.empty() &&
+  if (!named && !stated.empty() &&
       (stated.find("deg") != std::string::npos || stated.find("rad") != std::string::npos ||
        stated.find("°") != std::string::npos || (other_units.contains(stated) && !readings.contains(stated))))
     return RecognisedColumn{Kind::other};
-  found.states_quantity = quantity || (known && known->quantity);
-  found.quantity = quantity                   ? *quantity
-                   : known && known->quantity ? *known->quantity
-                                              : Quantity::acceleration;
+  found.states_quantity = named || (known && known->quantity);
+  found.quantity = Quantity::acceleration;
+  if (known && known->quantity) found.quantity = *known->quantity;
+  if (named) found.quantity = by_name.value_or(found.quantity);
   const Quantity in_units_of =
       found.quantity == Quantity::base_acceleration ? Quantity::acceleration : found.quantity;
   if (known && known->quantity == in_units_of) {
@@ -250,9 +338,55 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
   } else if (any_word(words, {"gfx", "gfy", "gfz"})) {
     found.factor = standard_gravity;
     found.states_unit = true;
-  } else if (const auto factor = quantity ? factor_elsewhere(name, unit, in_units_of) : std::nullopt) {
+  } else if (const auto last = unit_at_the_end(name);
+             last && named && in_units_of == Quantity::acceleration) {
+    found.factor = *last;
+    found.states_unit = true;
+  } else if (const auto factor = named ? factor_elsewhere(name, unit, in_units_of) : std::nullopt) {
     found.factor = *factor;
     found.states_unit = true;
+  }
+  return found;
+}
+
+bool are_units(const std::vector<std::string_view>& fields) {
+  bool any = false;
+  for (const std::string_view field : fields) {
+    const std::string text = without_brackets(unquoted(field));
+    if (text.empty() || text == "-") continue;
+    if (!unit_of(text) && !seconds_per_unit(text) && !other_units.contains(text)) return false;
+    any = true;
+  }
+  return any;
+}
+
+std::optional<std::pair<Quantity, double>> unit_of_statement(std::string_view lines) {
+  static const std::regex form(
+      R"((?:^|[\r\n])[#%;/*" ]*(?:(?:amplitude|y|data|signal|accel\w*) ?[_-]?)?)"
+      R"((?:units?|einheit(?:en)?|unites?|unidad(?:es)?|unita|unidades?)\b[^A-Za-z0-9\r\n]{1,4}([^\r\n]+))",
+      std::regex::icase);
+  std::match_results<std::string_view::const_iterator> match;
+  if (!std::regex_search(lines.begin(), lines.end(), match, form)) return {};
+  std::vector<std::string_view> fields;
+  const std::string list = match[1];
+  std::optional<std::pair<Quantity, double>> found;
+  for (std::size_t at = 0; at <= list.size();) {
+    const std::size_t end = std::min(list.find_first_of(",;\t", at), list.size());
+    std::string unit = without_brackets(unquoted(trimmed(std::string_view(list).substr(at, end - at))));
+    at = end + 1;
+    unit = unit.substr(0, unit.find_first_of(". "));  // "gal. DCoffset"
+    std::string plain = std::regex_replace(folded(unit), std::regex(R"(\*\*|\^)"), "");
+    plain = std::regex_replace(plain, std::regex("sec"), "s");
+    plain = std::regex_replace(plain, std::regex("/s/s"), "/s2");
+    auto known = unit_of(unit);
+    if (!known) known = unit_of(plain);
+    if (!known)
+      if (const auto factor = convertible_unit(plain, Quantity::acceleration))
+        known = StatedUnit{Quantity::acceleration, *factor};
+    if (!known || !known->quantity) continue;  // of times, or of what is no motion
+    const std::pair<Quantity, double> one{*known->quantity, known->factor};
+    if (found && *found != one) return {};
+    found = one;
   }
   return found;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "experiments/record/record.hpp"
@@ -38,6 +39,13 @@ std::optional<RecognisedColumn> recognise_column(std::string_view name, std::str
 /// Whether a row of fields names columns: one of them at least is time or a quantity, and none is a unit
 /// alone.
 bool names_columns(const std::vector<std::string_view>& fields);
+
+/// Whether a row holds units alone, one at least: "s", "[mg]", "", "-".
+bool are_units(const std::vector<std::string_view>& fields);
+
+/// The unit of motion that a line of text states for all columns: "# unit: g", "UNITS: cm/s^2",
+/// "Einheit;mm/s2", "units: s, g, g", with its factor to SI units; absent where there is none, or several.
+std::optional<std::pair<Quantity, double>> unit_of_statement(std::string_view lines);
 
 /// What a number alone is by its name: "fs", "SampleRate", "sampling_frequency" are rates, "dt", "Tinterval",
 /// "wf_increment" intervals.

@@ -79,9 +79,10 @@ struct RecordTable {
   std::optional<std::size_t> time;           ///< the column of time [s], where the format knows one by itself
   std::optional<Clock> clock;                ///< where the format states one
   std::optional<double> stated_rate;         ///< in words above the columns, for files without stamps [Hz]
-  std::size_t header_line = 0;               ///< where the names stand; 0 where unknown
-  std::vector<std::size_t> lines;            ///< of the rows; empty in binary files
-  std::vector<std::size_t> skipped_lines;    ///< left out already, as they have another number of columns
+  std::optional<std::pair<Quantity, double>> stated_unit;  ///< likewise, of all columns but time; to SI units
+  std::size_t header_line = 0;                             ///< where the names stand; 0 where unknown
+  std::vector<std::size_t> lines;                          ///< of the rows; empty in binary files
+  std::vector<std::size_t> skipped_lines;  ///< left out already, as they have another number of columns
   std::function<TextField(std::size_t row, std::size_t column)> cell;  ///< absent in binary files
   std::vector<std::string> remarks;                                    ///< sentences for reports
   std::vector<std::string> warnings;                                   ///< what may make any result wrong

@@ -127,7 +127,7 @@ std::optional<Statement> statement_behind(std::string_view rest, char decimal) {
   // "51 200", "12'800", "2*200", "> 400", "400 -> 200", "(max)": not this number alone, or none of the
   // record's
   static const std::regex more(R"(^(?: ?['_*^]| ?-|[ \xc2\xe2][^0-9a-z]*[0-9]{3}(?![0-9])))"),
-      strange(R"([<>*]|max|min|code|setting|index|number|mode)");
+      strange(R"([<>*]|max|min|code|setting|index|number|mode|video|camera|audio|gps|display)");
   const std::string behind(match[2].second, rest.end());
   if (std::regex_search(behind, more) || std::regex_search(match[1].first, match[1].second, strange))
     return {};
@@ -152,20 +152,23 @@ std::optional<double> samples_per_second(const std::string& unit) {
 // Of one line, the rate that a word for one states, or for an interval; below 0 where it states two.
 std::optional<double> rate_of_line(const std::string& line, char decimal) {
   static const std::regex sure(
-      R"(\b(sampl\w*[ _-]*(?:rate|freq\w*)|samples per second|abtast(?:rate|frequenz)|messrate|odr|fps|fs|)"
-      R"(fre[cq]uen\w* (?:d'echantillonnage|de muestreo|di campionamento|de amostragem))(?![a-z]))"),
+      R"(\b(sampl\w*[ _-]*(?:rate|freq\w*)|(?:samples|points) ?(?:/|per) ?sec(?:ond)?|abtast(?:rate|frequenz)|messrate|odr|fps|fs|)"
+      R"((?:fre[cq]uen\w*|cadence|taxa|tasa|velocid?a\w*) (?:d'echantillonnage|d'acquisition|de muestreo|)"
+      R"(di campionamento|de amostragem))(?![a-z]))"),
       with_unit(
-          R"((?:\b(?:scan|acquisition|logging|recording|output data|output|data)[ _-]*rate|^\W*rate|\bsampling)\b)"),
-      period(R"(\b(dt|delta[ _]?t|[tx]inc(?:r|rement)?|hresolution|sampl\w*[ _-]*(?:interval|period)|)"
-             R"(abtast(?:intervall|zeit)|time[ _]?step|equal intervals of)(?![a-z]))"),
-      alone(R"(\b([0-9]+(?:\.[0-9]+)?) ?sps\b)"),
+          R"((?:\b(?:scan|acquisition|logging|recording|output data|output|data)[ _-]*(?:rate|frequency)|^\W*rate|\bsampl(?:ing|ed))\b)"),
+      period(
+          R"(\b(dt|delta[ _]?t|[tx]inc(?:r|rement)?|hresolution|sampl\w*[ _-]*(?:interval|period|time)|)"
+          R"(abtast(?:intervall|zeit)|time[ _]?step|intervals of|dx ?[\[(]s[\])]|(?:recording|logging|time) interval|^\W*interval|)"
+          R"(pas de temps|paso de tiempo|(?:periode|pas|interval[la]o?|periodo|pass?o) (?:d'echantillonnage|)"
+          R"(de muestreo|di campionamento|de amostragem))(?![a-z]))"),
+      alone(R"(\b([0-9]+(?:\.[0-9]+)?) ?(?:sps|samples? ?(?:/|per) ?s(?:ec(?:ond)?)?)\b)"),
       of_another(
           R"(\b(gps|original|recommended|default|nominal|nyquist|audio|gyro\w*|camera|magneto\w*|temperature|old|)"
           R"(update|trigger|sweep|max\w*|min|minimum|total|aggregate|adc|internal|refresh|display|)"
           R"(video|screen|filter|baud|frame|bit|over)[ _-]*(?:[a-z]+[ _-]+)?$)");
-  constexpr double slowest = 1.0, longest_bare = 0.5;  // [Hz], [s]
+  constexpr double slowest = 1.0, longest_bare = 0.5, longest_time = 0.1;  // [Hz], [s], [s]
   std::smatch match;
-  if (std::regex_search(line, match, alone)) return std::stod(match[1]);
   std::optional<double> found;
   bool contradicts = false;
   const auto take = [&](double rate) {
@@ -183,7 +186,9 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
     if (word == &period) {
       const auto seconds = seconds_per_unit(stated->unit);
       if (!seconds && (stated->other_thing || stated->value > longest_bare)) continue;
-      take(1.0 / (stated->value * seconds.value_or(1.0)));
+      const double interval = stated->value * seconds.value_or(1.0);
+      if (match.str().ends_with("time") && interval > longest_time) continue;  // of the whole record
+      take(1.0 / interval);
       continue;
     }
     static const std::regex second(R"(([0-9]+(?:\.[0-9]+)?) ?k?hz)"),
@@ -197,6 +202,10 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
     if (!unit && (word == &with_unit || stated->other_thing)) continue;
     take(stated->value * unit.value_or(1.0));
   }
+  static const std::regex of_others(
+      R"(\b(?:max|min|total|aggregate|up to|gps|trigger|original|recommended)\b)");
+  if (!found && std::regex_search(line, match, alone) && !std::regex_search(match.prefix().str(), of_others))
+    take(std::stod(match[1]));
   return contradicts ? -1.0 : found;
 }
 
@@ -225,6 +234,7 @@ std::optional<double> stated_rate(std::string_view lines, char decimal) {
 
 bool is_statement(std::string_view line) {
   static const std::regex form(R"(^[^0-9,;\t:=]*[A-Za-z][^,;\t:=]*[:=]\s*[-+.]?[0-9])");
+  if (line.starts_with("Unnamed: ")) return false;  // columns without names, of pandas
   return line.size() < 400 && (std::regex_search(line.begin(), line.end(), form) || stated_rate(line));
 }
 

@@ -224,6 +224,8 @@ RecordTable table_of_text(const std::string& file, const std::shared_ptr<const s
   if (!table.time)
     table.stated_rate =
         stated_rate(std::string_view(*content).substr(0, looked_at_for_a_rate), text.decimal());
+  table.stated_unit =
+      unit_of_statement(std::string_view(*content).substr(0, std::min(above, looked_at_for_a_rate)));
   table.skipped_lines = text.skipped_lines();
   if (const std::string_view head =
           std::string_view(*content).substr(0, std::min(above, looked_at_for_a_rate));

@@ -11,7 +11,6 @@
 
 #include <unsupported/Eigen/FFT>
 
-#include "experiments/record/inspect/noise_floor.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "experiments/signal/toolbox.hpp"
 
@@ -134,6 +133,31 @@ std::vector<Run> clipped_runs(const std::vector<double>& signal, const ValueStep
   return clipped;
 }
 
+/// Short runs of exactly zero between readings that lie far on one side of it and near each other: a sensor
+/// that did not answer. Far: ten times what a reading usually differs from the mean of its neighbours. A few
+/// are chance.
+std::vector<Run> zeros_within_motion(const std::vector<double>& signal, const ValueSteps& steps) {
+  constexpr double far = 10, near = 0.5, step_factor = 8;
+  constexpr std::size_t longest = 7, fewest = 3;
+  std::vector<Run> found;
+  if (2 * steps.count(0.0) > signal.size()) return found;
+  std::vector<double> bends;
+  for (std::size_t k = 1; k + 1 < signal.size(); ++k)
+    if (const double bend = std::abs(signal[k] - 0.5 * (signal[k - 1] + signal[k + 1])); std::isfinite(bend))
+      bends.push_back(bend);
+  if (bends.empty()) return found;
+  const double least = std::max(far * median(std::move(bends)), step_factor * steps.near(0.0));
+  for (const Run& run :
+       runs_where(signal, [](const Run& one) { return one.value == 0.0 && one.length <= longest; })) {
+    const std::size_t behind = run.first + run.length;
+    if (run.first == 0 || behind >= signal.size()) continue;
+    const double before = signal[run.first - 1], after = signal[behind], mean = 0.5 * (before + after);
+    if (std::abs(mean) > least && std::abs(before - after) < near * std::abs(mean)) found.push_back(run);
+  }
+  if (found.size() < fewest) found.clear();
+  return found;
+}
+
 std::vector<Run> dropped_runs(const std::vector<double>& signal, const ValueSteps& steps) {
   constexpr double shortest = 8, beyond_chance = 3, motion = 8;
   constexpr std::size_t looked_back = 16;
@@ -144,7 +168,7 @@ std::vector<Run> dropped_runs(const std::vector<double>& signal, const ValueStep
     if (length < shortest) repeated += length - 1, samples += length;
     return std::isnan(run.value) || length >= shortest;
   });
-  std::vector<Run> dropped;
+  std::vector<Run> dropped = zeros_within_motion(signal, steps);
   if (!runs.empty() && runs[0].length == signal.size()) return std::isnan(runs[0].value) ? runs : dropped;
   const double share = std::clamp(repeated / std::max(samples, 1.0), 1e-6, 0.95);
   const double chance = std::log(static_cast<double>(signal.size())) / std::log(1 / share);
@@ -169,6 +193,7 @@ std::vector<Run> dropped_runs(const std::vector<double>& signal, const ValueStep
     const Ends ends = jumps(signal, run, jump * step);
     if ((ends.before || ends.after) && moved_before(run, motion * step)) dropped.push_back(run);
   }
+  std::ranges::sort(dropped, {}, &Run::first);
   return dropped;
 }
 

@@ -10,6 +10,18 @@
 
 namespace beamid::experiments {
 
+// How much of a signal is noise.
+
+/// Standard deviation of a signal's broadband noise, taken as white.
+///
+/// In windows of 512 samples, each without its line and under a Hann window, the median of the periodogram
+/// between a quarter and three quarters of half the sampling rate, over ln 2, is the density of white noise:
+/// a few modes do not move it, the anti-alias filter lies above, the drift below. Of the windows the quietest
+/// quarter counts, as hits are broadband too.
+/// @param signal (N), at least 64 samples, finite.
+/// @throws std::invalid_argument when the signal is shorter.
+double noise_floor(const Eigen::VectorXd& signal);
+
 // How finely a signal's values are resolved.
 
 /// The distinct finite values of a signal and how often each occurs; values that differ by 1e-12 of the
@@ -63,10 +75,12 @@ std::size_t samples_in(const std::vector<Run>& runs);
 /// then takes to its median.
 std::vector<Run> clipped_runs(const std::vector<double>& signal, const ValueSteps& steps);
 
-/// Drop-outs: samples that are not finite, and runs of one value three times as long as the signal's own
-/// repetitions explain: with a share r of samples that equal the one before, N samples hold runs up to about
-/// log N / log(1/r). At least eight samples, behind motion of eight steps or more in the sixteen samples
-/// before, begun or ended by a jump of four: a signal that has come to rest, or has not begun to move, is no
+/// Drop-outs: samples that are not finite; at most seven zeros in a row, three times or more, between
+/// readings that lie on one side, near each other and ten times as far from zero as readings usually lie from
+/// the mean of their neighbours; and runs of one value three times as long as the signal's own repetitions
+/// explain: with a share r of samples that equal the one before, N samples hold runs up to about log N /
+/// log(1/r). At least eight samples, behind motion of eight steps or more in the sixteen samples before,
+/// begun or ended by a jump of four: a signal that has come to rest, or has not begun to move, is no
 /// drop-out. Nothing for a signal that is constant throughout or rests most of the time.
 std::vector<Run> dropped_runs(const std::vector<double>& signal, const ValueSteps& steps);
 

@@ -11,10 +11,10 @@
 
 #include <fmt/format.h>
 
-#include "experiments/record/inspect/noise_floor.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/record_columns.hpp"
 #include "experiments/record/record_table.hpp"
+#include "experiments/record/stamps.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/signal/missing_samples.hpp"
 #include "experiments/signal/spectrum.hpp"
@@ -109,7 +109,7 @@ std::optional<RecordColumn> find_time(const RecordTable& table, const RecordForm
   for (const bool named : {true, false})
     for (std::size_t index = 0; index < table.width(); ++index) {
       if (named && !(index < table.names.size() && is_named_time(table.names[index]))) continue;
-      if (!looks_like_time(table.columns[index])) continue;
+      if (!looks_like_time(table.columns[index]) || counts_samples(table.columns[index])) continue;
       if (!named && index > 0) return std::nullopt;  // a column further on may rise for other reasons
       text = fmt::format(
           "The file does not state which column is time: {} rises throughout and is taken for seconds "
@@ -292,10 +292,10 @@ void cut(Inspection& found, const RecordFormat& format) {
   compact(found.time);
 }
 
-/// The column of time by its name as people write it, or the rate that a line above the columns states.
+/// The column of time, or the rate that a line above the columns states, as every other command finds them.
 std::optional<RecordColumn> recognised_time(RecordTable& table, const RecordFormat& format,
                                             std::string& text) {
-  if (!table.by_people || format.time || table.names.empty()) return {};
+  if (!table.by_people || format.time) return {};
   for (std::size_t index = 0; index < table.width(); ++index)
     if (const auto meaning = stated_meaning(table, index); meaning && !meaning->quantity) return {};
   try {
@@ -305,7 +305,9 @@ std::optional<RecordColumn> recognised_time(RecordTable& table, const RecordForm
       table.clock = copy.clock;
       return {};
     }
-    text = fmt::format("Time is column {}, '{}'.", columns.time->index + 1, table.names[columns.time->index]);
+    const std::string name = column_name_of(table, columns.time->index);
+    text =
+        fmt::format("Time is column {}{}.", columns.time->index + 1, name.empty() ? "" : ", '" + name + "'");
     return columns.time;
   } catch (const InputError&) {  // a question is left
     return {};

@@ -1,4 +1,3 @@
-#include "experiments/record/inspect/noise_floor.hpp"
 
 #include <algorithm>
 #include <array>

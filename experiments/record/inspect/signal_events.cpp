@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "experiments/record/inspect/inspection.hpp"
-#include "experiments/record/inspect/noise_floor.hpp"
 #include "experiments/signal/onsets.hpp"
 #include "experiments/signal/toolbox.hpp"
 

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "experiments/record/inspect/defects.hpp"
-#include "experiments/record/inspect/noise_floor.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/read_record.hpp"
 #include "experiments/signal/toolbox.hpp"

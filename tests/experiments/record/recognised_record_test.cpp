@@ -347,5 +347,58 @@ TEST(RecognisedRecord, ReadsStampsWithZonesAndOfOtherForms) {
     EXPECT_THAT(question(form), testing::StartsWith("read at 100")) << form;
 }
 
+// Units of times that stand in a name, and those that no one could read.
+TEST(RecognisedRecord, ReadsTheUnitOfTimesFromTheirName) {
+  const auto rows = [](double step) {
+    return signal_rows(40, [&](int k, double a) { return fmt::format("{:.9g},{:.5f}", step * k, a); });
+  };
+  for (const char* const name : {"time_min", "t_min", "Zeit/min", "elapsed_min", "tmin"})
+    EXPECT_EQ(question_of(std::string(name) + ",acc\n" + rows(0.0025 / 60.0)), "read at 400 Hz") << name;
+  for (const char* const name :
+       {"Time-ms", "timeMs", "tms", "ms since start", "Zeit (Millisekunden)", "t_milli", "X [ms]"})
+    EXPECT_EQ(question_of(std::string(name) + ",acc\n" + rows(2.5)), "read at 400 Hz") << name;
+  for (const char* const name : {"Time (x10 ms)", "t [1/100 s]"})
+    EXPECT_THAT(question_of(std::string(name) + ",acc\n" + rows(0.25)), testing::HasSubstr("not understood"))
+        << name;
+}
+
+// Numbers beside the sensors: counts, what a phone computes from them, and readings of something else.
+TEST(RecognisedRecord, TakesNeitherCountsNorMagnitudesForMotion) {
+  const auto names = [](const Record& record) {
+    std::string all;
+    for (const Channel& channel : record.channels) all += channel.name + ";";
+    return all;
+  };
+  const std::string rows = signal_rows(60, [](int k, double a) {
+    const double b = 0.7 * a + 0.1, c = 9.81 - 0.2 * a;
+    return fmt::format("{:.4f},{},{:.6f},{:.6f},{:.6f},{:.6f},{}", 0.0025 * k, 500 + k, a, b, c,
+                       std::sqrt(a * a + b * b + c * c), -60 - k % 3);
+  });
+  EXPECT_EQ(names(recognised("Time (s),RECORD,ax,ay,az,Absolute acceleration (m/s^2),rssi\n" + rows)),
+            "ax;ay;az;");
+  EXPECT_EQ(names(recognised("Time (s),loggingSample(N),ax,ay,az,total,rssi\n" + rows)), "ax;ay;az;");
+}
+
+TEST(RecognisedRecord, ReadsUnitsFromLinesAboveAndRowsBelowTheNames) {
+  const std::string rows =
+      signal_rows(40, [](int k, double a) { return fmt::format("{:.4f},{:.6f}", 0.0025 * k, a); });
+  for (const char* const head :
+       {"# unit: g\ntime,acc", "UNITS: g\ntime,acc", "Einheit: g\ntime,acc", "Y Unit,g\ntime,acc",
+        "# units: s, g\ntime,acc", "time,acc\nCh0,Ch1\ns,g", "s,g\ntime,acc",
+        "time,acc\n[s],[g]\nfloat,float", "time,accG", "time,Acc-G"})
+    EXPECT_NEAR(recognised(std::string(head) + "\n" + rows).samples(0, 0), 9.80665, 1e-9) << head;
+  for (const char* const head : {"time,acc_mg", "time,acc (milli-g)"})
+    EXPECT_NEAR(recognised(std::string(head) + "\n" + rows).samples(0, 0), 9.80665e-3, 1e-12) << head;
+  for (const char* const head : {"time,a_mm_s2", "UNIT: MM/S/S\ntime,acc"})
+    EXPECT_NEAR(recognised(std::string(head) + "\n" + rows).samples(0, 0), 1e-3, 1e-12) << head;
+}
+
+TEST(RecognisedRecord, ReadsRowsWhoseLastCellsAreEmpty) {
+  const std::string rows = signal_rows(40, [](int k, double a) {
+    return fmt::format("{:.4f};{:.5f};{};;", 0.0025 * k, a, k == 3 ? "ok" : "");
+  });
+  EXPECT_EQ(question_of("Zeit [s];Beschleunigung [m/s2];Kommentar;;\n" + rows), "read at 400 Hz");
+}
+
 }  // namespace
 }  // namespace beamid::experiments::recognised_record_test

@@ -14,14 +14,28 @@ namespace {
 
 TEST(StatedRate, TakesARateThatWordsForOneState) {
   const std::string rows = signal_rows(40, [](int, double a) { return fmt::format("{:.5f}", a); });
-  for (const char* const head :
-       {"Sampling rate: 400 Hz", "Abtastfrequenz = 0,4 kHz", "Messrate: 400,00 Hz",
-        "Frequence d'echantillonnage : 400 Hz", "Fréquence d'échantillonnage : 400 Hz",
-        "Frecuencia de muestreo = 400 Hz", "Frequenza di campionamento: 400 Hz", "Samples per second: 400",
-        "ODR = 400 Hz", "Scan rate: 400 scans/s", "FPS: 400", "Sampling: 0.4 kS/s", "\"SampleRate\",400,400",
-        "\"HResolution\",2.5E-03,2.5E-03", "TIMESERIES X_Y_Z, 40 samples, 400 sps, SLIST",
-        "ADC sampling rate: 3200 Hz\nOutput data rate: 400 Hz", "points at equal intervals of .0025 sec",
-        "fs = 400"})
+  for (const char* const head : {"Sampling rate: 400 Hz",
+                                 "Abtastfrequenz = 0,4 kHz",
+                                 "Messrate: 400,00 Hz",
+                                 "Frequence d'echantillonnage : 400 Hz",
+                                 "Fréquence d'échantillonnage : 400 Hz",
+                                 "Frecuencia de muestreo = 400 Hz",
+                                 "Frequenza di campionamento: 400 Hz",
+                                 "Samples per second: 400",
+                                 "ODR = 400 Hz",
+                                 "Scan rate: 400 scans/s",
+                                 "FPS: 400",
+                                 "Sampling: 0.4 kS/s",
+                                 "\"SampleRate\",400,400",
+                                 "\"HResolution\",2.5E-03,2.5E-03",
+                                 "TIMESERIES X_Y_Z, 40 samples, 400 sps, SLIST",
+                                 "Sampled at 0.4 kHz",
+                                 "3 channels, 400 samples/s",
+                                 "Recorded with 400 samples per second",
+                                 "Sampling time: 2.5 ms",
+                                 "ADC sampling rate: 3200 Hz\nOutput data rate: 400 Hz",
+                                 "points at equal intervals of .0025 sec",
+                                 "fs = 400"})
     EXPECT_EQ(question_of(std::string(head) + "\nAcc (g)\n" + rows), "read at 400 Hz") << head;
 }
 
@@ -33,6 +47,9 @@ TEST(StatedRate, AsksForTheRateWhereTheNumberIsOfSomethingElse) {
                                  "Trigger rate: 1 Hz",
                                  "Sweep rate: 2 Hz/s",
                                  "Max sample rate: 3200 Hz",
+                                 "Max sample rate: 3200 samples/s",
+                                 "up to 3200 samples/s",
+                                 "Sampling time: 0.5 s",
                                  "Total sampling rate: 1200 Hz (3 channels)",
                                  "Full scale fs = 10 V",
                                  "FS = 5 g",

@@ -190,5 +190,19 @@ TEST(Defects, HearARattle) {
   EXPECT_GT(found.rattle->ratio, 5);
 }
 
+// A sensor that did not answer now and then; a signal through zero is none.
+TEST(Defects, ZerosWithinTheMotionAreDropouts) {
+  std::vector<double> signal(2000);
+  for (std::size_t k = 0; k < signal.size(); ++k)
+    signal[k] = std::exp(-5e-4 * static_cast<double>(k)) * std::sin(0.1 * static_cast<double>(k)) +
+                1e-3 * std::sin(37.0 * static_cast<double>(k * k));
+  EXPECT_TRUE(find_defects(signal, SignalKind::motion).dropped.empty());
+  std::size_t zeros = 0;
+  for (std::size_t k = 16; k < 1000; k += 63, ++zeros) signal[k] = 0.0;  // at the peaks
+  const Defects found = find_defects(signal, SignalKind::motion);
+  EXPECT_EQ(found.dropped.size(), zeros);
+  for (const auto& run : found.dropped) EXPECT_EQ(run.value, 0.0);
+}
+
 }  // namespace
 }  // namespace beamid::experiments::defects_test

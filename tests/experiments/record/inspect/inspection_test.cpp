@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "experiments/record/inspect/noise_floor.hpp"
+#include "experiments/record/inspect/defects.hpp"
 #include "tests/experiments/config/temporary_file.hpp"
 
 namespace beamid::experiments::inspection_test {

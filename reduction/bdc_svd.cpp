@@ -1,3 +1,0 @@
-#include "reduction/bdc_svd.hpp"
-
-template class Eigen::BDCSVD<Eigen::MatrixXd>;
