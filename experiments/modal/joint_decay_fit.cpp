@@ -256,7 +256,7 @@ std::pair<VectorXd, VectorXd> clock_rates(const JointDecayFit& fit) {
 }  // namespace
 
 std::optional<ClockScatter> clock_scatter(const JointDecayFit& fit) {
-  constexpr double by_chance = 1e-4;
+  constexpr double by_chance = 1e-6;
   ClockScatter found;
   found.farthest.resize(fit.own_shift.cols());
   for (Index m = 0; m < fit.own_shift.cols(); ++m) {

@@ -51,7 +51,8 @@ struct ClockScatter {
   std::string sentence(const std::vector<std::string>& channels) const;
 };
 
-/// Absent where they agree: chi^2 below its 0.01 % point.
+/// Absent where they agree: chi^2 below its 1e-6 point, as the noise near each mode is itself estimated from
+/// few lines.
 std::optional<ClockScatter> clock_scatter(const JointDecayFit& fit);
 
 }  // namespace beamid::experiments

@@ -15,6 +15,8 @@
 #include "reduction/orthonormal_basis.hpp"
 #include "reduction/reduction.hpp"
 
+template class Eigen::BDCSVD<Eigen::MatrixXd>;  // the one that bdc_svd.hpp promises
+
 namespace beamid::reduction {
 namespace {
 

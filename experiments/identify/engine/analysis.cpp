@@ -227,8 +227,7 @@ void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysi
     const VectorXd filled = found.even.record.samples.row(first).transpose();
     if (found.even.share < mostly_read) return;
     found.jump = decay_jump(filled, interval, *found.modal);
-    if (asks_free_oscillator(experiment, found.record))
-      found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
+    found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
   } catch (const std::invalid_argument& error) {
     found.modal_refusal = fmt::format(
         "modal analysis: {} (looked for near {:.6g} Hz of {})", error.what(), found.expected_hz,
@@ -260,6 +259,26 @@ void take_complete_forces(RecordAnalysis& found) {
 bool has_supports(const Record& record) {
   return std::any_of(record.channels.begin(), record.channels.end(),
                      [](const Channel& channel) { return is_imposed(channel.quantity); });
+}
+
+// A displacement or a velocity that is read about another point than that of rest: no model moves there.
+void leave_out_offsets(RecordAnalysis& found) {
+  constexpr double much = 0.1;  // of the motion's root mean square
+  if (!found.modal) return;
+  for (const Index i : output_channels(found.record)) {
+    const Channel& channel = found.record.channels[static_cast<std::size_t>(i)];
+    if (channel.quantity != Quantity::displacement && channel.quantity != Quantity::velocity) continue;
+    const MatrixXd read = found.even.record.samples.row(i);
+    const ShapeFit fit =
+        fit_shapes(read, found.even.record.interval(), {found.modal->rate(), 0.0}, {true, false});
+    const double offset = fit.shapes(0, 1).real(), size = std::sqrt((read.array() - offset).square().mean());
+    if (!(std::abs(offset) > much * size)) continue;
+    found.record.samples.row(i).array() -= offset;
+    found.even.record.samples.row(i).array() -= offset;
+    found.notes.push_back(
+        fmt::format("'{}' is read about {:.4g} {}, which is subtracted: the structure rests there.",
+                    channel.name, offset, si_unit(channel.quantity)));
+  }
 }
 
 std::string aliased_text(double beam_hz, double rate, double shown) {
@@ -339,6 +358,7 @@ RecordAnalysis analyse_to(Depth depth, const Experiment& experiment, const Recor
       find_driven_mode(found);
   } else {
     find_decaying_mode(experiment, depth, found);
+    leave_out_offsets(found);
     if (depth == Depth::everything) found.channels = channel_amplitudes(experiment, found);
   }
   if (!found.mode)

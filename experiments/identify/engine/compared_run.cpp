@@ -232,6 +232,7 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
 
 bool judge_faults(ComparedRun& run) {
   constexpr double mostly = 0.5, surely = 5.0;
+  constexpr double least = 0.05;  // below it truncated modes and a coarse mesh look like a mass or a gain
   constexpr std::size_t most_named = 3;
   const auto share = [](const DescriptionFault& fault) {
     return fmt::format("{} ({:.0f} % of the residual, in squares)", fault.sentence, 100.0 * fault.explained);
@@ -268,7 +269,7 @@ bool judge_faults(ComparedRun& run) {
   if (count == 0 && run.status == ComparedRun::Status::converged)
     for (const DescriptionFault& fault : run.faults) {
       const auto [moved, unknown] = farthest(fault);
-      if (!(fault.score > surely) || !(moved > quantile_95)) continue;
+      if (!(fault.score > surely) || !(fault.explained > least) || !(moved > quantile_95)) continue;
       named = fmt::format("{}; allowed for, it moves {} by {:.2g} of its standard deviations", share(fault),
                           run.parameters[unknown].estimate.name, moved);
       break;

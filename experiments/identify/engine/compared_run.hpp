@@ -76,6 +76,18 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
 /// is_approximate().
 void judge_motion_left(const RunContext& context, ComparedRun& run);
 
+// Modes without a model beside those of a model (verdict/free_modes.cpp).
+
+/// Of a free decay: fits the modes that the model has in it with poles and shapes of their own, and fills in
+/// `free_modes` and `clock_scatter` of the run; neither where the decay is not that of the model's modes.
+/// @param outputs of the model's motion nearest to the record (p x N) @param start its state at zero
+void look_at_free_modes(const RunContext& context, const Eigen::MatrixXd& outputs,
+                        const Eigen::VectorXd& start, ComparedRun& run);
+
+/// Widens the intervals by the Birge ratio where the model's modes are not those of the record; contradicted
+/// where the difference is more than a hundredth of it.
+void judge_free_modes(ComparedRun& run);
+
 /// Whether the model explains at least 70 % of a driven record that sections were made of, and more than 10 %
 /// of it is left and no noise.
 bool is_approximate(const ComparedRun& run);

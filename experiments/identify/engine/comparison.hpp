@@ -66,6 +66,20 @@ ComparedRecord measured_record(std::string name, const Record& record);
 ComparedRecord simulated_record(const Experiment& truth, const std::filesystem::path& folder,
                                 const Progress& progress);
 
+/// Poles and shapes of their own, fitted to a free decay, beside the motion of a model with the same modes.
+struct FreeModes {
+  double chi_square = 0.0,
+         freedom = 0.0;    ///< of what they explain beyond the model, in the noise near the modes
+  double share = 0.0;      ///< root mean square of that over that of the record
+  double left = 0.0;       ///< likewise, the residual of the free modes
+  std::string difference;  ///< the mode or the channel in which both differ most
+
+  /// Whether the difference is no noise: p < 1e-4, and more than a thousandth of the record.
+  bool exclude() const;
+  /// By which deviations grow where errors of the model take the place of noise [birge1932].
+  double birge_ratio() const;
+};
+
 /// What one unknown came out as.
 struct ComparedParameter {
   Estimate estimate;
@@ -126,8 +140,9 @@ struct ComparedRun {
                                                    ///< end, and at the start of the last pass (q)
   std::optional<SectionScatter> sections;          ///< of a driven record that is long enough
   std::vector<DescriptionFault> faults;            ///< of a driven linear model; by `identify`
-  std::optional<ClockStep> clocks;   ///< of channels with clocks of their own; absent: there are none
-  LikeliestClocks likeliest_clocks;  ///< of a driven record without such channels
+  std::optional<ClockStep> clocks;      ///< of channels with clocks of their own; absent: there are none
+  LikeliestClocks likeliest_clocks;     ///< of a driven record without such channels
+  std::optional<FreeModes> free_modes;  ///< of a free decay; by `identify`
   std::optional<ClockScatter> clock_scatter;  ///< of a free decay's channels that do not agree; by `identify`
   std::optional<LikeliestInputNoise> likeliest_input_noise;  ///< likewise, of exact inputs; by `identify`
   std::optional<filters::Diagnostics> diagnostics;           ///< of the last pass; absent below 100 samples

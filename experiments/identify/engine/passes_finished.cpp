@@ -28,28 +28,6 @@ std::string unsettled_text(double moved) {
       moved);
 }
 
-// Of a free decay by several channels, whose own frequencies lie about those of the model. Nothing where the
-// decay is not that of the model's modes.
-// @param start of the motion that is nearest to the record
-std::optional<ClockScatter> scatter_of_clocks(const RecordAnalysis& analysis, const JointModel& model,
-                                              const VectorXd& start) {
-  constexpr double same = 0.02;  // of a frequency
-  const Record& even = analysis.even.record;
-  const std::vector<Index> outputs = output_channels(even);
-  if (analysis.forced() || outputs.size() < 2) return {};
-  const auto rates = seen_rates(model, start);
-  const auto numbers = static_cast<Index>(outputs.size() * rates.size()) * 2 * even.size();
-  if (rates.empty() || numbers > most_numbers) return {};
-  try {
-    const JointDecayFit fit = fit_decays_jointly(even.samples(outputs, Eigen::all), even.interval(), rates);
-    for (std::size_t m = 0; m < rates.size(); ++m)
-      if (std::abs(fit.rates[m].imag() - rates[m].imag()) > same * rates[m].imag()) return {};
-    return clock_scatter(fit);
-  } catch (const std::exception&) {  // decays too short or too few samples for so many modes
-    return {};
-  }
-}
-
 }  // namespace
 
 void Passes::finish() {
@@ -72,7 +50,7 @@ void Passes::finish() {
     run_.likeliest_clocks =
         likeliest_clocks(*discrete, motion_.initial_state, directions_, record_, motion_.outputs);
   if (is_kept && context_.analysis.modal && context_.compared.clocks.empty())
-    run_.clock_scatter = scatter_of_clocks(context_.analysis, *run_.model, motion_.initial_state);
+    look_at_free_modes(context_, motion_.outputs, motion_.initial_state, run_);
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
   if (!drifts && context_.analysis.forced()) look_at_sections();
   // What is left of a model that is not exact looks like noise of its inputs, too.

@@ -345,6 +345,22 @@ void take_clocks(const Record& record, const std::optional<ClockScatter>& scatte
 
 }  // namespace
 
+namespace {
+
+// A mode that the record shows at its alias, at the frequency next to the described one: with the same decay
+// rate [1/s].
+ModalEstimate behind_its_alias(ModalEstimate mode, double described_hz, double rate) {
+  const double times = std::round(described_hz / rate) * rate,
+               whole = times + std::copysign(mode.frequency_hz, described_hz - times),
+               lower = mode.frequency_hz / whole;
+  mode.frequency_hz = whole;
+  mode.damping_ratio *= lower;
+  mode.damping_ratio_standard_deviation *= lower;
+  return mode;
+}
+
+}  // namespace
+
 RecordIdentification oscillator_of(const Experiment& experiment, const RecordAnalysis& analysis,
                                    const ComparedRun& run) {
   RecordIdentification result;
@@ -363,6 +379,9 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
   result.modal_failure = analysis.modal_failure.empty() ? analysis.modal_refusal : analysis.modal_failure;
   result.modal = analysis.modal.value_or(mode_of_filter(result, analysis));
   result.near_mode = analysis.near_mode ? *analysis.near_mode : analysis.noise_at(result.modal);
+  if (analysis.modal && analysis.aliased)
+    result.modal = behind_its_alias(result.modal, described_frequency_hz(experiment, analysis.record),
+                                    1.0 / analysis.record.interval());
   result.noise_deviation = run.noise;
   for (const bool stated : run.noise_is_stated) result.noise_from_record.push_back(!stated);
   result.noise_method = experiment.noise_method.name;
@@ -382,6 +401,7 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
   if (result.judgement.verdict != ComparedRun::Status::diverged) take_objections(analysis, result);
   take_channels(analysis.channels, result.judgement);
   take_clocks(analysis.record, run.clock_scatter, result.judgement);
+  for (const Objection& one : analysis.objections) result.judgement.objections.push_back(one);
   return result;
 }
 

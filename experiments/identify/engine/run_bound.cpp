@@ -136,9 +136,35 @@ double overconfidence(double deviation, double bound, double prior_deviation) {
 
 void widen(ComparedRun& run, std::size_t j, double factor) {
   factor = to_bound(run.parameters[j], factor);
-  run.parameters[j].estimate.deviation *= factor;
-  set_interval(run, j, factor);
+  double& deviation = run.parameters[j].estimate.deviation;
+  deviation *= factor;
+  const auto place = static_cast<Eigen::Index>(j);
+  const double formal = std::abs(run.unknowns[j].slope(run.unknown_state.mean[place])) *
+                        std::sqrt(run.unknown_state.covariance(place, place));
+  set_interval(run, j, formal > 0.0 ? deviation / formal : factor);  // of all that widened it
 }
+
+namespace {
+
+// Where frequency or damping surely follow the amplitude of a free decay, intervals hold what they are over
+// it, as those of K and C do: a stiffness or a mass twice the share of a frequency.
+void hold_sections(const AmplitudeSections& sections, ComparedRun& run) {
+  if (sections.sections.empty() || !run.mode) return;
+  for (std::size_t j = 0; j < run.parameters.size() && j < run.unknowns.size(); ++j) {
+    const Estimate& found = run.parameters[j].estimate;
+    const bool damping = run.unknowns[j].quantity.find("damping") != std::string::npos;
+    const double value = damping ? run.mode->damping_ratio : run.mode->frequency_hz,
+                 times = damping ? 1.0 : 2.0,
+                 deviation = found.deviation / std::abs(found.value) * value / times;
+    if (!(deviation > 0.0) || !std::isfinite(deviation)) continue;
+    const SectionTrend& trend = damping ? sections.damping : sections.frequency;
+    if (!trend.varies()) continue;
+    const double half = section_half_width(trend, value, deviation, deviation);
+    if (half > quantile_95 * deviation) widen(run, j, half / (quantile_95 * deviation));
+  }
+}
+
+}  // namespace
 
 void widen_intervals(const RunContext& context, ComparedRun& run) {
   std::vector<double> factors =
@@ -148,6 +174,7 @@ void widen_intervals(const RunContext& context, ComparedRun& run) {
     follow_size(run);
   }
   for (std::size_t j = 0; j < factors.size(); ++j) widen(run, j, factors[j]);
+  hold_sections(context.analysis.sections, run);
   if (!run.mode) return;
   run.mode->damping_ratio_deviation *= run.interval_factor;
   run.mode->frequency_deviation_hz *= run.interval_factor;

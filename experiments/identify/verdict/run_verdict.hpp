@@ -29,6 +29,18 @@ void judge_run(const RunContext& context, ComparedRun& run);
 /// beforehand.
 void judge_what_is_said(ComparedRun& run);
 
+// What a reduction does by itself to what is identified with it (reduction_bias.cpp).
+
+/// Predicted relative errors of the unknowns (q), from the frequencies that the reduced model has at its
+/// estimate where the mesh has others, weighed by what the record determines of each; 0 for those that move
+/// no frequency. Empty without a reduction, for models without a parameter of the structure, for models that
+/// are not linear and where the record holds no mode of the model.
+Eigen::VectorXd reduction_bias(const RunContext& context, const ComparedRun& run);
+
+/// A sentence where the mode that a run is identified by is moved by more than three of the frequency's
+/// standard deviations; else empty, as where reduction_bias() is.
+std::string reduction_error(const RunContext& context, const ComparedRun& run);
+
 // What the discretisation does to the higher modes of a model (step_error.cpp).
 
 /// A sentence where the scheme of a run, by its closed form (discretisation_bias.hpp), moves the stiffness of

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/engine/measured_force.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/results/table.hpp"
@@ -54,7 +57,9 @@ namespace {
 nlohmann::ordered_json comparison_configuration(const Experiment& experiment, const Comparison& comparison);
 
 /// The record, the status of all runs together, converged where any is, and every run.
-nlohmann::ordered_json comparison_values(const Comparison& comparison);
+/// @param biases of every run by its reduction (reduction_bias())
+nlohmann::ordered_json comparison_values(const Comparison& comparison,
+                                         const std::vector<Eigen::VectorXd>& biases);
 
 using Eigen::Index;
 using Json = nlohmann::ordered_json;
@@ -110,7 +115,8 @@ Json section_values(const ComparedRun& run) {
   return json;
 }
 
-Json run_values(const ComparedRun& run, const std::vector<std::string>& outputs) {
+Json run_values(const ComparedRun& run, const Eigen::VectorXd& bias,
+                const std::vector<std::string>& outputs) {
   Json json{{"reduction", run.reduction},
             {"filter", run.filter},
             {"discretisation", run.discretisation},
@@ -132,6 +138,9 @@ Json run_values(const ComparedRun& run, const std::vector<std::string>& outputs)
                                            {"error_percent", optional_number(p.error_percent())},
                                            {"bound", optional_number(p.bound)},
                                            {"bound_ratio", optional_number(p.bound_ratio())}};
+  for (std::size_t j = 0; j < run.parameters.size() && bias.size() > 0; ++j)
+    json["parameters"][run.parameters[j].estimate.name]["reduction_bias_percent"] =
+        100.0 * bias[static_cast<Index>(j)];
   if (run.has_estimate()) json["covariance"] = json_rows(covariance_of_parameters(run));
   if (run.reproduced.size() == 0) return json;
   json["response_error_percent"] = run.response_error_percent;
@@ -183,7 +192,7 @@ Json comparison_configuration(const Experiment& experiment, const Comparison& co
   return json;
 }
 
-Json comparison_values(const Comparison& comparison) {
+Json comparison_values(const Comparison& comparison, const std::vector<Eigen::VectorXd>& biases) {
   const Record& record = comparison.compared.record;
   Json json{{"record", comparison.compared.name},          {"samples", record.size()},
             {"sampling_rate_hz", 1.0 / record.interval()}, {"channels", channel_values(record)},
@@ -191,17 +200,20 @@ Json comparison_values(const Comparison& comparison) {
   if (const auto inputs = record_inputs(record)) json["inputs_between_samples"] = to_string(inputs->path);
   std::vector<std::string> outputs;
   for (const Index i : output_channels(record)) outputs.push_back(record.channels[i].name);
-  for (const ComparedRun& run : comparison.runs) json["runs"].push_back(run_values(run, outputs));
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i)
+    json["runs"].push_back(run_values(comparison.runs[i], biases[i], outputs));
   return json;
 }
 
 // The tables of a comparison.
 
-/// One run, a row for each parameter. @param record that it is of
-Table parameter_table(const ComparedRun& run, const Record& record);
-
 double or_nan(const std::optional<double>& value) {
   return value.value_or(std::nan(""));
+}
+
+// Relative, of parameter j; 0 where the reduction has none.
+double bias_of(const Eigen::VectorXd& biases, std::size_t j) {
+  return biases.size() > 0 ? biases[static_cast<Index>(j)] : 0.0;
 }
 
 // Of a parameter, what the reference run found.
@@ -246,7 +258,6 @@ Table run_table(const Comparison& comparison) {
   return table;
 }
 
-// One parameter over all runs.
 /// One parameter, a row for each run.
 Table parameter_table(const Comparison& comparison, const std::string& name) {
   Table table{"parameter_" + name, ""};
@@ -285,6 +296,33 @@ Table parameter_table(const Comparison& comparison, const std::string& name) {
         table.row(row);
       }
   return table;
+}
+
+/// Of every parameter, the reduction whose bias and standard deviation together are least; empty where all
+/// runs have one reduction.
+std::string choice_text(const Comparison& comparison, const std::vector<Eigen::VectorXd>& biases) {
+  std::set<std::string> reductions;
+  std::map<std::string, std::pair<double, std::string>> best;
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const ComparedRun& run = comparison.runs[i];
+    if (!run.answers()) continue;
+    reductions.insert(run.reduction);
+    for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+      const Estimate& found = run.parameters[j].estimate;
+      const double bias = bias_of(biases[i], j), deviation = found.deviation / std::abs(found.value),
+                   expected = std::hypot(bias, deviation);
+      if (found.nuisance || !std::isfinite(expected)) continue;
+      if (const auto known = best.find(found.name); known != best.end() && known->second.first <= expected)
+        continue;
+      best[found.name] = {expected, fmt::format("{} (bias {:.2g} %, standard deviation {:.2g} %)",
+                                                name_of(comparison, run), 100.0 * bias, 100.0 * deviation)};
+    }
+  }
+  if (reductions.size() < 2) return {};
+  std::string text = "Least expected error, of the reduction's bias and the standard deviation together:";
+  for (const auto& [name, choice] : best)
+    text += fmt::format("{} {} by {}", text.ends_with(':') ? "" : ";", name, choice.second);
+  return text + ".";
 }
 
 // Of a single run, all parameters.
@@ -356,17 +394,25 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   results.command = "compare";
   if (comparison.compared.truth) results.seed = comparison.compared.truth->simulation.seed;
   results.configuration = comparison_configuration(experiment, comparison);
-  results.values = comparison_values(comparison);
+  std::vector<Eigen::VectorXd> biases;
+  for (const ComparedRun& run : comparison.runs)
+    biases.push_back(reduction_bias({experiment, comparison.compared, comparison.analysis}, run));
+  results.values = comparison_values(comparison, biases);
   const std::optional<RecordInputs> inputs = record_inputs(record);
   const char* const usual = comparison.runs.size() == 1 ? "Identification" : "Reduced against continuum";
   results.heading(experiment.title.empty() ? usual : experiment.title);
   for (const Objection& one : record.objections) results.object(one);
-  for (const Objection& one : comparison.objections) results.object(one);
+  const std::vector<Objection> of_runs = objections_of(comparison);
+  const auto of_a_run = [&](const Objection& one) {
+    return std::ranges::find(of_runs, one.name, &Objection::name) != of_runs.end();
+  };
+  for (const Objection& one : comparison.objections)
+    if (!of_a_run(one)) results.object(one);
   const bool alone = comparison.runs.size() == 1;
   // Of a run without an estimate to rely on the first says why.
   const std::size_t failures = alone && !comparison.runs[0].answers() ? 1 : 0;
   std::size_t said = 0;
-  for (const Objection& one : objections_of(comparison)) results.object(one, {}, said++ < failures);
+  for (const Objection& one : of_runs) results.object(one, {}, said++ < failures);
   if (!reference_run(comparison) && (!alone || said == 0))
     results.warning(
         alone ? fmt::format("{}: {}.", to_string(comparison.runs[0].status), comparison.runs[0].reason)
@@ -382,6 +428,7 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
   for (const std::string& name : parameter_names(comparison))
     if (!alone) results.table(parameter_table(comparison, name));
   add_clocks(results, comparison);
+  if (const std::string choice = choice_text(comparison, biases); !choice.empty()) results.paragraph(choice);
   for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
   results.notes(comparison.compared.notes);
   results.figures = figures(comparison);

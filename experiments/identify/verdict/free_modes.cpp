@@ -1,0 +1,233 @@
+// Whether a free decay, whose modes a model determines by few parameters, has these modes.
+//
+// K modes with poles and shapes of their own make 2 K + 2 p K numbers of a record of p channels; a model
+// makes 2 K of its start and q of its unknowns. Both are fitted to one record, so that of an exact model the
+// free modes gain by chance alone:
+//
+//     chi^2 = sum_i (|r_i|^2 - |e_i|^2) / s_i^2,    of 2 p K - q degrees of freedom,
+//
+// r_i the residual of the model in channel i, e_i that of the free modes, s_i^2 the variance of white noise
+// as dense as e_i is near the modes. Means are left out: an offset is no mode.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "experiments/identify/engine/analysis.hpp"
+#include "experiments/identify/engine/compared_run.hpp"
+#include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/engine/run_bound.hpp"
+#include "experiments/modal/study/modal_study.hpp"
+#include "experiments/modal/subspace_realisation.hpp"
+#include "experiments/models/joint_model.hpp"
+#include "experiments/signal/toolbox.hpp"
+
+namespace beamid::experiments {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr Index most_numbers = 20'000'000;  // of sensitivities at all samples, that are held together
+
+double hz_of(Complex rate) {
+  return std::abs(rate) / (2.0 * std::numbers::pi);
+}
+double ratio_of(Complex rate) {
+  return -rate.real() / std::abs(rate);
+}
+
+/// Of the record, by the method of `modal`; absent where it is too short for it.
+std::optional<RecordModes> modes_of_record(const Record& even) {
+  try {
+    return find_modes("", even, true, {});
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+/// The record's own poles next to those of the model, each once: a fit that starts more than a cycle off ends
+/// elsewhere.
+std::vector<Complex> poles_of_record(const std::vector<ModeEstimate>& modes, std::vector<Complex> rates) {
+  constexpr double near = 0.2;  // of a frequency
+  std::vector<bool> taken(modes.size(), false);
+  for (Complex& rate : rates) {
+    std::size_t nearest = taken.size();
+    double least = near;
+    for (std::size_t m = 0; m < taken.size(); ++m)
+      if (const double apart = std::abs(modes[m].pole.frequency_hz() / hz_of(rate) - 1.0);
+          !taken[m] && apart < least)
+        least = apart, nearest = m;
+    if (nearest == taken.size()) continue;
+    taken[nearest] = true;
+    rate = modes[nearest].pole.rate;
+  }
+  return rates;
+}
+
+/// Frequency or damping ratio that differs most from the model's, or the channel whose amplitude does.
+std::string largest_difference(const JointDecayFit& fit, const std::vector<Complex>& model,
+                               const MatrixXd& outputs, double interval,
+                               const std::vector<std::string>& channels) {
+  constexpr double surely = 5.0;
+  std::string text;
+  double farthest = surely;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    const auto at = static_cast<Index>(2 * m);
+    const double w = fit.rates[m].imag(),
+                 off = std::abs(model[m].imag() - w) / std::sqrt(fit.covariance(at, at)),
+                 damping_off = std::abs(model[m].real() - fit.rates[m].real()) /
+                               std::sqrt(fit.covariance(at + 1, at + 1));
+    if (std::max(off, damping_off) <= farthest) continue;
+    farthest = std::max(off, damping_off);
+    text = off >= damping_off
+               ? fmt::format("mode {} has {:.6g} +- {:.2g} Hz, and {:.6g} Hz in the model", m + 1,
+                             hz_of(fit.rates[m]),
+                             std::sqrt(fit.covariance(at, at)) / (2.0 * std::numbers::pi), hz_of(model[m]))
+               : fmt::format(
+                     "mode {}, at {:.4g} Hz, has a damping ratio of {:.3g} +- {:.2g} %, and {:.3g} % in the "
+                     "model",
+                     m + 1, hz_of(fit.rates[m]), 100.0 * ratio_of(fit.rates[m]),
+                     100.0 * std::sqrt(fit.covariance(at + 1, at + 1)) / std::abs(fit.rates[m]),
+                     100.0 * ratio_of(model[m]));
+  }
+  if (!text.empty()) return text;
+  std::vector<Complex> rates = model;
+  rates.emplace_back(0.0);
+  std::vector<bool> oscillating(rates.size(), true);
+  oscillating.back() = false;
+  const ShapeFit made = fit_shapes(outputs, interval, rates, oscillating);
+  double largest = 0.0;
+  for (Index i = 0; i < outputs.rows(); ++i)
+    for (Index m = 0; m < fit.shapes.cols(); ++m) {
+      const double size = std::abs(fit.shapes(i, m)), expected = std::abs(made.shapes(i, m)),
+                   apart =
+                       std::abs(fit.shapes(i, m) - made.shapes(i, m)) / fit.residual_standard_deviation[i];
+      if (apart <= largest || !(expected > 0.0)) continue;
+      largest = apart;
+      text = fmt::format("{} moves {:.4g} times as much in mode {}, at {:.4g} Hz, as the model does",
+                         channels[static_cast<std::size_t>(i)], size / expected, m + 1,
+                         hz_of(fit.rates[static_cast<std::size_t>(m)]));
+    }
+  return text;
+}
+
+MatrixXd without_means(const MatrixXd& signals) {
+  return signals.colwise() - signals.rowwise().mean();
+}
+
+FreeModes beside_model(const JointDecayFit& fit, const MatrixXd& record, const MatrixXd& outputs,
+                       Index unknowns) {
+  const Index p = record.rows(), modes = fit.shapes.cols();
+  const MatrixXd of_model = without_means(record - outputs),
+                 of_free = without_means(record - fit.reconstruction), moved = without_means(record);
+  FreeModes found;
+  double gained = 0.0, left = 0.0;
+  for (Index i = 0; i < p; ++i) {
+    const double all = std::max(moved.row(i).squaredNorm(), 1e-300),
+                 gain = of_model.row(i).squaredNorm() - of_free.row(i).squaredNorm();
+    found.chi_square += gain / std::max(fit.noise_variance.row(i).maxCoeff(), 1e-24 * all);
+    gained += gain / all;
+    left += of_free.row(i).squaredNorm() / all;
+  }
+  found.freedom = static_cast<double>(std::max<Index>(2, 2 * p * modes - unknowns));
+  found.share = std::sqrt(std::max(gained, 0.0) / static_cast<double>(p));
+  found.left = std::sqrt(left / static_cast<double>(p));
+  return found;
+}
+
+}  // namespace
+
+bool FreeModes::exclude() const {
+  constexpr double size = 1e-4, slight = 1e-3;
+  return freedom > 0.0 && chi_square > chi_square_limit(freedom, 1.0 - size) && share > slight;
+}
+
+double FreeModes::birge_ratio() const {
+  return exclude() && std::isfinite(chi_square) ? std::sqrt(chi_square / freedom) : 1.0;
+}
+
+namespace {
+
+/// Where the modes of the model lie elsewhere, and those of the record explain most of what the model does
+/// not.
+std::optional<FreeModes> elsewhere(const RecordModes& own, const MatrixXd& record, const MatrixXd& outputs) {
+  constexpr double much = 0.1, most = 0.3;
+  const MatrixXd left = without_means(record - outputs), moved = without_means(record);
+  const double share = left.norm() / moved.norm();
+  if (own.modes.empty() || !(share > much) || !(own.left() < most * share)) return {};
+  std::string list;
+  for (const ModeEstimate& mode : own.modes)
+    list += fmt::format("{}{:.4g}", list.empty() ? "" : ", ", mode.pole.frequency_hz());
+  return FreeModes{std::numeric_limits<double>::infinity(), 1.0, share, own.left(),
+                   "they are at " + list + " Hz"};
+}
+
+}  // namespace
+
+void look_at_free_modes(const RunContext& context, const MatrixXd& outputs, const VectorXd& start,
+                        ComparedRun& run) {
+  constexpr double same = 0.2, same_clock = 0.02;  // of a frequency
+  const Record& even = context.analysis.even.record;
+  const std::vector<Index> channels = output_channels(even);
+  if (context.analysis.forced()) return;
+  const std::vector<Complex> model = seen_rates(*run.model, start);
+  const auto numbers = static_cast<Index>(channels.size() * model.size()) * 2 * even.size();
+  if (model.empty() || numbers > most_numbers || outputs.cols() != even.size()) return;
+  const bool is_oscillator = context.experiment.model.name == "sdof";  // which has its own verdict
+  if (is_oscillator && channels.size() < 2) return;
+  const MatrixXd record = even.samples(channels, Eigen::all);
+  const std::optional<RecordModes> own = is_oscillator ? std::nullopt : modes_of_record(even);
+  double farthest = 0.0;
+  try {
+    const JointDecayFit fit =
+        fit_decays_jointly(record, even.interval(), own ? poles_of_record(own->modes, model) : model);
+    for (std::size_t m = 0; m < model.size(); ++m)
+      farthest = std::max(farthest, std::abs(fit.rates[m].imag() / model[m].imag() - 1.0));
+    // A fit that lacks a mode which the model has bends the frequencies of its channels.
+    const bool lacks_none = without_means(record - fit.reconstruction).squaredNorm() <
+                            1.1 * without_means(record - outputs).squaredNorm();
+    if (channels.size() > 1 && farthest < same_clock && lacks_none) run.clock_scatter = clock_scatter(fit);
+    if (run.clock_scatter || is_oscillator) return;
+    if (farthest < same) {
+      std::vector<std::string> names;
+      for (const Index i : channels) names.push_back(even.channels[static_cast<std::size_t>(i)].name);
+      run.free_modes = beside_model(fit, record, outputs, static_cast<Index>(run.unknowns.size()));
+      if (run.free_modes->exclude())
+        run.free_modes->difference = largest_difference(fit, model, outputs, even.interval(), names);
+    }
+  } catch (const std::exception&) {  // decays too short or too few samples for so many modes
+  }
+  if (!run.free_modes && own) run.free_modes = elsewhere(*own, record, outputs);
+}
+
+void judge_free_modes(ComparedRun& run) {
+  constexpr double much = 0.01;
+  if (!run.free_modes || !run.free_modes->exclude()) return;
+  const FreeModes& free = *run.free_modes;
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) widen(run, j, free.birge_ratio());
+  const bool contradicts = free.share > much;
+  const std::string found = fmt::format(
+      "no parameters of this model make the modes of the record: modes with poles and shapes of their own "
+      "have a "
+      "residual of {:.2g} %, and explain {:.2g} % of the motion that the model does not{}{}",
+      100.0 * free.left, 100.0 * free.share, free.difference.empty() ? "" : "; ", free.difference);
+  run.object(
+      {"free_modes",
+       (contradicts ? "CONTRADICTED: " : "APPROXIMATE: ") + found +
+           ". A length, a mass, a support, a place, a gain or the damping of a mode is not as described." +
+           (free.birge_ratio() > 1.0
+                ? fmt::format(" Intervals are widened by {:.3g}, the Birge ratio{}.", free.birge_ratio(),
+                              contradicts ? ", and may not hold the truth" : "")
+                : ""),
+       free.share, much});
+  if (!contradicts) return;
+  run.status = ComparedRun::Status::contradicted;
+  run.reason = found;
+}
+
+}  // namespace beamid::experiments
