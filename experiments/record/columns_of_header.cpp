@@ -50,13 +50,6 @@ std::string numbers_of(const std::vector<RecordColumn>& columns) {
                      columns.size() == 1 ? "is" : "are");
 }
 
-// One more from row to row, from wherever: no sensor does.
-bool counts_rows(const std::vector<double>& values) {
-  for (std::size_t k = 1; k < values.size(); ++k)
-    if (values[k] != values[k - 1] + 1.0) return false;
-  return values.size() > 1;
-}
-
 constexpr double fastest = 5e-6;  // [s], of 200 kHz
 
 bool is_plausible(double step, double taken) {

@@ -126,7 +126,7 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::
   return {};
 }
 
-// mg and counts beside what stated_unit() knows.
+// mg and counts beside those of stated_unit().
 std::optional<StatedUnit> unit_of(const std::string& unit) {
   static const std::set<std::string> milligravities{"mg", "mG", "milli-g", "milli g", "mgn"};
   if (milligravities.contains(unit)) return StatedUnit{Quantity::acceleration, 1e-3 * standard_gravity};

@@ -214,11 +214,14 @@ std::string printed_like(const Stamp& stamp) {
   return printed;
 }
 
-bool counts_samples(const std::vector<double>& values) {
-  if (values.size() < 2 || (values[0] != 0.0 && values[0] != 1.0)) return false;
+bool counts_rows(const std::vector<double>& values) {
   for (std::size_t k = 1; k < values.size(); ++k)
     if (values[k] != values[k - 1] + 1.0) return false;
-  return true;
+  return values.size() > 1;
+}
+
+bool counts_samples(const std::vector<double>& values) {
+  return !values.empty() && (values[0] == 0.0 || values[0] == 1.0) && counts_rows(values);
 }
 
 bool rises(const std::vector<double>& values) {

@@ -31,6 +31,9 @@ std::string printed_like(const Stamp& stamp);
 
 // Columns of numbers that may be stamps.
 
+/// One more from row to row, from wherever it begins: no sensor does.
+bool counts_rows(const std::vector<double>& values);
+
 /// 0, 1, 2, ... or 1, 2, 3, ...: samples that are counted, no times.
 bool counts_samples(const std::vector<double>& values);
 

@@ -71,7 +71,7 @@ TEST(WrongDescription, OfAFreeDecayIsContradictedByItsOwnModes) {
 }
 
 // Of a static shape, and of the lowest of few Lanczos vectors: the estimate less the truth, at a noise that
-// hardly counts.
+// is small.
 TEST(ReductionBias, IsWhatTheEstimatesAreOff) {
   const Experiment e =
       cantilever(1.1, {"rayleigh", "krylov:moments=2", "modal_truncation:modes=2", "none"}, 0.001);
