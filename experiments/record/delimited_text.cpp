@@ -177,9 +177,13 @@ bool DelimitedText::find_body() {
   if (!header) header = nearest;
   if (!header && first > 0) {  // names of more or fewer columns than the rows have
     const char parted_by = separator_of(lines[first - 1].text);
-    if (fields[first - 1].size() > 1 && !holds_reading(fields[first - 1]) &&
-        !is_statement(lines[first - 1].text) && names_columns(fields[first - 1]) &&
-        (parted_by != ' ' || separator_of(lines[first].text) == ' '))
+    std::vector<std::string_view> cells;  // those at the end of a row that hold nothing too
+    split_fields(lines[first].text, parted_by, cells, true);
+    if (parted_by != ' ' && cells.size() == fields[first - 1].size() && names_columns(fields[first - 1]))
+      header = first - 1;
+    else if (fields[first - 1].size() > 1 && !holds_reading(fields[first - 1]) &&
+             !is_statement(lines[first - 1].text) && names_columns(fields[first - 1]) &&
+             (parted_by != ' ' || separator_of(lines[first].text) == ' '))
       return false;
   }
 

@@ -116,7 +116,6 @@ class DelimitedText {
 
 /// The columns of a delimited text, dates and times of day as numbers of seconds.
 /// @param file for messages. @throws InputError at a row, or where there is none.
-RecordTable table_of_text(const std::string& file, const std::shared_ptr<const std::string>& content,
-                          const RecordFormat& format);
+RecordTable table_of_text(const std::string& file, std::string content, const RecordFormat& format);
 
 }  // namespace beamid::experiments

@@ -344,7 +344,9 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
   std::size_t rows = table.rows();
   while (time && table.cell && rows > fewest && !std::isfinite(table.columns[*time][rows - 1])) {
     const std::string cell = table.cell(rows - 1, *time).text;  // "Max", "Mean" below the record
-    if (says_missing(cell) || cell.find_first_of("0123456789") != cell.npos) break;
+    const bool empty = std::ranges::none_of(
+        used, [&](const Used& one) { return std::isfinite(table.columns[one.index][rows - 1]); });
+    if ((says_missing(cell) && !empty) || cell.find_first_of("0123456789") != cell.npos) break;
     kept[--rows] = false;
     lines.push_back(rows < table.lines.size() ? table.lines[rows] : rows + 1);
   }

@@ -69,7 +69,7 @@ const std::set<std::string> times{
     "secondi", "date",      "datetime", "datum",   "fecha",     "uhrzeit",  "epoch",       "unix",
     "second",  "sec",       "sekunde",  "seconde", "segundo",   "secondo",  "hora",        "heure",
     "ora",     "tijd",      "tid",      "aika",    "czas",      "时间",     "時間",        "時刻",
-    "время",   "zeitpunkt", "uptime",   "ts",      "ticks",     "laufzeit", "tow"};
+    "время",   "zeitpunkt", "uptime",   "ts",      "ticks",     "laufzeit", "tow",         "timer"};
 // Time, and its unit [s].
 const std::vector<std::pair<std::string_view, double>> clocks{
     {"millis", 1e-3},        {"milliseconds", 1e-3}, {"msec", 1e-3},          {"micros", 1e-6},

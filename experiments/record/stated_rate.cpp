@@ -158,9 +158,9 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
       with_unit(
           R"((?:\b(?:scan|acquisition|logging|recording|output data|output|data)[ _-]*(?:rate|frequency)|^\W*rate|\bsampl(?:ing|ed))\b)"),
       period(
-          R"(\b(dt|delta[ _]?t|[tx]inc(?:r|rement)?|hresolution|sampl\w*[ _-]*(?:interval|period|time)|)"
+          R"(\b(dt|delta[ _]?[tx]|[tx]inc(?:r|rement)?|hresolution|sampl\w*[ _-]*(?:interval|period|time)|)"
           R"(abtast(?:intervall|zeit)|time[ _]?step|intervals of|dx ?[\[(]s[\])]|(?:recording|logging|time) interval|^\W*interval|)"
-          R"(pas de temps|paso de tiempo|(?:periode|pas|interval[la]o?|periodo|pass?o) (?:d'echantillonnage|)"
+          R"(pas de temps|paso de tiempo|(?:periode|pas|interval(?:le|l?o|a)|periodo|pass?o) (?:d'echantillonnage|)"
           R"(de muestreo|di campionamento|de amostragem))(?![a-z]))"),
       alone(R"(\b([0-9]+(?:\.[0-9]+)?) ?(?:sps|samples? ?(?:/|per) ?s(?:ec(?:ond)?)?)\b)"),
       of_another(
@@ -233,7 +233,7 @@ std::optional<double> stated_rate(std::string_view lines, char decimal) {
 }
 
 bool is_statement(std::string_view line) {
-  static const std::regex form(R"(^[^0-9,;\t:=]*[A-Za-z][^,;\t:=]*[:=]\s*[-+.]?[0-9])");
+  static const std::regex form(R"(^[^0-9,;\t:=]*[A-Za-z][^,;\t:=]*[:=]\s*"?(?:\+/-\s*)?[-+.]?[0-9])");
   if (line.starts_with("Unnamed: ")) return false;  // columns without names, of pandas
   return line.size() < 400 && (std::regex_search(line.begin(), line.end(), form) || stated_rate(line));
 }

@@ -98,6 +98,17 @@ std::string from_utf16(const std::string& bytes, bool high) {
   return text;
 }
 
+/// Puts the mark in front of text in UTF-16 that has none: every other byte is zero.
+void mark_utf16(std::string& text) {
+  constexpr std::size_t looked_at = 64;
+  const std::size_t size = std::min(text.size(), looked_at) & ~std::size_t{1};
+  std::size_t zeros[2] = {0, 0};
+  for (std::size_t k = 0; k < size; ++k) zeros[k % 2] += text[k] == '\0' ? 1 : 0;
+  for (const std::size_t high : {0U, 1U})
+    if (size > 8 && zeros[high] > size / 2 - size / 8 && zeros[1 - high] == 0)
+      text.insert(0, high == 0 ? "\xFE\xFF" : "\xFF\xFE");
+}
+
 }  // namespace
 
 std::ifstream open_input(const std::filesystem::path& file, const std::string& expected) {
@@ -144,6 +155,7 @@ std::string read_text(const std::filesystem::path& file, const std::string& expe
   const Place place{file.string(), 0, 0};
   std::string text = read_bytes(file, expected);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (!text.starts_with("\xFF\xFE") && !text.starts_with("\xFE\xFF")) mark_utf16(text);
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     text = from_utf16(text, text.starts_with("\xFE"));
   if (text.empty()) throw InputError(place, "an empty file; expected " + expected);

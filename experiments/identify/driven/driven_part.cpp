@@ -49,7 +49,10 @@ PartAt::PartAt(const DrivenProblem& problem, const LinearResponse& response, con
   read = problem.weights.asDiagonal() * read - driven;
   const VectorXd all = line_rows(read.reshaped());
   MatrixXd columns = line_rows(added);
-  const VectorXd scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  VectorXd scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  // What dies out or turns within a sample is nothing that a record holds: its amplitudes would be rounding.
+  for (Index j = 0; j < l; ++j)
+    if (std::abs(response.poles()[j]) * part.interval > pi) scale[j] = 0.0;
   columns = columns * scale.asDiagonal();
   ends.setThreshold(1e-10);
   ends.compute(columns);

@@ -84,7 +84,7 @@ void judge_motion_left(const RunContext& context, ComparedRun& run);
 void look_at_free_modes(const RunContext& context, const Eigen::MatrixXd& outputs,
                         const Eigen::VectorXd& start, ComparedRun& run);
 
-/// Widens the intervals by the Birge ratio where the model's modes are not those of the record; contradicted
+/// Widens the intervals by chi where the model's modes are not those of the record; contradicted
 /// where the difference is more than a hundredth of it.
 void judge_free_modes(ComparedRun& run);
 

@@ -322,8 +322,7 @@ std::optional<RecordedModes> recorded_modes(const JointModel& model, const Vecto
   return modes;
 }
 
-std::vector<std::complex<double>> seen_rates(const JointModel& model, const VectorXd& state) {
-  constexpr double least = 0.02;
+std::vector<std::complex<double>> seen_rates(const JointModel& model, const VectorXd& state, double least) {
   const auto* motion = dynamic_cast<const filters::LinearMotion*>(model.motion.get());
   if (!motion) return {};
   MatrixXd rates;

@@ -60,8 +60,9 @@ std::optional<RecordedModes> recorded_modes(const JointModel& model, const Eigen
                                             const filters::Gaussian& unknowns,
                                             std::optional<double> record_hz);
 
-/// Rates of the oscillations of a free motion from this state of which the sensors see a fiftieth of what
-/// they see of the strongest, at least [rad/s]; none where the motion is not linear.
-std::vector<std::complex<double>> seen_rates(const JointModel& model, const Eigen::VectorXd& state);
+/// Rates of the oscillations of a free motion from this state [rad/s]; none where the motion is not linear.
+/// @param least of what the sensors see of the strongest, the part that they see of the others at least
+std::vector<std::complex<double>> seen_rates(const JointModel& model, const Eigen::VectorXd& state,
+                                             double least);
 
 }  // namespace beamid::experiments

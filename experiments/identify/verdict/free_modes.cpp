@@ -116,6 +116,26 @@ std::string largest_difference(const JointDecayFit& fit, const std::vector<Compl
   return text;
 }
 
+/// What the modes of a model that are not strong make of its motion. Free modes in their place would be lost
+/// in the noise, and without any the free modes would explain less than the model does.
+MatrixXd motion_of_weak_modes(const MatrixXd& outputs, double interval, const std::vector<Complex>& strong,
+                              std::vector<Complex> rates) {
+  MatrixXd motion = MatrixXd::Zero(outputs.rows(), outputs.cols());
+  if (rates.size() == strong.size() || static_cast<Index>(2 * rates.size()) * outputs.cols() > most_numbers)
+    return motion;
+  rates.emplace_back(0.0);
+  std::vector<bool> oscillating(rates.size(), true);
+  oscillating.back() = false;
+  const Eigen::MatrixXcd shapes = fit_shapes(outputs, interval, rates, oscillating).shapes;
+  for (Index m = 0; m + 1 < shapes.cols(); ++m) {
+    const Complex rate = rates[static_cast<std::size_t>(m)];
+    if (std::ranges::find(strong, rate) != strong.end()) continue;
+    for (Index k = 0; k < outputs.cols(); ++k)
+      motion.col(k) += (shapes.col(m) * std::exp(rate * (interval * static_cast<double>(k)))).real();
+  }
+  return motion;
+}
+
 MatrixXd without_means(const MatrixXd& signals) {
   return signals.colwise() - signals.rowwise().mean();
 }
@@ -126,15 +146,17 @@ FreeModes beside_model(const JointDecayFit& fit, const MatrixXd& record, const M
   const MatrixXd of_model = without_means(record - outputs),
                  of_free = without_means(record - fit.reconstruction), moved = without_means(record);
   FreeModes found;
+  found.freedom = static_cast<double>(std::max<Index>(2, 2 * p * modes - unknowns));
+  const double by_chance = found.freedom / static_cast<double>(p);
   double gained = 0.0, left = 0.0;
   for (Index i = 0; i < p; ++i) {
     const double all = std::max(moved.row(i).squaredNorm(), 1e-300),
                  gain = of_model.row(i).squaredNorm() - of_free.row(i).squaredNorm();
-    found.chi_square += gain / std::max(fit.noise_variance.row(i).maxCoeff(), 1e-24 * all);
-    gained += gain / all;
+    const double variance = std::max(fit.noise_variance.row(i).maxCoeff(), 1e-24 * all);
+    found.chi_square += gain / variance;
+    gained += (gain - by_chance * variance) / all;
     left += of_free.row(i).squaredNorm() / all;
   }
-  found.freedom = static_cast<double>(std::max<Index>(2, 2 * p * modes - unknowns));
   found.share = std::sqrt(std::max(gained, 0.0) / static_cast<double>(p));
   found.left = std::sqrt(left / static_cast<double>(p));
   return found;
@@ -171,16 +193,23 @@ std::optional<FreeModes> elsewhere(const RecordModes& own, const MatrixXd& recor
 
 void look_at_free_modes(const RunContext& context, const MatrixXd& outputs, const VectorXd& start,
                         ComparedRun& run) {
-  constexpr double same = 0.2, same_clock = 0.02;  // of a frequency
+  constexpr double same = 0.2, same_clock = 0.02;    // of a frequency
+  constexpr double highest = 0.8;                    // of half the sampling rate
+  constexpr double strong = 0.02, traceable = 1e-6;  // of the strongest mode that the sensors see
   const Record& even = context.analysis.even.record;
   const std::vector<Index> channels = output_channels(even);
   if (context.analysis.forced()) return;
-  const std::vector<Complex> model = seen_rates(*run.model, start);
+  std::vector<Complex> model = seen_rates(*run.model, start, strong);
+  // A fit of modes near half the sampling rate takes up what lies beyond it.
+  std::erase_if(model,
+                [&](Complex rate) { return std::abs(rate) * even.interval() > highest * std::numbers::pi; });
   const auto numbers = static_cast<Index>(channels.size() * model.size()) * 2 * even.size();
   if (model.empty() || numbers > most_numbers || outputs.cols() != even.size()) return;
   const bool is_oscillator = context.experiment.model.name == "sdof";  // which has its own verdict
   if (is_oscillator && channels.size() < 2) return;
-  const MatrixXd record = even.samples(channels, Eigen::all);
+  const MatrixXd weak = motion_of_weak_modes(outputs, even.interval(), model,
+                                             seen_rates(*run.model, start, traceable)),
+                 record = even.samples(channels, Eigen::all) - weak, of_strong = outputs - weak;
   const std::optional<RecordModes> own = is_oscillator ? std::nullopt : modes_of_record(even);
   double farthest = 0.0;
   try {
@@ -190,26 +219,28 @@ void look_at_free_modes(const RunContext& context, const MatrixXd& outputs, cons
       farthest = std::max(farthest, std::abs(fit.rates[m].imag() / model[m].imag() - 1.0));
     // A fit that lacks a mode which the model has bends the frequencies of its channels.
     const bool lacks_none = without_means(record - fit.reconstruction).squaredNorm() <
-                            1.1 * without_means(record - outputs).squaredNorm();
+                            1.1 * without_means(record - of_strong).squaredNorm();
     if (channels.size() > 1 && farthest < same_clock && lacks_none) run.clock_scatter = clock_scatter(fit);
     if (run.clock_scatter || is_oscillator) return;
     if (farthest < same) {
       std::vector<std::string> names;
       for (const Index i : channels) names.push_back(even.channels[static_cast<std::size_t>(i)].name);
-      run.free_modes = beside_model(fit, record, outputs, static_cast<Index>(run.unknowns.size()));
+      run.free_modes = beside_model(fit, record, of_strong, static_cast<Index>(run.unknowns.size()));
       if (run.free_modes->exclude())
-        run.free_modes->difference = largest_difference(fit, model, outputs, even.interval(), names);
+        run.free_modes->difference = largest_difference(fit, model, of_strong, even.interval(), names);
     }
   } catch (const std::exception&) {  // decays too short or too few samples for so many modes
   }
-  if (!run.free_modes && own) run.free_modes = elsewhere(*own, record, outputs);
+  if (!run.free_modes && own) run.free_modes = elsewhere(*own, record, of_strong);
 }
 
 void judge_free_modes(ComparedRun& run) {
   constexpr double much = 0.01;
   if (!run.free_modes || !run.free_modes->exclude()) return;
   const FreeModes& free = *run.free_modes;
-  for (std::size_t j = 0; j < run.parameters.size(); ++j) widen(run, j, free.birge_ratio());
+  // What one wrong length or mass makes is no scatter: it may lie in the direction of one parameter.
+  const double widened = free.birge_ratio() * std::sqrt(std::max(1.0, free.freedom));
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) widen(run, j, widened);
   const bool contradicts = free.share > much;
   const std::string found = fmt::format(
       "no parameters of this model make the modes of the record: modes with poles and shapes of their own "
@@ -221,8 +252,8 @@ void judge_free_modes(ComparedRun& run) {
        (contradicts ? "CONTRADICTED: " : "APPROXIMATE: ") + found +
            ". A length, a mass, a support, a place, a gain or the damping of a mode is not as described." +
            (free.birge_ratio() > 1.0
-                ? fmt::format(" Intervals are widened by {:.3g}, the Birge ratio{}.", free.birge_ratio(),
-                              contradicts ? ", and may not hold the truth" : "")
+                ? fmt::format(" Intervals are widened by {:.3g}, as if all of it were one parameter's{}.",
+                              widened, contradicts ? ", and may not hold the truth" : "")
                 : ""),
        free.share, much});
   if (!contradicts) return;

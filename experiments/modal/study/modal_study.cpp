@@ -111,7 +111,8 @@ bool motion_goes_on(const RecordModes& found) {
 bool moved_before(const Record& whole, const RecordModes& found) {
   constexpr double as_much = 0.7;
   if (found.modes.empty()) return false;
-  const Index before = whole.size() - found.record.size();
+  const Index before =
+      std::lower_bound(whole.time.begin(), whole.time.end(), found.record.time[0]) - whole.time.begin();
   if (before <= found.record.size()) return false;
   const Index part =
       std::min(found.record.size(), samples_in_periods(2.0, found.strongest(), whole.interval()));

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "experiments/modal/hammer_response.hpp"
 #include "experiments/modal/mode_by_mode.hpp"
+#include "experiments/signal/onsets.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/toolbox.hpp"
 
@@ -254,10 +257,48 @@ Record complete_part(const Record& record, std::vector<std::string>& remarks) {
   return part_of(record, begin, longest);
 }
 
+namespace {
+
+/// Samples at which a channel that was at rest is hit, where it is more than once: it doubles within
+/// two periods, to a fifth of its largest deviation. Beats rise over many periods.
+std::vector<Index> hits_of(const VectorXd& signal, double interval) {
+  constexpr Index fewest = 16;
+  if (signal.size() < fewest || !(signal.maxCoeff() > signal.minCoeff())) return {};
+  const double period = 1.0 / strongest_frequency(signal, interval);
+  const Onsets found = find_onsets(signal, interval, {.smallest = 0.2, .rise = 2.0, .apart = 2.0 * period});
+  return found.samples.size() > 1 ? found.samples : std::vector<Index>{};
+}
+
+/// The longest part between hits, from its largest reading on; its last two samples may be of the next hit.
+std::pair<Index, Index> longest_decay(const VectorXd& signal, const std::vector<Index>& hits) {
+  constexpr Index guard = 2;
+  std::pair<Index, Index> longest{0, 0};
+  for (std::size_t h = 0; h < hits.size(); ++h) {
+    const Index end = h + 1 < hits.size() ? std::max(hits[h] + 1, hits[h + 1] - guard) : signal.size();
+    Index largest = 0;
+    signal.segment(hits[h], end - hits[h]).cwiseAbs().maxCoeff(&largest);
+    if (end - hits[h] - largest > longest.second - longest.first) longest = {hits[h] + largest, end};
+  }
+  return longest;
+}
+
+}  // namespace
+
 Record from_release(const Record& record, std::vector<std::string>& remarks) {
   const VectorXd size = record.samples.rowwise().norm().cwiseMax(1e-300);
   Index channel = 0, begin = 0;
   (size.cwiseInverse().asDiagonal() * record.samples).cwiseAbs().maxCoeff(&channel, &begin);
+  const VectorXd signal = record.samples.row(channel).array() - record.samples.row(channel).mean();
+  if (const std::vector<Index> hits = hits_of(signal, record.interval()); !hits.empty()) {
+    const auto [from, to] = longest_decay(signal, hits);
+    if (to - from >= fewest_decay_samples) {
+      remarks.push_back(
+          fmt::format("{} hits, the first at {:.4g} s: the longest decay between them is taken, {:.4g} to "
+                      "{:.4g} s. Expected a --window for another.",
+                      hits.size(), record.time[hits.front()], record.time[from], record.time[to - 1]));
+      return part_of(record, from, to - from);
+    }
+  }
   if (begin == 0 || record.size() - begin < fewest_decay_samples) return record;
   remarks.push_back(fmt::format(
       "Window chosen automatically: the decay from the largest reading on, {:.4g} s.", record.time[begin]));

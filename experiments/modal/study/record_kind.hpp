@@ -90,7 +90,8 @@ Record motion_of(const Record& record);
 /// @throws std::invalid_argument when no part has 64 samples, with the place.
 Record complete_part(const Record& record, std::vector<std::string>& remarks);
 
-/// From the largest reading on, relative to each channel's own size.
+/// From the largest reading on, relative to each channel's own size; of a record with several hits, the
+/// longest decay between two of them.
 Record from_release(const Record& record, std::vector<std::string>& remarks);
 
 /// @throws std::invalid_argument unless the intervals are equal within 20 %.

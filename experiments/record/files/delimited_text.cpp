@@ -6,12 +6,17 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <regex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
@@ -75,9 +80,7 @@ class DelimitedTextReader final : public RecordReader {
 
   RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const override {
     refuse_other_kinds(file);
-    return table_of_text(
-        file.string(), std::make_shared<const std::string>(read_text(file, "a record of numbers in columns")),
-        format);
+    return table_of_text(file.string(), read_text(file, "a record of numbers in columns"), format);
   }
 };
 
@@ -89,28 +92,172 @@ const bool delimited_text_registered = record_reader_registry().add(
      {},
      [](const filters::Options&) { return std::make_unique<DelimitedTextReader>(); }});
 
-/// A monitor's "10:00:00.000 -> 7.51,3.0" with the arrow as one more separator, as wide as it was.
-std::shared_ptr<const std::string> without_arrows(const std::shared_ptr<const std::string>& content) {
-  constexpr std::size_t looked_at = 40, early = 4000;
-  static const std::regex stamped(R"((?:^|\n)[0-9]{1,2}:[0-9]{2}:[0-9]{2}[.,][0-9]+ (-?)> )");
-  std::smatch match;
-  const std::string beginning = content->substr(0, early);
-  if (!std::regex_search(beginning, match, stamped)) return content;
-  const std::string arrow = match[1].length() > 0 ? " -> " : " > ";
-  const std::string_view first =
-      std::string_view(beginning).substr(static_cast<std::size_t>(match.position(0) + match.length(0)));
-  const char found = separator_of(first.substr(0, first.find_first_of("\r\n")));
-  std::string parted(arrow.size(), ' ');
-  if (found != '\0' && found != ' ') parted[0] = found;
-  auto plain = std::make_shared<std::string>(*content);
-  std::size_t at = plain->find(arrow);
-  for (std::size_t line = 0; line < plain->size() && at != plain->npos;) {
-    const std::size_t end = std::min(plain->find('\n', line), plain->size());
-    if (at < end && at - line < looked_at) plain->replace(at, arrow.size(), parted);
+// Text as people and programs write it, brought to fields and separators. Nothing moves but the digits behind
+// a label, so that messages name the places of the file.
+
+using Fields = std::vector<std::string_view>;
+
+/// Whether every one of several lines across the text fulfils it: what holds for its rows, whatever is above.
+bool holds_across(std::string_view text, const std::function<bool(std::string_view)>& fulfilled) {
+  constexpr double places[] = {0.3, 0.45, 0.6, 0.75, 0.9};
+  return std::ranges::all_of(places, [&](double place) {
+    std::size_t from = text.find('\n', static_cast<std::size_t>(place * static_cast<double>(text.size())));
+    from = from == text.npos ? 0 : from + 1;
+    const std::string_view line = text.substr(from, text.find_first_of("\r\n", from) - from);
+    return !trimmed(line).empty() && fulfilled(line);
+  });
+}
+
+/// A number with either decimal sign, a stamp, or "x: 0.25".
+bool is_value(std::string_view field) {
+  return parse_number(field).number || parse_number(field, ',').number || parse_stamp(unquoted(field)) ||
+         label_length(field) > 0;
+}
+
+/// Calls for each line, which may be changed in place.
+void change_lines(std::string& text, const std::function<void(char* line, std::size_t length)>& change) {
+  for (std::size_t line = 0; line < text.size();) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", line), text.size());
+    if (end > line) change(text.data() + line, end - line);
     line = end + 1;
-    if (at < line) at = plain->find(arrow, line);
   }
-  return plain;
+}
+
+/// A minus of typography before a number, as one of ASCII.
+void write_minus(std::string& text) {
+  constexpr std::string_view minus = "\xE2\x88\x92";
+  std::size_t to = text.find(minus);
+  for (std::size_t at = to; at < text.size();) {
+    const bool found = text.compare(at, minus.size(), minus) == 0;
+    text[to++] = found ? '-' : text[at];
+    at += found ? minus.size() : 1;
+  }
+  if (to != text.npos) text.resize(to);
+}
+
+/// Where the stamp in front of a row ends, and where the row goes on.
+struct StampInFront {
+  std::size_t end = 0, rest = 0;  ///< 0: there is none
+};
+
+/// Of "10:00:00.000 -> 7.51,3.0" and "10:00:00.000 > " of serial monitors, "[2026-11-26
+/// 10:00:00.000] 7.51 3.0" of terminals, and "2026-11-26 10:00:00.000 7.51,3.0": a stamp that no separator
+/// parts from the row.
+StampInFront stamp_in_front(std::string_view line) {
+  const bool bracket = line.starts_with('[');
+  const std::size_t begin = bracket ? 1 : 0;
+  std::size_t end = line.find(' ', begin);
+  if (begin >= line.size() || line[begin] < '0' || line[begin] > '9') return {};
+  const auto stamp_to = [&](std::size_t to) {
+    const std::size_t length = std::min(to, line.size()) - begin;
+    return parse_stamp(line.substr(begin, length - (bracket && length > 0 ? 1 : 0)));
+  };
+  std::optional<Stamp> stamp = stamp_to(end + (bracket && end != line.npos && line[end - 1] != ']' ? 1 : 0));
+  if (stamp && stamp->kind == Stamp::Kind::date && end != line.npos) {
+    end = line.find(' ', end + 1);
+    stamp = stamp_to(end);
+  }
+  const std::string_view whole = line.substr(0, end);
+  if (whole.find_first_of(",;\t|") != whole.npos) return {};
+  if (!stamp || stamp->kind == Stamp::Kind::date || (bracket && line[std::min(end, line.size()) - 1] != ']'))
+    return {};
+  if (end == line.npos) return {line.size(), line.size()};
+  for (const std::string_view arrow : {" -> ", " > "})
+    if (line.substr(end).starts_with(arrow)) return {end, end + arrow.size()};
+  const std::string_view rest = line.substr(end + 1);  // "4,0001" is one number
+  const char separator = separator_of(rest);
+  const bool parted = separator != ' ' && !parse_number(trimmed(rest), ',').number &&
+                      !parse_stamp(trimmed(line.substr(0, line.find(separator))));  // "10:00:00 PM,0.25"
+  return bracket || parted ? StampInFront{end, end + 1} : StampInFront{};
+}
+
+/// What follows such stamps becomes a separator; stamps in front of no numbers become blanks.
+void part_stamps(std::string& text) {
+  char separator = ' ';
+  if (!holds_across(text, [&](std::string_view line) {
+        const StampInFront stamp = stamp_in_front(line);
+        separator = separator_of(line.substr(stamp.rest));
+        return stamp.rest > 0;
+      }))
+    return;
+  change_lines(text, [&](char* line, std::size_t length) {
+    const std::string_view whole(line, length);
+    const StampInFront stamp = stamp_in_front(whole);
+    if (stamp.rest == 0) return;
+    const std::string_view rest = whole.substr(stamp.rest);
+    Fields fields;
+    split_fields(rest, separator, fields);
+    const bool numbers = std::ranges::any_of(fields, is_value);
+    const bool bracket = line[0] == '[', words = !trimmed(rest).empty();
+    if (!numbers) std::fill_n(line, stamp.end, ' ');
+    if (bracket) line[0] = line[stamp.end - 1] = ' ';
+    std::fill(line + stamp.end, line + stamp.rest, ' ');
+    if (words) line[stamp.end] = separator;
+  });
+}
+
+/// A word in a row: no number, none with a unit behind it, and no time; but a number in hexadecimal digits.
+bool is_word(std::string_view field) {
+  if (field.empty() || says_missing(field) || parse_stamp(field)) return false;
+  if (field.starts_with("0x") || field.starts_with("0X")) return true;
+  const char first = field.front();
+  const bool of_number =
+      (first >= '0' && first <= '9') || first == '+' || first == '-' || first == '.' || first == ',';
+  const std::size_t colon = field.find(':');
+  const bool of_time = colon != field.npos && colon > 0 && colon + 1 < field.size() &&
+                       std::isdigit(field[colon - 1]) && std::isdigit(field[colon + 1]);
+  return !of_number && !of_time && label_length(field) == 0;
+}
+
+/// "X: 0.25  Y: 1.5": a label takes the number behind it, "X:0.25".
+void join_labels(std::string& text) {
+  const auto labelled = [](std::string_view line) {
+    Fields fields;
+    split_fields(line, ' ', fields);
+    return fields.size() > 1 && (fields[0].ends_with(':') || fields[0].ends_with('=')) &&
+           label_length(std::string(fields[0]) + std::string(fields[1])) > 0;
+  };
+  if (separator_of(text.substr(text.size() / 2, 400)) != ' ' || !holds_across(text, labelled)) return;
+  change_lines(text, [&](char* line, std::size_t length) {
+    if (!labelled({line, length})) return;
+    for (std::size_t at = 0; at + 1 < length; ++at)
+      if ((line[at] == ':' || line[at] == '=') && line[at + 1] == ' ') {
+        const std::size_t from = std::string_view(line, length).find_first_not_of(' ', at + 1);
+        if (from == std::string_view::npos) return;
+        const std::size_t to = std::min(std::string_view(line, length).find(' ', from), length);
+        std::rotate(line + at + 1, line + from, line + to);
+        at += to - from;
+      }
+  });
+}
+
+/// Words in every row beside its numbers, as names of nodes, addresses and states, become cells that hold
+/// nothing, or, between blanks, blanks.
+void blank_words(std::string& text, char given) {
+  char separator = given;
+  std::vector<bool> words;
+  if (!holds_across(text, [&](std::string_view line) {
+        Fields fields;
+        if (separator == '\0') separator = separator_of(line);
+        split_fields(line, separator, fields);
+        if (words.empty()) words.assign(fields.size(), true);
+        if (fields.size() != words.size()) return false;
+        for (std::size_t k = 0; k < words.size(); ++k) words[k] = words[k] && is_word(fields[k]);
+        return std::ranges::any_of(fields, is_value);
+      }))
+    return;
+  if (std::ranges::find(words, true) == words.end()) return;
+  change_lines(text, [&](char* line, std::size_t length) {
+    Fields fields;
+    split_fields({line, length}, separator, fields);
+    if (fields.size() != words.size() || std::ranges::none_of(fields, is_value)) return;
+    for (std::size_t k = 0; k < words.size(); ++k) {
+      if (!words[k] || !is_word(fields[k])) continue;
+      char* const word = line + (fields[k].data() - line);
+      std::fill_n(word, fields[k].size(), ' ');
+      if (separator != ' ') *word = '-';
+    }
+  });
 }
 
 /// Rows of a table as columns (width x rows): its numbers in the order of the text.
@@ -166,9 +313,14 @@ void join_rows(RecordTable& table, const std::vector<double>& last) {
 
 }  // namespace
 
-RecordTable table_of_text(const std::string& file, const std::shared_ptr<const std::string>& as_read,
-                          const RecordFormat& format) {
-  const std::shared_ptr<const std::string> content = without_arrows(as_read);
+RecordTable table_of_text(const std::string& file, std::string as_read, const RecordFormat& format) {
+  constexpr std::size_t looked_at_for_a_rate = 4000;
+  const std::string beginning = as_read.substr(0, looked_at_for_a_rate);
+  const auto content = std::make_shared<std::string>(std::move(as_read));
+  write_minus(*content);
+  part_stamps(*content);
+  join_labels(*content);
+  if (format.header_lines == 0) blank_words(*content, format.separator);
   DelimitedText text(file, *content, format.separator, format.header_lines, format.decimal,
                      format.malformed == MalformedRows::skip);
   RecordTable table;
@@ -184,7 +336,6 @@ RecordTable table_of_text(const std::string& file, const std::shared_ptr<const s
   std::vector<std::optional<double>> first_stamp(
       text.width());  // whole seconds: a double holds the rest finely
   constexpr double half_a_day = 43200.0;
-  constexpr std::size_t looked_at_for_a_rate = 4000;
   std::vector<double> days(text.width(), 0.0);  // that have passed [s]
   std::size_t above = 0;                        // characters before the first row
   while (text.next()) {
@@ -221,15 +372,11 @@ RecordTable table_of_text(const std::string& file, const std::shared_ptr<const s
     }
   }
   table.cell = cells.cells(text.separator());
-  if (!table.time)
-    table.stated_rate =
-        stated_rate(std::string_view(*content).substr(0, looked_at_for_a_rate), text.decimal());
-  table.stated_unit =
-      unit_of_statement(std::string_view(*content).substr(0, std::min(above, looked_at_for_a_rate)));
+  const std::string_view head = std::string_view(beginning).substr(0, above);
+  table.stated_rate = stated_rate(beginning, text.decimal());
+  table.stated_unit = unit_of_statement(head);
   table.skipped_lines = text.skipped_lines();
-  if (const std::string_view head =
-          std::string_view(*content).substr(0, std::min(above, looked_at_for_a_rate));
-      format.channels.empty() && go_on(table, head, text.short_end().size()))
+  if (format.channels.empty() && go_on(table, head, text.short_end().size()))
     join_rows(table, text.short_end());
   if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");
   return table;

@@ -128,7 +128,8 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
   if (!numbers.type && text && !name.empty()) return;  // labels in an archive
   if (!numbers.type) throw refuse(fmt::format("numbers of type '{}'", type[1].str()));
   const bool by_columns = header.find("'fortran_order': True") != std::string::npos;
-  if (shape[1].length() == 0) {  // a number alone
+  const bool of_one = shape[1] == "1" && (shape[2].length() == 0 || shape[2] == "1");
+  if (shape[1].length() == 0 || (of_one && !name.empty())) {  // a number alone
     if (bytes.size() < start + length + numbers.type->size) throw refuse("a header without its number");
     const double value = numbers.read(bytes.data() + start + length);
     const SamplingName what = sampling_name(name);

@@ -333,7 +333,7 @@ class SpreadsheetReader final : public RecordReader {
     std::vector<std::string> texts = texts_apart(
         file.string(), "libfreexl", limits, [&] { return read_sheet(file.string(), *kind, limits.numbers); });
     texts.resize(2);
-    const auto text = std::make_shared<const std::string>(std::move(texts[0]));
+    const std::string text = std::move(texts[0]);
     RecordFormat of_text = format;
     of_text.separator = '\t', of_text.decimal = '\0';  // of the text above, whatever is stated of others
     RecordTable table;
@@ -341,7 +341,7 @@ class SpreadsheetReader final : public RecordReader {
       table = table_of_text(file.string(), text, of_text);
     } catch (const InputError& error) {
       const Place place{error.file(), error.line(), error.column()};
-      throw InputError(cell_place(place, *text),
+      throw InputError(cell_place(place, text),
                        std::string(error.what()).substr(to_string(place).size() + 2));
     }
     table.cell = [cell = table.cell](std::size_t row, std::size_t column) {

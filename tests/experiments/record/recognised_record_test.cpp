@@ -233,6 +233,10 @@ TEST(RecognisedRecord, ReadsUtf16) {
   for (int k = 0; k < 20; ++k) plain += fmt::format("{:.3f};{}\n", 0.005 * k, k % 7);
   for (const char byte : plain) text += byte, text += '\0';
   EXPECT_EQ(recognised(text).size(), 20);
+  EXPECT_EQ(recognised(text.substr(2)).size(), 20) << "without its mark";
+  std::string high;
+  for (const char byte : plain) high += '\0', high += byte;
+  EXPECT_EQ(recognised(high).size(), 20) << "high bytes first";
 }
 
 TEST(RecognisedRecord, AsksForTheUnitOfTimesWhoseStepsAreThoseOfAnother) {
@@ -398,6 +402,39 @@ TEST(RecognisedRecord, ReadsRowsWhoseLastCellsAreEmpty) {
     return fmt::format("{:.4f};{:.5f};{};;", 0.0025 * k, a, k == 3 ? "ok" : "");
   });
   EXPECT_EQ(question_of("Zeit [s];Beschleunigung [m/s2];Kommentar;;\n" + rows), "read at 400 Hz");
+}
+
+// Nodes, addresses and states beside the numbers of each row, and stamps that no separator parts from them.
+TEST(RecognisedRecord, ReadsRowsThatHoldWordsBesideTheirNumbers) {
+  const auto stamp = [](int k) { return fmt::format("2026-11-26 10:00:{:06.3f}", 0.01 * k); };
+  const auto rows = [&](const char* form) {
+    return signal_rows(40, [&](int k, double a) {
+      return fmt::format(fmt::runtime(form), fmt::arg("stamp", stamp(k)), fmt::arg("t", 0.01 * k),
+                         fmt::arg("ms", 10 * k), fmt::arg("a", a), fmt::arg("hex", 7919 * k % 65536));
+    });
+  };
+  for (const auto& [head, form] :
+       {std::pair{"address\tTime(s)\tax(g)\n", "0x50\t{stamp}\t{a:.4f}"},
+        std::pair{"Date,NodeName,X (g),\n", "{stamp},SensorTile @1A,{a:.4f},"},
+        std::pair{"CLEARDATA\nLABEL,Time,Timer,ax\n", "DATA,{stamp},{t:.3f},{a:.4f}"},
+        std::pair{"time_ms,acc,crc\n", "{ms},{a:.4f},0x{hex:04X}"}, std::pair{"", "{stamp} {a:.4f},{t:.4f}1"},
+        std::pair{"", "[{stamp}] {a:.4f} {t:.3f}1"},
+        std::pair{"Vendor,Logger\nStart,2026/11/26,10:00:00\nNumber,Date&Time,CH1,Alarm\nNO.,Time,g,A1\n",
+                  "{ms},{stamp},{a:+.4f},LLLL"},
+        std::pair{"Channels Sampled:,1\nSample Rate:,100\n\nTime,CHANNEL0,Events\n", "{t:.3f},{a:.5f},"}}) {
+    const std::string text = head + rows(form);
+    EXPECT_THAT(question_of(text), testing::StartsWith("read at 100")) << text.substr(0, 160);
+  }
+  std::string labels = rows("X: {a:.2f}  Y: {t:.3f}1  m/s^2");
+  EXPECT_THAT(question_of("Sensor:  ADXL\nRange:  +/- 16 g\nData Rate: 100 Hz\n\n" + labels),
+              testing::StartsWith("read at 100"));
+  std::string minus = "Time (s),Acc (g)\n" + rows("{t:.3f},{a:.5f}");
+  for (std::size_t at = 0; (at = minus.find('-', at)) != minus.npos;) minus.replace(at, 1, "\xE2\x88\x92");
+  EXPECT_THAT(question_of(minus), testing::StartsWith("read at 100"));
+  const std::string seconds = "Sample rate: 20 Hz\nTime,Acc (g)\n" + signal_rows(60, [](int k, double a) {
+                                return fmt::format("10:00:{:02d},{:.5f}", k / 20, a);
+                              });
+  EXPECT_EQ(question_of(seconds), "read at 20 Hz");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/engine/first_guess.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
+#include "tests/experiments/identify/ground_motion.hpp"
 #include "tests/experiments/shaken_building.hpp"
 
 namespace beamid::experiments::driven_fit_test {
@@ -174,6 +175,32 @@ TEST(DrivenRecord, IsAnsweredApproximatelyWhereTheModelLacksSomething) {
     EXPECT_GT(e.value, 0.94 * stiffness[static_cast<Index>(j)]);
     EXPECT_LT(e.value, 1.02 * stiffness[static_cast<Index>(j)]);
   }
+}
+
+// All 20 coordinates of a mesh: modes that die out within a sample have no amplitude in the record.
+TEST(UnreducedMesh, OnAMovingBaseIsFound) {
+  const auto ground = std::filesystem::path(testing::TempDir()) / "mesh_on_ground.csv";
+  beamid::test::write_ground_motion(ground, 2200);
+  const auto beam = [&](double youngs_modulus) {
+    Experiment e = read_experiment(TomlTable::parse(
+        fmt::format(
+            "[beam]\nlength_m = 1.1\nwidth_m = 0.06\nheight_m = 0.006\nyoungs_modulus_pa = {}\n"
+            "density_kg_per_m3 = 7850\nelements = 10\ntip_mass_kg = 0.36\n[damping]\nratio = 0.01\n"
+            "[excitation]\nkind = \"base\"\nfile = \"{}\"\n[simulation]\nduration_s = 20\n"
+            "sampling_rate_hz = 200\n[[sensors]]\nnoise_m_per_s2 = 0.05\n[[sensors]]\nposition_m = 0.6\n"
+            "noise_m_per_s2 = 0.05\n[model]\nname = \"beam\"\n[reduction]\nmethod = \"none\"\n"
+            "[[parameters]]\nquantity = \"bending_stiffness\"\n[[parameters]]\nquantity = "
+            "\"damping_ratio\"\n",
+            youngs_modulus, ground.string()),
+        "mesh.toml"));
+    return e;
+  };
+  const ComparedRecord record = simulated_record(beam(2.1e11), {}, silent);
+  const ComparedRun run = identify_with_model(beam(1.9e11), record, {}, silent).runs.at(0);
+  EXPECT_EQ(run.status, ComparedRun::Status::converged) << run.reason;
+  const Estimate &stiffness = run.parameters.at(0).estimate, &ratio = run.parameters.at(1).estimate;
+  EXPECT_NEAR(stiffness.value, 2.1e11 * 0.06 * 0.006 * 0.006 * 0.006 / 12.0, 4.0 * stiffness.deviation);
+  EXPECT_NEAR(ratio.value, 0.01, 4.0 * ratio.deviation);
 }
 
 }  // namespace

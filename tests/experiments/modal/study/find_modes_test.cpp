@@ -280,5 +280,20 @@ TEST(FindModes, TakesTheLongestPartWithoutMissingReadings) {
   EXPECT_THROW(find_modes("a", record, false, {}), std::invalid_argument);
 }
 
+// Of several hits without a force: the longest decay between two of them.
+TEST(FindModes, TakesTheLongestDecayBetweenHits) {
+  const Record one = decay({{22.0, 0.01, 1.0}}, 500.0, 12.0, 0.0, 1);
+  VectorXd signal = 0.01 * standard_normal(6000, 3, 7);
+  for (const auto& [first, size] : {std::pair{500, 1.0}, std::pair{1400, 0.8}, std::pair{3900, 1.2}})
+    signal.tail(6000 - first) += size * one.samples.row(0).head(6000 - first).transpose();
+  const RecordModes found = find_modes("hits", record_of(signal, 0.002), false, {});
+  ASSERT_EQ(found.modes.size(), 1u);
+  EXPECT_NEAR(found.modes[0].pole.frequency_hz(), 22.0, 4.0 * 0.002);
+  EXPECT_NEAR(found.modes[0].pole.damping_ratio(), 0.01, 2e-4);
+  EXPECT_NEAR(found.record.time[0], 2.8, 0.1);
+  EXPECT_LT(found.record.time.tail(1)[0], 7.8);
+  EXPECT_THAT(PrintToString(found.remarks), HasSubstr("3 hits"));
+}
+
 }  // namespace
 }  // namespace beamid::experiments::find_modes_test
