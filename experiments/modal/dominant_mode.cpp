@@ -25,27 +25,45 @@ struct SineLinearisation {
   VectorXd residuals;  ///< r = y - model
 };
 
+/// By blocks of rows: an exponential for one sample of 16, products for the others, and J^T J of a block at
+/// once.
 SineLinearisation linearise(const VectorXd& signal, double interval, const VectorXd& parameters) {
-  const Index size = parameters.size();
-  SineLinearisation at{MatrixXd::Zero(size, size), VectorXd::Zero(size), VectorXd(signal.size())};
-  VectorXd row(size);
-  row[size - 1] = 1;
-  for (Index k = 0; k < signal.size(); ++k) {
-    at.residuals[k] = 0;
-    if (!std::isfinite(signal[k])) continue;
-    const double time = interval * static_cast<double>(k);
-    double model = parameters[size - 1];
-    for (Index i = 0; i + 1 < size; i += 4) {
-      const Complex unit = std::exp(Complex(-parameters[i + 1], parameters[i]) * time);
-      const Complex value = Complex(parameters[i + 2], parameters[i + 3]) * unit;
-      row.segment<4>(i) << -time * value.imag(), -time * value.real(), unit.real(), -unit.imag();
-      model += value.real();
+  constexpr Index block = 128, span = 16;
+  const Index size = parameters.size(), sines = size / 4;
+  SineLinearisation at{MatrixXd::Zero(size, size), VectorXd::Zero(size), VectorXd::Zero(signal.size())};
+  MatrixXd rows(block, size);
+  for (Index begin = 0; begin < signal.size(); begin += block) {
+    const Index count = std::min(block, signal.size() - begin);
+    const VectorXd time = interval * VectorXd::LinSpaced(count, static_cast<double>(begin),
+                                                         static_cast<double>(begin + count - 1));
+    VectorXd model = VectorXd::Constant(count, parameters[size - 1]);
+    rows.col(size - 1).setOnes();
+    for (Index m = 0; m < sines; ++m) {
+      const Complex rate(-parameters[4 * m + 1], parameters[4 * m]), turn = std::exp(rate * interval);
+      const double re = turn.real(), im = turn.imag(), a = parameters[4 * m + 2], b = parameters[4 * m + 3];
+      double x = 0.0, y = 0.0;  // e^(rate t), by parts: the product of the library looks for infinities
+      for (Index k = 0; k < count; ++k) {
+        if (k % span == 0) {
+          const Complex unit = std::exp(rate * time[k]);
+          x = unit.real(), y = unit.imag();
+        }
+        rows(k, 4 * m) = -time[k] * (a * y + b * x);
+        rows(k, 4 * m + 1) = -time[k] * (a * x - b * y);
+        rows(k, 4 * m + 2) = x;
+        rows(k, 4 * m + 3) = -y;
+        model[k] += a * x - b * y;
+        const double next = x * re - y * im;
+        y = x * im + y * re;
+        x = next;
+      }
     }
-    at.residuals[k] = signal[k] - model;
-    at.normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
-    at.gradient += at.residuals[k] * row;
+    auto residuals = at.residuals.segment(begin, count);
+    residuals = signal.segment(begin, count) - model;
+    for (Index k = 0; k < count; ++k)
+      if (!std::isfinite(signal[begin + k])) residuals[k] = 0.0, rows.row(k).setZero();
+    at.normal.noalias() += rows.topRows(count).transpose() * rows.topRows(count);
+    at.gradient.noalias() += rows.topRows(count).transpose() * residuals;
   }
-  at.normal.triangularView<Eigen::StrictlyUpper>() = at.normal.transpose();
   return at;
 }
 
