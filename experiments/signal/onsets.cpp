@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
 namespace beamid::experiments {
 namespace {
 
@@ -72,6 +74,12 @@ Onsets find_onsets(const Eigen::VectorXd& signal, double interval, const OnsetSe
       found.samples.push_back(k);
   }
   return found;
+}
+
+std::string instant_text(double seconds) {
+  constexpr int fewest = 4;
+  const int whole = static_cast<int>(std::ceil(std::log10(std::max(1.0, std::abs(seconds)))));
+  return fmt::format("{:.{}g}", seconds, std::max(fewest, whole + 1));
 }
 
 }  // namespace beamid::experiments

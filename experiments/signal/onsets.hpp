@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <string>
 #include <vector>
 
 namespace beamid::experiments {
@@ -44,5 +45,8 @@ struct Onsets {
 /// @param signal (N), at least 16 samples
 /// @throws std::invalid_argument when the signal is shorter, or a setting is not positive.
 Onsets find_onsets(const Eigen::VectorXd& signal, double interval, const OnsetSettings& settings = {});
+
+/// An instant to four digits, and of a time of day to a tenth of a second: "6.248", "45180.1".
+std::string instant_text(double seconds);
 
 }  // namespace beamid::experiments

@@ -119,8 +119,8 @@ std::optional<SoundPart> sound_part(const Experiment& experiment, const Record& 
   }
   if (!part || breaks.empty()) return {};
   return SoundPart{part->from, part->to,
-                   fmt::format("{}: identified is the part from {:.4g} to {:.4g} s.", reason_of(breaks),
-                               part->from, part->to)};
+                   fmt::format("{}: identified is the part from {} to {} s.", reason_of(breaks),
+                               instant_text(part->from), instant_text(part->to))};
 }
 
 namespace {
@@ -239,13 +239,13 @@ std::optional<ModalEstimate> mode_behind(const Record& record, double from, doub
 
 std::string DecayWindow::words() const {
   return fmt::format(
-      "Window chosen automatically: the decay from {:.4g} to {:.4g} s, from {:g} periods behind {}, at "
-      "{:.4g} s, over two time constants of {:.3g} s. record.window_s or --window takes the place of this.",
-      from, to, settling,
+      "Window chosen automatically: the decay from {} to {} s, from {:g} periods behind {}, at "
+      "{} s, over two time constants of {:.3g} s. record.window_s or --window takes the place of this.",
+      instant_text(from), instant_text(to), settling,
       behind == Behind::start_up ? "the end of the sensor's start-up"
       : behind == Behind::gap    ? "a gap"
                                  : "the last event",
-      event, time_constant);
+      instant_text(event), time_constant);
 }
 
 std::optional<DecayWindow> decay_window(const Experiment& experiment, const Record& whole) {

@@ -252,8 +252,8 @@ Record complete_part(const Record& record, std::vector<std::string>& remarks) {
                     missing, record.size(), record.time[std::min(begin, record.size() - 1)], longest,
                     fewest_decay_samples));
   remarks.push_back(fmt::format(
-      "{} of {} readings are missing or clipped: the longest part without one is taken, {:.4g} to {:.4g} s.",
-      missing, record.size(), record.time[begin], record.time[begin + longest - 1]));
+      "{} of {} readings are missing or clipped: the longest part without one is taken, {} to {} s.", missing,
+      record.size(), instant_text(record.time[begin]), instant_text(record.time[begin + longest - 1])));
   return part_of(record, begin, longest);
 }
 
@@ -293,15 +293,16 @@ Record from_release(const Record& record, std::vector<std::string>& remarks) {
     const auto [from, to] = longest_decay(signal, hits);
     if (to - from >= fewest_decay_samples) {
       remarks.push_back(
-          fmt::format("{} hits, the first at {:.4g} s: the longest decay between them is taken, {:.4g} to "
-                      "{:.4g} s. Expected a --window for another.",
-                      hits.size(), record.time[hits.front()], record.time[from], record.time[to - 1]));
+          fmt::format("{} hits, the first at {} s: the longest decay between them is taken, {} to "
+                      "{} s. Expected a --window for another.",
+                      hits.size(), instant_text(record.time[hits.front()]), instant_text(record.time[from]),
+                      instant_text(record.time[to - 1])));
       return part_of(record, from, to - from);
     }
   }
   if (begin == 0 || record.size() - begin < fewest_decay_samples) return record;
-  remarks.push_back(fmt::format(
-      "Window chosen automatically: the decay from the largest reading on, {:.4g} s.", record.time[begin]));
+  remarks.push_back(fmt::format("Window chosen automatically: the decay from the largest reading on, {} s.",
+                                instant_text(record.time[begin])));
   return part_of(record, begin, record.size() - begin);
 }
 

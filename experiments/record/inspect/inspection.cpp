@@ -213,6 +213,11 @@ InspectedChannel make_channel(const RecordTable& table, std::size_t index,
     channel.quantity = described->quantity, factor = described->factor;
   else if (const auto meaning = stated_meaning(table, index); meaning && meaning->quantity)
     channel.quantity = *meaning->quantity, factor = meaning->factor;
+  else if (const auto found = table.by_people ? recognised(table, index) : std::nullopt;
+           found && found->kind == RecognisedColumn::Kind::signal && found->states_quantity &&
+           std::ranges::find(units(found->quantity), found->factor, &Unit::factor) !=
+               units(found->quantity).end())
+    channel.quantity = found->quantity, factor = found->factor;
   if (channel.quantity) {
     channel.unit = si_unit(*channel.quantity);
     for (const Unit& unit : units(*channel.quantity))
