@@ -215,6 +215,7 @@ InspectedChannel make_channel(const RecordTable& table, std::size_t index,
     channel.quantity = *meaning->quantity, factor = meaning->factor;
   else if (const auto found = table.by_people ? recognised(table, index) : std::nullopt;
            found && found->kind == RecognisedColumn::Kind::signal && found->states_quantity &&
+           found->states_unit &&
            std::ranges::find(units(found->quantity), found->factor, &Unit::factor) !=
                units(found->quantity).end())
     channel.quantity = found->quantity, factor = found->factor;
