@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -92,8 +91,8 @@ const bool delimited_text_registered = record_reader_registry().add(
      {},
      [](const filters::Options&) { return std::make_unique<DelimitedTextReader>(); }});
 
-// Text as people and programs write it, brought to fields and separators. Nothing moves but the digits behind
-// a label, so that messages name the places of the file.
+// Text as people and programs write it, brought to fields and separators. Only the digits behind a label and
+// what follows a typographic minus move, so that messages name the places of the file.
 
 using Fields = std::vector<std::string_view>;
 
@@ -200,12 +199,12 @@ void part_stamps(std::string& text) {
 bool is_word(std::string_view field) {
   if (field.empty() || says_missing(field) || parse_stamp(field)) return false;
   if (field.starts_with("0x") || field.starts_with("0X")) return true;
-  const char first = field.front();
-  const bool of_number =
-      (first >= '0' && first <= '9') || first == '+' || first == '-' || first == '.' || first == ',';
+  constexpr std::string_view digits = "0123456789", signs = "+-.,";
+  const bool of_number = digits.find(field.front()) != digits.npos || signs.find(field.front()) != signs.npos;
   const std::size_t colon = field.find(':');
   const bool of_time = colon != field.npos && colon > 0 && colon + 1 < field.size() &&
-                       std::isdigit(field[colon - 1]) && std::isdigit(field[colon + 1]);
+                       digits.find(field[colon - 1]) != digits.npos &&
+                       digits.find(field[colon + 1]) != digits.npos;
   return !of_number && !of_time && label_length(field) == 0;
 }
 
