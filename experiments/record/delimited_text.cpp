@@ -20,11 +20,6 @@ namespace {
 constexpr std::size_t most_early_lines = 20000, most_header_lines = 4;
 constexpr const char* rows_expected = "; expected rows of numbers in columns";
 
-/// A number with either decimal sign, or a date or time.
-bool is_reading(std::string_view field) {
-  return parse_number(field).number || parse_number(field, ',').number || parse_stamp(unquoted(field));
-}
-
 bool is_row(const std::vector<std::string_view>& fields, bool with_gaps) {
   bool read = false;
   for (const std::string_view field : fields) {
@@ -37,14 +32,6 @@ bool is_row(const std::vector<std::string_view>& fields, bool with_gaps) {
 
 bool holds_reading(const std::vector<std::string_view>& fields) {
   return std::ranges::any_of(fields, is_reading);
-}
-
-/// A line from the middle of the text, where its rows are.
-std::string_view typical_line(std::string_view text) {
-  const std::size_t from = text.find_first_of("\r\n", text.size() / 2);
-  std::string_view rest = from == text.npos ? text : text.substr(from);
-  rest.remove_prefix(std::min(rest.find_first_not_of("\r\n \t"), rest.size()));
-  return rest.substr(0, rest.find_first_of("\r\n"));
 }
 
 /// "Started:", "*STARTTIME", "[Start]": above a value of the file's head.
@@ -62,11 +49,23 @@ bool counts_columns(const std::vector<std::string_view>& fields) {
 
 }  // namespace
 
+bool is_reading(std::string_view field) {
+  return parse_number(field).number || parse_number(field, ',').number || parse_stamp(unquoted(field));
+}
+
+std::string_view line_near(std::string_view text, double place) {
+  const std::size_t from =
+      text.find_first_of("\r\n", static_cast<std::size_t>(place * static_cast<double>(text.size())));
+  std::string_view rest = from == text.npos ? text : text.substr(from);
+  rest.remove_prefix(std::min(rest.find_first_not_of("\r\n \t"), rest.size()));
+  return rest.substr(0, rest.find_first_of("\r\n"));
+}
+
 DelimitedText::DelimitedText(std::string file, std::string_view text, char separator, int header_lines,
                              char decimal, bool tolerant)
     : file_(std::move(file)), rest_(text), separator_(separator), decimal_(decimal), tolerant_(tolerant) {
   if (separator_ == '\0' && decimal_ != '.' && is_column_with_commas(text)) separator_ = ';', decimal_ = ',';
-  const std::string_view typical = typical_line(text);
+  const std::string_view typical = line_near(text, 0.5);
   semicolon_comments_ = separator_ != ';' && separator_of(typical) != ';';
   split_fields(typical, separator_ == '\0' ? separator_of(typical) : separator_, fields_);
   labelled_ = std::ranges::any_of(fields_, label_length) && std::ranges::all_of(fields_, [](auto field) {

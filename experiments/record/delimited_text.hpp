@@ -14,6 +14,12 @@
 
 namespace beamid::experiments {
 
+/// Whether a field is a number with either decimal sign, or a date or time.
+bool is_reading(std::string_view field);
+
+/// The first line that is not blank behind a place of the text, 0 to 1: where its rows are.
+std::string_view line_near(std::string_view text, double place);
+
 /// Walks through the rows of a delimited text.
 ///
 /// Blank lines and comment lines (#, %, !, // first, or ; where it parts no columns) are passed over, lines

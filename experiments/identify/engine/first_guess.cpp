@@ -229,10 +229,8 @@ StartedModel started_model(JointModel first, const Choice& model, const ModelSet
   const auto made = [&](const ModelSetting& of) {
     return std::move(*model_registry().make(model.name, model.options, of));
   };
+  const Index modes = std::max(most_started_coordinates, first.mode_shapes.cols() + 4);
   const bool mesh = is_whole_mesh(first);
-  const Index size = setting.system.size(),
-              many = std::max(most_started_coordinates, first.mode_shapes.cols() + 4),
-              modes = mesh ? std::min(many, size - 1) : many;
   if (is_nonlinear(first)) {
     FirstGuess guess = nonlinear_guess(first, setting.observations, record, frequency_hz);
     return {std::move(first), std::move(guess)};
@@ -242,8 +240,8 @@ StartedModel started_model(JointModel first, const Choice& model, const ModelSet
   const bool follows = setting.reduction && setting.reduction->spans_lowest_modes() &&
                        dynamic_cast<const FollowingMotion*>(first.motion.get());
   const bool part = !setting.supports.empty();  // in its own coordinates only
-  if (part || (!mesh && !follows && first.motion_size() <= most_started_coordinates) || modes >= size ||
-      first.unknowns.front().quantity.empty()) {
+  if (part || (!mesh && !follows && first.motion_size() <= most_started_coordinates) ||
+      modes >= setting.system.size() || first.unknowns.front().quantity.empty()) {
     FirstGuess guess = first_guess(first, setting.observations, record, frequency_hz);
     return {std::move(first), std::move(guess)};
   }

@@ -100,17 +100,14 @@ using Fields = std::vector<std::string_view>;
 bool holds_across(std::string_view text, const std::function<bool(std::string_view)>& fulfilled) {
   constexpr double places[] = {0.3, 0.45, 0.6, 0.75, 0.9};
   return std::ranges::all_of(places, [&](double place) {
-    std::size_t from = text.find('\n', static_cast<std::size_t>(place * static_cast<double>(text.size())));
-    from = from == text.npos ? 0 : from + 1;
-    const std::string_view line = text.substr(from, text.find_first_of("\r\n", from) - from);
-    return !trimmed(line).empty() && fulfilled(line);
+    const std::string_view line = line_near(text, place);
+    return !line.empty() && fulfilled(line);
   });
 }
 
-/// A number with either decimal sign, a stamp, or "x: 0.25".
+/// A number, a stamp, or "x: 0.25".
 bool is_value(std::string_view field) {
-  return parse_number(field).number || parse_number(field, ',').number || parse_stamp(unquoted(field)) ||
-         label_length(field) > 0;
+  return is_reading(field) || label_length(field) > 0;
 }
 
 /// Calls for each line, which may be changed in place.

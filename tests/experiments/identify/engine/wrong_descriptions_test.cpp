@@ -71,7 +71,7 @@ TEST(WrongDescription, OfAFreeDecayIsContradictedByItsOwnModes) {
   EXPECT_GT(wrong.parameters.at(0).estimate.deviation, 10.0 * stiffness.deviation);
 }
 
-// Four storeys of which the sensors see the highest mode hardly; the second mass is 20 % heavier than
+// Four storeys whose highest mode is weak at the sensors; the second mass is 20 % heavier than
 // described.
 Experiment four_storeys(double second_kg) {
   std::string text = fmt::format(
