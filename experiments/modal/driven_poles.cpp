@@ -99,7 +99,7 @@ class AtPoles {
   Index rank() const { return qr_.rank(); }
   bool finite() const { return left_.allFinite(); }
 
-  // d left / d theta of each channel (2L x 2K), after Kaufman; up to its sign.
+  // d left / d theta of each channel (2L x 2K), after Kaufman [kaufman1975]; up to its sign.
   std::vector<MatrixXd> slopes(const VectorXd& theta) const {
     constexpr double step = 1e-6;
     std::vector<MatrixXd> found(static_cast<std::size_t>(left_.cols()), MatrixXd(left_.rows(), theta.size()));

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 
@@ -54,54 +55,193 @@ void check_joint_decay_fit(const MatrixXd& outputs, double interval, const std::
   throw std::invalid_argument(message.str());
 }
 
-/// The problem at given rates, with the best amplitudes.
+/// The problem at given rates, with the best amplitudes. Slopes are those of a channel's motion to the rates
+/// (w, d of each mode), without what amplitudes can follow.
 struct JointLinearisation {
-  MatrixXd parts;                ///< (2K+1 x p) amplitudes (Re, Im) and offset
-  MatrixXd residuals;            ///< (N x p)
-  std::vector<MatrixXd> slopes;  ///< (N x 2K) of each channel, without what amplitudes can follow
-  VectorXd variances;            ///< (p)
-  MatrixXd normal;               ///< J^T J of the rates, every channel in units of its noise (2K x 2K)
-  VectorXd gradient;             ///< J^T r
-  double misfit = 0;             ///< minus twice the logarithm of the likelihood, and a constant
+  MatrixXd parts;                 ///< (2K+1 x p) amplitudes (Re, Im) and offset
+  MatrixXd residuals;             ///< (N x p)
+  std::vector<MatrixXd> squares;  ///< of each channel's slopes S: S^T S (2K x 2K)
+  std::vector<VectorXd> moments;  ///< S^T r (2K)
+  VectorXd variances;             ///< (p)
+  MatrixXd normal;                ///< sum of S^T S, every channel in units of its noise (2K x 2K)
+  MatrixXd hessian;               ///< second derivatives of misfit / 2, the residual's curvature included
+  VectorXd gradient;              ///< -d (misfit / 2)
+  double misfit = 0;              ///< minus twice the logarithm of the likelihood, and a constant
 };
 
+/// What a residual r and the amplitude a + i b of a mode add to the second derivatives, from the sums of
+/// t r e^(rate t) and t^2 r e^(rate t).
+struct ModeCurvature {
+  Eigen::Matrix2d mixed;  ///< r^T d^2 motion / d(w, d) d(a, b)
+  Eigen::Matrix2d rates;  ///< r^T d^2 motion / d(w, d)^2
+};
+
+ModeCurvature curvature_of(Complex amplitude, Complex first, Complex second) {
+  const Complex bent = amplitude * second;
+  ModeCurvature found;
+  found.mixed << -first.imag(), -first.real(), -first.real(), first.imag();
+  found.rates << -bent.real(), bent.imag(), bent.imag(), bent.real();
+  return found;
+}
+
+/// Of the rates alone, amplitudes eliminated by variable projection [golub1973]: r = P y, P without the basis
+/// B = Q R of all waves and a constant. Of the squares |r|^2 / 2 the second derivatives are
+///
+///     S^T S - E + W^T T^T Q C^T + C Q^T T W - C C^T,   C = D R^-1,
+///
+/// T the waves times -t, S = P T W, W the amplitudes, D and E of ModeCurvature. Without D and E they are
+/// those of Gauss and Newton, too small by far in the direction of a mode that hardly stands out of the
+/// noise.
 JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd& rates) {
   const Index count = y.rows(), modes = rates.size() / 2;
-  Eigen::MatrixXcd waves(count, modes);
-  MatrixXd basis(count, 2 * modes + 1);
+  const VectorXd time = interval * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
+  MatrixXd basis(count, 2 * modes + 1), slopes(count, 2 * modes);
   for (Index m = 0; m < modes; ++m) {
-    waves.col(m) = wave_of({-rates[2 * m + 1], rates[2 * m]}, interval, count);
-    basis.col(2 * m) = waves.col(m).real();
-    basis.col(2 * m + 1) = -waves.col(m).imag();
+    const Eigen::VectorXcd wave = wave_of({-rates[2 * m + 1], rates[2 * m]}, interval, count);
+    basis.col(2 * m) = wave.real();
+    basis.col(2 * m + 1) = -wave.imag();
+    slopes.col(2 * m) = -time.cwiseProduct(wave.real());
+    slopes.col(2 * m + 1) = -time.cwiseProduct(wave.imag());
   }
   basis.col(2 * modes).setOnes();
   const Eigen::HouseholderQR<MatrixXd> qr(basis);
   const MatrixXd range = qr.householderQ() * MatrixXd::Identity(count, basis.cols());
+  const auto triangle = qr.matrixQR().topRows(basis.cols()).triangularView<Eigen::Upper>();
   const MatrixXd projected = range.transpose() * y;
   JointLinearisation at;
-  at.parts = qr.matrixQR().topRows(basis.cols()).triangularView<Eigen::Upper>().solve(projected);
+  at.parts = triangle.solve(projected);
   at.residuals = y - range * projected;
+  const MatrixXd first = slopes.transpose() * at.residuals;
+  const MatrixXd second = slopes.transpose() * time.asDiagonal() * at.residuals;
+  const MatrixXd followed = range.transpose() * slopes;
+  slopes.noalias() -= range * followed;
+  const MatrixXd squares = slopes.transpose() * slopes;
   const VectorXd floor = 1e-26 * y.colwise().squaredNorm().transpose().cwiseMax(1e-280);
   at.variances =
       at.residuals.colwise().squaredNorm().transpose().cwiseMax(floor) / static_cast<double>(count);
   at.misfit = static_cast<double>(count) * at.variances.array().log().sum();
-  const VectorXd time = interval * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
   at.normal = MatrixXd::Zero(2 * modes, 2 * modes);
+  at.hessian = at.normal;
   at.gradient = VectorXd::Zero(2 * modes);
   for (Index c = 0; c < y.cols(); ++c) {
-    MatrixXd slope(count, 2 * modes);
+    MatrixXd amplitudes = MatrixXd::Zero(2 * modes, 2 * modes), bent = amplitudes,
+             mixed = MatrixXd::Zero(2 * modes, 2 * modes + 1);
     for (Index m = 0; m < modes; ++m) {
-      const Eigen::VectorXcd motion = Complex(at.parts(2 * m, c), at.parts(2 * m + 1, c)) * waves.col(m);
-      slope.col(2 * m) = -time.cwiseProduct(motion.imag());
-      slope.col(2 * m + 1) = -time.cwiseProduct(motion.real());
+      const double a = at.parts(2 * m, c), b = at.parts(2 * m + 1, c);
+      amplitudes.block<2, 2>(2 * m, 2 * m) << b, a, a, -b;
+      const ModeCurvature own = curvature_of({a, b}, -Complex(first(2 * m, c), first(2 * m + 1, c)),
+                                             -Complex(second(2 * m, c), second(2 * m + 1, c)));
+      mixed.block<2, 2>(2 * m, 2 * m) = own.mixed;
+      bent.block<2, 2>(2 * m, 2 * m) = own.rates;
     }
-    slope -= range * (range.transpose() * slope);
-    at.normal += slope.transpose() * slope / at.variances[c];
-    at.gradient += slope.transpose() * at.residuals.col(c) / at.variances[c];
-    at.slopes.push_back(std::move(slope));
+    const MatrixXd over = triangle.transpose().solve(mixed.transpose()).transpose();  // C (2K x 2K+1)
+    const MatrixXd cross = amplitudes.transpose() * followed.transpose() * over.transpose();
+    at.squares.push_back(amplitudes.transpose() * squares * amplitudes);
+    at.moments.push_back(amplitudes.transpose() * first.col(c));
+    const double variance = at.variances[c];
+    at.normal += at.squares.back() / variance;
+    at.hessian += (at.squares.back() - bent + cross + cross.transpose() - over * over.transpose()) / variance;
+    at.hessian -= 2.0 / (static_cast<double>(count) * variance * variance) * at.moments.back() *
+                  at.moments.back().transpose();
+    at.gradient += at.moments.back() / variance;
   }
   return at;
 }
+
+/// A mode's two numbers (w, d) as the rate -d + i w.
+Complex rate_at(const VectorXd& rates, Index m) {
+  return {-rates[2 * m + 1], rates[2 * m]};
+}
+
+/// What multiplies a rate by a factor, of (w, d).
+Eigen::Matrix2d times(Complex factor) {
+  return Eigen::Matrix2d{{factor.real(), -factor.imag()}, {factor.imag(), factor.real()}};
+}
+
+/// Modes less than two lines apart, each the other's nearest: what they span depends on the mean c and the
+/// square q of half the difference of their rates, c + q^(1/2) and c - q^(1/2), and hardly on the sign of
+/// that: along the rates themselves the valley of the misfit is bent.
+std::vector<std::pair<Index, Index>> close_pairs(const VectorXd& rates, double duration) {
+  constexpr double lines = 2.0;
+  const Index modes = rates.size() / 2;
+  const auto nearest = [&](Index m) {
+    Index best = -1;
+    double least = lines * 2.0 * std::numbers::pi / duration;
+    for (Index k = 0; k < modes; ++k)
+      if (const double apart = std::abs(rate_at(rates, k) - rate_at(rates, m));
+          k != m && apart > 0.0 && apart < least)
+        best = k, least = apart;
+    return best;
+  };
+  std::vector<std::pair<Index, Index>> pairs;
+  for (Index m = 0; m < modes; ++m)
+    if (const Index k = nearest(m); k > m && nearest(k) == m) pairs.emplace_back(m, k);
+  return pairs;
+}
+
+/// Newton's problem along the rates, and along c and q (in the places of the first and the second) of pairs.
+class RateDescent {
+ public:
+  RateDescent(const JointLinearisation& at, const VectorXd& rates, double duration)
+      : rates_(rates),
+        pairs_(close_pairs(rates, duration)),
+        normal_(at.normal),
+        hessian_(at.hessian),
+        gradient_(at.gradient) {
+    MatrixXd chain = MatrixXd::Identity(rates.size(), rates.size()),
+             bent = MatrixXd::Zero(rates.size(), rates.size());
+    for (const auto& [a, b] : pairs_) {
+      const Complex half = 0.5 * (rate_at(rates, a) - rate_at(rates, b)), slope = 0.5 / half;
+      chain.block<2, 2>(2 * a, 2 * b) = times(slope);
+      chain.block<2, 2>(2 * b, 2 * a).setIdentity();
+      chain.block<2, 2>(2 * b, 2 * b) = times(-slope);
+      // Re(curvature dq^2) / 2 is what the bend of the rates adds to misfit / 2.
+      const Eigen::Vector2d apart = gradient_.segment<2>(2 * a) - gradient_.segment<2>(2 * b);
+      const Complex curvature = -Complex(apart[1], apart[0]) / (4.0 * half * half * half);
+      bent.block<2, 2>(2 * b, 2 * b) << -curvature.real(), curvature.imag(), curvature.imag(),
+          curvature.real();
+    }
+    normal_ = (chain.transpose() * normal_ * chain).eval();
+    hessian_ = (chain.transpose() * hessian_ * chain + bent).eval();
+    gradient_ = (chain.transpose() * gradient_).eval();
+  }
+
+  /// A step that descends: curvatures, in units of the Gauss-Newton ones, count by their size, and a damping
+  /// is added to them [greenstadt1967].
+  VectorXd step(double damping) const {
+    constexpr double least = 1e-3;
+    const VectorXd scale = normal_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> curvatures(scale.asDiagonal() * hessian_ *
+                                                             scale.asDiagonal());
+    const VectorXd size = curvatures.eigenvalues().cwiseAbs().cwiseMax(least).array() + damping;
+    const MatrixXd& axes = curvatures.eigenvectors();
+    return scale.cwiseProduct(axes * (axes.transpose() * scale.cwiseProduct(gradient_)).cwiseQuotient(size));
+  }
+
+  /// The rates behind a step.
+  VectorXd rates_after(const VectorXd& step) const {
+    VectorXd rates = rates_ + step;
+    for (const auto& [a, b] : pairs_) {
+      const Complex half = 0.5 * (rate_at(rates_, a) - rate_at(rates_, b)),
+                    mean = 0.5 * (rate_at(rates_, a) + rate_at(rates_, b)) + rate_at(step, a);
+      Complex root = std::sqrt(half * half + rate_at(step, b));
+      if ((root * std::conj(half)).real() < 0.0) root = -root;
+      const Complex first = mean + root, second = mean - root;
+      rates.segment<2>(2 * a) << first.imag(), -first.real();
+      rates.segment<2>(2 * b) << second.imag(), -second.real();
+    }
+    return rates;
+  }
+
+  double fall(const VectorXd& step) const { return 2.0 * gradient_.dot(step) - step.dot(hessian_ * step); }
+  double length(const VectorXd& step) const { return std::sqrt(std::max(0.0, step.dot(normal_ * step))); }
+
+ private:
+  VectorXd rates_;
+  std::vector<std::pair<Index, Index>> pairs_;
+  MatrixXd normal_, hessian_;
+  VectorXd gradient_;
+};
 
 /// Variance of white noise as dense as a residual (N) is around w [rad/s]: its periodogram under a Hann
 /// window, the mean over 8 of its resolutions to either side.
@@ -142,8 +282,8 @@ MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& noise_varia
   for (Index c = 0; c < at.residuals.cols(); ++c) {
     VectorXd density(2 * modes);
     for (Index m = 0; m < modes; ++m) density.segment<2>(2 * m).setConstant(std::sqrt(noise_variance(c, m)));
-    const MatrixXd scaled = at.slopes[c] * (density / at.variances[c]).asDiagonal();
-    middle += scaled.transpose() * scaled;
+    density /= at.variances[c];
+    middle += density.asDiagonal() * at.squares[static_cast<std::size_t>(c)] * density.asDiagonal();
   }
   const MatrixXd inverse = at.normal.ldlt().solve(MatrixXd::Identity(2 * modes, 2 * modes));
   return inverse * middle * inverse;
@@ -155,11 +295,11 @@ void take_own_shifts(const JointLinearisation& at, JointDecayFit& fit) {
   fit.own_shift_deviation.setConstant(channels, modes, std::numeric_limits<double>::infinity());
   for (Index c = 0; c < channels; ++c)
     for (Index m = 0; m < modes; ++m) {
-      const auto slope = at.slopes[static_cast<std::size_t>(c)].middleCols<2>(2 * m);
-      const Eigen::Matrix2d inverse = (slope.transpose() * slope).inverse();
+      const auto channel = static_cast<std::size_t>(c);
+      const Eigen::Matrix2d inverse = at.squares[channel].block<2, 2>(2 * m, 2 * m).inverse();
       const double variance = fit.noise_variance(c, m) * inverse(0, 0);
       if (!std::isfinite(variance) || !(variance > 0.0)) continue;
-      fit.own_shift(c, m) = (inverse * (slope.transpose() * at.residuals.col(c)))[0];
+      fit.own_shift(c, m) = (inverse * at.moments[channel].segment<2>(2 * m))[0];
       fit.own_shift_deviation(c, m) = std::sqrt(variance);
     }
 }
@@ -168,28 +308,37 @@ void take_own_shifts(const JointLinearisation& at, JointDecayFit& fit) {
 
 JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
                                  const std::vector<Complex>& start) {
+  // What leads on without an end, a pole that noise does not determine, gains next to nothing of chi-square.
+  constexpr double little = 0.1;
+  constexpr int most_idle = 20;
   check_joint_decay_fit(outputs, interval, start);
   const auto modes = static_cast<Index>(start.size());
   const MatrixXd y = outputs.transpose();
   VectorXd rates(2 * modes);
   for (Index m = 0; m < modes; ++m) rates.segment<2>(2 * m) << start[m].imag(), -start[m].real();
   JointLinearisation at = linearise(y, interval, rates);
-  const auto step = [&](double damping) -> VectorXd {
-    return filters::solve_damped(at.normal, damping, at.gradient);
+  const double duration = interval * static_cast<double>(y.rows());
+  RateDescent descent(at, rates, duration);
+  const auto exhausted = [&](int steps) {
+    return std::runtime_error("least squares of " + std::to_string(modes) +
+                              " damped sines did not converge in " + std::to_string(steps) + " steps");
   };
+  const auto step = [&](double damping) { return descent.step(damping); };
+  int idle = 0;
   const auto take = [&](const VectorXd& tried) {
-    // A step that gains less than 1e-9 of a standard deviation, or moves the rates by rounding only, ends it.
-    const bool settled = tried.dot(at.normal * tried) < 1e-18 || tried.norm() < 1e-13 * rates.norm();
-    JointLinearisation next = linearise(y, interval, rates + tried);
-    const bool lower = next.misfit <= at.misfit;
-    if (lower) rates += tried, at = std::move(next);
-    return filters::TriedStep{lower ? 1.0 : 0.0, settled};
+    // The last is less than 1e-5 of a standard deviation, or moves the rates by rounding only.
+    const VectorXd moved = descent.rates_after(tried);
+    const bool settled = descent.length(tried) < 1e-5 || (moved - rates).norm() < 1e-13 * rates.norm();
+    JointLinearisation next = linearise(y, interval, moved);
+    const double gained = at.misfit - next.misfit, expected = descent.fall(tried);
+    idle = gained < little ? idle + 1 : 0;
+    if (idle > most_idle && !settled) throw exhausted(idle);
+    if (gained >= 0.0) rates = moved, at = std::move(next), descent = RateDescent(at, rates, duration);
+    return filters::TriedStep{expected > 0.0 ? gained / expected : gained >= 0.0 ? 1.0 : 0.0, settled};
   };
   const filters::MarquardtDamping rule;
   if (filters::levenberg_marquardt(rule, step, take) == filters::DescentEnd::exhausted)
-    throw std::runtime_error("least squares of " + std::to_string(modes) +
-                             " damped sines did not converge in " + std::to_string(rule.most_steps) +
-                             " steps");
+    throw exhausted(rule.most_steps);
   JointDecayFit fit;
   fit.shapes.resize(y.cols(), modes);
   for (Index m = 0; m < modes; ++m) {

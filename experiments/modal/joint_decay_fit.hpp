@@ -27,9 +27,9 @@ struct JointDecayFit {
 };
 
 /// Damped sines with the same rates in p channels, each with its own noise level: maximum likelihood by
-/// Gauss-Newton steps (damped where they do not descend) on the rates alone; amplitudes and offsets are
-/// eliminated by variable projection [golub1973], in Kaufman's form [kaufman1975]. For p = 1 it is
-/// fit_damped_sines.
+/// Newton's steps (damped where they do not descend) on the rates alone, on mean and squared half difference
+/// of those of close modes; amplitudes and offsets are eliminated by variable projection [golub1973]. For p =
+/// 1 it is fit_damped_sines.
 /// @param outputs (p x N), one column per instant
 /// @param start K rates, each right to about one cycle over the record
 /// @throws std::invalid_argument with fewer than 2 (4K+1) samples, or a rate that does not oscillate.

@@ -82,7 +82,7 @@ class DampedSines final : public ModalMethod {
 const bool damped_sine_registered = modal_method_registry().add(
     {"damped_sine",
      "damped sines at the peaks of the spectrum, all together by least squares, for free decays",
-     "[golub1973], [kaufman1975]",
+     "[golub1973]",
      {},
      {contract::free_decay, contract::mode_by_mode},
      [](const filters::Options&) { return std::make_unique<DampedSines>(); }});
