@@ -58,15 +58,18 @@ void check_joint_decay_fit(const MatrixXd& outputs, double interval, const std::
 /// The problem at given rates, with the best amplitudes. Slopes are those of a channel's motion to the rates
 /// (w, d of each mode), without what amplitudes can follow.
 struct JointLinearisation {
-  MatrixXd parts;                 ///< (2K+1 x p) amplitudes (Re, Im) and offset
-  MatrixXd residuals;             ///< (N x p)
-  std::vector<MatrixXd> squares;  ///< of each channel's slopes S: S^T S (2K x 2K)
-  std::vector<VectorXd> moments;  ///< S^T r (2K)
-  VectorXd variances;             ///< (p)
-  MatrixXd normal;                ///< sum of S^T S, every channel in units of its noise (2K x 2K)
-  MatrixXd hessian;               ///< second derivatives of misfit / 2, the residual's curvature included
-  VectorXd gradient;              ///< -d (misfit / 2)
-  double misfit = 0;              ///< minus twice the logarithm of the likelihood, and a constant
+  MatrixXd parts;                    ///< (2K+1 x p) amplitudes (Re, Im) and offset
+  MatrixXd residuals;                ///< (N x p)
+  MatrixXd range;                    ///< Q (N x 2K+1)
+  MatrixXd slopes;                   ///< P T (N x 2K)
+  std::vector<MatrixXd> amplitudes;  ///< W of each channel (2K x 2K)
+  std::vector<MatrixXd> squares;     ///< of each channel's slopes S: S^T S (2K x 2K)
+  std::vector<VectorXd> moments;     ///< S^T r (2K)
+  VectorXd variances;                ///< (p)
+  MatrixXd normal;                   ///< sum of S^T S, every channel in units of its noise (2K x 2K)
+  MatrixXd hessian;                  ///< second derivatives of misfit / 2, the residual's curvature included
+  VectorXd gradient;                 ///< -d (misfit / 2)
+  double misfit = 0;                 ///< minus twice the logarithm of the likelihood, and a constant
 };
 
 /// What a residual r and the amplitude a + i b of a mode add to the second derivatives, from the sums of
@@ -90,8 +93,7 @@ ModeCurvature curvature_of(Complex amplitude, Complex first, Complex second) {
 ///     S^T S - E + W^T T^T Q C^T + C Q^T T W - C C^T,   C = D R^-1,
 ///
 /// T the waves times -t, S = P T W, W the amplitudes, D and E of ModeCurvature. Without D and E they are
-/// those of Gauss and Newton, too small by far in the direction of a mode that hardly stands out of the
-/// noise.
+/// those of Gauss and Newton, too small in the direction of a mode that hardly stands out of the noise.
 JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd& rates) {
   const Index count = y.rows(), modes = rates.size() / 2;
   const VectorXd time = interval * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
@@ -105,27 +107,27 @@ JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd&
   }
   basis.col(2 * modes).setOnes();
   const Eigen::HouseholderQR<MatrixXd> qr(basis);
-  const MatrixXd range = qr.householderQ() * MatrixXd::Identity(count, basis.cols());
-  const auto triangle = qr.matrixQR().topRows(basis.cols()).triangularView<Eigen::Upper>();
-  const MatrixXd projected = range.transpose() * y;
   JointLinearisation at;
+  at.range = qr.householderQ() * MatrixXd::Identity(count, basis.cols());
+  const auto triangle = qr.matrixQR().topRows(basis.cols()).triangularView<Eigen::Upper>();
+  const MatrixXd projected = at.range.transpose() * y;
+  at.amplitudes.assign(static_cast<std::size_t>(y.cols()), MatrixXd::Zero(2 * modes, 2 * modes));
   at.parts = triangle.solve(projected);
-  at.residuals = y - range * projected;
+  at.residuals = y - at.range * projected;
   const MatrixXd first = slopes.transpose() * at.residuals;
   const MatrixXd second = slopes.transpose() * time.asDiagonal() * at.residuals;
-  const MatrixXd followed = range.transpose() * slopes;
-  slopes.noalias() -= range * followed;
+  const MatrixXd followed = at.range.transpose() * slopes;
+  slopes.noalias() -= at.range * followed;
   const MatrixXd squares = slopes.transpose() * slopes;
   const VectorXd floor = 1e-26 * y.colwise().squaredNorm().transpose().cwiseMax(1e-280);
   at.variances =
       at.residuals.colwise().squaredNorm().transpose().cwiseMax(floor) / static_cast<double>(count);
   at.misfit = static_cast<double>(count) * at.variances.array().log().sum();
-  at.normal = MatrixXd::Zero(2 * modes, 2 * modes);
-  at.hessian = at.normal;
+  at.hessian = at.normal = MatrixXd::Zero(2 * modes, 2 * modes);
   at.gradient = VectorXd::Zero(2 * modes);
   for (Index c = 0; c < y.cols(); ++c) {
-    MatrixXd amplitudes = MatrixXd::Zero(2 * modes, 2 * modes), bent = amplitudes,
-             mixed = MatrixXd::Zero(2 * modes, 2 * modes + 1);
+    MatrixXd& amplitudes = at.amplitudes[static_cast<std::size_t>(c)];
+    MatrixXd bent = MatrixXd::Zero(2 * modes, 2 * modes), mixed = MatrixXd::Zero(2 * modes, 2 * modes + 1);
     for (Index m = 0; m < modes; ++m) {
       const double a = at.parts(2 * m, c), b = at.parts(2 * m + 1, c);
       amplitudes.block<2, 2>(2 * m, 2 * m) << b, a, a, -b;
@@ -145,6 +147,7 @@ JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd&
                   at.moments.back().transpose();
     at.gradient += at.moments.back() / variance;
   }
+  at.slopes = std::move(slopes);
   return at;
 }
 
@@ -209,7 +212,7 @@ class RateDescent {
   /// A step that descends: curvatures, in units of the Gauss-Newton ones, count by their size, and a damping
   /// is added to them [greenstadt1967].
   VectorXd step(double damping) const {
-    constexpr double least = 1e-3;
+    constexpr double least = 1e-9;
     const VectorXd scale = normal_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> curvatures(scale.asDiagonal() * hessian_ *
                                                              scale.asDiagonal());
@@ -243,36 +246,48 @@ class RateDescent {
   VectorXd gradient_;
 };
 
-/// Variance of white noise as dense as a residual (N) is around w [rad/s]: its periodogram under a Hann
-/// window, the mean over 8 of its resolutions to either side.
-double local_variance(const VectorXd& residual, double interval, double w) {
-  const Index count = residual.size();
-  const double turn = 2 * std::numbers::pi / static_cast<double>(count);
-  double power = 0, weight = 0;
-  VectorXd windowed(count);
-  for (Index k = 0; k < count; ++k) {
-    const double hann = 1 - std::cos(turn * (static_cast<double>(k) + 0.5));
-    windowed[k] = hann * residual[k];
-    weight += hann * hann;
-  }
-  constexpr int bins = 8;
-  for (int b = -bins; b <= bins; ++b) {
-    const Complex step = std::polar(1.0, -(w * interval + turn * b));
-    Complex phase = 1, sum = 0;
-    for (Index k = 0; k < count; ++k, phase *= step) sum += windowed[k] * phase;
-    power += std::norm(sum) / (2 * bins + 1);
-  }
-  return power / weight;
-}
-
-/// (p x K)
+/// Variance of white noise (p x K) as dense as each residual is around each mode: its periodogram under a
+/// Hann window, the mean over 8 of its resolutions to either side, over what the fit leaves there of white
+/// noise,
+///
+///     h^H (I - Q Q^T - S N^-1 S^T / variance) h    of a line h.
 MatrixXd noise_near_modes(const JointLinearisation& at, double interval, const VectorXd& rates) {
-  const Index modes = rates.size() / 2, count = at.residuals.rows();
-  const double freedom = static_cast<double>(count) / static_cast<double>(count - 4 * modes - 1);
-  MatrixXd variance(at.residuals.cols(), modes);
-  for (Index c = 0; c < at.residuals.cols(); ++c)
-    for (Index m = 0; m < modes; ++m)
-      variance(c, m) = freedom * local_variance(at.residuals.col(c), interval, rates[2 * m]);
+  constexpr Index bins = 8, lines = 2 * bins + 1, block = 4096;
+  constexpr double least_left = 0.2;
+  const Index modes = rates.size() / 2, count = at.residuals.rows(), channels = at.residuals.cols();
+  const double turn = 2.0 * std::numbers::pi / static_cast<double>(count);
+  const MatrixXd inverse = at.normal.ldlt().solve(MatrixXd::Identity(2 * modes, 2 * modes));
+  MatrixXd variance(channels, modes);
+  for (Index m = 0; m < modes; ++m) {
+    MatrixXd on_residuals = MatrixXd::Zero(2 * lines, channels),
+             on_range = MatrixXd::Zero(2 * lines, 2 * modes + 1),
+             on_slopes = MatrixXd::Zero(2 * lines, 2 * modes);
+    double weight = 0.0;
+    for (Index begin = 0; begin < count; begin += block) {
+      const Index samples = std::min(block, count - begin);
+      MatrixXd waves(samples, 2 * lines);
+      for (Index k = 0; k < samples; ++k) {
+        const auto at_sample = static_cast<double>(begin + k);
+        const double hann = 1.0 - std::cos(turn * (at_sample + 0.5));
+        weight += hann * hann;
+        Complex wave = std::polar(hann, -(rates[2 * m] * interval - turn * bins) * at_sample);
+        const Complex next = std::polar(1.0, -turn * at_sample);
+        for (Index line = 0; line < lines; ++line, wave *= next)
+          waves(k, 2 * line) = wave.real(), waves(k, 2 * line + 1) = wave.imag();
+      }
+      on_residuals.noalias() += waves.transpose() * at.residuals.middleRows(begin, samples);
+      on_range.noalias() += waves.transpose() * at.range.middleRows(begin, samples);
+      on_slopes.noalias() += waves.transpose() * at.slopes.middleRows(begin, samples);
+    }
+    for (Index c = 0; c < channels; ++c) {
+      const MatrixXd moved = on_slopes * at.amplitudes[static_cast<std::size_t>(c)];
+      const double taken =
+                       on_range.squaredNorm() + (moved * inverse).cwiseProduct(moved).sum() / at.variances[c],
+                   whole = static_cast<double>(lines) * weight;
+      variance(c, m) =
+          on_residuals.col(c).squaredNorm() / (whole * std::max(least_left, 1.0 - taken / whole));
+    }
+  }
   return variance;
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -96,31 +98,96 @@ double density_near(const JointDecayFit& fit, const RecordModes& found, std::siz
   return largest;
 }
 
-/// Whether modes a and b of `pair` stand, where `single` has one.
-bool stands(const RecordModes& found, const JointDecayFit& single, const JointDecayFit& pair, std::size_t a,
-            std::size_t b) {
-  constexpr double by_chance = 1e-6, clearly = 25.0, denser = 2.0, weakest = 0.02;
+/// Cycles by which the modes differ over the record.
+double cycles_apart(const JointDecayFit& pair, std::size_t a, std::size_t b, const RecordModes& found) {
+  return std::abs(pair.rates[a].imag() - pair.rates[b].imag()) / (2.0 * pi) * found.interval *
+         static_cast<double>(found.target.cols());
+}
+
+/// Whether every channel of several sees but one of modes a and b: one mode and clocks that differ look
+/// alike.
+bool seen_apart(const JointDecayFit& pair, Index a, Index b) {
+  constexpr double hardly = 0.05;
+  const Eigen::ArrayXd first = pair.shapes.col(a).cwiseAbs(), second = pair.shapes.col(b).cwiseAbs();
+  return first.size() > 1 && (first.min(second) < hardly * first.max(second)).all();
+}
+
+enum class OneOrTwo { one, undecided, two };
+
+/// Whether the record is that of modes a and b of `pair`, where `single` has one, and by how much one that
+/// drifts has the larger squares, in units of the noise.
+std::pair<OneOrTwo, double> compete(const RecordModes& found, const JointDecayFit& single,
+                                    const JointDecayFit& pair, std::size_t a, std::size_t b) {
+  constexpr double by_chance = 1e-5, surely = 1e-6, close = 1.5, apart = 0.25, clearly_two = 25.0,
+                   clearly_one = -10.0, denser = 2.0, weakest = 0.02;
   const double w = single.rates[a].imag();
+  bool damped = true;  // surely
   for (const std::size_t m : {a, b}) {
     const Pole pole = fitted_pole(pair, m);
-    if (!(pole.damping_ratio() > 2.0 * pole.damping_ratio_deviation) ||
-        !(std::abs(pair.rates[m].imag() - w) < 0.1 * w))
-      return false;
+    const double ratio = pole.damping_ratio(), deviation = pole.damping_ratio_deviation;
+    if (!(ratio > -2.0 * deviation) || !(std::abs(pair.rates[m].imag() - w) < 0.1 * w))
+      return {OneOrTwo::one, 0.0};
+    damped = damped && ratio > 2.0 * deviation;
   }
   const auto at_a = static_cast<Index>(a), at_b = static_cast<Index>(b);
   const double size_a = pair.shapes.col(at_a).norm(), size_b = pair.shapes.col(at_b).norm();
-  if (std::min(size_a, size_b) < weakest * std::max(size_a, size_b)) return false;
-  double gained = 0.0, over_drift = 0.0;
-  for (Index c = 0; c < found.target.rows(); ++c) {
-    const double noise = std::max(pair.noise_variance(c, at_a), 1e-300);
-    const double one = (found.target.row(c) - single.reconstruction.row(c)).squaredNorm();
-    const PairAgainstDrift both = pair_against_drift(pair, a, b, found.target, found.interval, c);
-    gained += (one - both.left_by_pair) / noise;
-    over_drift += (both.left_by_drift - both.left_by_pair) / noise;
-  }
+  if (std::min(size_a, size_b) < weakest * std::max(size_a, size_b)) return {OneOrTwo::one, 0.0};
+  std::vector<Index> channels(static_cast<std::size_t>(found.target.rows()));
+  std::iota(channels.begin(), channels.end(), 0);
+  const PairAgainstDrift both = pair_against_drift(pair, a, b, found.target, found.interval, channels);
+  const VectorXd by_one = (found.target - single.reconstruction).rowwise().squaredNorm();
+  const double gained =
+      by_one.cwiseQuotient(pair.noise_variance.col(at_a).cwiseMax(1e-300)).sum() - both.left_by_pair;
+  const double over_drift = both.left_by_drift - both.left_by_pair;
   const double freedom = 2.0 + 2.0 * static_cast<double>(found.target.rows());
-  return gained > chi_square_limit(freedom, 1.0 - by_chance) && over_drift > clearly &&
-         density_near(pair, found, a) < denser;
+  if (!(gained > chi_square_limit(freedom, 1.0 - by_chance)) || over_drift < clearly_one ||
+      density_near(pair, found, a) > denser)
+    return {OneOrTwo::one, over_drift};
+  const double cycles = cycles_apart(pair, a, b, found);
+  if (over_drift > clearly_two && (cycles < apart || seen_apart(pair, at_a, at_b)))
+    return {OneOrTwo::one, over_drift};
+  if (damped && over_drift > clearly_two && gained > chi_square_limit(freedom, 1.0 - surely))
+    return {OneOrTwo::two, over_drift};
+  return {cycles < close ? OneOrTwo::undecided : OneOrTwo::one, over_drift};
+}
+
+/// Mode m may be the two of `pair`: its intervals grow by their distances, each by its share of the larger.
+/// What follows the amplitude looks like a second mode of another damping, as the n-th power of an amplitude
+/// decays n times as fast, or of nearly the same rate. Only where both are damped alike and a quarter of a
+/// cycle apart has the record no result.
+void object_to_one(const JointDecayFit& pair, std::size_t m, double over_drift, RecordModes& found) {
+  constexpr double alike = 1.5, apart = 0.25;
+  ModeEstimate& one = found.modes[m];
+  const std::size_t last = pair.rates.size() - 1;
+  Pole low = fitted_pole(pair, m), high = fitted_pole(pair, last);
+  if (low.frequency_hz() > high.frequency_hz()) std::swap(low, high);
+  const double larger = std::max(low.shape.norm(), high.shape.norm());
+  const auto farthest = [&](auto of) {
+    return std::max(std::abs(of(low) - of(one.pole)) * low.shape.norm(),
+                    std::abs(of(high) - of(one.pole)) * high.shape.norm()) /
+           larger;
+  };
+  one.frequency_spread_hz = farthest([](const Pole& pole) { return pole.frequency_hz(); });
+  one.damping_ratio_spread = farthest([](const Pole& pole) { return pole.damping_ratio(); });
+  const bool damped_alike = std::max(low.damping_ratio(), high.damping_ratio()) <
+                            alike * std::min(low.damping_ratio(), high.damping_ratio());
+  const bool open = damped_alike && cycles_apart(pair, m, last, found) > apart;
+  const std::string two = fmt::format("two of {:.5g} and {:.5g} Hz with {:.3g} and {:.3g} %",
+                                      low.frequency_hz(), high.frequency_hz(), 100.0 * low.damping_ratio(),
+                                      100.0 * high.damping_ratio()),
+                    differs = fmt::format("(chi^2 differs by {:.2g})", over_drift);
+  found.objections.emplace_back(
+      open ? "close_modes" : "drift_or_pair",
+      open ? fmt::format(
+                 "One or two modes at {:.5g} Hz: {} explain the record as well as one that drifts {}. The "
+                 "damping ratio is not determined; intervals are widened. A longer record or more channels "
+                 "may separate them.",
+                 one.pole.frequency_hz(), two, differs)
+           : fmt::format(
+                 "The mode at {:.5g} Hz follows its amplitude, or there are {}: both explain the record "
+                 "{}. Intervals are widened; --amplitude shows the damping ratio against the amplitude.",
+                 one.pole.frequency_hz(), two, differs),
+      over_drift, 25.0);
 }
 
 std::optional<JointDecayFit> with_pair(const RecordModes& found, const JointDecayFit& fit, std::size_t m,
@@ -141,9 +208,12 @@ std::optional<JointDecayFit> with_pair(const RecordModes& found, const JointDeca
 ///
 /// - it reduces the squares by more than chance does: chi-square of 2 + 2 p degrees of freedom at 1e-6, by
 ///   the density of its residual near it;
-/// - one mode whose frequency and damping drift (phase_wander.hpp), of as many numbers, has squares larger
+/// - one mode whose frequency and damping drift (phase_wander.hpp), alike in all channels, has squares larger
 ///   by 25 times that density;
 /// - its residual is as dense near it as farther away: a frequency that follows the amplitude is no pair.
+///
+/// Where squares of the drifting mode are not larger by 25 and not smaller by 10, neither wins:
+/// `close_modes`.
 ///
 /// @param fit of found's modes, before and after
 void split_close_pairs(RecordModes& found, JointDecayFit& fit) {
@@ -151,17 +221,25 @@ void split_close_pairs(RecordModes& found, JointDecayFit& fit) {
   double strongest = 0.0;
   for (const ModeEstimate& mode : found.modes) strongest = std::max(strongest, mode.strength);
   const std::size_t modes = found.modes.size();  // a mode of a pair is not parted again
+  std::map<std::size_t, std::pair<JointDecayFit, double>> open;
   for (std::size_t m = 0; m < modes; ++m) {
     if (found.modes[m].strength < worth * strongest) continue;
+    std::optional<std::pair<JointDecayFit, double>> undecided;
     for (const auto& start : starts(found, fit, m)) {
       const auto pair = with_pair(found, fit, m, start);
-      if (!pair || !stands(found, fit, *pair, m, found.modes.size())) continue;
+      if (!pair) continue;
+      const auto [verdict, over_drift] = compete(found, fit, *pair, m, found.modes.size());
+      if (verdict == OneOrTwo::undecided) undecided.emplace(*pair, over_drift);
+      if (verdict != OneOrTwo::two) continue;
       found.modes.push_back(found.modes[m]);
       for (std::size_t k = 0; k < found.modes.size(); ++k) found.modes[k].pole = fitted_pole(*pair, k);
       fit = *pair;
+      undecided.reset();
       break;
     }
+    if (undecided) open.emplace(m, *undecided);
   }
+  for (const auto& [m, undecided] : open) object_to_one(undecided.first, m, undecided.second, found);
 }
 
 // Whether all channels of a free decay ring at the same frequencies.
@@ -246,6 +324,24 @@ std::optional<JointDecayFit> fit_or_reject(RecordModes& found) {
   return std::nullopt;
 }
 
+std::vector<Pole> poles_of(const Modes& modes) {
+  std::vector<Pole> poles;
+  for (const ModeEstimate& mode : modes) poles.push_back(mode.pole);
+  return poles;
+}
+
+std::vector<Pole> poles_of(const JointDecayFit& fit) {
+  std::vector<Pole> poles;
+  for (std::size_t m = 0; m < fit.rates.size(); ++m) poles.push_back(fitted_pole(fit, m));
+  return poles;
+}
+
+bool strongest_is_uncertain(const JointDecayFit& fit, const StabilisationSettings& settings,
+                            const RecordModes& found) {
+  const auto m = static_cast<std::size_t>(&found.strongest() - found.modes.data());
+  return !objection_to(found.modes[m].pole, fit, m, found, settings).empty();
+}
+
 /// Only the least certain goes: without it, others may stay.
 bool reject_least_certain(const JointDecayFit& fit, const StabilisationSettings& settings,
                           RecordModes& found) {
@@ -261,18 +357,6 @@ bool reject_least_certain(const JointDecayFit& fit, const StabilisationSettings&
   }
   if (worst) reject(*worst, why, found);
   return worst.has_value();
-}
-
-std::vector<Pole> poles_of(const Modes& modes) {
-  std::vector<Pole> poles;
-  for (const ModeEstimate& mode : modes) poles.push_back(mode.pole);
-  return poles;
-}
-
-std::vector<Pole> poles_of(const JointDecayFit& fit) {
-  std::vector<Pole> poles;
-  for (std::size_t m = 0; m < fit.rates.size(); ++m) poles.push_back(fitted_pole(fit, m));
-  return poles;
 }
 
 /// What was rejected for the company it was in, the strongest first, is tried once more with those that
@@ -307,9 +391,18 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
   const Modes all = found.modes;
   while (!found.modes.empty()) {
     auto fit = fit_or_reject(found);
-    if (!fit || reject_least_certain(*fit, settings, found)) continue;
+    if (!fit) continue;
+    bool split = false;  // a pair that is fitted as one mode makes that uncertain
+    if (found.free_decay && strongest_is_uncertain(*fit, settings, found)) {
+      RecordModes tried = found;
+      JointDecayFit of_tried = *fit;
+      split_close_pairs(tried, of_tried);
+      split = tried.modes.size() > found.modes.size();
+      if (split) found = std::move(tried), *fit = std::move(of_tried);
+    }
+    if (reject_least_certain(*fit, settings, found)) continue;
     const std::vector<Pole> poles = poles_of(*fit);
-    if (reject_twin(poles, found) || reject_drifting(*fit, found)) continue;
+    if (!split && (reject_twin(poles, found) || reject_drifting(*fit, found))) continue;
     Modes lost;
     for (const ModeEstimate& mode : all)
       if (std::none_of(found.modes.begin(), found.modes.end(),
@@ -317,8 +410,8 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
         lost.push_back(mode);
     for (std::size_t m = 0; m < poles.size(); ++m) found.modes[m].pole = poles[m];
     try_again(lost, settings, found, *fit);
-    if (found.free_decay) split_close_pairs(found, *fit);
     if (found.free_decay) {
+      if (!split) split_close_pairs(found, *fit);
       compare_clocks(*fit, found);
       follow_phases(*fit, found);
     }

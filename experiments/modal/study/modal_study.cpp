@@ -412,6 +412,11 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
       mode.pole.shape *= std::exp(-mode.pole.rate * coarse.last.start) / coarse.last.response(mode.pole.rate);
     for (Objection& one : decay_objections_to(found)) found.objections.push_back(std::move(one));
   }
+  for (ModeEstimate& mode : found.modes) {
+    Pole& pole = mode.pole;
+    pole.frequency_deviation_hz = std::hypot(pole.frequency_deviation_hz, mode.frequency_spread_hz);
+    pole.damping_ratio_deviation = std::hypot(pole.damping_ratio_deviation, mode.damping_ratio_spread);
+  }
   return found;
 }
 

@@ -31,6 +31,9 @@ struct ModeEstimate {
   Pole pole;                ///< shape [unit of the channels]; of random vibration: root mean squares
   std::vector<int> orders;  ///< of the models in which it was stable
   double strength = 0;      ///< share of the squares of what it was to reproduce
+  /// Farthest other explanation of the record (decay_polish.hpp), which the deviations of the pole hold in
+  /// the end.
+  double frequency_spread_hz = 0, damping_ratio_spread = 0;
 
   double amplitude(Eigen::Index channel) const { return std::abs(pole.shape[channel]); }
 };

@@ -18,8 +18,6 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
 
-constexpr Index terms = 4;
-
 bool near(Complex a, Complex b, double duration) {
   constexpr double most_cycles = 4, time_constants = 3;
   const double slower = std::min(std::abs(a.real()), std::abs(b.real()));
@@ -31,18 +29,17 @@ bool near(Complex a, Complex b, double duration) {
 /// Powers 0 to 3 of x from 0 to 1 (N x 4).
 MatrixXd powers_of_time(Index count) {
   const VectorXd x = VectorXd::LinSpaced(count, 0, 1);
-  MatrixXd basis(count, terms);
-  basis.col(0).setOnes();
-  for (Index j = 1; j < terms; ++j) basis.col(j) = basis.col(j - 1).cwiseProduct(x);
+  MatrixXd basis(count, 4);
+  basis << VectorXd::Ones(count), x, x.cwiseAbs2(), x.cwiseAbs2().cwiseProduct(x);
   return basis;
 }
 
-/// 1, x, a and a^2 with the amplitude a = e^(-decay x): what a rate that follows the amplitude makes of the
-/// phase and of the logarithm of the amplitude, to second order.
+/// 1, x, a, a^2 and a^3 with the amplitude a = e^(-decay x): what a rate that follows the amplitude makes of
+/// the phase and of the logarithm of the amplitude, to third order (N x 5).
 MatrixXd powers_of_amplitude(Index count, double decay) {
-  MatrixXd basis = powers_of_time(count);
-  basis.col(2) = (-decay * basis.col(1).array()).exp();
-  basis.col(3) = basis.col(2).cwiseAbs2();
+  const VectorXd x = VectorXd::LinSpaced(count, 0, 1), a = (-decay * x.array()).exp();
+  MatrixXd basis(count, 5);
+  basis << VectorXd::Ones(count), x, a, a.cwiseAbs2(), a.cwiseAbs2().cwiseProduct(a);
   return basis;
 }
 
@@ -57,32 +54,84 @@ VectorXcd through_logarithm(const VectorXcd& z, const MatrixXd& basis) {
                                weight.asDiagonal() * unwrapped_logarithm(z));
 }
 
-/// d Re z / d (Re c_1, Im c_1, ...) (N x 2 terms).
-MatrixXd drift_slope(const VectorXcd& z, const MatrixXd& basis) {
-  MatrixXd slope(z.size(), 2 * terms);
-  for (Index j = 0; j < terms; ++j) {
-    slope.col(2 * j) = z.real().cwiseProduct(basis.col(j));
-    slope.col(2 * j + 1) = -z.imag().cwiseProduct(basis.col(j));
+/// One mode that drifts alike in all channels: Re(A_i wave), wave = e^(c_1 x_1 + ...), every power x from 0
+/// on.
+class DriftingMode {
+ public:
+  /// @param basis powers behind a column of ones
+  /// @param near (N x p) where the search begins
+  DriftingMode(const MatrixXd& y, const MatrixXd& basis, const MatrixXcd& near)
+      : y_(y), powers_(basis.rightCols(basis.cols() - 1).rowwise() - basis.row(0).tail(basis.cols() - 1)) {
+    Index strongest = 0;
+    near.colwise().squaredNorm().maxCoeff(&strongest);
+    c_ = through_logarithm(near.col(strongest), basis).tail(powers_.cols());
+    wave_ = drifting(c_, powers_);
+    MatrixXd parts(y.rows(), 2);
+    parts << wave_.real(), -wave_.imag();
+    const MatrixXd best = least_squares(parts, y);
+    amplitudes_ = best.row(0).transpose() + Complex(0, 1) * best.row(1).transpose();
   }
-  return slope;
-}
 
-/// Sum of squares that the best c leaves of y, from that of z on.
-double left_by_drifting(const VectorXd& y, const MatrixXd& basis, const VectorXcd& near) {
-  VectorXcd c = through_logarithm(near, basis), z = drifting(c, basis);
-  double squares = (y - z.real()).squaredNorm();
-  const auto step = [&](double damping) -> VectorXd {
-    const MatrixXd slope = drift_slope(z, basis);
-    return filters::solve_damped(slope.transpose() * slope, damping, slope.transpose() * (y - z.real()));
-  };
+  VectorXd left(Index channel) const { return y_.col(channel) - (amplitudes_[channel] * wave_).real(); }
+
+  double squares() const {
+    double sum = 0.0;
+    for (Index i = 0; i < y_.cols(); ++i) sum += left(i).squaredNorm();
+    return sum;
+  }
+
+  /// Of least squares, along c and then the amplitudes (real and imaginary parts in turn).
+  VectorXd step(double damping) const {
+    const Index shared = 2 * c_.size(), unknowns = shared + 2 * y_.cols();
+    MatrixXd normal = MatrixXd::Zero(unknowns, unknowns);
+    VectorXd gradient = VectorXd::Zero(unknowns);
+    for (Index i = 0; i < y_.cols(); ++i) {
+      const MatrixXd slope = slope_of(i);
+      Eigen::VectorX<Index> at = Eigen::VectorX<Index>::LinSpaced(shared + 2, 0, shared + 1);
+      at.tail<2>().array() += 2 * i;
+      normal(at, at) += slope.transpose() * slope;
+      gradient(at) += slope.transpose() * left(i);
+    }
+    return filters::solve_damped(normal, damping, gradient);
+  }
+
+  DriftingMode moved(const VectorXd& step) const {
+    DriftingMode there = *this;
+    const Index drifts = c_.size();
+    for (Index j = 0; j < drifts; ++j) there.c_[j] += Complex(step[2 * j], step[2 * j + 1]);
+    for (Index i = 0; i < y_.cols(); ++i)
+      there.amplitudes_[i] += Complex(step[2 * (drifts + i)], step[2 * (drifts + i) + 1]);
+    there.wave_ = drifting(there.c_, powers_);
+    return there;
+  }
+
+ private:
+  MatrixXd slope_of(Index channel) const {
+    MatrixXd slope(y_.rows(), 2 * c_.size() + 2);
+    const VectorXcd motion = amplitudes_[channel] * wave_;
+    for (Index j = 0; j < c_.size(); ++j) {
+      slope.col(2 * j) = motion.real().cwiseProduct(powers_.col(j));
+      slope.col(2 * j + 1) = -motion.imag().cwiseProduct(powers_.col(j));
+    }
+    slope.rightCols<2>() << wave_.real(), -wave_.imag();
+    return slope;
+  }
+
+  MatrixXd y_, powers_;
+  VectorXcd c_, amplitudes_, wave_;
+};
+
+/// Sum of squares that the best drifting mode leaves of y (N x p), from that of `near` on.
+double left_by_drifting(const MatrixXd& y, const MatrixXd& basis, const MatrixXcd& near) {
+  DriftingMode mode(y, basis, near);
+  double squares = mode.squares();
+  const auto step = [&](double damping) { return mode.step(damping); };
   const auto take = [&](const VectorXd& tried) {
-    VectorXcd next = c;
-    for (Index j = 0; j < terms; ++j) next[j] += Complex(tried[2 * j], tried[2 * j + 1]);
-    const VectorXcd there = drifting(next, basis);
-    const double left = (y - there.real()).squaredNorm();
+    DriftingMode there = mode.moved(tried);
+    const double left = there.squares();
     if (!(left < squares)) return filters::TriedStep{};
     const bool settled = squares - left < 1e-6 * squares;
-    c = next, z = there, squares = left;
+    mode = std::move(there), squares = left;
     return filters::TriedStep{1.0, settled};
   };
   filters::MarquardtDamping rule;
@@ -94,21 +143,31 @@ double left_by_drifting(const VectorXd& y, const MatrixXd& basis, const VectorXc
 }  // namespace
 
 PairAgainstDrift pair_against_drift(const JointDecayFit& fit, std::size_t a, std::size_t b,
-                                    const MatrixXd& target, double interval, Index channel) {
+                                    const MatrixXd& target, double interval,
+                                    const std::vector<Index>& channels) {
   const Index count = target.cols();
-  VectorXcd pair(count);
+  VectorXcd first(count), second(count);
   for (Index k = 0; k < count; ++k) {
     const double time = interval * static_cast<double>(k);
-    pair[k] = fit.shapes(channel, static_cast<Index>(a)) * std::exp(fit.rates[a] * time) +
-              fit.shapes(channel, static_cast<Index>(b)) * std::exp(fit.rates[b] * time);
+    first[k] = std::exp(fit.rates[a] * time), second[k] = std::exp(fit.rates[b] * time);
   }
-  const VectorXd left_by_pair = (target.row(channel) - fit.reconstruction.row(channel)).transpose(),
-                 both = left_by_pair + pair.real();
+  MatrixXcd pair(count, static_cast<Index>(channels.size()));
+  MatrixXd left(count, pair.cols());
+  for (Index i = 0; i < pair.cols(); ++i) {
+    const Index channel = channels[static_cast<std::size_t>(i)];
+    const double noise = std::sqrt(std::max(fit.noise_variance(channel, static_cast<Index>(a)), 1e-300));
+    pair.col(i) = (fit.shapes(channel, static_cast<Index>(a)) * first +
+                   fit.shapes(channel, static_cast<Index>(b)) * second) /
+                  noise;
+    left.col(i) = (target.row(channel) - fit.reconstruction.row(channel)).transpose() / noise;
+  }
+  const MatrixXd both = left + pair.real();
   const double decay =
       -0.5 * (fit.rates[a].real() + fit.rates[b].real()) * interval * static_cast<double>(count);
-  return {left_by_pair.squaredNorm(),
+  constexpr double two_more_numbers = 4.0;  // of the second drift, as Akaike counts them
+  return {left.squaredNorm(),
           std::min(left_by_drifting(both, powers_of_time(count), pair),
-                   left_by_drifting(both, powers_of_amplitude(count, decay), pair))};
+                   left_by_drifting(both, powers_of_amplitude(count, decay), pair) + two_more_numbers)};
 }
 
 bool is_one_drifting_mode(const JointDecayFit& fit, std::size_t a, std::size_t b, const MatrixXd& target,
@@ -118,7 +177,7 @@ bool is_one_drifting_mode(const JointDecayFit& fit, std::size_t a, std::size_t b
   (fit.shapes.col(static_cast<Index>(a)).cwiseAbs() + fit.shapes.col(static_cast<Index>(b)).cwiseAbs())
       .cwiseQuotient(fit.residual_standard_deviation.cwiseMax(1e-300))
       .maxCoeff(&channel);
-  const PairAgainstDrift found = pair_against_drift(fit, a, b, target, interval, channel);
+  const PairAgainstDrift found = pair_against_drift(fit, a, b, target, interval, {channel});
   return found.left_by_drift <= found.left_by_pair;
 }
 

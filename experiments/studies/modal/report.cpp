@@ -190,7 +190,7 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
                 "or --order may show one.");
     else
       results.table(mode_table(found, suffix));
-    for (const Objection& one : found.objections) results.object(one);
+    for (const Objection& one : found.objections) results.object(one, {}, one.name == "close_modes");
     if (Table rejected = rejected_table(found, suffix); rejected.rows() > 0)
       results.table(std::move(rejected));
     for (Figure& figure : figures(found, suffix)) results.figures.push_back(std::move(figure));
