@@ -17,13 +17,11 @@
 #include "filters/levenberg_marquardt.hpp"
 
 namespace beamid::experiments {
-namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// e^(rate t) at t = 0, dt, ..., (N - 1) dt: an exponential for one sample of 64, a product for the others.
-Eigen::VectorXcd wave_of(Complex rate, double interval, Index count) {
+Eigen::VectorXcd decaying_wave(Complex rate, double interval, Index count) {
   constexpr Index span = 64;
   Eigen::VectorXcd wave(count);
   const Index first = std::min(span, count);
@@ -40,6 +38,8 @@ Eigen::VectorXcd wave_of(Complex rate, double interval, Index count) {
   return wave;
 }
 
+namespace {
+
 void check_joint_decay_fit(const MatrixXd& outputs, double interval, const std::vector<Complex>& start) {
   const std::size_t fewest = 2 * (4 * start.size() + 1);
   const bool oscillating = std::all_of(start.begin(), start.end(), [](Complex rate) {
@@ -53,6 +53,11 @@ void check_joint_decay_fit(const MatrixXd& outputs, double interval, const std::
           << outputs.cols() << " samples; expected at least " << fewest
           << " finite samples and one or more rates of positive angular frequency";
   throw std::invalid_argument(message.str());
+}
+
+/// A mode's two numbers (w, d) as the rate -d + i w.
+Complex rate_at(const VectorXd& rates, Index m) {
+  return {-rates[2 * m + 1], rates[2 * m]};
 }
 
 /// The problem at given rates, with the best amplitudes. Slopes are those of a channel's motion to the rates
@@ -72,19 +77,10 @@ struct JointLinearisation {
   double misfit = 0;                 ///< minus twice the logarithm of the likelihood, and a constant
 };
 
-/// What a residual r and the amplitude a + i b of a mode add to the second derivatives, from the sums of
-/// t r e^(rate t) and t^2 r e^(rate t).
-struct ModeCurvature {
-  Eigen::Matrix2d mixed;  ///< r^T d^2 motion / d(w, d) d(a, b)
-  Eigen::Matrix2d rates;  ///< r^T d^2 motion / d(w, d)^2
-};
-
-ModeCurvature curvature_of(Complex amplitude, Complex first, Complex second) {
-  const Complex bent = amplitude * second;
-  ModeCurvature found;
-  found.mixed << -first.imag(), -first.real(), -first.real(), first.imag();
-  found.rates << -bent.real(), bent.imag(), bent.imag(), bent.real();
-  return found;
+/// ((Im, Re), (Re, -Im)) of z: what is linear in z times a rate has these derivatives by the rate's (w, d)
+/// and by the parts of the other factor.
+Eigen::Matrix2d mirrored(Complex z) {
+  return Eigen::Matrix2d{{z.imag(), z.real()}, {z.real(), -z.imag()}};
 }
 
 /// Of the rates alone, amplitudes eliminated by variable projection [golub1973]: r = P y, P without the basis
@@ -92,14 +88,15 @@ ModeCurvature curvature_of(Complex amplitude, Complex first, Complex second) {
 ///
 ///     S^T S - E + W^T T^T Q C^T + C Q^T T W - C C^T,   C = D R^-1,
 ///
-/// T the waves times -t, S = P T W, W the amplitudes, D and E of ModeCurvature. Without D and E they are
-/// those of Gauss and Newton, too small in the direction of a mode that hardly stands out of the noise.
+/// T the waves times -t, S = P T W, W the amplitudes, D the sums of t r e^(rate t), E those of t^2 r e^(rate
+/// t) times the amplitudes. Without D and E they are those of Gauss and Newton, too small in the direction of
+/// a mode as weak as the noise.
 JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd& rates) {
   const Index count = y.rows(), modes = rates.size() / 2;
   const VectorXd time = interval * VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1));
   MatrixXd basis(count, 2 * modes + 1), slopes(count, 2 * modes);
   for (Index m = 0; m < modes; ++m) {
-    const Eigen::VectorXcd wave = wave_of({-rates[2 * m + 1], rates[2 * m]}, interval, count);
+    const Eigen::VectorXcd wave = decaying_wave(rate_at(rates, m), interval, count);
     basis.col(2 * m) = wave.real();
     basis.col(2 * m + 1) = -wave.imag();
     slopes.col(2 * m) = -time.cwiseProduct(wave.real());
@@ -129,12 +126,11 @@ JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd&
     MatrixXd& amplitudes = at.amplitudes[static_cast<std::size_t>(c)];
     MatrixXd bent = MatrixXd::Zero(2 * modes, 2 * modes), mixed = MatrixXd::Zero(2 * modes, 2 * modes + 1);
     for (Index m = 0; m < modes; ++m) {
-      const double a = at.parts(2 * m, c), b = at.parts(2 * m + 1, c);
-      amplitudes.block<2, 2>(2 * m, 2 * m) << b, a, a, -b;
-      const ModeCurvature own = curvature_of({a, b}, -Complex(first(2 * m, c), first(2 * m + 1, c)),
-                                             -Complex(second(2 * m, c), second(2 * m + 1, c)));
-      mixed.block<2, 2>(2 * m, 2 * m) = own.mixed;
-      bent.block<2, 2>(2 * m, 2 * m) = own.rates;
+      const Complex amplitude(at.parts(2 * m, c), at.parts(2 * m + 1, c));
+      amplitudes.block<2, 2>(2 * m, 2 * m) = mirrored(amplitude);
+      mixed.block<2, 2>(2 * m, 2 * m) = mirrored({first(2 * m, c), first(2 * m + 1, c)});
+      bent.block<2, 2>(2 * m, 2 * m) =
+          mirrored(Complex(0, 1) * amplitude * Complex(second(2 * m, c), second(2 * m + 1, c)));
     }
     const MatrixXd over = triangle.transpose().solve(mixed.transpose()).transpose();  // C (2K x 2K+1)
     const MatrixXd cross = amplitudes.transpose() * followed.transpose() * over.transpose();
@@ -151,19 +147,14 @@ JointLinearisation linearise(const MatrixXd& y, double interval, const VectorXd&
   return at;
 }
 
-/// A mode's two numbers (w, d) as the rate -d + i w.
-Complex rate_at(const VectorXd& rates, Index m) {
-  return {-rates[2 * m + 1], rates[2 * m]};
-}
-
 /// What multiplies a rate by a factor, of (w, d).
 Eigen::Matrix2d times(Complex factor) {
   return Eigen::Matrix2d{{factor.real(), -factor.imag()}, {factor.imag(), factor.real()}};
 }
 
 /// Modes less than two lines apart, each the other's nearest: what they span depends on the mean c and the
-/// square q of half the difference of their rates, c + q^(1/2) and c - q^(1/2), and hardly on the sign of
-/// that: along the rates themselves the valley of the misfit is bent.
+/// square q of half the difference of their rates, c + q^(1/2) and c - q^(1/2), not on its
+/// sign: along the rates themselves the valley of the misfit is bent.
 std::vector<std::pair<Index, Index>> close_pairs(const VectorXd& rates, double duration) {
   constexpr double lines = 2.0;
   const Index modes = rates.size() / 2;
@@ -201,8 +192,7 @@ class RateDescent {
       // Re(curvature dq^2) / 2 is what the bend of the rates adds to misfit / 2.
       const Eigen::Vector2d apart = gradient_.segment<2>(2 * a) - gradient_.segment<2>(2 * b);
       const Complex curvature = -Complex(apart[1], apart[0]) / (4.0 * half * half * half);
-      bent.block<2, 2>(2 * b, 2 * b) << -curvature.real(), curvature.imag(), curvature.imag(),
-          curvature.real();
+      bent.block<2, 2>(2 * b, 2 * b) = mirrored(Complex(0, -1) * curvature);
     }
     normal_ = (chain.transpose() * normal_ * chain).eval();
     hessian_ = (chain.transpose() * hessian_ * chain + bent).eval();
@@ -246,44 +236,55 @@ class RateDescent {
   VectorXd gradient_;
 };
 
-/// Variance of white noise (p x K) as dense as each residual is around each mode: its periodogram under a
-/// Hann window, the mean over 8 of its resolutions to either side, over what the fit leaves there of white
-/// noise,
+MatrixXd inverse_of(const MatrixXd& normal) {
+  return normal.ldlt().solve(MatrixXd::Identity(normal.rows(), normal.cols()));
+}
+
+/// 17 lines of a record of `count` samples around the angle `turn` of one sample, under a Hann window: real
+/// and imaginary parts in turn, of the samples from `begin` on (samples x 34).
+MatrixXd hann_lines(Index begin, Index samples, Index count, double turn) {
+  constexpr Index bins = 8, lines = 2 * bins + 1;
+  const double line = 2.0 * std::numbers::pi / static_cast<double>(count);
+  MatrixXd waves(samples, 2 * lines);
+  for (Index k = 0; k < samples; ++k) {
+    const auto at = static_cast<double>(begin + k);
+    Complex wave = std::polar(1.0 - std::cos(line * (at + 0.5)), -(turn - line * bins) * at);
+    const Complex next = std::polar(1.0, -line * at);
+    for (Index l = 0; l < lines; ++l, wave *= next)
+      waves(k, 2 * l) = wave.real(), waves(k, 2 * l + 1) = wave.imag();
+  }
+  return waves;
+}
+
+/// Variance of white noise (p x K) as dense as each residual is around each mode: the mean power of the lines
+/// h there, over the share of white noise that remains in the residual,
 ///
-///     h^H (I - Q Q^T - S N^-1 S^T / variance) h    of a line h.
+///     h^H (I - Q Q^T - S N^-1 S^T / variance) h / h^H h.
 MatrixXd noise_near_modes(const JointLinearisation& at, double interval, const VectorXd& rates) {
-  constexpr Index bins = 8, lines = 2 * bins + 1, block = 4096;
-  constexpr double least_left = 0.2;
+  constexpr Index block = 4096;
+  constexpr double least_left = 0.2, window_square = 1.5;  // the mean of (1 - cos)^2
   const Index modes = rates.size() / 2, count = at.residuals.rows(), channels = at.residuals.cols();
-  const double turn = 2.0 * std::numbers::pi / static_cast<double>(count);
-  const MatrixXd inverse = at.normal.ldlt().solve(MatrixXd::Identity(2 * modes, 2 * modes));
+  const MatrixXd inverse = inverse_of(at.normal);
   MatrixXd variance(channels, modes);
   for (Index m = 0; m < modes; ++m) {
-    MatrixXd on_residuals = MatrixXd::Zero(2 * lines, channels),
-             on_range = MatrixXd::Zero(2 * lines, 2 * modes + 1),
-             on_slopes = MatrixXd::Zero(2 * lines, 2 * modes);
-    double weight = 0.0;
+    MatrixXd on_residuals, on_range, on_slopes;  // (34 x p, 2K+1, 2K)
+    const auto add = [](const MatrixXd& lines, const auto& rows, MatrixXd& sum) {
+      if (sum.size() == 0) sum = MatrixXd::Zero(lines.cols(), rows.cols());
+      sum.noalias() += lines.transpose() * rows;
+    };
     for (Index begin = 0; begin < count; begin += block) {
       const Index samples = std::min(block, count - begin);
-      MatrixXd waves(samples, 2 * lines);
-      for (Index k = 0; k < samples; ++k) {
-        const auto at_sample = static_cast<double>(begin + k);
-        const double hann = 1.0 - std::cos(turn * (at_sample + 0.5));
-        weight += hann * hann;
-        Complex wave = std::polar(hann, -(rates[2 * m] * interval - turn * bins) * at_sample);
-        const Complex next = std::polar(1.0, -turn * at_sample);
-        for (Index line = 0; line < lines; ++line, wave *= next)
-          waves(k, 2 * line) = wave.real(), waves(k, 2 * line + 1) = wave.imag();
-      }
-      on_residuals.noalias() += waves.transpose() * at.residuals.middleRows(begin, samples);
-      on_range.noalias() += waves.transpose() * at.range.middleRows(begin, samples);
-      on_slopes.noalias() += waves.transpose() * at.slopes.middleRows(begin, samples);
+      const MatrixXd lines = hann_lines(begin, samples, count, rates[2 * m] * interval);
+      add(lines, at.residuals.middleRows(begin, samples), on_residuals);
+      add(lines, at.range.middleRows(begin, samples), on_range);
+      add(lines, at.slopes.middleRows(begin, samples), on_slopes);
     }
+    const double whole =
+        0.5 * static_cast<double>(on_range.rows()) * window_square * static_cast<double>(count);
     for (Index c = 0; c < channels; ++c) {
       const MatrixXd moved = on_slopes * at.amplitudes[static_cast<std::size_t>(c)];
       const double taken =
-                       on_range.squaredNorm() + (moved * inverse).cwiseProduct(moved).sum() / at.variances[c],
-                   whole = static_cast<double>(lines) * weight;
+          on_range.squaredNorm() + (moved * inverse).cwiseProduct(moved).sum() / at.variances[c];
       variance(c, m) =
           on_residuals.col(c).squaredNorm() / (whole * std::max(least_left, 1.0 - taken / whole));
     }
@@ -300,7 +301,7 @@ MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& noise_varia
     density /= at.variances[c];
     middle += density.asDiagonal() * at.squares[static_cast<std::size_t>(c)] * density.asDiagonal();
   }
-  const MatrixXd inverse = at.normal.ldlt().solve(MatrixXd::Identity(2 * modes, 2 * modes));
+  const MatrixXd inverse = inverse_of(at.normal);
   return inverse * middle * inverse;
 }
 
@@ -357,7 +358,7 @@ JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
   JointDecayFit fit;
   fit.shapes.resize(y.cols(), modes);
   for (Index m = 0; m < modes; ++m) {
-    fit.rates.emplace_back(-rates[2 * m + 1], rates[2 * m]);
+    fit.rates.push_back(rate_at(rates, m));
     fit.shapes.col(m) = at.parts.row(2 * m).transpose().cast<Complex>() +
                         Complex(0, 1) * at.parts.row(2 * m + 1).transpose().cast<Complex>();
   }

@@ -10,6 +10,9 @@
 
 namespace beamid::experiments {
 
+/// e^(rate t) at t = 0, dt, ..., (N - 1) dt: an exponential for one sample of 64, a product for the others.
+Eigen::VectorXcd decaying_wave(std::complex<double> rate, double interval, Eigen::Index count);
+
 /// y_i(t) = offset_i + sum_m Re(shape_im e^(rate_m t)), t = 0 at the first sample.
 struct JointDecayFit {
   std::vector<std::complex<double>> rates;      ///< K [rad/s]

@@ -75,7 +75,8 @@ const std::vector<ObjectionKind>& objection_kinds() {
        "One mode or two: the record does not decide, nor determine the damping ratio."},
       {"damped_by_hammer", modes, "pulses of one hit", "The hammer rebounded: modal masses are wrong."},
       {"drift_or_pair", modes,
-       "as close_modes; damping ratios differ by 1.5, or the modes by less than a quarter of a cycle",
+       "as close_modes; damping ratios differ by a factor of 1.5, or the modes by a quarter of a cycle at "
+       "most",
        "The mode follows its amplitude, or is two: intervals are widened."},
       {"few_lines", modes, "lines of the spectrum within a mode's band",
        "Too few periods: the standard deviation of the damping ratio is uncertain."},

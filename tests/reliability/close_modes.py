@@ -48,7 +48,7 @@ def free(pair, channels, noise, random):
 
 
 def hammer(pair, channels, noise, random):
-    pause, hits, fine = 4000, 3, 50  # samples behind a hit; hits; steps of a sample within the pulse
+    pause, hits, fine = 12000, 3, 50  # samples behind a hit; hits; steps of a sample within the pulse
     time = np.arange(hits * pause + 200) / 200
     pulse = np.sin(np.pi * (np.arange(8 * fine) + 0.5) / (8 * fine)) ** 2
     force, clean = np.zeros(len(time)), np.zeros((channels, len(time)))
@@ -83,7 +83,7 @@ def ambient(pair, channels, noise, random):
 def bound(pair, amplitudes, noise):
     """f2 - f1 over its standard deviation, of a free decay."""
     time = np.arange(4000) / 200
-    information, channels = 0.0, len(amplitudes)
+    information = 0.0
     waves = np.exp(np.outer(time, pair.rates))
     basis = np.column_stack([waves.real, waves.imag, np.ones(len(time))])
     range_, _ = np.linalg.qr(basis)
@@ -131,7 +131,8 @@ def run(job):
                    header=",".join(["time_s", *names]))
         ended = subprocess.run([BEAMID, "modal", str(file), "--json"], capture_output=True, text=True)
     try:
-        listed = json.loads(ended.stdout)["records"][0]["modes"]
+        found = json.loads(ended.stdout)
+        listed = found["modes"] if "modes" in found else found["records"][0]["modes"]
     except (ValueError, KeyError, IndexError):
         return job, ("no result", []), 0.0
     separable = bound(pair, amplitudes, noise) if amplitudes is not None else float("nan")

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -34,10 +33,8 @@ MatrixXd without_others(const RecordModes& found, const JointDecayFit& fit, std:
   MatrixXd rest = found.target.colwise() - fit.offsets;
   for (std::size_t other = 0; other < fit.rates.size(); ++other) {
     if (other == m) continue;
-    for (Index k = 0; k < rest.cols(); ++k) {
-      const Complex wave = std::exp(fit.rates[other] * (found.interval * static_cast<double>(k)));
-      rest.col(k) -= (fit.shapes.col(static_cast<Index>(other)) * wave).real();
-    }
+    const Eigen::VectorXcd wave = decaying_wave(fit.rates[other], found.interval, rest.cols());
+    rest -= (fit.shapes.col(static_cast<Index>(other)) * wave.transpose()).real();
   }
   return rest;
 }
@@ -104,12 +101,15 @@ double cycles_apart(const JointDecayFit& pair, std::size_t a, std::size_t b, con
          static_cast<double>(found.target.cols());
 }
 
-/// Whether every channel of several sees but one of modes a and b: one mode and clocks that differ look
-/// alike.
-bool seen_apart(const JointDecayFit& pair, Index a, Index b) {
-  constexpr double hardly = 0.05;
+/// Two modes that are nearer than this over the record [cycles], and a chi^2 by which they must win.
+constexpr double least_apart = 0.25, clearly_two = 25.0;
+
+/// Whether modes a and b may be one mode in channels whose clocks differ: they are too near, or each channel
+/// has one of them only.
+bool may_be_clocks(const JointDecayFit& pair, Index a, Index b, double cycles) {
+  constexpr double weak = 0.05;
   const Eigen::ArrayXd first = pair.shapes.col(a).cwiseAbs(), second = pair.shapes.col(b).cwiseAbs();
-  return first.size() > 1 && (first.min(second) < hardly * first.max(second)).all();
+  return first.size() > 1 && (cycles < least_apart || (first.min(second) < weak * first.max(second)).all());
 }
 
 enum class OneOrTwo { one, undecided, two };
@@ -118,16 +118,16 @@ enum class OneOrTwo { one, undecided, two };
 /// drifts has the larger squares, in units of the noise.
 std::pair<OneOrTwo, double> compete(const RecordModes& found, const JointDecayFit& single,
                                     const JointDecayFit& pair, std::size_t a, std::size_t b) {
-  constexpr double by_chance = 1e-5, surely = 1e-6, close = 1.5, apart = 0.25, clearly_two = 25.0,
-                   clearly_one = -10.0, denser = 2.0, weakest = 0.02;
+  constexpr double by_chance = 1e-5, surely = 1e-6, close = 1.5, clearly_one = -10.0, denser = 2.0,
+                   weakest = 0.02;
   const double w = single.rates[a].imag();
-  bool damped = true;  // surely
+  bool surely_damped = true;
   for (const std::size_t m : {a, b}) {
     const Pole pole = fitted_pole(pair, m);
     const double ratio = pole.damping_ratio(), deviation = pole.damping_ratio_deviation;
     if (!(ratio > -2.0 * deviation) || !(std::abs(pair.rates[m].imag() - w) < 0.1 * w))
       return {OneOrTwo::one, 0.0};
-    damped = damped && ratio > 2.0 * deviation;
+    surely_damped = surely_damped && ratio > 2.0 * deviation;
   }
   const auto at_a = static_cast<Index>(a), at_b = static_cast<Index>(b);
   const double size_a = pair.shapes.col(at_a).norm(), size_b = pair.shapes.col(at_b).norm();
@@ -144,22 +144,29 @@ std::pair<OneOrTwo, double> compete(const RecordModes& found, const JointDecayFi
       density_near(pair, found, a) > denser)
     return {OneOrTwo::one, over_drift};
   const double cycles = cycles_apart(pair, a, b, found);
-  if (over_drift > clearly_two && (cycles < apart || seen_apart(pair, at_a, at_b)))
-    return {OneOrTwo::one, over_drift};
-  if (damped && over_drift > clearly_two && gained > chi_square_limit(freedom, 1.0 - surely))
+  if (over_drift > clearly_two && may_be_clocks(pair, at_a, at_b, cycles)) return {OneOrTwo::one, over_drift};
+  if (surely_damped && over_drift > clearly_two && gained > chi_square_limit(freedom, 1.0 - surely))
     return {OneOrTwo::two, over_drift};
   return {cycles < close ? OneOrTwo::undecided : OneOrTwo::one, over_drift};
 }
 
-/// Mode m may be the two of `pair`: its intervals grow by their distances, each by its share of the larger.
+/// What explains the record as well as mode m does: two modes in its place, the last of them behind all
+/// others.
+struct OpenPair {
+  std::size_t m = 0;
+  JointDecayFit pair;
+  double over_drift = 0.0;  ///< chi^2 of the drifting mode over theirs
+};
+
+/// Mode m may be the two of the pair: its intervals grow by their distances, each by its share of the larger.
 /// What follows the amplitude looks like a second mode of another damping, as the n-th power of an amplitude
 /// decays n times as fast, or of nearly the same rate. Only where both are damped alike and a quarter of a
 /// cycle apart has the record no result.
-void object_to_one(const JointDecayFit& pair, std::size_t m, double over_drift, RecordModes& found) {
-  constexpr double alike = 1.5, apart = 0.25;
-  ModeEstimate& one = found.modes[m];
-  const std::size_t last = pair.rates.size() - 1;
-  Pole low = fitted_pole(pair, m), high = fitted_pole(pair, last);
+void object_to_one(const OpenPair& open, RecordModes& found) {
+  constexpr double alike = 1.5;
+  ModeEstimate& one = found.modes[open.m];
+  const std::size_t last = open.pair.rates.size() - 1;
+  Pole low = fitted_pole(open.pair, open.m), high = fitted_pole(open.pair, last);
   if (low.frequency_hz() > high.frequency_hz()) std::swap(low, high);
   const double larger = std::max(low.shape.norm(), high.shape.norm());
   const auto farthest = [&](auto of) {
@@ -171,23 +178,24 @@ void object_to_one(const JointDecayFit& pair, std::size_t m, double over_drift, 
   one.damping_ratio_spread = farthest([](const Pole& pole) { return pole.damping_ratio(); });
   const bool damped_alike = std::max(low.damping_ratio(), high.damping_ratio()) <
                             alike * std::min(low.damping_ratio(), high.damping_ratio());
-  const bool open = damped_alike && cycles_apart(pair, m, last, found) > apart;
+  const bool undecided = damped_alike && cycles_apart(open.pair, open.m, last, found) > least_apart;
   const std::string two = fmt::format("two of {:.5g} and {:.5g} Hz with {:.3g} and {:.3g} %",
                                       low.frequency_hz(), high.frequency_hz(), 100.0 * low.damping_ratio(),
                                       100.0 * high.damping_ratio()),
-                    differs = fmt::format("(chi^2 differs by {:.2g})", over_drift);
+                    differs = fmt::format("(chi^2 differs by {:.2g})", open.over_drift);
   found.objections.emplace_back(
-      open ? "close_modes" : "drift_or_pair",
-      open ? fmt::format(
-                 "One or two modes at {:.5g} Hz: {} explain the record as well as one that drifts {}. The "
-                 "damping ratio is not determined; intervals are widened. A longer record or more channels "
-                 "may separate them.",
-                 one.pole.frequency_hz(), two, differs)
-           : fmt::format(
-                 "The mode at {:.5g} Hz follows its amplitude, or there are {}: both explain the record "
-                 "{}. Intervals are widened; --amplitude shows the damping ratio against the amplitude.",
-                 one.pole.frequency_hz(), two, differs),
-      over_drift, 25.0);
+      undecided ? "close_modes" : "drift_or_pair",
+      undecided
+          ? fmt::format(
+                "One or two modes at {:.5g} Hz: {} explain the record as well as one that drifts {}. The "
+                "damping ratio is not determined; intervals are widened. A longer record or more channels "
+                "may separate them.",
+                one.pole.frequency_hz(), two, differs)
+          : fmt::format(
+                "The mode at {:.5g} Hz follows its amplitude, or there are {}: both explain the record "
+                "{}. Intervals are widened; --amplitude shows the damping ratio against the amplitude.",
+                one.pole.frequency_hz(), two, differs),
+      open.over_drift, clearly_two);
 }
 
 std::optional<JointDecayFit> with_pair(const RecordModes& found, const JointDecayFit& fit, std::size_t m,
@@ -212,24 +220,23 @@ std::optional<JointDecayFit> with_pair(const RecordModes& found, const JointDeca
 ///   by 25 times that density;
 /// - its residual is as dense near it as farther away: a frequency that follows the amplitude is no pair.
 ///
-/// Where squares of the drifting mode are not larger by 25 and not smaller by 10, neither wins:
-/// `close_modes`.
-///
+/// Where squares of the drifting mode are not larger by 25 and not smaller by 10, neither wins.
 /// @param fit of found's modes, before and after
-void split_close_pairs(RecordModes& found, JointDecayFit& fit) {
+/// @return those of which neither won
+std::vector<OpenPair> split_close_pairs(RecordModes& found, JointDecayFit& fit) {
   constexpr double worth = 0.02;  // of the strongest
   double strongest = 0.0;
   for (const ModeEstimate& mode : found.modes) strongest = std::max(strongest, mode.strength);
   const std::size_t modes = found.modes.size();  // a mode of a pair is not parted again
-  std::map<std::size_t, std::pair<JointDecayFit, double>> open;
+  std::vector<OpenPair> open;
   for (std::size_t m = 0; m < modes; ++m) {
     if (found.modes[m].strength < worth * strongest) continue;
-    std::optional<std::pair<JointDecayFit, double>> undecided;
+    std::optional<OpenPair> undecided;
     for (const auto& start : starts(found, fit, m)) {
       const auto pair = with_pair(found, fit, m, start);
       if (!pair) continue;
       const auto [verdict, over_drift] = compete(found, fit, *pair, m, found.modes.size());
-      if (verdict == OneOrTwo::undecided) undecided.emplace(*pair, over_drift);
+      if (verdict == OneOrTwo::undecided) undecided = OpenPair{m, *pair, over_drift};
       if (verdict != OneOrTwo::two) continue;
       found.modes.push_back(found.modes[m]);
       for (std::size_t k = 0; k < found.modes.size(); ++k) found.modes[k].pole = fitted_pole(*pair, k);
@@ -237,9 +244,9 @@ void split_close_pairs(RecordModes& found, JointDecayFit& fit) {
       undecided.reset();
       break;
     }
-    if (undecided) open.emplace(m, *undecided);
+    if (undecided) open.push_back(*std::move(undecided));
   }
-  for (const auto& [m, undecided] : open) object_to_one(undecided.first, m, undecided.second, found);
+  return open;
 }
 
 // Whether all channels of a free decay ring at the same frequencies.
@@ -392,13 +399,13 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
   while (!found.modes.empty()) {
     auto fit = fit_or_reject(found);
     if (!fit) continue;
-    bool split = false;  // a pair that is fitted as one mode makes that uncertain
+    bool split = false;
+    std::vector<OpenPair> open;
     if (found.free_decay && strongest_is_uncertain(*fit, settings, found)) {
-      RecordModes tried = found;
-      JointDecayFit of_tried = *fit;
-      split_close_pairs(tried, of_tried);
-      split = tried.modes.size() > found.modes.size();
-      if (split) found = std::move(tried), *fit = std::move(of_tried);
+      const std::size_t before =
+          found.modes.size();  // a pair that is fitted as one mode makes that uncertain
+      open = split_close_pairs(found, *fit);
+      split = found.modes.size() > before;
     }
     if (reject_least_certain(*fit, settings, found)) continue;
     const std::vector<Pole> poles = poles_of(*fit);
@@ -411,7 +418,8 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
     for (std::size_t m = 0; m < poles.size(); ++m) found.modes[m].pole = poles[m];
     try_again(lost, settings, found, *fit);
     if (found.free_decay) {
-      if (!split) split_close_pairs(found, *fit);
+      if (!split) open = split_close_pairs(found, *fit);
+      for (const OpenPair& one : open) object_to_one(one, found);
       compare_clocks(*fit, found);
       follow_phases(*fit, found);
     }

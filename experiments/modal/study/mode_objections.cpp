@@ -20,11 +20,9 @@ double duration_of(const RecordModes& found) {
 /// sum over channels and samples of y^2 / s^2.
 double energy_over_noise(const JointDecayFit& fit, Index m, const RecordModes& found) {
   double energy = 0;
-  for (Index k = 0; k < found.target.cols(); ++k) {
-    const std::complex<double> wave = std::exp(fit.rates[m] * (found.interval * static_cast<double>(k)));
-    for (Index c = 0; c < fit.shapes.rows(); ++c)
-      energy += std::pow((fit.shapes(c, m) * wave).real(), 2) / std::max(fit.noise_variance(c, m), 1e-300);
-  }
+  const Eigen::VectorXcd wave = decaying_wave(fit.rates[m], found.interval, found.target.cols());
+  for (Index c = 0; c < fit.shapes.rows(); ++c)
+    energy += (fit.shapes(c, m) * wave).real().squaredNorm() / std::max(fit.noise_variance(c, m), 1e-300);
   return energy;
 }
 
@@ -39,11 +37,9 @@ double energy_of_noise(const RecordModes& found) {
 bool dominates(const JointDecayFit& fit, Index m, const RecordModes& found) {
   const auto count = static_cast<double>(found.target.cols());
   const double least = std::max(0.25, 60 / count);
-  Eigen::VectorXd energy = Eigen::VectorXd::Zero(found.target.rows());
-  for (Index k = 0; k < found.target.cols(); ++k) {
-    const std::complex<double> wave = std::exp(fit.rates[m] * (found.interval * static_cast<double>(k)));
-    for (Index c = 0; c < energy.size(); ++c) energy[c] += std::pow((fit.shapes(c, m) * wave).real(), 2);
-  }
+  Eigen::VectorXd energy(found.target.rows());
+  const Eigen::VectorXcd wave = decaying_wave(fit.rates[m], found.interval, found.target.cols());
+  for (Index c = 0; c < energy.size(); ++c) energy[c] = (fit.shapes(c, m) * wave).real().squaredNorm();
   return (energy.array() > least * found.target.rowwise().squaredNorm().array()).any();
 }
 

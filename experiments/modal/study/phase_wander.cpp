@@ -64,8 +64,7 @@ class DriftingMode {
       : y_(y), powers_(basis.rightCols(basis.cols() - 1).rowwise() - basis.row(0).tail(basis.cols() - 1)) {
     Index strongest = 0;
     near.colwise().squaredNorm().maxCoeff(&strongest);
-    c_ = through_logarithm(near.col(strongest), basis).tail(powers_.cols());
-    wave_ = drifting(c_, powers_);
+    begin_near(near.col(strongest), basis);
     MatrixXd parts(y.rows(), 2);
     parts << wave_.real(), -wave_.imag();
     const MatrixXd best = least_squares(parts, y);
@@ -106,6 +105,17 @@ class DriftingMode {
   }
 
  private:
+  /// With fewer powers where these, beyond where z is large, would overflow.
+  void begin_near(const VectorXcd& z, const MatrixXd& basis) {
+    constexpr double largest = 200.0;  // of the logarithm
+    for (Index used = powers_.cols(); used >= 0; --used) {
+      c_ = VectorXcd::Zero(powers_.cols());
+      if (used > 0) c_.head(used) = through_logarithm(z, basis.leftCols(used + 1)).tail(used);
+      if ((powers_ * c_.real()).maxCoeff() < largest) break;
+    }
+    wave_ = drifting(c_, powers_);
+  }
+
   MatrixXd slope_of(Index channel) const {
     MatrixXd slope(y_.rows(), 2 * c_.size() + 2);
     const VectorXcd motion = amplitudes_[channel] * wave_;
@@ -121,7 +131,7 @@ class DriftingMode {
   VectorXcd c_, amplitudes_, wave_;
 };
 
-/// Sum of squares that the best drifting mode leaves of y (N x p), from that of `near` on.
+/// Residual sum of squares of y (N x p) under the best drifting mode, from that of `near` on.
 double left_by_drifting(const MatrixXd& y, const MatrixXd& basis, const MatrixXcd& near) {
   DriftingMode mode(y, basis, near);
   double squares = mode.squares();
@@ -146,11 +156,8 @@ PairAgainstDrift pair_against_drift(const JointDecayFit& fit, std::size_t a, std
                                     const MatrixXd& target, double interval,
                                     const std::vector<Index>& channels) {
   const Index count = target.cols();
-  VectorXcd first(count), second(count);
-  for (Index k = 0; k < count; ++k) {
-    const double time = interval * static_cast<double>(k);
-    first[k] = std::exp(fit.rates[a] * time), second[k] = std::exp(fit.rates[b] * time);
-  }
+  const VectorXcd first = decaying_wave(fit.rates[a], interval, count),
+                  second = decaying_wave(fit.rates[b], interval, count);
   MatrixXcd pair(count, static_cast<Index>(channels.size()));
   MatrixXd left(count, pair.cols());
   for (Index i = 0; i < pair.cols(); ++i) {
