@@ -119,11 +119,16 @@ class Recognition {
     const std::string& name = table.names[index];
     auto found = recognised(table, index);
     if (!found) return false;
-    const auto named = [&](const char* one) {
-      return std::ranges::find(table.names, one) != table.names.end();
+    const auto letters = [](std::string text) {  // "g_x" as "gx"
+      std::erase(text, '_');
+      return text;
     };
-    if (name.size() == 2 && std::string_view("gmw").find(name[0]) != std::string_view::npos &&
-        std::string_view("xyz").find(name[1]) != std::string_view::npos && (named("ax") || named("ay")))
+    const auto named = [&](const char* one) {
+      return std::ranges::any_of(table.names, [&](const auto& other) { return letters(other) == one; });
+    };
+    if (const std::string brief = letters(name);
+        brief.size() == 2 && std::string_view("gmw").find(brief[0]) != std::string_view::npos &&
+        std::string_view("xyz").find(brief[1]) != std::string_view::npos && (named("ax") || named("ay")))
       found->kind = RecognisedColumn::Kind::other;  // of a gyroscope or a compass
     const auto add = [&](std::string& list) {
       list += (list.empty() ? "" : ", ") +
@@ -360,6 +365,9 @@ RecordColumns columns_without_header(RecordTable& table, bool stamped) {
     if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index) &&
         !(table.width() > first + 1 && counts_rows(table.columns[index])))
       columns.channels.push_back({index, factor, {quantity, fmt::format("column_{}", index + 1)}});
+  if (columns.channels.empty())
+    throw InputError({table.file, 0, 0},
+                     "no column of numbers moves beside time; expected a measured motion");
   table.remarks.push_back(fmt::format(
       "No header: {}{} {}.",
       columns.time ? fmt::format("column {} is taken for time in {}, ", columns.time->index + 1,

@@ -14,7 +14,6 @@
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
-
 namespace {
 
 constexpr std::size_t most_early_lines = 20000, most_header_lines = 4;
@@ -150,8 +149,9 @@ bool DelimitedText::find_body() {
     --first;
 
   const auto names_width = [&](std::size_t line) {
-    return !(is_statement(lines[line].text) && !labelled_) &&
-           named(lines[line].text, width).size() == width &&
+    const std::string_view text = lines[line].text;
+    const bool titles = line > 0 && is_title(trimmed(text)) && lines[line - 1].text.find(':') != text.npos;
+    return !titles && !(is_statement(text) && !labelled_) && named(text, width).size() == width &&
            (!holds_reading(fields[line]) || counts_columns(fields[line]));
   };
   const auto names = [&](std::size_t line) { return names_columns(named(lines[line].text, width)); };
@@ -160,6 +160,11 @@ bool DelimitedText::find_body() {
     if (lines[k].rows && !below_title && (lines[k].width == width || k + 1 == first)) return false;
   }
   std::optional<std::size_t> header, nearest;
+  if (first > 0 && !holds_reading(fields[first - 1])) {  // the first rows may end in cells that hold nothing
+    std::vector<std::string_view> cells;
+    split_fields(lines[first].text, separator_of(lines[first - 1].text), cells, true);
+    if (cells.size() > width && cells.size() == fields[first - 1].size()) header = first - 1;
+  }
   for (std::size_t k = first; k-- > 0 && first - k <= most_header_lines && !header;) {
     if (!names_width(k)) {
       if (holds_reading(fields[k]) && !is_statement(lines[k].text)) break;
@@ -176,13 +181,9 @@ bool DelimitedText::find_body() {
   if (!header) header = nearest;
   if (!header && first > 0) {  // names of more or fewer columns than the rows have
     const char parted_by = separator_of(lines[first - 1].text);
-    std::vector<std::string_view> cells;  // those at the end of a row that hold nothing too
-    split_fields(lines[first].text, parted_by, cells, true);
-    if (parted_by != ' ' && cells.size() == fields[first - 1].size() && names_columns(fields[first - 1]))
-      header = first - 1;
-    else if (fields[first - 1].size() > 1 && !holds_reading(fields[first - 1]) &&
-             !is_statement(lines[first - 1].text) && names_columns(fields[first - 1]) &&
-             (parted_by != ' ' || separator_of(lines[first].text) == ' '))
+    if (fields[first - 1].size() > 1 && !holds_reading(fields[first - 1]) &&
+        !is_statement(lines[first - 1].text) && names_columns(fields[first - 1]) &&
+        (parted_by != ' ' || separator_of(lines[first].text) == ' '))
       return false;
   }
 
@@ -220,7 +221,8 @@ std::vector<std::string_view> DelimitedText::named(std::string_view line, std::s
     split_fields(line, separator, names);
     if (names.size() == width && (separator == chosen || width > 1)) return names;
   }
-  if (auto apart = parted_by_blanks(line); apart.size() == width) return apart;
+  if (auto apart = parted_by_blanks(line); apart.size() == width && (width > 1 || chosen == ' '))
+    return apart;
   split_fields(line, chosen, names);
   return names;
 }

@@ -362,8 +362,8 @@ bool are_units(const std::vector<std::string_view>& fields) {
 
 std::optional<std::pair<Quantity, double>> unit_of_statement(std::string_view lines) {
   static const std::regex form(
-      R"((?:^|[\r\n])[#%;/*" ]*(?:(?:amplitude|y|data|signal|accel\w*) ?[_-]?)?)"
-      R"((?:units?|einheit(?:en)?|unites?|unidad(?:es)?|unita|unidades?)\b[^A-Za-z0-9\r\n]{1,4}([^\r\n]+))",
+      R"((?:^|[\r\n])[#%;/*" ]*(?:(?:amplitude|y|data|signal|(?:uncorrected |corrected )?accel\w*|the)\s*[_-]?)?)"
+      R"((?:units?|einheit(?:en)?|unites?|unidad(?:es)?|unita|unidades?)\b(?: are\b)?[^A-Za-z0-9\r\n]{1,4}([^\r\n]+))",
       std::regex::icase);
   std::match_results<std::string_view::const_iterator> match;
   if (!std::regex_search(lines.begin(), lines.end(), match, form)) return {};
@@ -374,7 +374,7 @@ std::optional<std::pair<Quantity, double>> unit_of_statement(std::string_view li
     const std::size_t end = std::min(list.find_first_of(",;\t", at), list.size());
     std::string unit = without_brackets(unquoted(trimmed(std::string_view(list).substr(at, end - at))));
     at = end + 1;
-    unit = unit.substr(0, unit.find_first_of(". "));  // "gal. DCoffset"
+    unit = unit.substr(0, unit.find_first_of(unit.find('(') == unit.npos ? ". )" : ". "));  // "gal. DCoffset"
     std::string plain = std::regex_replace(folded(unit), std::regex(R"(\*\*|\^)"), "");
     plain = std::regex_replace(plain, std::regex("sec"), "s");
     plain = std::regex_replace(plain, std::regex("/s/s"), "/s2");

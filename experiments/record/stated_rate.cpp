@@ -159,7 +159,7 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
           R"((?:\b(?:scan|acquisition|logging|recording|output data|output|data)[ _-]*(?:rate|frequency)|^\W*rate|\bsampl(?:ing|ed))\b)"),
       period(
           R"(\b(dt|delta[ _]?t|delta[ _]?x(?=[^0-9]*[0-9.]+ ?[mun]?s\b)|[tx]inc(?:r|rement)?|hresolution|sampl\w*[ _-]*(?:interval|period|time)|)"
-          R"(abtast(?:intervall|zeit)|time[ _]?step|intervals of|dx ?[\[(]s[\])]|(?:recording|logging|time) interval|^\W*interval|)"
+          R"(abtast(?:intervall|zeit)|time[ _]?step|intervals of|(?:equal|even) spacing of|(?:equal|even)ly spaced at|dx ?[\[(]s[\])]|(?:recording|logging|time) interval|^\W*interval|)"
           R"(pas de temps|paso de tiempo|(?:periode|pas|interval(?:le|l?o|a)|periodo|pass?o) (?:d'echantillonnage|)"
           R"(de muestreo|di campionamento|de amostragem))(?![a-z]))"),
       alone(R"(\b([0-9]+(?:\.[0-9]+)?) ?(?:sps|samples? ?(?:/|per) ?s(?:ec(?:ond)?)?)\b)"),

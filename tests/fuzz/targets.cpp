@@ -106,7 +106,8 @@ void read_as(const std::string& bytes, int way) {
 
 constexpr const char *text = "delimited_text", *lvm = "lvm", *nied = "nied", *uff58 = "uff58", *mat = "mat",
                      *hdf5 = "hdf5", *npy = "npy", *sac = "sac", *at2 = "at2", *sound = "sound",
-                     *miniseed = "miniseed", *tdms = "tdms", *spreadsheet = "spreadsheet";
+                     *miniseed = "miniseed", *tdms = "tdms", *strong_motion = "strong_motion",
+                     *spreadsheet = "spreadsheet";
 
 /// Shapes of finite numbers at finite places, all of one size.
 void read_modes(const std::string& bytes, int) {
@@ -260,6 +261,7 @@ const std::vector<Target>& targets() {
       {"text", read_as<text>, record_ways},
       {"lvm", read_as<lvm>, record_ways},
       {"nied", read_as<nied>, record_ways},
+      {"strong_motion", read_as<strong_motion>, record_ways},
       {"uff58", read_as<uff58>, named_ways},
       {"mat", read_as<mat>, record_ways},
       {"hdf5", read_as<hdf5>, record_ways},

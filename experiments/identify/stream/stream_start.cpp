@@ -1,4 +1,4 @@
-#include "experiments/identify/stream/stream_start.hpp"
+#include "experiments/identify/stream/streamed_identification.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -7,7 +7,6 @@
 
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
-#include "experiments/identify/stream/streamed_identification.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/text/toml_table.hpp"
 

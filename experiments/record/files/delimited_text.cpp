@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <regex>
@@ -68,7 +69,10 @@ void refuse_other_kinds(const std::filesystem::path& file) {
   if (start == beginning.npos) return;
   const std::string_view text = std::string_view(beginning).substr(start);
   if (text.starts_with("<")) refuse("a page or a document of XML", "export the numbers of the record as CSV");
-  if (text.starts_with("{") || text.starts_with("[{") || text.starts_with("[["))
+  const std::size_t inside = std::min(text.find_first_not_of(" \t\r\n", 1), text.size());
+  const bool object = text.starts_with("{") && (text.substr(inside).starts_with("\"") ||
+                                                text.substr(inside).starts_with("}"));  // not "{System 1};"
+  if (object || text.starts_with("[{") || text.starts_with("[["))
     refuse("JSON", "write its arrays as columns of a CSV file");
 }
 
@@ -256,6 +260,47 @@ void blank_words(std::string& text, char given) {
   });
 }
 
+/// Of rows that name their sensor, as loggers of telephones write them, those of accelerations: others become
+/// blanks. @throws InputError where there are several sensors and none of these
+void keep_one_sensor(const std::string& file, std::string& text) {
+  static const std::regex sensor(
+      R"((?:lin\w*[_ ]?)?acc\w*|la|gyr\w*|mag\w*|gra?v\w*|rot\w*|prx|prox\w*|light|lux|pres\w*|baro\w*|ori\w*|temp\w*|gps|hr)",
+      std::regex::icase),
+      wanted(R"(acc\w*)", std::regex::icase);
+  constexpr std::size_t first_cells = 3, fewest = 3;
+  const char separator = separator_of(line_near(text, 0.5));
+  for (std::size_t k = 0; k < first_cells; ++k) {
+    std::map<std::string, std::size_t> rows;
+    bool others = false;
+    const auto tag_of = [&](std::string_view line, Fields& fields) {
+      split_fields(line, separator, fields);
+      return k < fields.size() && fields.size() > k + 1 ? unquoted(fields[k]) : std::string();
+    };
+    change_lines(text, [&](char* line, std::size_t length) {
+      Fields fields;
+      const std::string tag = tag_of({line, length}, fields);
+      const bool row = std::ranges::any_of(fields, is_value);
+      if (row && std::regex_match(tag, sensor))
+        ++rows[tag];
+      else
+        others = others || row;
+    });
+    if (others || rows.size() < 2) continue;
+    std::string list;
+    for (const auto& [tag, count] : rows) list += (list.empty() ? "'" : ", '") + tag + "'";
+    const auto kept = std::ranges::find_if(
+        rows, [&](const auto& one) { return one.second > fewest && std::regex_match(one.first, wanted); });
+    if (kept == rows.end())
+      throw InputError({file, 0, 0}, "rows of several sensors, " + list +
+                                         ", none of them accelerations; expected a file of one sensor");
+    change_lines(text, [&](char* line, std::size_t length) {
+      Fields fields;
+      if (tag_of({line, length}, fields) != kept->first) std::fill_n(line, length, ' ');
+    });
+    return;
+  }
+}
+
 /// Rows of a table as columns (width x rows): its numbers in the order of the text.
 Eigen::MatrixXd series_of(const RecordTable& table) {
   Eigen::MatrixXd series(static_cast<Eigen::Index>(table.width()), static_cast<Eigen::Index>(table.rows()));
@@ -266,9 +311,9 @@ Eigen::MatrixXd series_of(const RecordTable& table) {
 }
 
 /// Rows without names or times that go on from one to the next: one series, written several numbers to a
-/// line. The text above them states how many there are, or the step from a row's last number to the next
-/// row's first is that within the rows, and smaller than that down a column. Columns of a series are of one
-/// mean and one size.
+/// line. The text above them states how many points there are, or the step from a row's last number to the
+/// next row's first is that within the rows, and smaller than that down a column. Columns of a series are of
+/// one mean and one size.
 bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
   constexpr std::size_t fewest_columns = 3, fewest_rows = 20;
   constexpr double alike = 0.25, less = 0.6, one_mean = 0.25, one_size = 0.2, smooth = 0.9;
@@ -277,6 +322,16 @@ bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
   if (std::ranges::any_of(table.columns, rises)) return false;
   const Eigen::MatrixXd series = series_of(table);
   if (!series.allFinite()) return false;
+  static const std::regex of_all("channel|kan(a|\xc3\xa4)l|canal|total", std::regex::icase);
+  const std::string numbers = std::to_string(table.rows() * table.width() + last);
+  const std::regex count("(^|[^0-9.])" + numbers + "($|[^0-9.])"),
+      points("(points?|npts)[^0-9\n]{1,8}" + numbers + "($|[^0-9.])|(^|[^0-9.])" + numbers + " +points",
+             std::regex::icase);
+  const auto states = [&](const std::regex& one) {
+    return std::regex_search(above.begin(), above.end(), one) &&
+           !std::regex_search(above.begin(), above.end(), of_all);
+  };
+  if (states(points)) return true;
   const Eigen::Index width = series.rows(), rows = series.cols();
   const double mean = series.mean(), size = std::sqrt((series.array() - mean).square().mean());
   const Eigen::VectorXd means = series.rowwise().mean(),
@@ -288,10 +343,7 @@ bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
                down = (series.rightCols(rows - 1) - series.leftCols(rows - 1)).cwiseAbs().mean(),
                over = (series.row(0).tail(rows - 1) - series.row(width - 1).head(rows - 1)).cwiseAbs().mean();
   if (!(within > 0.0) || std::abs(over / within - 1.0) > alike || within > smooth * size) return false;
-  static const std::regex of_all("channel|kan(a|\xc3\xa4)l|canal|total", std::regex::icase);
-  const std::regex count("(^|[^0-9.])" + std::to_string(table.rows() * table.width() + last) + "($|[^0-9.])");
-  return within < less * down || (std::regex_search(above.begin(), above.end(), count) &&
-                                  !std::regex_search(above.begin(), above.end(), of_all));
+  return within < less * down || states(count);
 }
 
 void join_rows(RecordTable& table, const std::vector<double>& last) {
@@ -316,7 +368,10 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
   write_minus(*content);
   part_stamps(*content);
   join_labels(*content);
-  if (format.header_lines == 0) blank_words(*content, format.separator);
+  if (format.header_lines == 0) {
+    keep_one_sensor(file, *content);
+    blank_words(*content, format.separator);
+  }
   DelimitedText text(file, *content, format.separator, format.header_lines, format.decimal,
                      format.malformed == MalformedRows::skip);
   RecordTable table;
@@ -346,7 +401,8 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
         double& value = table.columns[column].back();
         if (const auto stamp = parse_stamp(field)) {
           if (stamp->kind == Stamp::Kind::date) {
-            value = 0.0;
+            if (!first_stamp[column]) first_stamp[column] = stamp->seconds;
+            value = stamp->seconds - *first_stamp[column];
           } else if (stamp->kind == Stamp::Kind::time_of_day) {  // past midnight the days go on
             value = stamp->seconds + days[column];
             const std::size_t rows = table.columns[column].size();
@@ -367,6 +423,12 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
       if (std::isfinite(table.columns[column].back())) table.precision[column].add(token);
     }
   }
+  for (std::size_t column = 0; !table.time && column < text.width(); ++column)
+    if (first_stamp[column] && rises(table.columns[column]) && !format.sampling_rate)
+      throw InputError({table.file, table.lines.front(), 0},
+                       fmt::format("column {} holds dates without times of day; expected times, or the "
+                                   "sampling rate: --rate HZ",
+                                   column + 1));
   table.cell = cells.cells(text.separator());
   const std::string_view head = std::string_view(beginning).substr(0, above);
   table.stated_rate = stated_rate(beginning, text.decimal());

@@ -368,7 +368,9 @@ class LvmFile {
     }
     for (std::size_t k = 0; k < y_.size(); ++k) {
       table_.names.push_back(channels_[k]);
-      table_.units.push_back(k < segment_.units.size() ? segment_.units[k] : "");
+      const std::size_t label =
+          segment_.units.size() > y_.size() && x_.size() > 1 ? y_[k] - 1 : k;  // some have a cell for each X
+      table_.units.push_back(label < segment_.units.size() ? segment_.units[label] : "");
       table_.columns.push_back(std::move(values_[k + 1]));
       table_.precision.push_back(precision_[k + 1]);
       fields.push_back(y_[k]);
