@@ -1,4 +1,4 @@
-// Text for a terminal: how wide it is and where its lines break.
+// Text for a person: how wide it is, where its lines break, and how a key reads.
 #pragma once
 
 #include <cstddef>
@@ -32,6 +32,10 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width = page
 /// A line with what is wrong in it, DIVERGED, ALIASED, THE RECORDS DISAGREE, ..., in bold red where the page
 /// has colours.
 std::string emphasised(const std::string& line, const Page& page);
+
+/// A key as a person reads it: "damping.ratio" as "damping ratio [-]", "stiffness_n_per_m" as "stiffness
+/// [N/m]", "sensors[1].noise_m" as "sensors[1] noise [m]".
+std::string key_label(const std::string& key);
 
 // Ranges and ticks of an axis that a person reads at a glance.
 

@@ -82,6 +82,14 @@ AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double inter
   return result;
 }
 
+SpectrumShare share_near(const AmplitudeSpectrum& spectrum, double frequency_hz) {
+  constexpr double near = 0.1;
+  const auto squares = spectrum.amplitude.array().square();
+  const auto inside = (spectrum.frequency_hz.array() / frequency_hz - 1.0).abs() < near;
+  return {inside.select(squares, 0.0).sum() / squares.sum(),
+          static_cast<double>(inside.count()) / static_cast<double>(squares.size())};
+}
+
 double strongest_frequency(const Eigen::VectorXd& signal, double interval) {
   const auto count = static_cast<std::size_t>(signal.size());
   if (count < 16)

@@ -16,6 +16,12 @@ struct AmplitudeSpectrum {
 /// with zeros to at least 2 N: a steady sine of amplitude a peaks at a.
 AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double interval);
 
+/// What lies within a tenth of a frequency [Hz].
+struct SpectrumShare {
+  double squares = 0, lines = 0;  ///< of all squares, and of all lines
+};
+SpectrumShare share_near(const AmplitudeSpectrum& spectrum, double frequency_hz);
+
 /// Frequency [Hz] of the largest magnitude in the spectrum of a signal (N), its mean removed, under a Hann
 /// window and zero-padded to at least 2 N; the peak is refined by a parabola through the logarithms.
 ///

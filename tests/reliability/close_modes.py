@@ -4,7 +4,8 @@
 Modes at 5 Hz and 5 (1 + d) Hz. Free decays (`free`) of 20 s at 200 Hz: damping ratios of 0.318 %, or 0.318 and 1.272 %; the
 second mode 1, 0.3 or 0.1 of the first; one to three channels; white noise 20, 40 and 60 dB below the first amplitude. Hammer
 tests (`hammer`) of the same structures: three hits of 40 ms, noise in the responses. Random vibration (`ambient`) of 600 s at
-50 Hz: damping ratios of 1 %, or 1 and 4 %. COUNT seeds a cell (default 20), from FIRST on.
+50 Hz: damping ratios of 1 %, or 1 and 4 %. COUNT seeds a cell (default 20), from FIRST on. The kinds `identify` and `track` are the
+free decays under these commands, which follow one mode: the last plateau of `track` counts.
 
 Of what is listed within 3 % of the pair, `inside` is the share of frequencies and damping ratios in their 95 % intervals, and
 `wrong` the records in which one is more than four standard deviations off with exit code 0. `bound` is the difference of the
@@ -102,6 +103,9 @@ def judge(pair, listed, code):
     low, high = pair.frequency[0] * 0.97, pair.frequency[1] * 1.03
     near = sorted((m for m in listed if low < m["frequency_hz"] < high), key=lambda m: m["frequency_hz"])
 
+    if any(m["frequency_standard_deviation_hz"] is None or m["damping_ratio_standard_deviation"] is None for m in near):
+        return ("no interval", [])
+
     def errors(mode, k):
         return [(mode["frequency_hz"] - pair.frequency[k]) / mode["frequency_standard_deviation_hz"],
                 (mode["damping_ratio"] - pair.ratios[k]) / mode["damping_ratio_standard_deviation"]]
@@ -118,21 +122,33 @@ def judge(pair, listed, code):
     return ("wrong" if max(map(abs, all_errors)) > 4 else outcome), all_errors
 
 
+def modes_of(found):
+    """What a command lists, as `modal` does."""
+    if found["command"] == "modal":
+        return found["modes"] if "modes" in found else found["records"][0]["modes"]
+    one = found["plateaus"][-1] if found["command"] == "track" else found
+    return [{"frequency_hz": one["frequency_hz"]["estimate"],
+             "frequency_standard_deviation_hz": one["frequency_hz"]["standard_deviation"],
+             "damping_ratio": one["damping_ratio"]["estimate"],
+             "damping_ratio_standard_deviation": one["damping_ratio"]["standard_deviation"]}]
+
+
 def run(job):
     kind, distance, channels, decibels, uneven, amplitude, seed = job
     random = np.random.default_rng([seed, int(1e4 * distance), channels, decibels, uneven, int(10 * amplitude)])
     pair = Pair(distance, uneven, amplitude, 0.01 if kind == "ambient" else RATIO)
     noise = 10 ** (-decibels / 20)
-    time, values, amplitudes = globals()[kind](pair, channels, noise, random)
+    command = kind if kind in ("identify", "track") else "modal"
+    make = free if command != "modal" else globals()[kind]
+    time, values, amplitudes = make(pair, channels, noise, random)
     names = ["force_n"] * (kind == "hammer") + [f"acceleration_{i}_m_per_s2" for i in range(channels)]
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "pair.csv"
         np.savetxt(file, np.column_stack([time, *values]), fmt="%.9g", delimiter=",", comments="",
                    header=",".join(["time_s", *names]))
-        ended = subprocess.run([BEAMID, "modal", str(file), "--json"], capture_output=True, text=True)
+        ended = subprocess.run([BEAMID, command, str(file), "--json"], capture_output=True, text=True)
     try:
-        found = json.loads(ended.stdout)
-        listed = found["modes"] if "modes" in found else found["records"][0]["modes"]
+        listed = modes_of(json.loads(ended.stdout))
     except (ValueError, KeyError, IndexError):
         return job, ("no result", []), 0.0
     separable = bound(pair, amplitudes, noise) if amplitudes is not None else float("nan")
@@ -154,14 +170,14 @@ def main():
             if outcome in ("wrong", "no result"):
                 print(outcome, *job, "" if not errors else np.round(errors, 1), flush=True)
             cells[kind, distance, decibels].append((outcome, errors, separable))
-    words = ("both", "one", "objected", "none", "more", "wrong", "no result")
-    print(f"{'kind':8}{'d %':>5}{'dB':>4}{'bound':>9}" + "".join(f"{w:>10}" for w in words) + f"{'inside %':>10}")
+    words = ("both", "one", "objected", "none", "more", "wrong", "no result", "no interval")
+    print(f"{'kind':8}{'d %':>5}{'dB':>4}{'bound':>9}" + "".join(f"{w:>12}" for w in words) + f"{'inside %':>10}")
     for (kind, distance, decibels), found in sorted(cells.items()):
         errors = np.array([e for _, es, _ in found for e in es])
         share = [100 * sum(o == w for o, _, _ in found) / len(found) for w in words]
         inside = 100 * np.mean(np.abs(errors) < 1.96) if len(errors) else float("nan")
         print(f"{kind:8}{100 * distance:5.3g}{decibels:4}{np.median([s for _, _, s in found]):9.3g}" +
-              "".join(f"{s:10.1f}" for s in share) + f"{inside:10.1f}")
+              "".join(f"{s:12.1f}" for s in share) + f"{inside:10.1f}")
 
 
 if __name__ == "__main__":

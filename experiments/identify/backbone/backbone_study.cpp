@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/modal/close_pair.hpp"
 #include "experiments/models/estimates.hpp"
 
 namespace beamid::experiments {
@@ -57,6 +58,23 @@ LoopKind loop_of(const BackboneStudy& study) {
   return mu > tolerance && mu < 1 - tolerance && std::min(elastic_bic, masing_bic) - between->bic > strong_bic
              ? LoopKind::between
              : LoopKind::not_determined;
+}
+
+/// A beat of two modes is a stiffness and a damping that follow the amplitude, to windows.
+std::optional<Objection> two_modes(const Record& record, const BackboneStudy& study) {
+  const Eigen::VectorXd signal = record.samples.row(output_channels(record).front()).transpose();
+  ModalAnalysisSettings near;
+  near.expected_frequency_hz = study.windows.windows.front().frequency_hz;
+  try {
+    const auto pair = close_pair(signal, record.interval(), dominant_mode(signal, record.interval(), near));
+    if (!pair || std::string(pair->objection()) != "close_modes") return {};
+    return Objection("close_modes",
+                     pair->sentence(*near.expected_frequency_hz) +
+                         " Windows of falling amplitude take the beat of two for a force law.",
+                     pair->over_drift, clearly_two);
+  } catch (const std::exception&) {  // no mode of one frequency: as a strong spring has
+    return {};
+  }
 }
 
 }  // namespace
@@ -123,6 +141,7 @@ BackboneStudy study_backbone(const Record& record, const BackboneSettings& setti
         fmt::format("Beside the mode there is other motion of {:.0f} % of its amplitude: another mode, noise "
                     "or a motion that is no decay.",
                     100 * study.windows.largest_other));
+  if (auto two = two_modes(record, study)) study.objections.push_back(*std::move(two));
   for (const double samples_per_period : {24.0, 8.0}) {  // the second ends other modes, and harmonics
     try {
       study.record = fit_whole_record(

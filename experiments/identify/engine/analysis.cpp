@@ -227,6 +227,7 @@ void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysi
     const VectorXd filled = found.even.record.samples.row(first).transpose();
     if (found.even.share < mostly_read) return;
     found.jump = decay_jump(filled, interval, *found.modal);
+    found.pair = close_pair(filled, interval, *found.modal);
     found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
   } catch (const std::invalid_argument& error) {
     found.modal_refusal = fmt::format(
@@ -394,9 +395,23 @@ DecayObjection jump_objection(const DecayJump& jump, double from) {
       contradicts};
 }
 
+DecayObjection pair_objection(const ClosePair& pair, double frequency_hz) {
+  const bool contradicts = pair.wins || pair.is_indeterminate();
+  return {
+      {pair.objection(),
+       (contradicts ? "CONTRADICTED: " : "") + pair.sentence(frequency_hz) +
+           (pair.wins ? " One mode has neither of their damping ratios. Expected a model of both; `beamid "
+                        "modal` lists them."
+                      : " Intervals are those of one mode. A longer record or more channels may decide: "
+                        "`beamid modal`."),
+       pair.over_drift, clearly_two},
+      contradicts};
+}
+
 }  // namespace
 
-std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode) {
+std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode,
+                                             bool alone) {
   std::vector<DecayObjection> objections;
   if (analysis.jump) objections.push_back(jump_objection(*analysis.jump, analysis.even.record.time[0]));
   if (const auto& overtone = analysis.overtone; overtone && !analysis.sections.frequency.varies()) {
@@ -412,6 +427,8 @@ std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, con
             std::abs(error), half},
            std::abs(error) > twice * half});
   }
+  if (analysis.pair && alone && (analysis.pair->over_drift > 0.0 || analysis.pair->is_indeterminate()))
+    objections.push_back(pair_objection(*analysis.pair, mode.frequency_hz));
   return objections;
 }
 

@@ -11,6 +11,7 @@
 #include "experiments/identify/verdict/amplitude_sections.hpp"
 #include "experiments/identify/verdict/noise_near_mode.hpp"
 #include "experiments/modal/amplitude_dependence.hpp"
+#include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/decay_jump.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/models/estimates.hpp"
@@ -85,6 +86,7 @@ struct RecordAnalysis {
   AmplitudeSections sections;              ///< of the first output, where asks_free_oscillator() and `modal`
   std::optional<DecayJump> jump;           ///< of the first output of `even`, from its first sample
   std::optional<ThirdOvertone> overtone;   ///< of the first output
+  std::optional<ClosePair> pair;           ///< in the place of `modal`
   ChannelAmplitudes channels;              ///< of all outputs, beside each other
   std::vector<std::string> notes;
   std::vector<Objection> objections;
@@ -133,7 +135,11 @@ struct DecayObjection {
 /// wrong by
 ///   more than its interval through it, and the frequency does not follow the amplitude as that of a spring
 ///   would; it contradicts from twice the interval on.
+/// - Two modes in the place of a model's only one (close_pair.hpp); where they win, or nothing is determined,
+///   it contradicts.
 /// @param mode as identified, with its deviations as they are reported
-std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode);
+/// @param alone whether the model has no other mode
+std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode,
+                                             bool alone);
 
 }  // namespace beamid::experiments

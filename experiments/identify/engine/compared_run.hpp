@@ -12,6 +12,9 @@
 
 namespace beamid::experiments {
 
+/// Sensitivities at all samples that are held together: more are gone through sample by sample.
+constexpr Eigen::Index most_sensitivities = 20'000'000;
+
 // The noise that a run of the engine assumes, and the one that its bound is worked out with.
 
 struct ComparedRecord;

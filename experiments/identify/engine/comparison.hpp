@@ -76,8 +76,9 @@ struct FreeModes {
 
   /// Whether the difference is no noise: p < 1e-4, and more than a thousandth of the record.
   bool exclude() const;
-  /// By which deviations grow where errors of the model take the place of noise [birge1932].
-  double birge_ratio() const;
+  /// By which deviations grow, as if all of it were one parameter's: what one wrong length or mass makes is
+  /// no scatter, and may lie in the direction of one parameter. 1 where nothing is excluded, or known.
+  double widening() const;
 };
 
 /// What one unknown came out as.

@@ -19,8 +19,6 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr Index most_numbers = 20'000'000;  // of sensitivities at all samples, that are held together
-
 std::string unsettled_text(double moved) {
   return fmt::format(
       "Not settled: its last pass moved an unknown by {:.2g} standard deviations. More passes ([compare] "
@@ -96,7 +94,7 @@ void Passes::judge_motion() {
 // Whether the sensitivities of all samples are no more than can be held together.
 bool Passes::is_weighed_at_once() const {
   const Index columns = directions_.motion.cols() + directions_.unknowns.cols();
-  return record_.outputs.size() * columns <= most_numbers;
+  return record_.outputs.size() * columns <= most_sensitivities;
 }
 
 // Where no one mode says what of the noise counts.

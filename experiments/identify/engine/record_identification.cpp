@@ -32,7 +32,6 @@ Oscillator modal_oscillator(const RecordIdentification& found) {
                                     found.modal.damping_ratio);
 }
 
-// "964 % too large"
 std::string error_text(double percent_off) {
   return fmt::format("{:.3g} % too {}", std::abs(percent_off), percent_off > 0 ? "large" : "small");
 }
@@ -207,8 +206,8 @@ std::string difference_text(const RecordIdentification& found, bool frequency, b
 
 // Of a line at a multiple of the mode's frequency, where the innovations see it.
 std::string overtone_text(const RecordIdentification& found) {
-  constexpr double hardly_white = 1e-6;
-  if (!found.consistency || found.consistency->whiteness_p_value > hardly_white) return {};
+  constexpr double not_white = 1e-6;
+  if (!found.consistency || found.consistency->whiteness_p_value > not_white) return {};
   const std::string overtone = by_overtone(found);
   if (overtone.empty()) return {};
   return overtone + ". The damping ratio may be wrong by more than its interval; try a later window.";
@@ -274,16 +273,27 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   if (!frequency && !damping) return judgement;
   std::string text = difference_text(found, frequency, damping);
   const std::string cause = cause_of(experiment, record, found);
-  const bool doubtful = by_discretisation(record, found).empty() &&
-                        by_prior(experiment.prior, found).empty() && modal_analysis_is_worse(record, found);
+  const bool by_choice =
+      !by_discretisation(record, found).empty() || !by_prior(experiment.prior, found).empty();
+  const bool doubtful = !by_choice && modal_analysis_is_worse(record, found);
+  const bool widened = !by_choice && !doubtful && by_stated_noise(found).empty();
   if (doubtful)
     text += ". The modal analysis is the doubtful one: the residual of its modes is larger than the filter's";
   else if (damping && !(ratio < twice * modal_ratio && twice * ratio > modal_ratio))
     judgement.verdict = ComparedRun::Status::contradicted;
+  const auto hold = [&](bool apart, double one, double deviation, double other, double other_deviation) {
+    return apart && widened ? (std::abs(one - other) / quantile_95 + other_deviation) / deviation : 1.0;
+  };
+  const ModalEstimate& modal = found.modal;
+  judgement.frequency_factor = hold(frequency, filter.frequency_hz(), identification.frequency_deviation_hz,
+                                    modal.frequency_hz, modal.frequency_standard_deviation_hz);
+  judgement.damping_factor = hold(damping, ratio, identification.damping_ratio_deviation, modal_ratio,
+                                  modal.damping_ratio_standard_deviation);
   if (!cause.empty())
     text += (doubtful ? "; " : ": ") + cause;
   else if (!doubtful)
     text += ". None of the usual causes was found (scheme, prior, another mode, amplitude, rattle)";
+  if (widened) text += ". Intervals are widened until they hold both";
   judgement.object({"modal_disagreement", text + "."});
   return judgement;
 }
@@ -325,7 +335,7 @@ void take_objections(const RecordAnalysis& analysis, RecordIdentification& found
   const Identification& filter = found.identification;
   FoundMode mode{filter.found.frequency_hz(), filter.found.damping_ratio()};
   mode.damping_ratio_deviation = found.damping_factor() * filter.damping_ratio_deviation;
-  for (const DecayObjection& one : decay_objections(analysis, mode)) {
+  for (const DecayObjection& one : decay_objections(analysis, mode, true)) {
     found.judgement.object(one.objection);
     if (one.contradicts) found.judgement.verdict = ComparedRun::Status::contradicted;
   }
@@ -342,10 +352,6 @@ void take_clocks(const Record& record, const std::optional<ClockScatter>& scatte
   judgement.object({"channel_clocks", clock_scatter_text(record, *scatter)});
   judgement.verdict = ComparedRun::Status::contradicted;
 }
-
-}  // namespace
-
-namespace {
 
 // A mode that the record shows at its alias, at the frequency next to the described one: with the same decay
 // rate [1/s].
@@ -419,13 +425,15 @@ RecordIdentification identify_record(const Experiment& experiment, const Record&
 }
 
 double RecordIdentification::frequency_factor() const {
-  return factor_of(*this, sections.frequency, identification.found.frequency_hz(),
-                   identification.frequency_deviation_hz);
+  return std::max(judgement.frequency_factor,
+                  factor_of(*this, sections.frequency, identification.found.frequency_hz(),
+                            identification.frequency_deviation_hz));
 }
 
 double RecordIdentification::damping_factor() const {
-  return factor_of(*this, sections.damping, identification.found.damping_ratio(),
-                   identification.damping_ratio_deviation);
+  return std::max(judgement.damping_factor,
+                  factor_of(*this, sections.damping, identification.found.damping_ratio(),
+                            identification.damping_ratio_deviation));
 }
 
 double RecordIdentification::noise_ratio() const {

@@ -24,6 +24,9 @@ struct RecordIdentification;
 struct Judgement {
   ComparedRun::Status verdict = ComparedRun::Status::converged;
   std::vector<Objection> objections;  ///< for the first lines of a report, the worst first; empty: none
+  /// By which deviations grow until the intervals hold those of a modal analysis that disagrees; 1: it
+  /// agrees.
+  double frequency_factor = 1, damping_factor = 1;
 
   void object(Objection worse) { objections.insert(objections.begin(), std::move(worse)); }
 };
@@ -69,7 +72,8 @@ struct RecordIdentification {
   std::optional<BatchIdentification> batch;  ///< where it was asked for
 
   /// What deviations of frequency and K, of damping ratio and C, are multiplied by: what holds the
-  /// values of 95 % of the decay, constant or not as the record has it (section_half_width); 1 at least.
+  /// values of 95 % of the decay, constant or not as the record has it (section_half_width), and what a modal
+  /// analysis found that disagrees; 1 at least.
   double frequency_factor() const;
   double damping_factor() const;
   /// Deviation of the noise at the mode over that assumed; 1 where R counts.

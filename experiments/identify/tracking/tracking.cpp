@@ -10,6 +10,7 @@
 #include <string>
 
 #include "experiments/identify/tracking/ringing_model.hpp"
+#include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/dominant_mode.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/spectrum.hpp"
@@ -213,6 +214,23 @@ void enter(const std::vector<filters::Gaussian>& estimates, Index first, double 
   }
 }
 
+/// Where two modes win, the stronger is followed and the other rings beside it. Where neither one nor two do,
+/// the distances of both count as uncertainty, each by its share of the stronger.
+void take_pair(const ClosePair& pair, Plateau& plateau) {
+  Pole strong = pair.low(), weak = pair.high();
+  if (strong.shape.norm() < weak.shape.norm()) std::swap(strong, weak);
+  if (pair.wins) {
+    plateau.modal_frequency_hz = strong.frequency_hz(), plateau.modal_damping_ratio = strong.damping_ratio();
+    plateau.companions_hz.push_back(weak.frequency_hz());
+    return;
+  }
+  if (!pair.is_indeterminate() && pair.over_drift < 0.0) return;  // the walk follows a drift
+  if (pair.is_indeterminate()) plateau.one_or_two = pair.sentence(plateau.frequency_hz);
+  const PairSpread spread = pair.spread_about(plateau.frequency_hz, plateau.damping_ratio);
+  plateau.frequency_deviation_hz = std::hypot(plateau.frequency_deviation_hz, spread.frequency_hz);
+  plateau.damping_ratio_deviation = std::hypot(plateau.damping_ratio_deviation, spread.damping_ratio);
+}
+
 // What a beat with a mode nearby does to a wandering frequency, no wandering explains: there the modal
 // analysis, which fits both modes, tells how far the mean may be off.
 void compare_with_modal_analysis(const Ringing& ringing, Plateau& plateau) {
@@ -223,10 +241,11 @@ void compare_with_modal_analysis(const Ringing& ringing, Plateau& plateau) {
   settings.frequency_tolerance = 0.03;
   settings.companion_amplitude = 0.02;
   try {
-    const ModalEstimate modal = dominant_mode(
-        ringing.signal.segment(plateau.first, plateau.last - plateau.first + 1), ringing.interval, settings);
+    const VectorXd span = ringing.signal.segment(plateau.first, plateau.last - plateau.first + 1);
+    const ModalEstimate modal = dominant_mode(span, ringing.interval, settings);
     plateau.modal_frequency_hz = modal.frequency_hz, plateau.modal_damping_ratio = modal.damping_ratio;
     for (const CompanionMode& mode : modal.companions) plateau.companions_hz.push_back(mode.frequency_hz);
+    if (const auto pair = close_pair(span, ringing.interval, modal)) take_pair(*pair, plateau);
   } catch (const std::exception&) {
     return;  // too short, or no decay of constant stiffness: the plateau stands alone
   }

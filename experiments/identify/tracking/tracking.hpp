@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -80,6 +81,7 @@ struct Plateau {
   /// Of the span as a free decay with constant stiffness, modes beside it fitted along; NaN where that fails.
   double modal_frequency_hz = 0, modal_damping_ratio = 0;
   std::vector<double> companions_hz;            ///< those modes
+  std::string one_or_two;                       ///< a sentence where the span may have two modes in its place
   double amplitude_from = 0, amplitude_to = 0;  ///< of the mode at both ends [unit of the signal]
   double noise = 0;                             ///< standard deviation [unit of the signal]
   double noise_relative_deviation = 0;          ///< of that estimate; infinite where the record does not tell

@@ -32,8 +32,6 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr Index most_numbers = 20'000'000;  // of sensitivities at all samples, that are held together
-
 double hz_of(Complex rate) {
   return std::abs(rate) / (2.0 * std::numbers::pi);
 }
@@ -121,7 +119,8 @@ std::string largest_difference(const JointDecayFit& fit, const std::vector<Compl
 MatrixXd motion_of_weak_modes(const MatrixXd& outputs, double interval, const std::vector<Complex>& strong,
                               std::vector<Complex> rates) {
   MatrixXd motion = MatrixXd::Zero(outputs.rows(), outputs.cols());
-  if (rates.size() == strong.size() || static_cast<Index>(2 * rates.size()) * outputs.cols() > most_numbers)
+  if (rates.size() == strong.size() ||
+      static_cast<Index>(2 * rates.size()) * outputs.cols() > most_sensitivities)
     return motion;
   rates.emplace_back(0.0);
   std::vector<bool> oscillating(rates.size(), true);
@@ -130,8 +129,7 @@ MatrixXd motion_of_weak_modes(const MatrixXd& outputs, double interval, const st
   for (Index m = 0; m + 1 < shapes.cols(); ++m) {
     const Complex rate = rates[static_cast<std::size_t>(m)];
     if (std::ranges::find(strong, rate) != strong.end()) continue;
-    for (Index k = 0; k < outputs.cols(); ++k)
-      motion.col(k) += (shapes.col(m) * std::exp(rate * (interval * static_cast<double>(k)))).real();
+    motion += (shapes.col(m) * decaying_wave(rate, interval, outputs.cols()).transpose()).real();
   }
   return motion;
 }
@@ -169,8 +167,8 @@ bool FreeModes::exclude() const {
   return freedom > 0.0 && chi_square > chi_square_limit(freedom, 1.0 - size) && share > slight;
 }
 
-double FreeModes::birge_ratio() const {
-  return exclude() && std::isfinite(chi_square) ? std::sqrt(chi_square / freedom) : 1.0;
+double FreeModes::widening() const {
+  return exclude() && std::isfinite(chi_square) ? std::sqrt(chi_square) : 1.0;
 }
 
 namespace {
@@ -204,7 +202,7 @@ void look_at_free_modes(const RunContext& context, const MatrixXd& outputs, cons
   std::erase_if(model,
                 [&](Complex rate) { return std::abs(rate) * even.interval() > highest * std::numbers::pi; });
   const auto numbers = static_cast<Index>(channels.size() * model.size()) * 2 * even.size();
-  if (model.empty() || numbers > most_numbers || outputs.cols() != even.size()) return;
+  if (model.empty() || numbers > most_sensitivities || outputs.cols() != even.size()) return;
   const bool is_oscillator = context.experiment.model.name == "sdof";  // which has its own verdict
   if (is_oscillator && channels.size() < 2) return;
   const MatrixXd weak = motion_of_weak_modes(outputs, even.interval(), model,
@@ -238,8 +236,7 @@ void judge_free_modes(ComparedRun& run) {
   constexpr double much = 0.01;
   if (!run.free_modes || !run.free_modes->exclude()) return;
   const FreeModes& free = *run.free_modes;
-  // What one wrong length or mass makes is no scatter: it may lie in the direction of one parameter.
-  const double widened = free.birge_ratio() * std::sqrt(std::max(1.0, free.freedom));
+  const double widened = free.widening();
   for (std::size_t j = 0; j < run.parameters.size(); ++j) widen(run, j, widened);
   const bool contradicts = free.share > much;
   const std::string found = fmt::format(
@@ -251,7 +248,7 @@ void judge_free_modes(ComparedRun& run) {
       {"free_modes",
        (contradicts ? "CONTRADICTED: " : "APPROXIMATE: ") + found +
            ". A length, a mass, a support, a place, a gain or the damping of a mode is not as described." +
-           (free.birge_ratio() > 1.0
+           (widened > 1.0
                 ? fmt::format(" Intervals are widened by {:.3g}, as if all of it were one parameter's{}.",
                               widened, contradicts ? ", and may not hold the truth" : "")
                 : ""),

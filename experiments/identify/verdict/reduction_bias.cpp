@@ -21,6 +21,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/verdict/run_verdict.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
@@ -77,7 +78,7 @@ struct HeldMode {
 std::vector<HeldMode> held_modes(const RunContext& context, const ComparedRun& run) {
   const auto* const motion = dynamic_cast<const filters::LinearMotion*>(run.model->motion.get());
   if (!motion || run.run.last.mean.size() == 0) return {};
-  constexpr double near = 0.1, least_share = 1e-3;
+  constexpr double least_share = 1e-3;
   const Record& record = context.analysis.even.record;
   const double interval = record.interval(), duration = interval * static_cast<double>(record.size());
   MatrixXd matrix;
@@ -96,13 +97,11 @@ std::vector<HeldMode> held_modes(const RunContext& context, const ComparedRun& r
                  noise = std::pow(run.noise[static_cast<Index>(i)], 2);
     if (!(square > 0.0 && noise > 0.0)) continue;
     const AmplitudeSpectrum spectrum = amplitude_spectrum(signal, interval);
-    const auto squares = spectrum.amplitude.array().square();
     for (std::size_t k = 0; k < held.size(); ++k) {
-      const auto inside = (spectrum.frequency_hz.array() / held[k].hz - 1.0).abs() < near;
-      const double share = inside.select(squares, 0.0).sum() / squares.sum(),
-                   chance = noise * static_cast<double>(signal.size()) * static_cast<double>(inside.count()) /
-                            static_cast<double>(squares.size());
-      if (share > least_share) energy_over_noise[k] += std::max(0.0, share * square - chance) / noise;
+      const SpectrumShare share = share_near(spectrum, held[k].hz);
+      const double chance = noise * static_cast<double>(signal.size()) * share.lines;
+      if (share.squares > least_share)
+        energy_over_noise[k] += std::max(0.0, share.squares * square - chance) / noise;
     }
   }
   for (std::size_t k = 0; k < held.size(); ++k) held[k].information *= energy_over_noise[k];

@@ -78,12 +78,13 @@ std::string described_response_text(const RunContext& context, const ComparedRun
 
 // A model's lowest mode beside the modal analysis of the record.
 
+constexpr double surely = 3.0;  // of both standard deviations together
+
 // "the damping ratio 0.56 % (modal analysis 0.40 %, 12 standard deviations)", where it is many of them.
 void add_difference(const char* what, double found, double deviation, double modal, double modal_deviation,
                     double shown, const char* unit, std::string& text) {
-  constexpr double many = 3.0;
   const double apart = std::abs(found - modal) / std::hypot(deviation, modal_deviation);
-  if (!(apart > many)) return;
+  if (!(apart > surely)) return;
   text += fmt::format(
       "{}{} {:.5g} {} ({:+.3g} % from the {:.5g} {} of the modal analysis, {:.3g} standard "
       "deviations)",
@@ -99,18 +100,36 @@ std::string difference_text(const ModalEstimate& modal, const ComparedRun& run) 
                  modal.damping_ratio, modal.damping_ratio_standard_deviation, 100.0, "%", text);
   if (text.empty()) return {};
   return "The model and the modal analysis of the first channel DISAGREE: " + text +
-         ". The modal analysis assumes no model: trust it, or give the model the modes that it lacks.";
+         ". The modal analysis assumes no model: trust it, or give the model the modes that it lacks. "
+         "Intervals are widened until they hold both.";
 }
 
 // As K and C of one degree of freedom are judged (record_identification.cpp): damping that is not the
 // record's is no estimate.
 bool has_another_damping(const ModalEstimate& modal, const ComparedRun& run) {
-  constexpr double twice = 2.0, many = 3.0;
+  constexpr double twice = 2.0;
   const FoundMode& mode = *run.mode;
   const double apart = std::abs(mode.damping_ratio - modal.damping_ratio) /
                        std::hypot(mode.damping_ratio_deviation, modal.damping_ratio_standard_deviation);
-  return apart > many && !(mode.damping_ratio < twice * modal.damping_ratio &&
-                           twice * mode.damping_ratio > modal.damping_ratio);
+  return apart > surely && !(mode.damping_ratio < twice * modal.damping_ratio &&
+                             twice * mode.damping_ratio > modal.damping_ratio);
+}
+
+// Deviations grow until the intervals of the mode hold those of the modal analysis, where these surely
+// differ: those of all unknowns by the larger factor, as any of them may have made the difference.
+void hold_modal_analysis(const ModalEstimate& modal, ComparedRun& run) {
+  const auto factor = [](double found, double deviation, double other, double other_deviation) {
+    const double apart = std::abs(found - other);
+    if (!(deviation > 0.0) || !(apart > surely * std::hypot(deviation, other_deviation))) return 1.0;
+    return (apart / quantile_95 + other_deviation) / deviation;
+  };
+  FoundMode& mode = *run.mode;
+  const double of_frequency = factor(mode.frequency_hz, mode.frequency_deviation_hz, modal.frequency_hz,
+                                     modal.frequency_standard_deviation_hz),
+               of_damping = factor(mode.damping_ratio, mode.damping_ratio_deviation, modal.damping_ratio,
+                                   modal.damping_ratio_standard_deviation);
+  mode.frequency_deviation_hz *= of_frequency, mode.damping_ratio_deviation *= of_damping;
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) widen(run, j, std::max(of_frequency, of_damping));
 }
 
 /// A warning where frequency or damping ratio at the estimate and in the modal analysis of the first channel
@@ -126,7 +145,9 @@ void judge_against_modal_analysis(const RunContext& context, ComparedRun& run) {
   const std::string text = difference_text(*modal, run);
   if (text.empty()) return;
   run.objections.emplace_back("modal_disagreement", text);
-  if (!has_another_damping(*modal, run)) return;
+  const bool another_damping = has_another_damping(*modal, run);
+  hold_modal_analysis(*modal, run);
+  if (!another_damping) return;
   run.status = ComparedRun::Status::contradicted;
   run.reason = fmt::format("damping ratio {:.3g} %, where the modal analysis of the record has {:.3g} %",
                            100.0 * run.mode->damping_ratio, 100.0 * modal->damping_ratio);
@@ -149,7 +170,7 @@ void judge_settling(ComparedRun& run) {
 
 void judge_decay(const RunContext& context, ComparedRun& run) {
   if (!run.mode) return;
-  for (const DecayObjection& one : decay_objections(context.analysis, *run.mode)) {
+  for (const DecayObjection& one : decay_objections(context.analysis, *run.mode, run.coordinates == 1)) {
     run.object(one.objection);
     if (!one.contradicts) continue;
     run.status = ComparedRun::Status::contradicted;

@@ -23,14 +23,6 @@ namespace {
 
 using Eigen::Index;
 
-/// The share of a channel's squares within a tenth of a frequency.
-double share_near(const AmplitudeSpectrum& spectrum, double hz) {
-  constexpr double near = 0.1;
-  const auto squares = spectrum.amplitude.array().square();
-  const auto inside = (spectrum.frequency_hz.array() / hz - 1).abs() < near;
-  return inside.select(squares, 0).sum() / squares.sum();
-}
-
 bool is_damping(const std::string& quantity) {
   return quantity == "storey_damping" || quantity == "damping_ratio" || quantity == "mass_damping" ||
          quantity == "stiffness_damping";
@@ -96,8 +88,9 @@ std::string step_error(const RunContext& context, const ComparedRun& run) {
   for (const Index i : output_channels(record))
     spectra.push_back(amplitude_spectrum(record.samples.row(i).transpose(), interval));
   const auto holds = [&](double hz) {
-    return std::any_of(spectra.begin(), spectra.end(),
-                       [&](const AmplitudeSpectrum& one) { return share_near(one, hz) > least_share; });
+    return std::any_of(spectra.begin(), spectra.end(), [&](const AmplitudeSpectrum& one) {
+      return share_near(one, hz).squares > least_share;
+    });
   };
   double worst = 0, at_hz = 0;
   for (const double w : run.model->mode_frequencies) {

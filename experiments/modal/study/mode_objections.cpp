@@ -79,13 +79,6 @@ int multiple_of(const ModeEstimate& base, const ModeEstimate& mode) {
 
 }  // namespace
 
-Pole fitted_pole(const JointDecayFit& fit, std::size_t m) {
-  Pole pole{fit.rates[m], fit.shapes.col(static_cast<Index>(m))};
-  const auto at = static_cast<Index>(2 * m);
-  pole.take_deviations(fit.covariance.block<2, 2>(at, at));
-  return pole;
-}
-
 bool indistinguishable(const Pole& a, const Pole& b, double duration) {
   constexpr double cycles = 1, time_constants = 3;
   const double slower = std::min(std::abs(a.rate.real()), std::abs(b.rate.real()));

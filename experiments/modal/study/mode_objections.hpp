@@ -4,13 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "experiments/modal/joint_decay_fit.hpp"
+#include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 
 namespace beamid::experiments {
-
-/// Mode m of a joint fit, with deviations.
-Pole fitted_pole(const JointDecayFit& fit, std::size_t m);
 
 /// Two poles less than a cycle apart over the record, or over three time constants of the slower decay where
 /// that is less, are one mode: a frequency or a damping that follows the amplitude is realised as several.

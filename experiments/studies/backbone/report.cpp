@@ -177,7 +177,7 @@ Results report(const BackboneSettings& settings, const Record& record, const std
     results.paragraph(backbone_verdict(study));
   else
     results.warning(backbone_verdict(study), !determined);
-  for (const Objection& one : study.objections) results.object(one);
+  for (const Objection& one : study.objections) results.object(one, {}, one.name == "close_modes");
   // A loop that is determined says itself what a cycle dissipates.
   if (study.loop != LoopKind::masing && study.loop != LoopKind::between)
     if (const std::string text =

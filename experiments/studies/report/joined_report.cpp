@@ -15,9 +15,9 @@
 
 #include "experiments/models/estimates.hpp"
 #include "experiments/results/gnuplot_axes.hpp"
-#include "experiments/results/key_label.hpp"
 #include "experiments/results/report_page.hpp"
 #include "experiments/results/result_directory.hpp"
+#include "experiments/results/text.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/toml_table.hpp"
 

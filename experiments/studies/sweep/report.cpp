@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
-#include "experiments/results/key_label.hpp"
 #include "experiments/results/result_directory.hpp"
+#include "experiments/results/text.hpp"
 #include "experiments/sweep/hdf5_table.hpp"
 #include "experiments/text/choice.hpp"
 

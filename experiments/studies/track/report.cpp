@@ -279,6 +279,10 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
                     found.sway, si_unit(channel.quantity), found.sway / found.noise));
   results.table(plateau_table(found));
   if (const std::string text = companions(found); !text.empty()) results.paragraph(text);
+  for (std::size_t i = 0; i < found.plateaus.size(); ++i)
+    if (const std::string& text = found.plateaus[i].one_or_two; !text.empty())
+      results.object({"close_modes", text + " Its damping ratio is not determined."},
+                     fmt::format("plateau {}: ", i + 1), true);
   if (!between.empty()) results.table(change_table(between));
   results.paragraph(fmt::format(
       "{} alarms: the squares of {} innovations in succession above {:.1f}, which in a record without "

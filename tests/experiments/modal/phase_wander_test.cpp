@@ -55,7 +55,7 @@ TEST(PhaseWander, OfAClockIsReportedAndCounted) {
     });
   }
   EXPECT_GT(held, 32);
-  EXPECT_GE(reported, 17);  // the others have weak modes beside the second, which are sidebands of its wander
+  EXPECT_GE(reported, 18);  // some walks are small: by chance, noise makes a larger one in 1e-4 of records
 }
 
 // A drift whose powers overflow where its mode has died away is begun with fewer of them; it ended the

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 #include "experiments/signal/toolbox.hpp"
 #include "tests/experiments/modal/nonlinear_decay.hpp"
@@ -40,9 +42,9 @@ struct Case {
   int channels;
 };
 
-class ClosePair : public testing::TestWithParam<Case> {};
+class TwoModes : public testing::TestWithParam<Case> {};
 
-TEST_P(ClosePair, IsTwoModes) {
+TEST_P(TwoModes, AreFound) {
   const auto [apart, channels] = GetParam();
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const RecordModes found = find_modes("pair", pair(apart, channels, 0.01, seed), false, {});
@@ -57,7 +59,7 @@ TEST_P(ClosePair, IsTwoModes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Apart, ClosePair,
+INSTANTIATE_TEST_SUITE_P(Apart, TwoModes,
                          testing::Values(Case{0.005, 1}, Case{0.01, 1}, Case{0.02, 1}, Case{0.005, 2},
                                          Case{0.01, 2}, Case{0.02, 2}));
 
@@ -93,6 +95,45 @@ TEST(OneMode, ThatFollowsItsAmplitudeIsNotSplit) {
       int near = 0;
       for (const ModeEstimate& mode : found.modes) near += std::abs(mode.pole.frequency_hz() - 5.0) < 0.5;
       EXPECT_EQ(near, 1) << "power " << power << ", b " << b;
+    }
+}
+
+// What `identify`, `track` and `backbone` ask of the mode that they follow.
+
+std::optional<ClosePair> in_place_of_the_mode(const Record& record) {
+  const VectorXd signal = record.samples.row(0).transpose();
+  ModalAnalysisSettings near;
+  near.expected_frequency_hz = 5.0;
+  return close_pair(signal, interval, dominant_mode(signal, interval, near));
+}
+
+// Modes that are farther apart are companions of each other to the modal analysis itself.
+TEST(ModeOfOneSignal, IsTwoWhereTwoModesWere) {
+  for (const double apart : {0.005, 0.01})
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const auto found = in_place_of_the_mode(pair(apart, 1, 0.01, seed));
+      ASSERT_TRUE(found && found->wins) << apart << ", seed " << seed;
+      EXPECT_STREQ(found->objection(), "close_modes");
+      for (const Pole& pole : {found->low(), found->high()})
+        EXPECT_LT(std::abs(pole.damping_ratio() - ratio), 4.0 * pole.damping_ratio_deviation);
+    }
+}
+
+TEST(ModeOfOneSignal, IsOneWhereOneWas) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const auto found = in_place_of_the_mode(pair(0.0, 1, 0.02, seed));
+    EXPECT_FALSE(found) << "seed " << seed;
+  }
+}
+
+TEST(ModeOfOneSignal, IsNotTwoWhereItFollowsItsAmplitude) {
+  for (const double power : {0.0, 1.0, 2.0, 3.0})
+    for (const double b : {2e-4, 1e-3}) {
+      Record record = pair(0.0, 1, 0.0, 1);
+      record.samples = test::nonlinear_decay(5.0, 0.003, power, b, interval, count).transpose();
+      record.samples += 0.01 * standard_normal(count, 1, 9).transpose();
+      const auto found = in_place_of_the_mode(record);
+      EXPECT_FALSE(found && found->wins) << "power " << power << ", b " << b;
     }
 }
 
