@@ -54,8 +54,8 @@ def parts_of(text):
             first += f"\n## {heading}\n\n{general}"
             for name, table in tables:
                 section = f"## {name}\n\n{table}\n"
-                if group_of(name):
-                    parts[group_of(name)] = parts.get(group_of(name), "") + section
+                if group := group_of(name):
+                    parts[group] = parts.get(group, "") + section
                 else:
                     first += f"\n#{section}"
         else:

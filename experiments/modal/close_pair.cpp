@@ -304,7 +304,7 @@ std::optional<JointDecayFit> with_pair(const MatrixXd& record, double interval, 
 
 /// Two modes where `single` has m; absent where one explains the record.
 std::optional<ClosePair> compete(const MatrixXd& record, double interval, const JointDecayFit& single,
-                                 std::size_t m, const JointDecayFit& pair) {
+                                 std::size_t m, JointDecayFit pair) {
   constexpr double by_chance = 1e-5, surely = 1e-6, close = 1.5, clearly_one = -10.0, denser = 3.0,
                    weakest = 0.02;
   const std::size_t last = pair.rates.size() - 1;
@@ -326,18 +326,18 @@ std::optional<ClosePair> compete(const MatrixXd& record, double interval, const 
   const double gained =
       by_one.cwiseQuotient(pair.noise_variance.col(at_a).cwiseMax(1e-300)).sum() - both.left_by_pair;
   const double freedom = 2.0 + 2.0 * static_cast<double>(record.rows());
-  ClosePair found{pair, m, both.left_by_drift - both.left_by_pair};
-  if (!(gained > chi_square_limit(freedom, 1.0 - by_chance)) || found.over_drift < clearly_one ||
+  const double over_drift = both.left_by_drift - both.left_by_pair;
+  if (!(gained > chi_square_limit(freedom, 1.0 - by_chance)) || over_drift < clearly_one ||
       density_near(record, interval, pair, m) > denser)
     return {};
-  found.cycles = std::abs(pair.rates[m].imag() - pair.rates[last].imag()) / (2.0 * pi) * interval *
-                 static_cast<double>(record.cols());
-  const bool over_clearly = found.over_drift > clearly_two;
-  if (over_clearly && may_be_clocks(pair, at_a, at_b, found.cycles)) return {};
-  found.wins = surely_damped && over_clearly && found.cycles >= least_apart &&
-               gained > chi_square_limit(freedom, 1.0 - surely);
-  if (!found.wins && found.cycles >= close) return {};
-  return found;
+  const double cycles = std::abs(pair.rates[m].imag() - pair.rates[last].imag()) / (2.0 * pi) * interval *
+                        static_cast<double>(record.cols());
+  const bool over_clearly = over_drift > clearly_two;
+  if (over_clearly && may_be_clocks(pair, at_a, at_b, cycles)) return {};
+  const bool wins = surely_damped && over_clearly && cycles >= least_apart &&
+                    gained > chi_square_limit(freedom, 1.0 - surely);
+  if (!wins && cycles >= close) return {};
+  return ClosePair{std::move(pair), m, over_drift, wins, cycles};
 }
 
 }  // namespace
@@ -372,7 +372,7 @@ PairSpread ClosePair::spread_about(double frequency_hz, double damping_ratio) co
 }
 
 const char* ClosePair::objection() const {
-  return wins || is_indeterminate() ? "close_modes" : "drift_or_pair";
+  return contradicts_one() ? "close_modes" : "drift_or_pair";
 }
 
 std::string ClosePair::sentence(double frequency_hz) const {
@@ -399,9 +399,9 @@ std::optional<ClosePair> close_pair(const MatrixXd& record, double interval, con
                                     std::size_t m) {
   std::optional<ClosePair> undecided;
   for (const auto& start : starts(record, interval, fit, m)) {
-    const auto pair = with_pair(record, interval, fit, m, start);
+    auto pair = with_pair(record, interval, fit, m, start);
     if (!pair) continue;
-    if (auto found = compete(record, interval, fit, m, *pair)) {
+    if (auto found = compete(record, interval, fit, m, *std::move(pair))) {
       undecided = std::move(found);
       if (undecided->wins) break;
     }

@@ -48,9 +48,13 @@ struct ClosePair {
   /// quarter of a cycle or more apart. What follows the amplitude looks like a second mode of another
   /// damping, as the n-th power of an amplitude decays n times as fast, or of nearly the same rate.
   bool is_indeterminate() const;
+  /// Whether a result for one mode is none: the pair wins, or is indeterminate.
+  bool contradicts_one() const { return wins || is_indeterminate(); }
+  /// Whether one mode that drifts does not explain the record as well: then a drift is no way out.
+  bool speaks_against_one() const { return contradicts_one() || over_drift > 0.0; }
   /// Of the farther one, each by its share of the larger.
   PairSpread spread_about(double frequency_hz, double damping_ratio) const;
-  /// close_modes where the pair wins or is indeterminate, else drift_or_pair.
+  /// close_modes where it contradicts one mode, else drift_or_pair.
   const char* objection() const;
   /// What the record says of its mode at a frequency [Hz].
   std::string sentence(double frequency_hz) const;

@@ -67,8 +67,8 @@ std::optional<Objection> two_modes(const Record& record, const BackboneStudy& st
   near.expected_frequency_hz = study.windows.windows.front().frequency_hz;
   try {
     const auto pair = close_pair(signal, record.interval(), dominant_mode(signal, record.interval(), near));
-    if (!pair || std::string(pair->objection()) != "close_modes") return {};
-    return Objection("close_modes",
+    if (!pair || !pair->contradicts_one()) return {};
+    return Objection(pair->objection(),
                      pair->sentence(*near.expected_frequency_hz) +
                          " Windows of falling amplitude take the beat of two for a force law.",
                      pair->over_drift, clearly_two);

@@ -32,6 +32,7 @@ Oscillator modal_oscillator(const RecordIdentification& found) {
                                     found.modal.damping_ratio);
 }
 
+// "964 % too large"
 std::string error_text(double percent_off) {
   return fmt::format("{:.3g} % too {}", std::abs(percent_off), percent_off > 0 ? "large" : "small");
 }
@@ -281,14 +282,13 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
     text += ". The modal analysis is the doubtful one: the residual of its modes is larger than the filter's";
   else if (damping && !(ratio < twice * modal_ratio && twice * ratio > modal_ratio))
     judgement.verdict = ComparedRun::Status::contradicted;
-  const auto hold = [&](bool apart, double one, double deviation, double other, double other_deviation) {
-    return apart && widened ? (std::abs(one - other) / quantile_95 + other_deviation) / deviation : 1.0;
-  };
   const ModalEstimate& modal = found.modal;
-  judgement.frequency_factor = hold(frequency, filter.frequency_hz(), identification.frequency_deviation_hz,
-                                    modal.frequency_hz, modal.frequency_standard_deviation_hz);
-  judgement.damping_factor = hold(damping, ratio, identification.damping_ratio_deviation, modal_ratio,
-                                  modal.damping_ratio_standard_deviation);
+  if (widened && frequency)
+    judgement.frequency_factor = factor_to_hold(filter.frequency_hz(), identification.frequency_deviation_hz,
+                                                modal.frequency_hz, modal.frequency_standard_deviation_hz);
+  if (widened && damping)
+    judgement.damping_factor = factor_to_hold(ratio, identification.damping_ratio_deviation, modal_ratio,
+                                              modal.damping_ratio_standard_deviation);
   if (!cause.empty())
     text += (doubtful ? "; " : ": ") + cause;
   else if (!doubtful)

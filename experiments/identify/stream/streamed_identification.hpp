@@ -22,7 +22,7 @@ namespace beamid::experiments {
 
 // What a stream of samples starts from: an earlier record of the same rig, or a saved state.
 
-/// A stream knows neither its noise nor its amplitude beforehand.
+/// What an earlier record shows: noise and amplitude of a stream are not known beforehand.
 struct StreamStart {
   JointModel model;                 ///< on the basis that the earlier record led to
   IdentificationSettings settings;  ///< of one pass; the unknowns as uncertain as before any record

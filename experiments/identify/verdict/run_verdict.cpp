@@ -119,9 +119,9 @@ bool has_another_damping(const ModalEstimate& modal, const ComparedRun& run) {
 // differ: those of all unknowns by the larger factor, as any of them may have made the difference.
 void hold_modal_analysis(const ModalEstimate& modal, ComparedRun& run) {
   const auto factor = [](double found, double deviation, double other, double other_deviation) {
-    const double apart = std::abs(found - other);
-    if (!(deviation > 0.0) || !(apart > surely * std::hypot(deviation, other_deviation))) return 1.0;
-    return (apart / quantile_95 + other_deviation) / deviation;
+    if (!(deviation > 0.0) || !(std::abs(found - other) > surely * std::hypot(deviation, other_deviation)))
+      return 1.0;
+    return factor_to_hold(found, deviation, other, other_deviation);
   };
   FoundMode& mode = *run.mode;
   const double of_frequency = factor(mode.frequency_hz, mode.frequency_deviation_hz, modal.frequency_hz,
@@ -273,6 +273,10 @@ void judge_channels(const RunContext& context, ComparedRun& run) {
 }
 
 }  // namespace
+
+double factor_to_hold(double estimate, double deviation, double other, double other_deviation) {
+  return (std::abs(estimate - other) / quantile_95 + other_deviation) / deviation;
+}
 
 void judge_what_is_said(ComparedRun& run) {
   // Of the prior deviation: half of the information is the prior's.

@@ -29,6 +29,9 @@ void judge_run(const RunContext& context, ComparedRun& run);
 /// beforehand.
 void judge_what_is_said(ComparedRun& run);
 
+/// By which a deviation grows until the 95 % interval of an estimate holds that of another.
+double factor_to_hold(double estimate, double deviation, double other, double other_deviation);
+
 // What a reduction does by itself to what is identified with it (reduction_bias.cpp).
 
 /// Predicted relative errors of the unknowns (q), from the frequencies that the reduced model has at its

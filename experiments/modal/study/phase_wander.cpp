@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -118,17 +119,16 @@ std::vector<std::size_t> sidebands_of(const JointDecayFit& fit) {
   return found;
 }
 
-/// The fit without some of its modes, or itself where that fails.
-JointDecayFit without(const std::vector<std::size_t>& left_out, const JointDecayFit& fit,
-                      const RecordModes& found) {
+/// The fit without some of its modes; absent where that fails.
+std::optional<JointDecayFit> without(const std::vector<std::size_t>& left_out, const JointDecayFit& fit,
+                                     const RecordModes& found) {
   std::vector<Complex> rates;
   for (std::size_t m = 0; m < fit.rates.size(); ++m)
     if (std::ranges::find(left_out, m) == left_out.end()) rates.push_back(fit.rates[m]);
-  if (rates.size() == fit.rates.size()) return fit;
   try {
     return fit_decays_jointly(found.target, found.interval, rates);
   } catch (const std::exception&) {
-    return fit;
+    return {};
   }
 }
 
@@ -138,7 +138,8 @@ void follow_phases(const JointDecayFit& of_all, RecordModes& found) {
   constexpr double worth_widening = 1e-2, worth_saying = 1e-4;  // by chance
   const double duration = found.interval * static_cast<double>(found.target.cols());
   const std::vector<std::size_t> sidebands = sidebands_of(of_all);
-  const JointDecayFit fit = without(sidebands, of_all, found);
+  const auto freed = sidebands.empty() ? std::nullopt : without(sidebands, of_all, found);
+  const JointDecayFit& fit = freed ? *freed : of_all;
   const Index sections = sections_of(fit, duration);
   if (sections == 0) return;
   const std::vector<Phases> phases = phases_of(fit, found.target, found.interval, sections);
@@ -160,7 +161,8 @@ void follow_phases(const JointDecayFit& of_all, RecordModes& found) {
   }
   if (!(all.squares > chi_square_limit(all.freedom, 1.0 - worth_saying))) return;
   std::vector<double> beside_hz;
-  for (const std::size_t m : sidebands) beside_hz.push_back(found.modes[m].pole.frequency_hz());
+  for (const std::size_t m : freed ? sidebands : std::vector<std::size_t>{})
+    beside_hz.push_back(found.modes[m].pole.frequency_hz());
   found.objections.emplace_back(
       "phase_wander",
       fmt::format(
