@@ -133,7 +133,7 @@ bool DelimitedText::find_body() {
     first = lines.size() - 2;
     two = lines[first].rows && lines[first + 1].rows && lines[first].width == lines[first + 1].width;
   }
-  const std::size_t width = lines[first].width;
+  std::size_t width = lines[first].width;
   if (counts_columns(fields[first]) && first == 0 && !counts_columns(fields[1]) &&
       !std::ranges::all_of(fields[1], [](auto field) { return field.find_first_of(".,eE") == field.npos; })) {
     lines[0].rows = false;  // names
@@ -148,6 +148,11 @@ bool DelimitedText::find_body() {
          !counts_columns(fields[first - 1]))
     --first;
 
+  if (first > 0 && !holds_reading(fields[first - 1])) {  // the first rows may end in cells that hold nothing
+    std::vector<std::string_view> cells;
+    split_fields(lines[first].text, separator_of(lines[first - 1].text), cells, true);
+    if (cells.size() > width && cells.size() == fields[first - 1].size()) width = cells.size();
+  }
   const auto names_width = [&](std::size_t line) {
     const std::string_view text = lines[line].text;
     const bool titles = line > 0 && is_title(trimmed(text)) && lines[line - 1].text.find(':') != text.npos;
@@ -160,11 +165,6 @@ bool DelimitedText::find_body() {
     if (lines[k].rows && !below_title && (lines[k].width == width || k + 1 == first)) return false;
   }
   std::optional<std::size_t> header, nearest;
-  if (first > 0 && !holds_reading(fields[first - 1])) {  // the first rows may end in cells that hold nothing
-    std::vector<std::string_view> cells;
-    split_fields(lines[first].text, separator_of(lines[first - 1].text), cells, true);
-    if (cells.size() > width && cells.size() == fields[first - 1].size()) header = first - 1;
-  }
   for (std::size_t k = first; k-- > 0 && first - k <= most_header_lines && !header;) {
     if (!names_width(k)) {
       if (holds_reading(fields[k]) && !is_statement(lines[k].text)) break;

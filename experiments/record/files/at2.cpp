@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <optional>
 #include <regex>
+#include <vector>
 
+#include "experiments/record/delimited_text.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
@@ -36,33 +38,33 @@ std::optional<At2Header> at2_header(std::string_view line) {
 class At2Reader final : public RecordReader {
  public:
   bool recognises(std::string_view beginning) const override {
-    std::string_view line, rest = beginning;
-    for (std::size_t k = 0; k < at2_lines; ++k) line = next(rest);
-    return at2_header(line).has_value();
+    const std::vector<std::string_view> lines = lines_of(beginning);
+    return lines.size() >= at2_lines && at2_header(lines[at2_lines - 1]).has_value();
   }
 
   RecordTable read(const std::filesystem::path& file, const RecordFormat&) const override {
     const std::string text = read_text(file, "a record of PEER");
-    std::string_view rest = text, line, words;
-    for (std::size_t k = 0; k < at2_lines; ++k) words = line, line = next(rest);
-    const auto header = at2_header(line);
+    std::vector<std::string_view> lines = lines_of(text);
+    if (lines.size() < at2_lines) lines.resize(at2_lines);
+    const std::string_view words = lines[at2_lines - 2], counts = lines[at2_lines - 1];
+    const auto header = at2_header(counts);
     if (!header)
       throw InputError({file.string(), at2_lines, 1},
                        fmt::format("'{}'; expected the count and the interval: NPTS= 5372, DT= .0050 SEC",
-                                   line.substr(0, 60)));
+                                   counts.substr(0, 60)));
     RecordTable table;
     table.file = file.string();
     table.clock = Clock{0.0, header->interval};
     table.columns.resize(1);
     std::vector<std::string_view> fields;
-    for (std::size_t number = at2_lines + 1; !rest.empty(); ++number) {
-      line = next(rest);
-      split_fields(line, ' ', fields);
+    for (std::size_t k = at2_lines; k < lines.size(); ++k) {
+      split_fields(lines[k], ' ', fields);
       for (const std::string_view field : fields) {
         const ParsedNumber parsed = parse_number(field);
         if (!parsed.finite)
-          throw InputError({file.string(), number, static_cast<std::size_t>(field.data() - line.data()) + 1},
-                           fmt::format("'{}'; expected a number", field));
+          throw InputError(
+              {file.string(), k + 1, static_cast<std::size_t>(field.data() - lines[k].data()) + 1},
+              fmt::format("'{}'; expected a number", field));
         table.columns[0].push_back(parsed.value);
       }
     }
@@ -75,13 +77,6 @@ class At2Reader final : public RecordReader {
       for (double& value : table.columns[0]) value *= 10.0;
     table.names = {velocity ? "velocity_mm_per_s" : displacement ? "displacement_mm" : "acceleration_g"};
     return table;
-  }
-
- private:
-  static std::string_view next(std::string_view& rest) {
-    const std::string_view line = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
   }
 };
 

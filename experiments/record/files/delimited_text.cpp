@@ -270,12 +270,17 @@ void keep_one_sensor(const std::string& file, std::string& text) {
   constexpr std::size_t first_cells = 3, fewest = 3;
   const char separator = separator_of(line_near(text, 0.5));
   for (std::size_t k = 0; k < first_cells; ++k) {
-    std::map<std::string, std::size_t> rows;
-    bool others = false;
     const auto tag_of = [&](std::string_view line, Fields& fields) {
       split_fields(line, separator, fields);
       return k < fields.size() && fields.size() > k + 1 ? unquoted(fields[k]) : std::string();
     };
+    if (!holds_across(text, [&](std::string_view line) {
+          Fields fields;
+          return std::regex_match(tag_of(line, fields), sensor);
+        }))
+      continue;
+    std::map<std::string, std::size_t> rows;
+    bool others = false;
     change_lines(text, [&](char* line, std::size_t length) {
       Fields fields;
       const std::string tag = tag_of({line, length}, fields);
@@ -388,6 +393,7 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
       text.width());  // whole seconds: a double holds the rest finely
   constexpr double half_a_day = 43200.0;
   std::vector<double> days(text.width(), 0.0);  // that have passed [s]
+  std::vector<double> day(text.width(), std::nan(""));  // of dates, each later than the one before [s]
   std::size_t above = 0;                        // characters before the first row
   while (text.next()) {
     if (table.lines.empty()) above = static_cast<std::size_t>(text.line().data() - content->data());
@@ -401,8 +407,8 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
         double& value = table.columns[column].back();
         if (const auto stamp = parse_stamp(field)) {
           if (stamp->kind == Stamp::Kind::date) {
-            if (!first_stamp[column]) first_stamp[column] = stamp->seconds;
-            value = stamp->seconds - *first_stamp[column];
+            value = 0.0;
+            day[column] = table.lines.size() == 1 || stamp->seconds > day[column] ? stamp->seconds : std::nan("");
           } else if (stamp->kind == Stamp::Kind::time_of_day) {  // past midnight the days go on
             value = stamp->seconds + days[column];
             const std::size_t rows = table.columns[column].size();
@@ -424,7 +430,7 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
     }
   }
   for (std::size_t column = 0; !table.time && column < text.width(); ++column)
-    if (first_stamp[column] && rises(table.columns[column]) && !format.sampling_rate)
+    if (std::isfinite(day[column]) && table.rows() > 1 && !format.sampling_rate)
       throw InputError({table.file, table.lines.front(), 0},
                        fmt::format("column {} holds dates without times of day; expected times, or the "
                                    "sampling rate: --rate HZ",

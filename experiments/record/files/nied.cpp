@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "experiments/record/delimited_text.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
@@ -67,12 +68,8 @@ class ComponentFile {
   std::vector<string_view> fields_;
 
   void split() {
-    string_view rest = text_;
-    while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
-      lines_.push_back(trimmed(rest.substr(0, end)));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
+    lines_ = lines_of(text_);
+    for (string_view& line : lines_) line = trimmed(line);
     while (!lines_.empty() && lines_.back().empty()) lines_.pop_back();
     if (lines_.size() < header_lines)
       throw InputError(

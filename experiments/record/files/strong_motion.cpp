@@ -7,12 +7,13 @@
 #include <cmath>
 #include <optional>
 #include <regex>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "experiments/record/delimited_text.hpp"
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
+#include "experiments/record/units.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -37,13 +38,7 @@ struct CellFormat {
 class StrongMotionFile {
  public:
   explicit StrongMotionFile(const std::filesystem::path& file)
-      : name_(file.string()), text_(read_text(file, "a strong-motion record")) {
-    for (string_view rest = text_; !rest.empty();) {
-      const string_view line = rest.substr(0, rest.find('\n'));
-      rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-      lines_.push_back(line.ends_with('\r') ? line.substr(0, line.size() - 1) : line);
-    }
-  }
+      : name_(file.string()), text_(read_text(file, "a strong-motion record")), lines_(lines_of(text_)) {}
 
   RecordTable read() {
     const bool smc = lines_.size() > 1 && lines_[1].starts_with('*');
@@ -117,16 +112,14 @@ class StrongMotionFile {
     return at;
   }
 
-  /// To SI units, of a length over a power of seconds.
+  /// To SI units, of a length over a power of seconds; without the library of units, which may be missing.
   double factor_of(const std::string& unit, std::size_t line) const {
-    static const std::set<std::string> centimetres{"cm",      "cm/s",   "cm/sec",     "cm/s2",
-                                                   "cm/sec2", "cm/s/s", "cm/sec/sec", "gal"},
-        millimetres{"mm", "mm/s", "mm/sec", "mm/s2", "mm/sec2", "mm/s/s", "mm/sec/sec"};
-    constexpr double gravity = 9.80665;
-    if (centimetres.contains(unit)) return 0.01;
-    if (millimetres.contains(unit)) return 0.001;
-    if (unit == "g") return gravity;
-    if (unit == "mg") return 1e-3 * gravity;
+    static const std::regex metric("([cm])m(/s(ec)?2?(/s(ec)?)?)?");
+    std::smatch match;
+    if (std::regex_match(unit, match, metric)) return match[1] == "c" ? 0.01 : 0.001;
+    if (unit == "gal") return 0.01;
+    if (unit == "g") return standard_gravity;
+    if (unit == "mg") return 1e-3 * standard_gravity;
     throw bad(line, fmt::format("unit '{}'; expected cm/sec2, mm/sec2 or g of an acceleration, or cm and "
                                 "cm/sec: counts have no scale here",
                                 unit));

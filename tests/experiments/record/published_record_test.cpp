@@ -78,15 +78,17 @@ TEST(PublishedRecord, HasNoNamesInKeysWithoutValues) {
 }
 
 TEST(PublishedRecord, BeginsWithCellsThatHoldNothing) {
-  std::string text = "x_axis,channel_2,channel_4\n";
-  for (int k = 0; k < 60; ++k)
-    text += k < 8 ? fmt::format("{:.7f},,\n", 0.00078125 * k)
-                  : fmt::format("{:.7f},{:.5f},{:.5f}\n", 0.00078125 * k, scattered(k), scattered(3 * k));
-  RecordFormat format;
-  format.malformed = MalformedRows::as_missing;
-  const Record record = recognised(text, format);
-  ASSERT_EQ(record.samples.rows(), 2);
-  EXPECT_NEAR(record.samples(1, record.size() - 1), scattered(177), 1e-9);
+  for (const char* const head : {"x_axis,channel_2,channel_4\n", "x-axis,2,4\nsecond,Volt,Volt\n"}) {
+    std::string text = head;
+    for (int k = 0; k < 60; ++k)
+      text += k < 8 ? fmt::format("{:.7f},,\n", 0.00078125 * k)
+                    : fmt::format("{:.7f},{:.5f},{:.5f}\n", 0.00078125 * k, scattered(k), scattered(3 * k));
+    RecordFormat format;
+    format.malformed = MalformedRows::as_missing;
+    const Record record = recognised(text, format);
+    ASSERT_EQ(record.samples.rows(), 2);
+    EXPECT_NEAR(record.samples(1, record.size() - 1), scattered(177), 1e-9);
+  }
 }
 
 TEST(PublishedRecord, OfDaysIsNoVibration) {
@@ -94,6 +96,16 @@ TEST(PublishedRecord, OfDaysIsNoVibration) {
   for (int k = 1; k < 28; ++k)
     text += fmt::format("2002-07-{:02d},{:.2f},{:.2f}\n", k, 160 + scattered(k), 163.0 + k % 3);
   EXPECT_THAT(question_of(text), HasSubstr("column 1 holds dates without times of day"));
+}
+
+TEST(PublishedRecord, HasNoChannelOfDatesPastMidnight) {
+  std::string text;
+  for (int k = 0; k < 60; ++k)
+    text += fmt::format("2026-11-{},{}:{:06.3f},{:.4f}\n", k < 30 ? 26 : 27, k < 30 ? "23:59" : "00:00",
+                        k < 30 ? 59.7 + 0.01 * k : 0.01 * (k - 30), scattered(k));
+  const Record record = recognised(text);
+  EXPECT_EQ(record.channels.size(), 1u);
+  EXPECT_NEAR(record.interval(), 0.01, 1e-9);
 }
 
 TEST(PublishedRecord, ThatBeginsWithABraceIsNoJson) {
