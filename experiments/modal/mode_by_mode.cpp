@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -166,6 +167,49 @@ double valley_beside(const VectorXd& spectrum, Index k) {
   return deepest_needed;
 }
 
+/// The upper median of a window that moves along values, in O(log N) for each step and each question: how
+/// many values of the window lie at or below one, by a tree of counts over their ranks [fenwick1994].
+class MovingMedian {
+ public:
+  explicit MovingMedian(const VectorXd& values)
+      : sorted_(values), ranks_(values.size()), counts_(static_cast<std::size_t>(values.size()) + 1, 0) {
+    std::vector<Index> order(static_cast<std::size_t>(values.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::ranges::sort(order, {}, [&](Index k) { return values[k]; });
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+      sorted_[static_cast<Index>(rank)] = values[order[rank]];
+      ranks_[order[rank]] = static_cast<Index>(rank);
+    }
+  }
+
+  /// To the values left .. right, none of them before those of the last window.
+  void move(Index left, Index right) {
+    for (; end_ <= right; ++end_) add(end_, 1);
+    for (; begin_ < left; ++begin_) add(begin_, -1);
+  }
+
+  /// Whether value < times median.
+  bool is_below(double value, double times) const {
+    const auto above = std::partition_point(sorted_.begin(), sorted_.end(),
+                                            [&](double one) { return times * one <= value; });
+    Index within = 0;
+    for (auto node = above - sorted_.begin(); node > 0; node -= node & -node)
+      within += counts_[static_cast<std::size_t>(node)];
+    return within <= (end_ - begin_) / 2;
+  }
+
+ private:
+  VectorXd sorted_;
+  Eigen::VectorX<Index> ranks_;
+  std::vector<Index> counts_;  ///< a tree, from 1 on
+  Index begin_ = 0, end_ = 0;
+
+  void add(Index k, Index count) {
+    for (Index node = ranks_[k] + 1; node < std::ssize(counts_); node += node & -node)
+      counts_[static_cast<std::size_t>(node)] += count;
+  }
+};
+
 }  // namespace
 
 std::vector<SpectralLine> spectral_lines(const Eigen::MatrixXd& outputs, double interval,
@@ -181,12 +225,13 @@ std::vector<SpectralLine> spectral_lines(const Eigen::MatrixXd& outputs, double 
   const Index around = std::max<Index>(16 * lobe, spectrum.size() / 8);
   const double least = settings.least * spectrum.maxCoeff();
   std::vector<SpectralLine> lines;
+  MovingMedian noise(spectrum);
   for (Index k = lobe; k + 1 < spectrum.size(); ++k) {
     const Index from = std::max<Index>(0, k - lobe), to = std::min(spectrum.size() - 1, k + lobe);
     if (spectrum[k] < least || spectrum[k] < spectrum.segment(from, to - from + 1).maxCoeff()) continue;
     const Index left = std::max<Index>(0, k - around), right = std::min(spectrum.size() - 1, k + around);
-    if (spectrum[k] < settings.above_noise * median(VectorXd(spectrum.segment(left, right - left + 1))))
-      continue;
+    noise.move(left, right);
+    if (noise.is_below(spectrum[k], settings.above_noise)) continue;
     if (spectrum[k] < settings.above_valley * valley_beside(spectrum, k)) continue;
     lines.push_back({first.frequency_hz[k], spectrum[k]});
   }

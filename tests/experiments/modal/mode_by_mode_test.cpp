@@ -1,6 +1,7 @@
 // Methods that take one mode at a time. Oracles: decays with known rates; closed forms of their spectra.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -8,6 +9,7 @@
 #include "experiments/modal/classic_estimators.hpp"
 #include "experiments/modal/modal_method.hpp"
 #include "experiments/modal/mode_by_mode.hpp"
+#include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments::mode_by_mode_test {
@@ -150,6 +152,33 @@ TEST(SpectralPeaks, SeesNoneInNoise) {
   for (int seed = 0; seed < 30; ++seed)
     peaks += static_cast<int>(spectral_peaks(standard_normal(500, seed, 1).transpose(), interval).size());
   EXPECT_LE(peaks, 2);
+}
+
+// Oracle: the definition, with a median of its own around every value.
+TEST(SpectralLines, AreThoseOfTheirDefinition) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const MatrixXd outputs = decay({{7.0, 0.01, 1.0, 0.3}, {21.0, 0.005, 0.2, 1.0}}, 1500, 0.3, seed);
+    const LineSettings settings{.above_noise = 2, .above_valley = 0, .least = 0.02};
+    const AmplitudeSpectrum spectrum = amplitude_spectrum(outputs.row(0).transpose(), interval);
+    const Eigen::VectorXd& a = spectrum.amplitude;
+    const auto lobe = static_cast<Index>(2 / (interval * 1500) / spectrum.frequency_hz[1]);
+    const Index around = std::max<Index>(16 * lobe, a.size() / 8);
+    std::vector<double> expected;
+    for (Index k = lobe; k + 1 < a.size(); ++k) {
+      const auto within = [&](Index reach) {
+        const Index from = std::max<Index>(0, k - reach), to = std::min(a.size() - 1, k + reach);
+        return Eigen::VectorXd(a.segment(from, to - from + 1));
+      };
+      if (a[k] >= settings.least * a.maxCoeff() && a[k] >= within(lobe).maxCoeff() &&
+          a[k] >= settings.above_noise * median(within(around)))
+        expected.push_back(spectrum.frequency_hz[k]);
+    }
+    std::vector<double> found;
+    for (const SpectralLine& line : spectral_lines(outputs, interval, settings))
+      found.push_back(line.frequency_hz);
+    EXPECT_EQ(found, expected) << seed;
+    EXPECT_GT(found.size(), 5u);
+  }
 }
 
 }  // namespace
