@@ -1,16 +1,20 @@
-// Whether a base and what stands on it were recorded as described: their order, a sign, a common clock.
+// Whether channels were recorded as described: of a base and what stands on it their order, a sign, a common
+// clock; of a free decay a common clock.
 #pragma once
 
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "experiments/modal/joint_decay_fit.hpp"
+
 namespace beamid::experiments {
 
-// The first mode of what stands, or lies, on a base whose motion was measured: a soil column under an
-// earthquake.
-
+/// The first mode of what stands, or lies, on a base whose motion was measured: a soil column under an
+/// earthquake.
 struct BaseResponse {
   double frequency_hz = 0.0, frequency_deviation_hz = 0.0;  ///< f1, of the fit [Hz]
   double damping_ratio = 0.0, damping_ratio_deviation = 0.0;
@@ -56,5 +60,23 @@ inline constexpr int most_late_samples = 10;
 /// doubted only where the response moves less than the base, or xi is above 0.3. Where the channels show no
 /// mode, every change that gives one counts.
 ChannelFault channel_fault(const Eigen::VectorXd& base, const Eigen::VectorXd& response, double interval);
+
+// Whether all channels of a free decay ring at the same frequencies.
+
+/// A structure has one frequency for each mode, wherever it is measured: channels whose own frequencies, one
+/// Gauss-Newton step from the joint ones, scatter by more than their deviations have clocks of their own.
+struct ClockScatter {
+  double chi_square = 0.0, freedom = 0.0;  ///< of the channels' frequencies about those of their modes
+  Eigen::VectorXd farthest;  ///< of each mode, how far the farthest of its channels surely is (K) [rad/s]
+  Eigen::Index fast = 0, slow = 0;      ///< the clocks furthest apart, of the channels (p)
+  double apart = 0.0, deviation = 0.0;  ///< by how much, relative
+
+  /// "The channels do not ring at one frequency ...: tip runs 100 ppm faster than mid, ...".
+  std::string sentence(const std::vector<std::string>& channels) const;
+};
+
+/// Absent where they agree: chi^2 below its 1e-6 point, as the noise near each mode is itself estimated from
+/// few lines.
+std::optional<ClockScatter> clock_scatter(const JointDecayFit& fit);
 
 }  // namespace beamid::experiments

@@ -7,7 +7,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -256,18 +255,22 @@ MatrixXd hann_lines(Index begin, Index samples, Index count, double turn) {
   return waves;
 }
 
-/// Variance of white noise (p x K) as dense as each residual is around each mode: the mean power of the lines
-/// h there, over the share of white noise that remains in the residual,
-///
-///     h^H (I - Q Q^T - S N^-1 S^T / variance) h / h^H h.
-MatrixXd noise_near_modes(const JointLinearisation& at, double interval, const VectorXd& rates) {
+/// Of white noise as dense as each residual is around each mode (p x K).
+struct NoiseNearModes {
+  MatrixXd variance, freedom;  ///< freedom: of the variance, in degrees
+};
+
+/// The mean power of the lines h around a mode, over the share of white noise that remains in the residual:
+/// with G = h^H (I - Q Q^T - S N^-1 S^T / variance) h, tr G / h^H h. The power of white noise has
+/// (tr G)^2 / |G|^2 degrees of freedom [satterthwaite1946].
+NoiseNearModes noise_near_modes(const JointLinearisation& at, double interval, const VectorXd& rates) {
   constexpr Index block = 4096;
-  constexpr double least_left = 0.2, window_square = 1.5;  // the mean of (1 - cos)^2
+  constexpr double least_left = 0.2;
   const Index modes = rates.size() / 2, count = at.residuals.rows(), channels = at.residuals.cols();
   const MatrixXd inverse = inverse_of(at.normal);
-  MatrixXd variance(channels, modes);
+  NoiseNearModes noise{MatrixXd(channels, modes), MatrixXd(channels, modes)};
   for (Index m = 0; m < modes; ++m) {
-    MatrixXd on_residuals, on_range, on_slopes;  // (34 x p, 2K+1, 2K)
+    MatrixXd on_lines, on_residuals, on_range, on_slopes;  // (34 x 34, p, 2K+1, 2K)
     const auto add = [](const MatrixXd& lines, const auto& rows, MatrixXd& sum) {
       if (sum.size() == 0) sum = MatrixXd::Zero(lines.cols(), rows.cols());
       sum.noalias() += lines.transpose() * rows;
@@ -275,34 +278,48 @@ MatrixXd noise_near_modes(const JointLinearisation& at, double interval, const V
     for (Index begin = 0; begin < count; begin += block) {
       const Index samples = std::min(block, count - begin);
       const MatrixXd lines = hann_lines(begin, samples, count, rates[2 * m] * interval);
+      add(lines, lines, on_lines);
       add(lines, at.residuals.middleRows(begin, samples), on_residuals);
       add(lines, at.range.middleRows(begin, samples), on_range);
       add(lines, at.slopes.middleRows(begin, samples), on_slopes);
     }
-    const double whole =
-        0.5 * static_cast<double>(on_range.rows()) * window_square * static_cast<double>(count);
     for (Index c = 0; c < channels; ++c) {
       const MatrixXd moved = on_slopes * at.amplitudes[static_cast<std::size_t>(c)];
-      const double taken =
-          on_range.squaredNorm() + (moved * inverse).cwiseProduct(moved).sum() / at.variances[c];
-      variance(c, m) =
-          on_residuals.col(c).squaredNorm() / (whole * std::max(least_left, 1.0 - taken / whole));
+      const MatrixXd left =
+          on_lines - on_range * on_range.transpose() - moved * inverse * moved.transpose() / at.variances[c];
+      const double remains = std::max(least_left * on_lines.trace(), left.trace());
+      noise.variance(c, m) = on_residuals.col(c).squaredNorm() / remains;
+      noise.freedom(c, m) = remains * remains / std::max(left.squaredNorm(), 1e-300);
     }
   }
-  return variance;
+  return noise;
 }
 
-MatrixXd covariance_of(const JointLinearisation& at, const MatrixXd& noise_variance) {
-  const Index modes = noise_variance.cols();
+/// Of the sum that the channels' noise makes of a mode's variance, each by its share [satterthwaite1946].
+double freedom_of(const JointLinearisation& at, const NoiseNearModes& noise, Index m) {
+  double sum = 0.0, squares = 0.0;
+  for (Index c = 0; c < at.residuals.cols(); ++c) {
+    const double share = at.squares[static_cast<std::size_t>(c)].block<2, 2>(2 * m, 2 * m).trace() *
+                         noise.variance(c, m) / (at.variances[c] * at.variances[c]);
+    sum += share, squares += share * share / noise.freedom(c, m);
+  }
+  return sum * sum / std::max(squares, 1e-300);
+}
+
+MatrixXd covariance_of(const JointLinearisation& at, const NoiseNearModes& noise) {
+  const Index modes = noise.variance.cols();
   MatrixXd middle = MatrixXd::Zero(2 * modes, 2 * modes);
+  VectorXd student(2 * modes);
+  for (Index m = 0; m < modes; ++m)
+    student.segment<2>(2 * m).setConstant(student_factor(freedom_of(at, noise, m)));
   for (Index c = 0; c < at.residuals.cols(); ++c) {
     VectorXd density(2 * modes);
-    for (Index m = 0; m < modes; ++m) density.segment<2>(2 * m).setConstant(std::sqrt(noise_variance(c, m)));
+    for (Index m = 0; m < modes; ++m) density.segment<2>(2 * m).setConstant(std::sqrt(noise.variance(c, m)));
     density /= at.variances[c];
     middle += density.asDiagonal() * at.squares[static_cast<std::size_t>(c)] * density.asDiagonal();
   }
-  const MatrixXd inverse = inverse_of(at.normal);
-  return inverse * middle * inverse;
+  const MatrixXd inverse = student.asDiagonal() * inverse_of(at.normal);
+  return inverse * middle * inverse.transpose();
 }
 
 void take_own_shifts(const JointLinearisation& at, JointDecayFit& fit) {
@@ -366,85 +383,11 @@ JointDecayFit fit_decays_jointly(const MatrixXd& outputs, double interval,
   fit.reconstruction = (y - at.residuals).transpose();
   fit.residual_standard_deviation =
       at.residuals.colwise().norm().transpose() / std::sqrt(static_cast<double>(y.rows() - 4 * modes - 1));
-  fit.noise_variance = noise_near_modes(at, interval, rates);
-  fit.covariance = covariance_of(at, fit.noise_variance);
+  const NoiseNearModes noise = noise_near_modes(at, interval, rates);
+  fit.noise_variance = noise.variance;
+  fit.covariance = covariance_of(at, noise);
   take_own_shifts(at, fit);
   return fit;
-}
-
-namespace {
-
-/// Numbers, each with a deviation, that should be one.
-struct Scatter {
-  double mean = 0.0, squares = 0.0;  ///< squares of distances from the mean, in deviations
-  double farthest = 0.0;             ///< distance from the mean, of those beyond two deviations
-  Index freedom = 0;
-};
-
-Scatter scatter_of(const VectorXd& values, const VectorXd& deviations) {
-  Scatter found;
-  double weights = 0.0;
-  for (Index i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(deviations[i]) || !(deviations[i] > 0.0)) continue;
-    const double weight = std::pow(deviations[i], -2);
-    found.mean += weight * values[i], weights += weight, ++found.freedom;
-  }
-  if (--found.freedom < 1) return {};
-  found.mean /= weights;
-  for (Index i = 0; i < values.size(); ++i)
-    if (std::isfinite(deviations[i]) && deviations[i] > 0.0) {
-      const double distance = std::abs(values[i] - found.mean);
-      found.squares += std::pow(distance / deviations[i], 2);
-      if (distance > 2.0 * deviations[i]) found.farthest = std::max(found.farthest, distance);
-    }
-  return found;
-}
-
-/// Of each channel, over its modes: relative to the joint frequencies, with its deviation.
-std::pair<VectorXd, VectorXd> clock_rates(const JointDecayFit& fit) {
-  const Index channels = fit.own_shift.rows();
-  VectorXd rates = VectorXd::Zero(channels), deviations(channels);
-  for (Index c = 0; c < channels; ++c) {
-    double weights = 0.0;
-    for (Index m = 0; m < fit.own_shift.cols(); ++m) {
-      const double w = fit.rates[static_cast<std::size_t>(m)].imag(),
-                   weight = std::pow(w / fit.own_shift_deviation(c, m), 2);
-      if (!(weight > 0.0) || !std::isfinite(weight)) continue;
-      rates[c] += weight * fit.own_shift(c, m) / w, weights += weight;
-    }
-    rates[c] /= std::max(weights, 1e-300);
-    deviations[c] = 1.0 / std::sqrt(weights);
-  }
-  return {rates, deviations};
-}
-
-}  // namespace
-
-std::optional<ClockScatter> clock_scatter(const JointDecayFit& fit) {
-  constexpr double by_chance = 1e-6;
-  ClockScatter found;
-  found.farthest.resize(fit.own_shift.cols());
-  for (Index m = 0; m < fit.own_shift.cols(); ++m) {
-    const Scatter mode = scatter_of(fit.own_shift.col(m), fit.own_shift_deviation.col(m));
-    found.chi_square += mode.squares, found.freedom += static_cast<double>(mode.freedom);
-    found.farthest[m] = mode.farthest;
-  }
-  if (found.freedom < 1.0 || !(found.chi_square > chi_square_limit(found.freedom, 1.0 - by_chance)))
-    return {};
-  const auto [rates, deviations] = clock_rates(fit);
-  // A clock that runs fast counts more seconds in which the structure rings slower.
-  found.apart = rates.maxCoeff(&found.slow) - rates.minCoeff(&found.fast);
-  found.deviation = std::hypot(deviations[found.fast], deviations[found.slow]);
-  return found;
-}
-
-std::string ClockScatter::sentence(const std::vector<std::string>& channels) const {
-  return fmt::format(
-      "The channels do not ring at one frequency (chi^2 = {:.3g} of {:.0f}): {} runs {:.2g} ppm faster than "
-      "{}, with a standard deviation of {:.2g}. Were they sampled by clocks of their own, or "
-      "does another mode ring close by?",
-      chi_square, freedom, channels[static_cast<std::size_t>(fast)], 1e6 * apart,
-      channels[static_cast<std::size_t>(slow)], 1e6 * deviation);
 }
 
 }  // namespace beamid::experiments

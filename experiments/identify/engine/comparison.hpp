@@ -14,7 +14,7 @@
 #include "experiments/identify/driven/driven_fit.hpp"
 #include "experiments/identify/engine/analysis.hpp"
 #include "experiments/identify/engine/noise_in_estimates.hpp"
-#include "experiments/modal/joint_decay_fit.hpp"
+#include "experiments/modal/channel_fault.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/models/identification.hpp"
 #include "experiments/text/objection.hpp"

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/modal/channel_fault.hpp"
 #include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/modal/study/modal_study.hpp"
