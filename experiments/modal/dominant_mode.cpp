@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "experiments/signal/decimation.hpp"
@@ -165,22 +167,25 @@ int factor_for_cycles(Eigen::Index count, double interval, double frequency_hz, 
   return decimation_factor(1 / (interval * frequency_hz * samples_per_cycle), count / enough);
 }
 
-const IdentifiedMode& strongest_near(const EigensystemRealisation& realisation, double frequency_hz,
+/// The strongest mode near a frequency; null where there is none.
+const IdentifiedMode* strongest_near(const EigensystemRealisation& realisation, double frequency_hz,
                                      double tolerance) {
   const IdentifiedMode* best = nullptr;
-  std::ostringstream found;
-  for (const IdentifiedMode& mode : realisation.modes) {
-    if (mode.spurious) continue;
-    found << (found.tellp() > 0 ? ", " : "") << mode.frequency_hz;
-    if (std::abs(mode.frequency_hz - frequency_hz) <= tolerance * frequency_hz &&
+  for (const IdentifiedMode& mode : realisation.modes)
+    if (!mode.spurious && std::abs(mode.frequency_hz - frequency_hz) <= tolerance * frequency_hz &&
         (!best || mode.amplitude() > best->amplitude()))
       best = &mode;
-  }
-  if (best) return *best;
-  std::ostringstream message;
+  return best;
+}
+
+std::invalid_argument none_near(const EigensystemRealisation& realisation, double frequency_hz,
+                                double tolerance) {
+  std::ostringstream found, message;
+  for (const IdentifiedMode& mode : realisation.modes)
+    if (!mode.spurious) found << (found.tellp() > 0 ? ", " : "") << mode.frequency_hz;
   message << "no mode within " << 100 * tolerance << " % of " << frequency_hz << " Hz; found "
           << (found.tellp() > 0 ? found.str() + " Hz" : "none");
-  throw std::invalid_argument(message.str());
+  return std::invalid_argument(message.str());
 }
 
 /// Modes beside the dominant one that are strong enough to matter.
@@ -204,14 +209,20 @@ struct Realised {
 };
 
 /// A mode whose frequency follows its amplitude is realised as several poles closer than the signal resolves:
-/// the order is then lowered until one is left.
+/// the order is then lowered until one is left. Where that one grows, as half a beat of two modes does, the
+/// strongest of the several stays.
 Realised realise(const DecimatedSignal& coarse, double expected_hz, const ModalAnalysisSettings& settings) {
   const double duration = coarse.interval * static_cast<double>(coarse.samples.size());
   EigensystemSettings eigensystem = settings.eigensystem;
+  std::optional<Realised> before;
   for (;; --eigensystem.order) {
     const EigensystemRealisation realisation =
         eigensystem_realisation(coarse.samples.transpose(), coarse.interval, eigensystem);
-    const IdentifiedMode& dominant = strongest_near(realisation, expected_hz, settings.frequency_tolerance);
+    const IdentifiedMode* const found =
+        strongest_near(realisation, expected_hz, settings.frequency_tolerance);
+    if (!found && before) return *before;
+    if (!found) throw none_near(realisation, expected_hz, settings.frequency_tolerance);
+    const IdentifiedMode& dominant = *found;
     Realised result{dominant, {dominant.rate}};
     bool split = false;
     for (const IdentifiedMode* mode : strong_modes(realisation, dominant, settings.companion_amplitude)) {
@@ -223,6 +234,7 @@ Realised realise(const DecimatedSignal& coarse, double expected_hz, const ModalA
     }
     if (!split || realisation.order <= 2 || settings.eigensystem.order > 0) return result;
     eigensystem.order = realisation.order;
+    before = std::move(result);
   }
 }
 

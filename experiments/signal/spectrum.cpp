@@ -103,8 +103,11 @@ double strongest_frequency(const Eigen::VectorXd& signal, double interval) {
   const double left = std::log(*(peak - 1)), centre = std::log(*peak), right = std::log(*(peak + 1));
   const double curvature = left - 2 * centre + right;
   const double shift = curvature < 0 ? 0.5 * (left - right) / curvature : 0;
-  return (static_cast<double>(peak - magnitude.begin()) + (std::isfinite(shift) ? shift : 0)) /
-         (static_cast<double>(length) * interval);
+  const double frequency =
+      (static_cast<double>(peak - magnitude.begin()) + (std::isfinite(shift) ? shift : 0)) /
+      (static_cast<double>(length) * interval);
+  // At the lower end of the range, which need be no peak, the parabola may lead below zero.
+  return std::max(frequency, 1.0 / (static_cast<double>(count) * interval));
 }
 
 Eigen::MatrixXcd spectrum_lines(const Eigen::MatrixXd& signals, Eigen::Index samples, Eigen::Index lines) {

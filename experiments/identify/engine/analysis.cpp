@@ -230,10 +230,12 @@ void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysi
     found.pair = close_pair(filled, interval, *found.modal);
     found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
   } catch (const std::invalid_argument& error) {
-    found.modal_refusal = fmt::format(
-        "modal analysis: {} (looked for near {:.6g} Hz of {})", error.what(), found.expected_hz,
-        experiment.prior.stiffness ? "prior.stiffness_n_per_m"
-                                   : "the beam as described; prior.stiffness_n_per_m states it better");
+    const char* const from = experiment.prior.stiffness ? "prior.stiffness_n_per_m"
+                             : experiment.is_described
+                                 ? "the beam as described; prior.stiffness_n_per_m states it better"
+                                 : "the strongest line; beamid modal lists all modes of the record";
+    found.modal_refusal = fmt::format("modal analysis: {} (looked for near {:.6g} Hz of {})", error.what(),
+                                      found.expected_hz, from);
   } catch (const std::runtime_error& error) {
     found.modal_failure = error.what();
   }
@@ -396,7 +398,7 @@ DecayObjection jump_objection(const DecayJump& jump, double from) {
 }
 
 DecayObjection pair_objection(const ClosePair& pair, double frequency_hz) {
-  const bool contradicts = pair.wins || pair.is_indeterminate();
+  const bool contradicts = pair.contradicts_one();
   return {
       {pair.objection(),
        (contradicts ? "CONTRADICTED: " : "") + pair.sentence(frequency_hz) +
@@ -427,7 +429,7 @@ std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, con
             std::abs(error), half},
            std::abs(error) > twice * half});
   }
-  if (analysis.pair && alone && (analysis.pair->over_drift > 0.0 || analysis.pair->is_indeterminate()))
+  if (analysis.pair && alone && analysis.pair->speaks_against_one())
     objections.push_back(pair_objection(*analysis.pair, mode.frequency_hz));
   return objections;
 }

@@ -9,9 +9,13 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "experiments/identify/tracking/ringing_model.hpp"
 #include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/dominant_mode.hpp"
+#include "experiments/modal/joint_decay_fit.hpp"
+#include "experiments/modal/poles.hpp"
 #include "experiments/signal/decimation.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/sway.hpp"
@@ -214,6 +218,43 @@ void enter(const std::vector<filters::Gaussian>& estimates, Index first, double 
   }
 }
 
+/// The modes of a free decay that are at least a tenth as strong as its strongest, that one first; empty
+/// where they leave more of it than one damped sine leaves of six cycles.
+std::vector<Pole> constant_modes(const Ringing& ringing) {
+  constexpr double as_well = 1.5, weakest = 0.1;
+  ModalAnalysisSettings settings;
+  settings.companion_amplitude = weakest;
+  const ModalEstimate strongest = dominant_mode(ringing.signal, ringing.interval, settings);
+  std::vector<std::complex<double>> rates{strongest.rate()};
+  for (const CompanionMode& mode : strongest.companions) rates.push_back(mode.rate());
+  JointDecayFit fit = fit_decays_jointly(ringing.signal.transpose(), ringing.interval, rates);
+  if (const auto pair = close_pair(ringing.signal.transpose(), ringing.interval, fit, 0); pair && pair->wins)
+    fit = pair->fit;
+  if (fit.residual_standard_deviation[0] > as_well * ringing.noise) return {};
+  std::vector<Pole> modes;
+  for (std::size_t m = 0; m < fit.rates.size(); ++m) modes.push_back(fitted_pole(fit, m));
+  std::ranges::sort(modes, std::ranges::greater(), [](const Pole& mode) { return mode.shape.norm(); });
+  std::erase_if(modes, [least = weakest * modes.front().shape.norm()](const Pole& mode) {
+    return mode.shape.norm() < least;
+  });
+  return modes;
+}
+
+/// What the changes of one mode are where two of constant frequency explain the record as a whole.
+std::string beat_sentence(const Ringing& ringing, const std::vector<Plateau>& plateaus) {
+  if (plateaus.size() == 1 && !plateaus.front().companions_hz.empty()) return {};  // both are fitted there
+  try {
+    const std::vector<Pole> modes = constant_modes(ringing);
+    if (modes.size() < 2) return {};
+    return fmt::format(
+        "Modes of constant frequency, the strongest at {:.4g} and {:.4g} Hz, explain the whole record: what "
+        "one mode would do in time is their beat. beamid modal lists each of them.",
+        modes[0].frequency_hz(), modes[1].frequency_hz());
+  } catch (const std::exception&) {
+    return {};  // no decay of constant modes
+  }
+}
+
 /// Where two modes win, the stronger is followed and the other rings beside it. Where neither one nor two do,
 /// the distances of both count as uncertainty, each by its share of the stronger.
 void take_pair(const ClosePair& pair, Plateau& plateau) {
@@ -224,7 +265,7 @@ void take_pair(const ClosePair& pair, Plateau& plateau) {
     plateau.companions_hz.push_back(weak.frequency_hz());
     return;
   }
-  if (!pair.is_indeterminate() && pair.over_drift < 0.0) return;  // the walk follows a drift
+  if (!pair.speaks_against_one()) return;  // the walk follows a drift
   if (pair.is_indeterminate()) plateau.one_or_two = pair.sentence(plateau.frequency_hz);
   const PairSpread spread = pair.spread_about(plateau.frequency_hz, plateau.damping_ratio);
   plateau.frequency_deviation_hz = std::hypot(plateau.frequency_deviation_hz, spread.frequency_hz);
@@ -402,6 +443,7 @@ Tracking track(const VectorXd& signal, double start, double interval, const Trac
     if (plateau && std::ssize(estimates) == last - first + 1)
       result.plateaus.push_back(plateau_of(ringing, estimates, first, levels));
   }
+  result.beat = beat_sentence(ringing, result.plateaus);
   return result;
 }
 

@@ -102,6 +102,7 @@ struct Tracking {
   Eigen::VectorXd damping_ratio, damping_ratio_deviation;
   std::vector<Eigen::Index> alarms;  ///< samples at which motion and stiffness were taken up anew
   std::vector<Plateau> plateaus;
+  std::string beat;  ///< a sentence where modes of constant frequency explain the whole record
 };
 
 /// The octaves on both sides of the median frequency that dominates in 32 spans of the record [Hz].

@@ -283,6 +283,7 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
     if (const std::string& text = found.plateaus[i].one_or_two; !text.empty())
       results.object({"close_modes", text + " Its damping ratio is not determined."},
                      fmt::format("plateau {}: ", i + 1), true);
+  if (!found.beat.empty()) results.object({"close_modes", found.beat}, "", true);
   if (!between.empty()) results.table(change_table(between));
   results.paragraph(fmt::format(
       "{} alarms: the squares of {} innovations in succession above {:.1f}, which in a record without "

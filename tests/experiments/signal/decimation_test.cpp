@@ -59,6 +59,10 @@ TEST(Spectrum, FindsTheStrongestFrequency) {
       damped_oscillation(0.4, Complex(0, 2 * std::numbers::pi * 90), interval, 5000);
   signal.array() += 20;
   EXPECT_NEAR(strongest_frequency(signal, interval), 13.37, 0.01);
+  // A step has its largest line where the search begins: no frequency below that, and none below zero.
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(4000);
+  step.tail(3000).setOnes();
+  EXPECT_GE(strongest_frequency(step, interval), 1.0 / (4000 * interval));
   EXPECT_THROW(strongest_frequency(Eigen::VectorXd::Ones(64), interval), std::invalid_argument);
   EXPECT_THROW(strongest_frequency(Eigen::VectorXd::Ones(8), interval), std::invalid_argument);
 }

@@ -57,6 +57,26 @@ TEST(Tracking, FindsAStepOfStiffnessInTimeAndSize) {
   ASSERT_EQ(between.size(), 1u);
   EXPECT_TRUE(between[0].of_stiffness());
   EXPECT_NEAR(between[0].stiffness, 0.21, 4 * between[0].stiffness_deviation);
+  EXPECT_EQ(found.beat, "");
+}
+
+TEST(Tracking, NamesTheBeatOfTwoConstantModes) {
+  const Index count = 4000;
+  for (const double apart : {0.02, 0.05, 0.1})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      VectorXd signal = noise * standard_normal(count, seed, 0);
+      for (const double hz : {5.0, 5.0 * (1 + apart)}) {
+        const double w = 2 * std::numbers::pi * hz;
+        for (Index k = 0; k < count; ++k) {
+          const double t = interval * static_cast<double>(k);
+          signal[k] += std::exp(-damping_ratio * w * t) * std::cos(w * t + static_cast<double>(seed));
+        }
+      }
+      const Tracking found = track(signal, 0, interval, {});
+      const bool fitted = found.plateaus.size() == 1 && !found.plateaus[0].companions_hz.empty();
+      EXPECT_TRUE(fitted || found.beat.find("Modes of constant frequency, the strongest at") == 0)
+          << apart << " " << seed;
+    }
 }
 
 // Oracle: the binomial distribution at the probability that was asked for; 1e-3 of test runs fail.
