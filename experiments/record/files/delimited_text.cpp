@@ -392,9 +392,9 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
   std::vector<std::optional<double>> first_stamp(
       text.width());  // whole seconds: a double holds the rest finely
   constexpr double half_a_day = 43200.0;
-  std::vector<double> days(text.width(), 0.0);  // that have passed [s]
+  std::vector<double> days(text.width(), 0.0);          // that have passed [s]
   std::vector<double> day(text.width(), std::nan(""));  // of dates, each later than the one before [s]
-  std::size_t above = 0;                        // characters before the first row
+  std::size_t above = 0;                                // characters before the first row
   while (text.next()) {
     if (table.lines.empty()) above = static_cast<std::size_t>(text.line().data() - content->data());
     cells.add(text.line(), text.line_number());
@@ -408,7 +408,8 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
         if (const auto stamp = parse_stamp(field)) {
           if (stamp->kind == Stamp::Kind::date) {
             value = 0.0;
-            day[column] = table.lines.size() == 1 || stamp->seconds > day[column] ? stamp->seconds : std::nan("");
+            day[column] =
+                table.lines.size() == 1 || stamp->seconds > day[column] ? stamp->seconds : std::nan("");
           } else if (stamp->kind == Stamp::Kind::time_of_day) {  // past midnight the days go on
             value = stamp->seconds + days[column];
             const std::size_t rows = table.columns[column].size();
