@@ -409,6 +409,12 @@ std::optional<ClosePair> close_pair(const MatrixXd& record, double interval, con
   return undecided;
 }
 
+JointDecayFit fit_with_companions(const MatrixXd& record, double interval, const ModalEstimate& mode) {
+  std::vector<Complex> rates{mode.rate()};
+  for (const CompanionMode& other : mode.companions) rates.push_back(other.rate());
+  return fit_decays_jointly(record, interval, rates);
+}
+
 std::optional<ClosePair> close_pair(const VectorXd& signal, double interval, const ModalEstimate& mode) {
   constexpr double passed = 0.3, highest = 6.0;  // of the new sampling rate; times the frequency
   constexpr double time_constants = 8.0;         // behind them the mode has died away
@@ -420,9 +426,7 @@ std::optional<ClosePair> close_pair(const VectorXd& signal, double interval, con
     const Index count = std::min(
         {coarse.samples.size(), most, static_cast<Index>(std::min(1e15, lasting / coarse.interval))});
     const MatrixXd record = coarse.samples.head(count).transpose();
-    std::vector<Complex> rates{mode.rate()};
-    for (const CompanionMode& other : mode.companions) rates.push_back(other.rate());
-    return close_pair(record, coarse.interval, fit_decays_jointly(record, coarse.interval, rates), 0);
+    return close_pair(record, coarse.interval, fit_with_companions(record, coarse.interval, mode), 0);
   } catch (const std::exception&) {  // too short, or a motion that decaying modes do not fit
     return {};
   }

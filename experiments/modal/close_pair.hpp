@@ -81,6 +81,10 @@ constexpr double clearly_two = 25.0;
 std::optional<ClosePair> close_pair(const Eigen::MatrixXd& record, double interval, const JointDecayFit& fit,
                                     std::size_t m);
 
+/// The strongest mode of a decay, the first, and its companions by least squares of a record (p x N).
+/// @throws as fit_decays_jointly()
+JointDecayFit fit_with_companions(const Eigen::MatrixXd& record, double interval, const ModalEstimate& mode);
+
 /// In the place of the strongest mode of a decay (N, finite), beside its companions.
 std::optional<ClosePair> close_pair(const Eigen::VectorXd& signal, double interval,
                                     const ModalEstimate& mode);

@@ -219,17 +219,15 @@ void enter(const std::vector<filters::Gaussian>& estimates, Index first, double 
 }
 
 /// The modes of a free decay that are at least a tenth as strong as its strongest, that one first; empty
-/// where they leave more of it than one damped sine leaves of six cycles.
+/// where their residual is larger than 1.5 times that of one damped sine over six cycles.
 std::vector<Pole> constant_modes(const Ringing& ringing) {
   constexpr double as_well = 1.5, weakest = 0.1;
   ModalAnalysisSettings settings;
   settings.companion_amplitude = weakest;
-  const ModalEstimate strongest = dominant_mode(ringing.signal, ringing.interval, settings);
-  std::vector<std::complex<double>> rates{strongest.rate()};
-  for (const CompanionMode& mode : strongest.companions) rates.push_back(mode.rate());
-  JointDecayFit fit = fit_decays_jointly(ringing.signal.transpose(), ringing.interval, rates);
-  if (const auto pair = close_pair(ringing.signal.transpose(), ringing.interval, fit, 0); pair && pair->wins)
-    fit = pair->fit;
+  const Eigen::MatrixXd record = ringing.signal.transpose();
+  JointDecayFit fit = fit_with_companions(record, ringing.interval,
+                                          dominant_mode(ringing.signal, ringing.interval, settings));
+  if (const auto pair = close_pair(record, ringing.interval, fit, 0); pair && pair->wins) fit = pair->fit;
   if (fit.residual_standard_deviation[0] > as_well * ringing.noise) return {};
   std::vector<Pole> modes;
   for (std::size_t m = 0; m < fit.rates.size(); ++m) modes.push_back(fitted_pole(fit, m));

@@ -137,8 +137,9 @@ std::optional<JointDecayFit> without(const std::vector<std::size_t>& left_out, c
 void follow_phases(const JointDecayFit& of_all, RecordModes& found) {
   constexpr double worth_widening = 1e-2, worth_saying = 1e-4;  // by chance
   const double duration = found.interval * static_cast<double>(found.target.cols());
-  const std::vector<std::size_t> sidebands = sidebands_of(of_all);
+  std::vector<std::size_t> sidebands = sidebands_of(of_all);
   const auto freed = sidebands.empty() ? std::nullopt : without(sidebands, of_all, found);
+  if (!freed) sidebands.clear();
   const JointDecayFit& fit = freed ? *freed : of_all;
   const Index sections = sections_of(fit, duration);
   if (sections == 0) return;
@@ -161,8 +162,7 @@ void follow_phases(const JointDecayFit& of_all, RecordModes& found) {
   }
   if (!(all.squares > chi_square_limit(all.freedom, 1.0 - worth_saying))) return;
   std::vector<double> beside_hz;
-  for (const std::size_t m : freed ? sidebands : std::vector<std::size_t>{})
-    beside_hz.push_back(found.modes[m].pole.frequency_hz());
+  for (const std::size_t m : sidebands) beside_hz.push_back(found.modes[m].pole.frequency_hz());
   found.objections.emplace_back(
       "phase_wander",
       fmt::format(
