@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "experiments/record/record_columns.hpp"
@@ -27,6 +28,17 @@ bool holds_words(const RecordTable& table, std::size_t index) {
     if (first != text.npos && text[first] >= '0' && text[first] <= '9') throw table.fault(row, index);
   }
   return true;
+}
+
+// The unit that the lines above state. @throws InputError the question where they do not decide it
+// (stated_unit.cpp)
+std::pair<Quantity, double> certain_unit(const RecordTable& table) {
+  if (!std::isnan(table.stated_unit->second) || table.warnings.empty()) return *table.stated_unit;
+  const std::string& found = table.warnings.back();
+  throw InputError({table.file, 0, 0},
+                   fmt::format("{}; expected the unit of each channel: --column 1 --quantity acceleration "
+                               "--unit gal, or {}",
+                               found.substr(0, found.size() - 1), in_configuration));
 }
 
 std::string unit_of_time(double factor) {
@@ -129,7 +141,9 @@ class Recognition {
     if (const std::string brief = letters(name);
         brief.size() == 2 && std::string_view("gmw").find(brief[0]) != std::string_view::npos &&
         std::string_view("xyz").find(brief[1]) != std::string_view::npos && (named("ax") || named("ay")))
-      found->kind = RecognisedColumn::Kind::other;  // of a gyroscope or a compass
+      found->kind = RecognisedColumn::Kind::other;                 // of a gyroscope or a compass
+    if ((name == "U" || name == "u") && named("N") && named("E"))  // up
+      found->quantity = Quantity::acceleration, found->states_quantity = false;
     const auto add = [&](std::string& list) {
       list += (list.empty() ? "" : ", ") +
               (name.empty() ? fmt::format("column {}", index + 1) : "'" + name + "'");
@@ -189,7 +203,7 @@ class Recognition {
       case RecognisedColumn::Kind::signal: {
         if (const auto& unit = table.stated_unit;
             unit && !found->states_unit && (!found->states_quantity || found->quantity == unit->first))
-          found->quantity = unit->first, found->factor = unit->second, found->states_unit = true;
+          std::tie(found->quantity, found->factor) = certain_unit(table), found->states_unit = true;
         columns.channels.push_back({index, found->factor, {found->quantity, name}});
         columns.recognised = true;
         const bool as_it_is = !found->states_unit;
@@ -360,7 +374,8 @@ RecordColumns columns_without_header(RecordTable& table, bool stamped) {
   const auto never_moves = [](const std::vector<double>& values) {  // dates beside times of day
     return std::ranges::all_of(values, [&](double value) { return value == 0.0; });
   };
-  const auto [quantity, factor] = table.stated_unit.value_or(std::pair{Quantity::acceleration, 1.0});
+  const auto [quantity, factor] =
+      table.stated_unit ? certain_unit(table) : std::pair{Quantity::acceleration, 1.0};
   for (std::size_t index = first; index < table.width(); ++index)
     if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index) &&
         !(table.width() > first + 1 && counts_rows(table.columns[index])))

@@ -219,6 +219,8 @@ std::vector<std::string_view> DelimitedText::named(std::string_view line, std::s
   const char chosen = separator_ == '\0' ? separator_of(line) : separator_;
   for (const char separator : {chosen, '\t', ';', ',', '|'}) {
     split_fields(line, separator, names);
+    for (std::string_view& name : names)  // "Time U(+); N(+)" above columns between blanks
+      if (separator == ' ' && name.ends_with(';')) name.remove_suffix(1);
     if (names.size() == width && (separator == chosen || width > 1)) return names;
   }
   if (auto apart = parted_by_blanks(line); apart.size() == width && (width > 1 || chosen == ' '))
@@ -266,12 +268,9 @@ void DelimitedText::find_rows() {
       }
       if (before.empty())
         skipped_.clear();  // no names: what stands before the rows is a header of another kind
-      const auto named = [&](const EarlyLine& line) {
-        split_fields(line.text, separator_, fields_);
-        return names_columns(fields_);
-      };
-      if (before.size() > 1 && names_width(before[before.size() - 2]) && !named(before.back())) {
-        split_fields(before.back().text, separator_, fields_);
+      const bool two = before.size() > 1 && names_width(before[before.size() - 2]);
+      if (two) split_fields(before.back().text, separator_, fields_);
+      if (two && !names_columns(fields_)) {
         for (const std::string_view field : fields_) units_.emplace_back(unquoted(field));
         before.pop_back();
       }
@@ -346,7 +345,8 @@ void DelimitedText::name_columns(std::string_view header, std::size_t line) {
 
 std::string_view DelimitedText::words_of_comment(std::string_view comment) const {
   comment.remove_prefix(std::min(comment.find_first_not_of("#%!;/ \t"), comment.size()));
-  for (const std::string_view title : {"Headers,", "Headers:", "Columns:", "columns:", "Names:"})
+  for (const std::string_view title :
+       {"Headers,", "Headers:", "Columns:", "columns:", "Names:", "DataSequence:", "Fields:"})
     if (comment.starts_with(title)) comment.remove_prefix(title.size());
   return comment;
 }

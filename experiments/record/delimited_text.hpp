@@ -136,4 +136,10 @@ class DelimitedText {
 /// @param file for messages. @throws InputError at a row, or where there is none.
 RecordTable table_of_text(const std::string& file, std::string content, const RecordFormat& format);
 
+/// Sets RecordTable::stated_unit by the lines above the rows (stated_unit.cpp). Its factor is NaN, and a
+/// warning says why, where these lines name a unit and the columns may be in another: a question where nobody
+/// states it.
+/// @param described whether the channels are stated elsewhere
+void take_stated_unit(RecordTable& table, std::string_view above, bool described);
+
 }  // namespace beamid::experiments

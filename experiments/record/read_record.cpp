@@ -263,6 +263,21 @@ Eigen::VectorXd counted(double start, double interval, std::size_t size, const s
   return times;
 }
 
+/// Samples that share stamps. @throws InputError where these do not determine their rate
+Eigen::VectorXd counted_from(const SharedStamps& shared, const Stamps& stamps,
+                             std::vector<std::string>& remarks) {
+  const double step = shared.step * stamps.factor(), rate = shared.mean / step;
+  if (!shared.even())
+    throw InputError(
+        stamps.table->place(0, stamps.column->index),
+        fmt::format("{} to {} samples share each stamp of {:.6g} s; expected the sampling rate, "
+                    "about {:.4g} Hz: --rate HZ, or record.sampling_rate_hz in the configuration",
+                    shared.fewest, shared.most, step, rate));
+  remarks.push_back(fmt::format("{} samples share each stamp of {:.6g} s: they are counted at {:.6g} Hz.",
+                                shared.most, step, rate));
+  return counted(shared.first * stamps.factor(), 1.0 / rate, stamps.table->rows(), stamps.table->file);
+}
+
 /// The instants (N) [s]. @param remarks to which it adds what was done to them
 Eigen::VectorXd instants(const Stamps& stamps, std::vector<std::string>& remarks) {
   const RecordTable& table = *stamps.table;
@@ -287,6 +302,7 @@ Eigen::VectorXd instants(const Stamps& stamps, std::vector<std::string>& remarks
       check_stamps(stamps, *rate);
     return counted(times[0] * stamps.factor(), 1 / *rate, size, table.file);
   }
+  if (const auto shared = shared_stamps(times, table.columns)) return counted_from(*shared, stamps, remarks);
   auto fault = find_order_fault(times);
   if (!fault && !(stamps.format->irregular && stamps.show_intervals()))
     fault = find_sampling_fault(times, stamps.precision());

@@ -309,10 +309,12 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
   static const std::regex of_quaternion("^[qQ][0-3wxyz]$");
   if (any_word(words, no_motion_at_all) || std::regex_match(plain, of_quaternion))
     return RecognisedColumn{Kind::other};
+  const bool direction =  // "U(+)" is up
+      (stated == "+" || stated == "-") && words.size() == 1 && words[0].size() == 1;
   const std::optional<Quantity> by_name = quantity_of(words, plain);
   const bool volts = readings.contains(stated) || stated == "kV";
   const bool is_voltage = volts && by_name == Quantity::displacement && words.front() == "u",
-             named = by_name.has_value() && !is_voltage;
+             named = by_name.has_value() && !is_voltage && !direction;
   static const std::set<std::string> frequencies{"freq",       "frequency", "frequenz",
                                                  "frecuencia", "frequenza", "frequencia"};
   if (!named && any_word(words, frequencies)) return RecognisedColumn{Kind::frequency};
@@ -360,42 +362,17 @@ bool are_units(const std::vector<std::string_view>& fields) {
   return any;
 }
 
-std::optional<std::pair<Quantity, double>> unit_of_statement(std::string_view lines) {
-  static const std::regex form(
-      R"((?:^|[\r\n])[#%;/*" ]*(?:(?:amplitude|y|data|signal|(?:uncorrected |corrected )?accel\w*|the)\s*[_-]?)?)"
-      R"((?:units?|einheit(?:en)?|unites?|unidad(?:es)?|unita|unidades?)\b(?: are\b)?[^A-Za-z0-9\r\n]{1,4}([^\r\n]+))",
-      std::regex::icase);
-  std::match_results<std::string_view::const_iterator> match;
-  if (!std::regex_search(lines.begin(), lines.end(), match, form)) return {};
-  std::vector<std::string_view> fields;
-  const std::string list = match[1];
-  std::optional<std::pair<Quantity, double>> found;
-  for (std::size_t at = 0; at <= list.size();) {
-    const std::size_t end = std::min(list.find_first_of(",;\t", at), list.size());
-    std::string unit = without_brackets(unquoted(trimmed(std::string_view(list).substr(at, end - at))));
-    at = end + 1;
-    unit = unit.substr(0, unit.find_first_of(unit.find('(') == unit.npos ? ". )" : ". "));  // "gal. DCoffset"
-    std::string plain = std::regex_replace(folded(unit), std::regex(R"(\*\*|\^)"), "");
-    plain = std::regex_replace(plain, std::regex("sec"), "s");
-    plain = std::regex_replace(plain, std::regex("/s/s"), "/s2");
-    auto known = unit_of(unit);
-    if (!known) known = unit_of(plain);
-    if (!known)
-      if (const auto factor = convertible_unit(plain, Quantity::acceleration))
-        known = StatedUnit{Quantity::acceleration, *factor};
-    if (!known || !known->quantity) continue;  // of times, or of what is no motion
-    const std::pair<Quantity, double> one{*known->quantity, known->factor};
-    if (found && *found != one) return {};
-    found = one;
-  }
-  return found;
-}
-
 bool names_columns(const std::vector<std::string_view>& fields) {
-  bool named = false;
+  static const std::regex direction(
+      "[nsew][0-9]{0,3}[nsew]?|n-s|e-w|u-d|ud|up|v|x|y|z|north|south|east|west|vertical");
+  bool named = fields.size() > 1 && std::ranges::all_of(fields, [](std::string_view field) {
+                 return std::regex_match(folded(unquoted(field)), direction);
+               });
   for (const std::string_view field : fields) {
-    const std::string text(unquoted(field));
+    const std::string text(unquoted(field)), bare = without_brackets(text);
     if (unit_of(text) || seconds_per_unit(text) || other_units.contains(text)) return false;
+    if (bare != text && (unit_of(bare) || convertible_unit(bare, Quantity::acceleration)))
+      return false;  // the last word of a title
     const auto found = recognise_column(text, "");
     named = named || !found || found->states_quantity || found->kind == RecognisedColumn::Kind::time;
   }

@@ -319,4 +319,39 @@ std::optional<EvenStamps> without_rounding(const std::vector<double>& times, dou
   return line;
 }
 
+std::optional<SharedStamps> shared_stamps(const std::vector<double>& times,
+                                          const std::vector<std::vector<double>>& columns) {
+  constexpr std::size_t fewest_stamps = 4;
+  constexpr double alike = 1e-6;  // of a step
+  std::vector<std::size_t> begins;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (k > 0 && !(times[k] >= times[k - 1])) return {};
+    if (k == 0 || times[k] > times[k - 1]) begins.push_back(k);
+  }
+  const std::size_t stamps = begins.size();
+  if (stamps < fewest_stamps) return {};
+  SharedStamps shared{times[begins[1]] - times[0], times.size(), 0, stamps - 2, 0.0, 0.0, true};
+  std::size_t alone = 0;
+  for (std::size_t i = 1; i + 1 < stamps; ++i) {
+    const std::size_t count = begins[i + 1] - begins[i];
+    shared.fewest = std::min(shared.fewest, count), shared.most = std::max(shared.most, count);
+    alone += count == 1 ? 1 : 0;
+    const double step = times[begins[i + 1]] - times[begins[i]];
+    shared.steady = shared.steady && std::abs(step - shared.step) <= alike * shared.step;
+  }
+  if (2 * alone >= shared.whole) return {};
+  const bool moves = std::ranges::any_of(columns, [&](const std::vector<double>& values) {
+    for (std::size_t k = 1; k < std::min(values.size(), times.size()); ++k)
+      if (times[k] == times[k - 1] && values[k] != values[k - 1] && !std::isnan(values[k])) return true;
+    return false;
+  });
+  if (!moves) return {};
+  const auto cut = begins[1], last = begins[stamps - 1];
+  shared.mean = static_cast<double>(last - cut) / static_cast<double>(shared.whole);
+  shared.most = std::max({shared.most, cut, times.size() - last});  // a part has no more than a whole
+  if (!shared.steady) shared.step = (times[last] - times[cut]) / static_cast<double>(shared.whole);
+  shared.first = times[cut] - shared.step * static_cast<double>(cut) / shared.mean;
+  return shared;
+}
+
 }  // namespace beamid::experiments

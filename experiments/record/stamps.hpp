@@ -2,6 +2,7 @@
 // numbers that are times, and times that were rounded.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -70,5 +71,26 @@ struct EvenStamps {
 /// of an interval: 2e-6 of the rate over 1,000 samples.
 /// @param times (N), increasing; @param resolution to which they are printed
 std::optional<EvenStamps> without_rounding(const std::vector<double>& times, double resolution);
+
+/// Stamps that several samples in succession share: whole seconds of a logger of 50 samples a second.
+struct SharedStamps {
+  double step = 0.0;                 ///< between one stamp and the next, in their unit
+  std::size_t fewest = 0, most = 0;  ///< samples of a stamp, but for the first and the last, which are cut
+  std::size_t whole = 0;             ///< stamps but for those two
+  double mean = 0.0;                 ///< samples of such a stamp
+  double first = 0.0;                ///< instant of the first sample, where the last before the second stamp
+                                     ///< ends its step
+  bool steady = true;                ///< every stamp is a step after the one before; else `step` is the mean
+
+  /// Whether the samples can be counted from stamp to stamp. Few of one stamp may be those of several
+  /// sensors, few stamps those of a rate that is nearly a whole number of samples.
+  bool even() const { return steady && fewest == most && most >= 5 && whole >= 5; }
+};
+
+/// Nothing where stamps fall, where less than half of them are shared, or where columns repeat their numbers
+/// with the stamps: rows that were written twice.
+/// @param times (N); @param columns of the file, (N) each
+std::optional<SharedStamps> shared_stamps(const std::vector<double>& times,
+                                          const std::vector<std::vector<double>>& columns);
 
 }  // namespace beamid::experiments

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "experiments/record/delimited_text.hpp"
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
+#include "experiments/record/units.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -73,8 +75,14 @@ class At2Reader final : public RecordReader {
                        fmt::format("{} samples; expected {}, as line 4 states", table.rows(), header->count));
     table.precision = {PrintedPrecision::of_digits(7)};
     const bool velocity = words.starts_with("VEL"), displacement = words.starts_with("DIS");
-    if (velocity || displacement)  // in cm
-      for (double& value : table.columns[0]) value *= 10.0;
+    const Quantity quantity = velocity       ? Quantity::velocity
+                              : displacement ? Quantity::displacement
+                                             : Quantity::acceleration;
+    const double unit = quantity == Quantity::acceleration ? standard_gravity : 1e-3;  // of the name below
+    double factor = quantity == Quantity::acceleration ? 1.0 : 10.0;                   // in g, or of cm
+    if (const auto stated = unit_of_statement(words); stated && stated->first == quantity)
+      factor = stated->second / unit;  // "IN UNITS OF M/S/S", as others write the form
+    for (double& value : table.columns[0]) value *= factor;
     table.names = {velocity ? "velocity_mm_per_s" : displacement ? "displacement_mm" : "acceleration_g"};
     return table;
   }

@@ -367,8 +367,8 @@ void join_rows(RecordTable& table, const std::vector<double>& last) {
 }  // namespace
 
 RecordTable table_of_text(const std::string& file, std::string as_read, const RecordFormat& format) {
-  constexpr std::size_t looked_at_for_a_rate = 4000;
-  const std::string beginning = as_read.substr(0, looked_at_for_a_rate);
+  constexpr std::size_t looked_at_for_a_rate = 4000, looked_at_for_a_unit = 20000;
+  const std::string beginning = as_read.substr(0, looked_at_for_a_unit);
   const auto content = std::make_shared<std::string>(std::move(as_read));
   write_minus(*content);
   part_stamps(*content);
@@ -438,8 +438,8 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
                                    column + 1));
   table.cell = cells.cells(text.separator());
   const std::string_view head = std::string_view(beginning).substr(0, above);
-  table.stated_rate = stated_rate(beginning, text.decimal());
-  table.stated_unit = unit_of_statement(head);
+  table.stated_rate = stated_rate(beginning.substr(0, looked_at_for_a_rate), text.decimal());
+  take_stated_unit(table, head, !format.channels.empty());
   table.skipped_lines = text.skipped_lines();
   if (format.channels.empty() && go_on(table, head, text.short_end().size()))
     join_rows(table, text.short_end());

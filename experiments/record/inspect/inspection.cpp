@@ -152,6 +152,24 @@ void set_time(const RecordTable& table, const RecordFormat& format, const std::o
     found.time[i] = start + interval * static_cast<double>(i);
 }
 
+/// Samples that share a stamp, as where whole seconds are printed, are counted between the stamps.
+void count_shared_stamps(const RecordTable& table, Inspection& found) {
+  const auto shared = shared_stamps(found.time, table.columns);
+  if (!shared) return;
+  const double rate = shared->mean / shared->step;
+  for (std::size_t i = 0; i < found.time.size(); ++i)
+    found.time[i] = shared->first + static_cast<double>(i) / rate;
+  found.resolution = 0.0, found.mean_rate = !shared->even();
+  found.time_text +=
+      found.mean_rate
+          ? fmt::format(
+                " {} to {} samples share each stamp of {:.6g} s: they are counted here at about {:.4g} Hz, "
+                "their mean; other commands need the rate, --rate HZ.",
+                shared->fewest, shared->most, shared->step, rate)
+          : fmt::format(" {} samples share each stamp of {:.6g} s: they are counted.", shared->most,
+                        shared->step);
+}
+
 // One channel of a file that is inspected.
 
 /// Even samples without a hole, for what looks at a whole signal: straight lines across what is missing.
@@ -342,6 +360,7 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
   }
   if (table.rows() < 2) throw InputError({table.file}, "fewer than two rows of numbers; expected a record");
   set_time(table, format, time, found);
+  if (time && !format.sampling_rate) count_shared_stamps(table, found);
   if (format.channels.empty()) {
     for (std::size_t index = 0; index < table.width(); ++index)
       if (!time || index != time->index) found.channels.push_back(make_channel(table, index, nullptr));

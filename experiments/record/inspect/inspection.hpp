@@ -92,6 +92,8 @@ struct Inspection {
   std::string time_text;     ///< where the times come from
   std::string time_key;      ///< what says so in the table [record]; empty: the file does
   bool has_time = true;
+  bool mean_rate =
+      false;  ///< uneven counts of samples share a stamp: instants are counted at their mean rate
   double resolution = 0.0;  ///< of printed stamps [s]
   SamplingCheck sampling;
   std::vector<InspectedChannel> channels;

@@ -223,7 +223,9 @@ std::string sampling_text(const Inspection& found) {
                                  found.time.front(), found.time.back(), duration, found.time_text);
   const double rate = static_cast<double>(count - 1) / duration;
   const auto even = without_rounding(found.time, found.resolution);
-  if (s.uniform)
+  if (found.mean_rate)
+    text += "The rate is not certain.";
+  else if (s.uniform)
     text += fmt::format("Evenly sampled at {:.8g} Hz.", even ? 1.0 / even->interval : rate);
   else
     text += fmt::format("Not evenly sampled: {:.6g} samples a second in the mean, median interval {:.6g} s.",

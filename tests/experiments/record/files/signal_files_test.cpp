@@ -81,9 +81,9 @@ std::string miniseed(int first, int length) {
   return record;
 }
 
-std::string at2() {
+std::string at2(const std::string& unit) {
   std::string text =
-      "PEER NGA\nTest\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=    64, DT=   .0025 SEC,\n";
+      "PEER NGA\nTest\nACCELERATION TIME SERIES IN UNITS OF " + unit + "\nNPTS=    64, DT=   .0025 SEC,\n";
   for (int k = 0; k < count; ++k)
     text += fmt::format("{:15.7E}{}", 0.001 * sample(k), k % 5 == 4 ? "\n" : "");
   return text + "\n";
@@ -101,7 +101,8 @@ TEST(SignalFiles, GiveSamplesAndTheRateOfTheFile) {
         Case{"sac", sac(false), 1.0, Quantity::velocity},
         Case{"sac", sac(true, 8), 1.0, Quantity::acceleration},
         Case{"miniseed", miniseed(0, count), 1.0, Quantity::acceleration},
-        Case{"at2", at2(), 0.001 * 9.80665, Quantity::acceleration}}) {
+        Case{"at2", at2("G"), 0.001 * 9.80665, Quantity::acceleration},
+        Case{"at2", at2("CM/SEC/SEC"), 1e-5, Quantity::acceleration}}) {
     const TemporaryFile file("signal", bytes);
     EXPECT_EQ(reader_of(file.path(), {}), reader);
     const Record record = read_record(file.path(), {});
@@ -121,7 +122,7 @@ TEST(SignalFiles, TakeAGapOfMiniSeedForMissingSamples) {
 }
 
 TEST(SignalFiles, AreRefusedWhereTheyAreCutShort) {
-  for (const std::string& whole : {wave(), sac(false), miniseed(0, count), at2()})
+  for (const std::string& whole : {wave(), sac(false), miniseed(0, count), at2("G")})
     for (std::size_t length = 16; length + 16 < whole.size(); length += 37) {
       const TemporaryFile cut("signal", whole.substr(0, length));
       try {
