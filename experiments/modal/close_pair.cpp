@@ -415,7 +415,7 @@ JointDecayFit fit_with_companions(const MatrixXd& record, double interval, const
   return fit_decays_jointly(record, interval, rates);
 }
 
-std::optional<ClosePair> close_pair(const VectorXd& signal, double interval, const ModalEstimate& mode) {
+std::optional<FittedDecay> fitted_decay(const VectorXd& signal, double interval, const ModalEstimate& mode) {
   constexpr double passed = 0.3, highest = 6.0;  // of the new sampling rate; times the frequency
   constexpr double time_constants = 8.0;         // behind them the mode has died away
   constexpr Index most = 40'000;                 // samples
@@ -426,8 +426,16 @@ std::optional<ClosePair> close_pair(const VectorXd& signal, double interval, con
     const Index count = std::min(
         {coarse.samples.size(), most, static_cast<Index>(std::min(1e15, lasting / coarse.interval))});
     const MatrixXd record = coarse.samples.head(count).transpose();
-    return close_pair(record, coarse.interval, fit_with_companions(record, coarse.interval, mode), 0);
-  } catch (const std::exception&) {  // too short, or a motion that decaying modes do not fit
+    return FittedDecay{record, coarse.interval, fit_with_companions(record, coarse.interval, mode)};
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+std::optional<ClosePair> close_pair(const FittedDecay& decay) {
+  try {
+    return close_pair(decay.record, decay.interval, decay.fit, 0);
+  } catch (const std::exception&) {
     return {};
   }
 }

@@ -85,8 +85,20 @@ std::optional<ClosePair> close_pair(const Eigen::MatrixXd& record, double interv
 /// @throws as fit_decays_jointly()
 JointDecayFit fit_with_companions(const Eigen::MatrixXd& record, double interval, const ModalEstimate& mode);
 
-/// In the place of the strongest mode of a decay (N, finite), beside its companions.
-std::optional<ClosePair> close_pair(const Eigen::VectorXd& signal, double interval,
-                                    const ModalEstimate& mode);
+/// The decay of one channel as far as it lasts (8 time constants, 40,000 samples at most), decimated to 20
+/// samples a cycle or more, and the least squares of its modes.
+struct FittedDecay {
+  Eigen::MatrixXd record;  ///< (1 x N)
+  double interval = 0.0;   ///< [s]
+  JointDecayFit fit;       ///< the strongest mode first, its companions after it
+};
+
+/// @param signal (N), finite
+/// @return nothing where it is too short, or a motion that decaying modes do not fit
+std::optional<FittedDecay> fitted_decay(const Eigen::VectorXd& signal, double interval,
+                                        const ModalEstimate& mode);
+
+/// In the place of the strongest mode of a decay, beside its companions; nothing where the search fails.
+std::optional<ClosePair> close_pair(const FittedDecay& decay);
 
 }  // namespace beamid::experiments

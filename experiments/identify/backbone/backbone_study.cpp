@@ -66,7 +66,9 @@ std::optional<Objection> two_modes(const Record& record, const BackboneStudy& st
   ModalAnalysisSettings near;
   near.expected_frequency_hz = study.windows.windows.front().frequency_hz;
   try {
-    const auto pair = close_pair(signal, record.interval(), dominant_mode(signal, record.interval(), near));
+    const auto decay =
+        fitted_decay(signal, record.interval(), dominant_mode(signal, record.interval(), near));
+    const auto pair = decay ? close_pair(*decay) : std::nullopt;
     if (!pair || !pair->contradicts_one()) return {};
     return Objection(pair->objection(),
                      pair->sentence(*near.expected_frequency_hz) +

@@ -209,26 +209,41 @@ double beam_frequency_hz(const Experiment& experiment) {
 
 enum class Depth { mode, everything };
 
+// Modal analysis and sections fit phases that keep to a line; another mode's beat is no walk.
+void allow_for_walk(const VectorXd& signal, double interval, RecordAnalysis& found) {
+  const ModalEstimate one = without_sidebands(*found.modal, static_cast<double>(signal.size()) * interval);
+  if (!one.companions.empty() || found.sections.frequency.varies()) return;
+  if (const auto decay = fitted_decay(signal, interval, one))
+    found.walk = phase_walk(decay->fit, decay->record, decay->interval);
+  if (!found.walk) return;
+  const WalkDeviation by_walk = found.walk->deviation(found.modal->rate());
+  found.sections.frequency.walk = by_walk.frequency_hz;
+  found.sections.damping.walk = by_walk.damping_ratio;
+  by_walk.widen(found.modal->frequency_standard_deviation_hz, found.modal->damping_ratio_standard_deviation);
+}
+
 void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysis& found) {
   constexpr double mostly_read = 0.7;  // what is filled in follows the mode, not its changes
   const Record& stamped = found.evenly_stamped();
   ModalAnalysisSettings settings;
   settings.expected_frequency_hz = found.expected_hz;
   try {
-    found.modal = dominant_mode(stamped.samples.row(output_channels(stamped)[0]).transpose(),
-                                stamped.interval(), settings);
+    const Index first = output_channels(stamped)[0];
+    found.modal = dominant_mode(stamped.samples.row(first).transpose(), stamped.interval(), settings);
     found.mode = FoundMode{found.modal->frequency_hz, found.modal->damping_ratio};
     found.mode_noise = found.residual_noise(*found.modal);
     found.near_mode = found.noise_at(*found.modal);
     if (depth == Depth::mode) return;
-    const Index first = output_channels(stamped)[0];
     found.overtone = third_overtone(stamped.samples.row(first).transpose(), stamped.interval(), *found.modal);
     const double interval = found.even.record.interval();
     const VectorXd filled = found.even.record.samples.row(first).transpose();
     if (found.even.share < mostly_read) return;
     found.jump = decay_jump(filled, interval, *found.modal);
-    found.pair = close_pair(filled, interval, *found.modal);
     found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
+    if (const auto decay = fitted_decay(filled, interval, *found.modal)) found.pair = close_pair(*decay);
+    if (!(found.pair && found.pair->contradicts_one()) && !found.jump &&
+        asks_free_oscillator(experiment, found.record))
+      allow_for_walk(filled, interval, found);
   } catch (const std::invalid_argument& error) {
     const char* const from = experiment.prior.stiffness ? "prior.stiffness_n_per_m"
                              : experiment.is_described
@@ -257,11 +272,6 @@ void take_complete_forces(RecordAnalysis& found) {
   if (found.even.filled.size() == 0) return;
   for (const Index i : output_channels(found.record))
     found.record.samples.row(i) = found.even.filled.row(i).select(std::nan(""), found.record.samples.row(i));
-}
-
-bool has_supports(const Record& record) {
-  return std::any_of(record.channels.begin(), record.channels.end(),
-                     [](const Channel& channel) { return is_imposed(channel.quantity); });
 }
 
 // A displacement or a velocity that is read about another point than that of rest: no model moves there.
@@ -355,7 +365,8 @@ RecordAnalysis analyse_to(Depth depth, const Experiment& experiment, const Recor
                                   0.5 * rate);
   if (found.forced()) {
     take_complete_forces(found);
-    if (has_supports(found.record))
+    const auto imposed = [](const Channel& one) { return is_imposed(one.quantity); };
+    if (std::ranges::any_of(found.record.channels, imposed))
       found.modal_failure = "a part between supports has other frequencies than the whole";
     else
       find_driven_mode(found);
@@ -431,6 +442,8 @@ std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, con
   }
   if (analysis.pair && alone && analysis.pair->speaks_against_one())
     objections.push_back(pair_objection(*analysis.pair, mode.frequency_hz));
+  if (analysis.walk && analysis.walk->is_sure())
+    objections.push_back({{"phase_wander", analysis.walk->sentence()}, false});
   return objections;
 }
 

@@ -14,6 +14,7 @@
 #include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/decay_jump.hpp"
 #include "experiments/modal/dominant_mode.hpp"
+#include "experiments/modal/phase_walk.hpp"
 #include "experiments/models/estimates.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/record.hpp"
@@ -87,6 +88,7 @@ struct RecordAnalysis {
   std::optional<DecayJump> jump;           ///< of the first output of `even`, from its first sample
   std::optional<ThirdOvertone> overtone;   ///< of the first output
   std::optional<ClosePair> pair;           ///< in the place of `modal`
+  std::optional<PhaseWalk> walk;           ///< where no pair, no jump and no amplitude explains it
   ChannelAmplitudes channels;              ///< of all outputs, beside each other
   std::vector<std::string> notes;
   std::vector<Objection> objections;
@@ -137,6 +139,7 @@ struct DecayObjection {
 ///   would; it contradicts from twice the interval on.
 /// - Two modes in the place of a model's only one (close_pair.hpp); where they win, or nothing is determined,
 ///   it contradicts.
+/// - Phases that wander (phase_walk.hpp), which the deviations allow for.
 /// @param mode as identified, with its deviations as they are reported
 /// @param alone whether the model has no other mode
 std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode,

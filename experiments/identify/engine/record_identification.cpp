@@ -136,8 +136,9 @@ bool modal_analysis_is_worse(const Record& record, const RecordIdentification& f
 
 /// The first of the causes but the overtone, in the order of judge().
 std::string cause_of(const Experiment& experiment, const Record& record, const RecordIdentification& found) {
+  const std::string by_pair = found.two_modes ? "two modes stand in the place of one" : "";
   for (const std::string& text :
-       {by_discretisation(record, found), by_prior(experiment.prior, found), by_stated_noise(found),
+       {by_discretisation(record, found), by_prior(experiment.prior, found), by_stated_noise(found), by_pair,
         by_companion(found), by_amplitude(found), by_unsteady_noise(found)})
     if (!text.empty()) return text;
   return {};
@@ -311,8 +312,7 @@ double interval_widening(const RecordIdentification& found) {
 ModalEstimate mode_of_filter(const RecordIdentification& found, const RecordAnalysis& analysis) {
   const Oscillator& filter = found.identification.found;
   ModalEstimate mode;
-  mode.frequency_hz = analysis.expected_hz;
-  mode.damping_ratio = 0.01;
+  mode.frequency_hz = analysis.expected_hz, mode.damping_ratio = 0.01;
   if (!(filter.stiffness > 0.0) || !(std::abs(filter.damping_ratio()) < 1.0)) return mode;
   mode.frequency_hz = filter.frequency_hz();
   mode.damping_ratio = filter.damping_ratio();
@@ -323,7 +323,7 @@ ModalEstimate mode_of_filter(const RecordIdentification& found, const RecordAnal
 // its sections leave is.
 double factor_of(const RecordIdentification& found, const SectionTrend& trend, double estimate,
                  double deviation) {
-  if (found.sections.sections.empty()) return found.interval_factor;
+  if (found.sections.sections.empty()) return std::hypot(found.interval_factor, trend.walk / deviation);
   const double noise = std::min(found.interval_factor, found.sections.noise / found.noise_deviation[0]);
   const double half =
       section_half_width(trend, estimate, found.interval_factor * deviation, noise * deviation);
@@ -360,8 +360,7 @@ ModalEstimate behind_its_alias(ModalEstimate mode, double described_hz, double r
                whole = times + std::copysign(mode.frequency_hz, described_hz - times),
                lower = mode.frequency_hz / whole;
   mode.frequency_hz = whole;
-  mode.damping_ratio *= lower;
-  mode.damping_ratio_standard_deviation *= lower;
+  mode.damping_ratio *= lower, mode.damping_ratio_standard_deviation *= lower;
   return mode;
 }
 
@@ -403,6 +402,7 @@ RecordIdentification oscillator_of(const Experiment& experiment, const RecordAna
     if (std::abs(result.identification.found.damping_ratio()) < 1.0) result.reproduced = run.reproduced;
     result.sections = analysis.sections;
   }
+  result.two_modes = analysis.pair && analysis.pair->speaks_against_one();
   result.judgement = judge(experiment, analysis.record, result);
   if (result.judgement.verdict != ComparedRun::Status::diverged) take_objections(analysis, result);
   take_channels(analysis.channels, result.judgement);

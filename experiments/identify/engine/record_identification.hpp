@@ -37,6 +37,7 @@ struct Judgement {
 /// - the discretisation: its closed form makes of the modal analysis' K and C what the filter found;
 /// - the prior, where what it states excludes the modal analysis by more than three of its deviations;
 /// - a stated noise that is less than a tenth of what the record has near the mode;
+/// - two close modes in the place of one;
 /// - another mode beside this one, which the modal analysis fitted along;
 /// - damping and frequency that vary with amplitude (amplitude_sections.hpp);
 /// - noise that is larger where the amplitude is: rattle, or modes that die out;
@@ -60,6 +61,7 @@ struct RecordIdentification {
   NoiseNearMode near_mode;                   ///< of the first channel
   double interval_factor = 1;  ///< of deviations: what counts is the noise near the mode, not R; 1 at least
   AmplitudeSections sections;  ///< of the first channel
+  bool two_modes = false;      ///< where one is fitted (close_pair.hpp)
   IdentificationSettings settings;  ///< of the last pass
   Identification identification;
   int passes = 3;

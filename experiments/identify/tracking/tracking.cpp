@@ -284,7 +284,8 @@ void compare_with_modal_analysis(const Ringing& ringing, Plateau& plateau) {
     const ModalEstimate modal = dominant_mode(span, ringing.interval, settings);
     plateau.modal_frequency_hz = modal.frequency_hz, plateau.modal_damping_ratio = modal.damping_ratio;
     for (const CompanionMode& mode : modal.companions) plateau.companions_hz.push_back(mode.frequency_hz);
-    if (const auto pair = close_pair(span, ringing.interval, modal)) take_pair(*pair, plateau);
+    if (const auto decay = fitted_decay(span, ringing.interval, modal))
+      if (const auto pair = close_pair(*decay)) take_pair(*pair, plateau);
   } catch (const std::exception&) {
     return;  // too short, or no decay of constant stiffness: the plateau stands alone
   }

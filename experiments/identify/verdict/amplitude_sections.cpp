@@ -379,9 +379,11 @@ AmplitudeSections amplitude_sections(const VectorXd& signal, double interval, co
 
 double section_half_width(const SectionTrend& trend, double estimate, double deviation,
                           double deviation_where_it_varies) {
+  deviation = std::hypot(deviation, trend.walk);
   if (trend.possible.size() == 0 || !std::isfinite(estimate + deviation)) return quantile_95 * deviation;
   const double least = 1e-12 * std::abs(estimate), s0 = std::max(deviation, least),
-               s = std::max(std::hypot(deviation_where_it_varies, trend.scatter), least);
+               s = std::max(std::hypot(deviation_where_it_varies, std::max(trend.scatter, trend.walk)),
+                            least);
   const Eigen::ArrayXXd off = (trend.possible.array() - estimate).abs();
   const auto above = [](double x) { return std::abs(x) < 6 ? std::erfc(x) : x > 0 ? 0.0 : 2.0; };  // to 2e-17
   const auto within = [&](double h, double d, double of) {

@@ -67,6 +67,7 @@ struct SectionTrend {
   Eigen::VectorXd
       values;           ///< at instants evenly spread over the decay, by the best law; empty: not above 1 %
   double scatter = 0;   ///< standard deviation of the sections about the laws beyond their noise
+  double walk = 0;      ///< standard deviation that a walk of the phase adds (phase_walk.hpp)
   double constant = 1;  ///< probability that it is one
   /// What it is by every law (a column each), with slopes as they may be, at these instants.
   Eigen::MatrixXd possible;
@@ -105,7 +106,8 @@ AmplitudeSections amplitude_sections(const Eigen::VectorXd& signal, double inter
 ///     P(constant) P(|deviation z| < h) + sum_g P_g mean over the decay of P(|v_g(t) - estimate + s z| < h) =
 ///     0.95,
 ///
-/// z ~ N(0, 1), s^2 = deviation_where_it_varies^2 + scatter^2. 1.96 deviations where no law was fitted.
+/// z ~ N(0, 1), s^2 = deviation_where_it_varies^2 + scatter^2. 1.96 deviations where no law was fitted. A
+/// walk of the phase adds its variance to that of the deviation, and is part of the scatter.
 double section_half_width(const SectionTrend& trend, double estimate, double deviation,
                           double deviation_where_it_varies);
 

@@ -14,9 +14,10 @@
 #include "experiments/modal/channel_fault.hpp"
 #include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
+#include "experiments/modal/phase_walk.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
-#include "experiments/modal/study/phase_wander.hpp"
+#include "experiments/modal/study/record_kind.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -202,6 +203,25 @@ void try_again(Modes lost, const StabilisationSettings& settings, RecordModes& f
     found = std::move(tried);
     last = std::move(*fit);
   }
+}
+
+/// A walk of the phases widens the deviations of all modes.
+void follow_phases(const JointDecayFit& fit, RecordModes& found) {
+  const auto walk = phase_walk(fit, found.target, found.interval);
+  if (!walk) return;
+  for (std::size_t m = 0; m < fit.rates.size(); ++m) {
+    Pole& pole = found.modes[m].pole;
+    walk->deviation(fit.rates[m]).widen(pole.frequency_deviation_hz, pole.damping_ratio_deviation);
+  }
+  if (!walk->is_sure()) return;
+  std::vector<double> beside_hz;
+  for (const std::size_t m : walk->sidebands) beside_hz.push_back(found.modes[m].pole.frequency_hz());
+  found.objections.emplace_back(
+      "phase_wander",
+      walk->sentence() + (beside_hz.empty() ? ""
+                                            : " What is listed at " + frequencies_text(beside_hz) +
+                                                  " has the shape of a stronger mode beside "
+                                                  "it, as a sideband of the walk."));
 }
 
 }  // namespace

@@ -104,7 +104,8 @@ std::optional<ClosePair> in_place_of_the_mode(const Record& record) {
   const VectorXd signal = record.samples.row(0).transpose();
   ModalAnalysisSettings near;
   near.expected_frequency_hz = 5.0;
-  return close_pair(signal, interval, dominant_mode(signal, interval, near));
+  const auto decay = fitted_decay(signal, interval, dominant_mode(signal, interval, near));
+  return decay ? close_pair(*decay) : std::nullopt;
 }
 
 // Modes that are farther apart are companions of each other to the modal analysis itself.

@@ -1,4 +1,4 @@
-#include "experiments/modal/study/phase_wander.hpp"
+#include "experiments/modal/phase_walk.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/modal/study/record_kind.hpp"
+#include "experiments/modal/poles.hpp"
 #include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/signal/toolbox.hpp"
 
@@ -97,10 +97,12 @@ Walk walk_of(const Phases& one, double section) {
           (left * means * left.transpose()).trace()};
 }
 
+constexpr double weak = 0.1, near = 0.1;  // of a stronger mode's amplitude and frequency
+
 /// The weak modes beside a strong one that have its shape in several channels: a phase that wanders has such
 /// sidebands, which would take up its walk.
 std::vector<std::size_t> sidebands_of(const JointDecayFit& fit) {
-  constexpr double weak = 0.1, near = 0.1, alike = 0.98;
+  constexpr double alike = 0.98;
   const auto in_noise = [&](std::size_t m) {
     const auto column = static_cast<Index>(m);
     return VectorXcd(fit.shapes.col(column).array() / fit.noise_variance.col(column).array().sqrt());
@@ -121,12 +123,12 @@ std::vector<std::size_t> sidebands_of(const JointDecayFit& fit) {
 
 /// The fit without some of its modes; absent where that fails.
 std::optional<JointDecayFit> without(const std::vector<std::size_t>& left_out, const JointDecayFit& fit,
-                                     const RecordModes& found) {
+                                     const MatrixXd& record, double interval) {
   std::vector<Complex> rates;
   for (std::size_t m = 0; m < fit.rates.size(); ++m)
     if (std::ranges::find(left_out, m) == left_out.end()) rates.push_back(fit.rates[m]);
   try {
-    return fit_decays_jointly(found.target, found.interval, rates);
+    return fit_decays_jointly(record, interval, rates);
   } catch (const std::exception&) {
     return {};
   }
@@ -134,45 +136,63 @@ std::optional<JointDecayFit> without(const std::vector<std::size_t>& left_out, c
 
 }  // namespace
 
-void follow_phases(const JointDecayFit& of_all, RecordModes& found) {
-  constexpr double worth_widening = 1e-2, worth_saying = 1e-4;  // by chance
-  const double duration = found.interval * static_cast<double>(found.target.cols());
-  std::vector<std::size_t> sidebands = sidebands_of(of_all);
-  const auto freed = sidebands.empty() ? std::nullopt : without(sidebands, of_all, found);
-  if (!freed) sidebands.clear();
+void WalkDeviation::widen(double& of_frequency_hz, double& of_damping_ratio) const {
+  of_frequency_hz = std::hypot(of_frequency_hz, frequency_hz);
+  of_damping_ratio = std::hypot(of_damping_ratio, damping_ratio);
+}
+
+WalkDeviation PhaseWalk::deviation(Complex rate) const {
+  const double w = rate.imag(), q = w * w * clock;
+  return {std::sqrt(q * std::max(-0.5 * rate.real(), 1.2 / duration)) / (2.0 * std::numbers::pi),
+          0.25 * q / w};
+}
+
+bool PhaseWalk::is_sure() const {
+  return squares > chi_square_limit(freedom, 1.0 - 1e-4);
+}
+
+std::string PhaseWalk::sentence() const {
+  return fmt::format(
+      "The modes do not keep their phases (chi^2 = {:.3g} of {:.0f} in {} sections of the record). They "
+      "wander as under a clock that is {:.2g} ms off after {:.3g} s of intervals that scatter, or under "
+      "frequencies that change. Standard deviations allow for such a walk.",
+      squares, freedom, sections, 1e3 * std::sqrt(clock * duration), duration);
+}
+
+std::optional<PhaseWalk> phase_walk(const JointDecayFit& of_all, const MatrixXd& record, double interval) {
+  constexpr double worth_widening = 1e-2;  // by chance
+  PhaseWalk walk;
+  walk.duration = interval * static_cast<double>(record.cols());
+  walk.sidebands = sidebands_of(of_all);
+  const auto freed =
+      walk.sidebands.empty() ? std::nullopt : without(walk.sidebands, of_all, record, interval);
+  if (!freed) walk.sidebands.clear();
   const JointDecayFit& fit = freed ? *freed : of_all;
-  const Index sections = sections_of(fit, duration);
-  if (sections == 0) return;
-  const std::vector<Phases> phases = phases_of(fit, found.target, found.interval, sections);
-  Walk all;
+  walk.sections = sections_of(fit, walk.duration);
+  if (walk.sections == 0) return {};
+  const std::vector<Phases> phases = phases_of(fit, record, interval, walk.sections);
+  double by_walk = 0.0;  // of q / omega^2 = 1 [1/s^2]
   for (std::size_t m = 0; m < phases.size(); ++m) {
-    const Walk one = walk_of(phases[m], duration / static_cast<double>(sections));
-    all.squares += one.squares, all.freedom += one.freedom;
-    all.by_walk += std::pow(fit.rates[m].imag(), 2) * one.by_walk;
+    const Walk one = walk_of(phases[m], walk.duration / static_cast<double>(walk.sections));
+    walk.squares += one.squares, walk.freedom += one.freedom;
+    by_walk += std::pow(fit.rates[m].imag(), 2) * one.by_walk;
   }
-  if (all.freedom < 1.0 || !(all.squares > chi_square_limit(all.freedom, 1.0 - worth_widening))) return;
-  const double walk = (all.squares - all.freedom) / all.by_walk;  // of the clock [s^2 / s]
-  for (std::size_t m = 0; m < of_all.rates.size(); ++m) {
-    const double w = of_all.rates[m].imag(), sigma = -of_all.rates[m].real(), q = w * w * walk;
-    Pole& pole = found.modes[m].pole;
-    pole.frequency_deviation_hz =
-        std::hypot(pole.frequency_deviation_hz,
-                   std::sqrt(q * std::max(0.5 * sigma, 1.2 / duration)) / (2.0 * std::numbers::pi));
-    pole.damping_ratio_deviation = std::hypot(pole.damping_ratio_deviation, 0.25 * q / w);
-  }
-  if (!(all.squares > chi_square_limit(all.freedom, 1.0 - worth_saying))) return;
-  std::vector<double> beside_hz;
-  for (const std::size_t m : sidebands) beside_hz.push_back(found.modes[m].pole.frequency_hz());
-  found.objections.emplace_back(
-      "phase_wander",
-      fmt::format(
-          "The modes do not keep their phases (chi^2 = {:.3g} of {:.0f} in {} sections of the record). They "
-          "wander as under a clock that is {:.2g} ms off after {:.3g} s of intervals that scatter, or under "
-          "frequencies that change. Standard deviations allow for such a walk.{}",
-          all.squares, all.freedom, sections, 1e3 * std::sqrt(walk * duration), duration,
-          beside_hz.empty() ? ""
-                            : " What is listed at " + frequencies_text(beside_hz) +
-                                  " has the shape of a stronger mode beside it, as a sideband of the walk."));
+  if (walk.freedom < 1.0 || !(walk.squares > chi_square_limit(walk.freedom, 1.0 - worth_widening))) return {};
+  walk.clock = (walk.squares - walk.freedom) / by_walk;
+  return walk;
+}
+
+ModalEstimate without_sidebands(ModalEstimate mode, double duration) {
+  constexpr double fewest_beats = 6.0;  // for four sections of one and a half
+  constexpr double half = 0.5, many_times = 3.0;
+  std::erase_if(mode.companions, [&](const CompanionMode& other) {
+    const double apart = std::abs(other.frequency_hz - mode.frequency_hz);
+    const bool beats = apart * duration > fewest_beats,
+               lasts = other.rate().real() > many_times * mode.rate().real();
+    return apart < near * mode.frequency_hz && ((other.amplitude < weak * mode.amplitude && !beats) ||
+                                                (other.amplitude < half * mode.amplitude && !lasts));
+  });
+  return mode;
 }
 
 }  // namespace beamid::experiments
