@@ -24,7 +24,7 @@ struct WalkDeviation {
 
 /// A random walk of the phases of all modes, as a clock whose intervals scatter makes it.
 struct PhaseWalk {
-  double clock = 0;                    ///< variance of the clock over the duration [s^2/s]
+  double clock = 0;                    ///< what its variance grows by in a second [s^2/s]
   double squares = 0, freedom = 0;     ///< chi^2 of the phases about a line through them
   Eigen::Index sections = 0;           ///< of the record
   double duration = 0;                 ///< of the record [s]

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -135,6 +136,13 @@ class DelimitedText {
 /// The columns of a delimited text, dates and times of day as numbers of seconds.
 /// @param file for messages. @throws InputError at a row, or where there is none.
 RecordTable table_of_text(const std::string& file, std::string content, const RecordFormat& format);
+
+/// A quantity of motion, with the factor to its SI unit.
+using MotionUnit = std::pair<Quantity, double>;
+
+/// Spellings of networks beside those of stated_unit(), without the library of units, which may be missing:
+/// "CM/SEC/SEC", "cm/seg2", "G/10", "%g", "m.s-2".
+std::optional<MotionUnit> motion_unit(std::string_view written);
 
 /// Sets RecordTable::stated_unit by the lines above the rows (stated_unit.cpp). Its factor is NaN, and a
 /// warning says why, where these lines name a unit and the columns may be in another: a question where nobody

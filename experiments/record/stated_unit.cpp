@@ -19,11 +19,7 @@
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
-namespace {
 
-using MotionUnit = std::pair<Quantity, double>;  // with the factor to SI units
-
-// Spellings of networks beside those of stated_unit(): "CM/SEC/SEC", "cm/seg2", "G/10", "%g", "m.s-2".
 std::optional<MotionUnit> motion_unit(std::string_view written) {
   static const std::regex power(R"(\*\*|\^)"), second("seg|sec"), twice("/s/s"), raised("\xc2\xb2"),
       length(R"((um|mm|cm|m|ft|in)(?:(/s2|[.*]?s-2)|(/s|[.*]?s-1))?)"),
@@ -58,6 +54,8 @@ std::optional<MotionUnit> motion_unit(std::string_view written) {
     return MotionUnit{*known->quantity, known->factor};
   return {};
 }
+
+namespace {
 
 // A line in words, without the signs around them, as views into it.
 std::vector<std::string_view> words_of_line(std::string_view line) {

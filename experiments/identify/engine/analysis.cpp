@@ -209,12 +209,15 @@ double beam_frequency_hz(const Experiment& experiment) {
 
 enum class Depth { mode, everything };
 
-// Modal analysis and sections fit phases that keep to a line; another mode's beat is no walk.
-void allow_for_walk(const VectorXd& signal, double interval, RecordAnalysis& found) {
+// Two modes in the place of one, else phases that wander. Another mode's beat is no walk.
+void look_beside_one_mode(const VectorXd& signal, double interval, bool alone, RecordAnalysis& found) {
+  auto decay = fitted_decay(signal, interval, *found.modal);
+  if (decay) found.pair = close_pair(*decay);
+  if (!alone || found.jump || (found.pair && found.pair->contradicts_one())) return;
   const ModalEstimate one = without_sidebands(*found.modal, static_cast<double>(signal.size()) * interval);
   if (!one.companions.empty() || found.sections.frequency.varies()) return;
-  if (const auto decay = fitted_decay(signal, interval, one))
-    found.walk = phase_walk(decay->fit, decay->record, decay->interval);
+  if (!found.modal->companions.empty()) decay = fitted_decay(signal, interval, one);
+  if (decay) found.walk = phase_walk(decay->fit, decay->record, decay->interval);
   if (!found.walk) return;
   const WalkDeviation by_walk = found.walk->deviation(found.modal->rate());
   found.sections.frequency.walk = by_walk.frequency_hz;
@@ -240,10 +243,7 @@ void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysi
     if (found.even.share < mostly_read) return;
     found.jump = decay_jump(filled, interval, *found.modal);
     found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);
-    if (const auto decay = fitted_decay(filled, interval, *found.modal)) found.pair = close_pair(*decay);
-    if (!(found.pair && found.pair->contradicts_one()) && !found.jump &&
-        asks_free_oscillator(experiment, found.record))
-      allow_for_walk(filled, interval, found);
+    look_beside_one_mode(filled, interval, asks_free_oscillator(experiment, found.record), found);
   } catch (const std::invalid_argument& error) {
     const char* const from = experiment.prior.stiffness ? "prior.stiffness_n_per_m"
                              : experiment.is_described

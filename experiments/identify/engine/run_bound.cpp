@@ -146,10 +146,10 @@ void widen(ComparedRun& run, std::size_t j, double factor) {
 
 namespace {
 
-// Where frequency or damping surely follow the amplitude of a free decay, or its phase wanders, intervals
-// hold what they are over it, as those of K and C do: a stiffness or a mass twice the share of a frequency.
+// Where frequency or damping surely follow the amplitude of a free decay, intervals hold what they are over
+// it, as those of K and C do: a stiffness or a mass twice the share of a frequency.
 void hold_sections(const AmplitudeSections& sections, ComparedRun& run) {
-  if (!run.mode) return;
+  if (sections.sections.empty() || !run.mode) return;
   for (std::size_t j = 0; j < run.parameters.size() && j < run.unknowns.size(); ++j) {
     const Estimate& found = run.parameters[j].estimate;
     const bool damping = run.unknowns[j].quantity.find("damping") != std::string::npos;
@@ -158,7 +158,7 @@ void hold_sections(const AmplitudeSections& sections, ComparedRun& run) {
                  deviation = found.deviation / std::abs(found.value) * value / times;
     if (!(deviation > 0.0) || !std::isfinite(deviation)) continue;
     const SectionTrend& trend = damping ? sections.damping : sections.frequency;
-    if (!trend.varies() && trend.walk == 0.0) continue;
+    if (!trend.varies()) continue;
     const double half = section_half_width(trend, value, deviation, deviation);
     if (half > quantile_95 * deviation) widen(run, j, half / (quantile_95 * deviation));
   }
@@ -178,9 +178,6 @@ void widen_intervals(const RunContext& context, ComparedRun& run) {
   if (!run.mode) return;
   run.mode->damping_ratio_deviation *= run.interval_factor;
   run.mode->frequency_deviation_hz *= run.interval_factor;
-  if (const auto& walk = context.analysis.walk)
-    walk->deviation(context.analysis.modal->rate())
-        .widen(run.mode->frequency_deviation_hz, run.mode->damping_ratio_deviation);
   if (!run.sections) return;
   const filters::Gaussian scattered{run.unknown_state.mean, run.sections->covariance, {}};
   const auto modes = recorded_modes(*run.model, run.run.last.mean, scattered, run.mode->frequency_hz);

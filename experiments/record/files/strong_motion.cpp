@@ -16,7 +16,6 @@
 #include "experiments/record/delimited_text.hpp"
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
-#include "experiments/record/units.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -84,22 +83,16 @@ class CellFile {
     return static_cast<std::size_t>(stated);
   }
 
-  /// To SI units, of a length over a power of seconds, or of a multiple of gravity: "cm/sec2", "mm/s/s",
-  /// "g/10"; without the library of units, which may be missing.
-  /// @throws InputError at a line (from 1) for any other unit
+  /// To SI units. @throws InputError at a line (from 1) for a unit that is none of motion
   double factor_of(string_view unit, std::size_t line) const {
-    static const std::regex metric("([cm]?)m(/s(ec)?2?(/s(ec)?)?)?"), gravity("(m?)g(/(10+))?");
-    const std::string word = folded(unit);
-    std::smatch match;
-    if (std::regex_match(word, match, metric)) return match[1] == "c" ? 0.01 : match[1] == "m" ? 0.001 : 1.0;
-    if (word == "gal") return 0.01;
-    if (std::regex_match(word, match, gravity))
-      return standard_gravity * (match[1] == "m" ? 1e-3 : 1.0) /
-             (match[3].matched ? parse_number(match[3].str()).value : 1.0);
+    const auto known = motion_unit(unit);
+    if (known && (known->first == Quantity::acceleration || known->first == Quantity::velocity ||
+                  known->first == Quantity::displacement))
+      return known->second;
     throw bad(line,
               fmt::format("unit '{}'; expected cm/sec2, mm/sec2, g or g/10 of an acceleration, or cm and "
                           "cm/sec: counts have no scale here",
-                          word));
+                          folded(unit)));
   }
 
  private:
