@@ -1,4 +1,4 @@
-#include "apps/python/figures.hpp"
+#include "apps/python/module.hpp"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>

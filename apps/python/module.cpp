@@ -2,11 +2,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "apps/python/figures.hpp"
 #include "apps/python/filters.hpp"
-#include "apps/python/records.hpp"
+#include "apps/python/module.hpp"
 #include "apps/python/run.hpp"
-#include "apps/python/specification.hpp"
 #include "experiments/config/key_tables.hpp"
 
 namespace py = pybind11;

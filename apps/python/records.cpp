@@ -1,4 +1,4 @@
-#include "apps/python/records.hpp"
+#include "apps/python/module.hpp"
 
 #include <charconv>
 #include <fstream>

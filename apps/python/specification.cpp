@@ -1,4 +1,4 @@
-#include "apps/python/specification.hpp"
+#include "apps/python/module.hpp"
 
 #include <nlohmann/json.hpp>
 

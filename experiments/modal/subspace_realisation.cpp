@@ -10,10 +10,10 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 
 #include "experiments/modal/poles.hpp"
 #include "experiments/signal/toolbox.hpp"
-#include "reduction/bdc_svd.hpp"
 
 namespace beamid::experiments {
 

@@ -7,15 +7,14 @@
 // none are given, a response that is computed here.
 #include <numbers>
 
+#include <Eigen/SVD>
+
 #include "fem/modes.hpp"
 #include "fem/response/response.hpp"
 #include "fem/stiffness_solver.hpp"
-#include "reduction/bdc_svd.hpp"
 #include "reduction/constrained_statics.hpp"
 #include "reduction/orthonormal_basis.hpp"
 #include "reduction/reduction.hpp"
-
-template class Eigen::BDCSVD<Eigen::MatrixXd>;  // the one that bdc_svd.hpp promises
 
 namespace beamid::reduction {
 namespace {
