@@ -282,14 +282,15 @@ double median_of(const std::vector<Instant>& instants, Of of) {
 
 /// Nothing where none is a jump.
 const Instant* clearest_of(const std::vector<Instant>& instants, double amplitude) {
-  constexpr double surely = 15, above_others = 8, as_good = 2, smallest = 0.003, least_amplitude = 0.1;
+  constexpr double surely = 15, above_others = 8, above_a_walk = 25;
+  constexpr double as_good = 2, smallest = 0.003, least_amplitude = 0.1;
   if (instants.empty()) return nullptr;
   const double usual = std::max(1.0, median_of(instants, [](const Instant&i) { return i.step; })),
-               left = median_of(instants, [](const Instant&i) { return i.left; });
+               left = median_of(instants, [](const Instant&i) { return i.left; }),
+               needed = std::max({surely, above_others * usual, above_a_walk * (usual - 1.0)});
   const Instant* clearest = nullptr;
   for (const Instant& i : instants)
-    if (i.beyond > std::max(surely, above_others * usual) && i.left < as_good * left &&
-        std::abs(i.jump) > smallest * std::abs(i.before) &&
+    if (i.beyond > needed && i.left < as_good * left && std::abs(i.jump) > smallest * std::abs(i.before) &&
         std::max(std::abs(i.before), std::abs(i.before + i.jump)) > least_amplitude * amplitude &&
         (!clearest || i.beyond > clearest->beyond))
       clearest = &i;

@@ -15,7 +15,6 @@
 #include "experiments/config/experiment.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/verdict/noise_near_mode.hpp"
-#include "experiments/modal/dominant_mode.hpp"
 #include "experiments/modal/mode_by_mode.hpp"
 #include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/models/estimates.hpp"
@@ -209,20 +208,21 @@ double beam_frequency_hz(const Experiment& experiment) {
 
 enum class Depth { mode, everything };
 
-// Two modes in the place of one, else phases that wander. Another mode's beat is no walk.
+// Two modes in the place of one, else phases that wander, whose sidebands may stand as other modes.
 void look_beside_one_mode(const VectorXd& signal, double interval, bool alone, RecordAnalysis& found) {
-  auto decay = fitted_decay(signal, interval, *found.modal);
+  ModalEstimate& mode = *found.modal;
+  auto decay = fitted_decay(signal, interval, mode);
   if (decay) found.pair = close_pair(*decay);
   if (!alone || found.jump || (found.pair && found.pair->contradicts_one())) return;
-  const ModalEstimate one = without_sidebands(*found.modal, static_cast<double>(signal.size()) * interval);
-  if (!one.companions.empty() || found.sections.frequency.varies()) return;
-  if (!found.modal->companions.empty()) decay = fitted_decay(signal, interval, one);
-  if (decay) found.walk = phase_walk(decay->fit, decay->record, decay->interval);
+  const bool steady = mode.companions.empty() && !found.sections.frequency.varies();
+  if (!mode.companions.empty()) decay = fitted_decay(signal, interval, without_neighbours(mode));
+  for (const WalkAgainst against : {WalkAgainst::noise, WalkAgainst::amplitudes})
+    if (decay && !found.walk && (steady || against == WalkAgainst::amplitudes))
+      found.walk = phase_walk(decay->fit, decay->record, decay->interval, against);
   if (!found.walk) return;
-  const WalkDeviation by_walk = found.walk->deviation(found.modal->rate());
-  found.sections.frequency.walk = by_walk.frequency_hz;
-  found.sections.damping.walk = by_walk.damping_ratio;
-  by_walk.widen(found.modal->frequency_standard_deviation_hz, found.modal->damping_ratio_standard_deviation);
+  const WalkDeviation by_walk = found.walk->deviation(mode.rate());
+  found.sections.frequency.walk = by_walk.frequency_hz, found.sections.damping.walk = by_walk.damping_ratio;
+  by_walk.widen(mode.frequency_standard_deviation_hz, mode.damping_ratio_standard_deviation);
 }
 
 void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysis& found) {
