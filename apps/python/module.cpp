@@ -4,7 +4,6 @@
 
 #include "apps/python/filters.hpp"
 #include "apps/python/module.hpp"
-#include "apps/python/run.hpp"
 #include "experiments/config/key_tables.hpp"
 
 namespace py = pybind11;

@@ -1,4 +1,4 @@
-#include "apps/python/run.hpp"
+#include "apps/python/module.hpp"
 
 #include <pybind11/pybind11.h>
 

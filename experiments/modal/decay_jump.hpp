@@ -43,10 +43,10 @@ struct DecayJump {
 /// s the modal analysis' rate, H the unit step, everything complex but the offset: an amplitude and a
 /// frequency that change smoothly are no jump; then without a_2 and a_3, where that shows none but an F of 5.
 /// It is one where j explains what a_4 t^4 does not, by F = (r_4 - r_j) / 2 / (r_j / freedom) > 15; eight
-/// times more than the median instant's step explains, as beats of modes that were not found explain some
-/// everywhere; where the fit is as good as elsewhere; where |j| is 0.3 % of the amplitude; and where that is
-/// a tenth of the first one: where friction stops a motion it has a corner. None of 200 healthy records has
-/// one.
+/// times the F of the median instant's step, as beats of modes that were not found have some everywhere, and
+/// 25 times what that is above 1, as wandering phases do; where the fit is as good as elsewhere; where |j| is
+/// 0.3 % of the amplitude; and where that is a tenth of the first one: where friction stops a motion it has a
+/// corner. None of 200 healthy records has one.
 std::optional<DecayJump> decay_jump(const Eigen::VectorXd& signal, double interval,
                                     const ModalEstimate& mode);
 

@@ -69,8 +69,13 @@ class Structure:
         mass_shapes = np.diag(self.m) @ shapes
         self.damping = mass_shapes @ np.diag(2 * ratios * self.w) @ mass_shapes.T
 
+    def is_nonlinear(self):
+        return np.any(self.bend) or self.slip > 0
+
     def floors(self, base):
         """Absolute accelerations (RECORDS, 3, N) of the floors."""
+        if not self.is_nonlinear():
+            return self.response(base, np.ones(3), rough=False)
         linear = self.response(base, np.ones(3), rough=True)
         drift = np.abs(linear @ self.drifts.T)[..., :3].std(axis=(0, 1))
         return self.response(base, drift, rough=False)
@@ -79,7 +84,7 @@ class Structure:
         """Of the floors at all fine samples; rough: motions of the linear structure, for the scale of drifts."""
         step, n = 1 / (RATE * FINE), 4
         state, slipped = np.zeros((len(base), 2 * n)), np.zeros((len(base), 3))
-        nonlinear = not rough and (np.any(self.bend) or self.slip)
+        nonlinear = not rough and self.is_nonlinear()
         limit, spring = 0.7 * drift, self.slip * self.k
 
         def rate(x, a):

@@ -125,7 +125,8 @@ void take_decay(const Experiment& experiment, Depth depth, const ModalAnalysisSe
                 RecordAnalysis& found) {
   constexpr double mostly_read = 0.7;  // what is filled in follows the mode, not its changes
   const Record& stamped = found.evenly_stamped();
-  const VectorXd signal = stamped.samples.row(output_channels(stamped)[0]).transpose();
+  const Index first = output_channels(stamped)[0];
+  const VectorXd signal = stamped.samples.row(first).transpose();
   found.modal = dominant_mode(signal, stamped.interval(), settings);
   found.mode = FoundMode{found.modal->frequency_hz, found.modal->damping_ratio};
   found.mode_noise = found.residual_noise(*found.modal);
@@ -133,7 +134,7 @@ void take_decay(const Experiment& experiment, Depth depth, const ModalAnalysisSe
   if (depth == Depth::mode) return;
   found.overtone = third_overtone(signal, stamped.interval(), *found.modal);
   const double interval = found.even.record.interval();
-  const VectorXd filled = found.even.record.samples.row(output_channels(stamped)[0]).transpose();
+  const VectorXd filled = found.even.record.samples.row(first).transpose();
   if (found.even.share < mostly_read) return;
   found.jump = decay_jump(filled, interval, *found.modal);
   found.sections = amplitude_sections(filled, interval, *found.modal, found.even.share);

@@ -88,7 +88,7 @@ struct RecordAnalysis {
   std::optional<DecayJump> jump;           ///< of the first output of `even`, from its first sample
   std::optional<ThirdOvertone> overtone;   ///< of the first output
   std::optional<ClosePair> pair;           ///< in the place of `modal`
-  std::optional<PhaseWalk> walk;           ///< of K and C; no pair, jump or amplitude explains it
+  std::optional<PhaseWalk> walk;           ///< of K and C; no pair or jump explains it
   ChannelAmplitudes channels;              ///< of all outputs, beside each other
   std::vector<std::string> notes;
   std::vector<Objection> objections;

@@ -68,7 +68,7 @@ Count counted(const Walk& walk) {
   return count;
 }
 
-// Without the walk's part of the interval 4 of 20 held the frequency; decay_jump() called 17 of them a jump.
+// Before phases were compared with amplitudes 3 were answered: decay_jump() called the other 17 a jump.
 // Of 20 right intervals 16 and fewer hold it in one of 60 sets.
 TEST(PhaseWalk, OfAClockWidensTheInterval) {
   const Count found = counted({0.05, 0.0});
@@ -77,7 +77,7 @@ TEST(PhaseWalk, OfAClockWidensTheInterval) {
   EXPECT_GE(found.warned, 16);
 }
 
-// What the fit leaves near the mode, and modes that it finds beside it, are sidebands of such walks.
+// The residual near the mode, and modes found beside it, are sidebands of such walks.
 TEST(PhaseWalk, OfTheMotionWidensTheInterval) {
   for (const double step : {0.003, 0.01}) {
     const Count found = counted({0.0, step});
