@@ -47,7 +47,8 @@ const std::vector<ObjectionKind>& objection_kinds() {
       {"input_clock", driven, "lag or rate of a clock, in its standard deviations",
        "Inputs and outputs are not on one clock."},
       {"input_noise", driven, "gain of the log likelihood by noise of an input, 10.1",
-       "A measured input holds noise, which biases stiffness and damping."},
+       "A measured input holds noise. Taken for exact it biases stiffness and damping; identify allows for "
+       "it."},
       {"part_law", driven, "law of damping of a part", "The law is that of the whole beam's modes."},
       {"no_law", laws, "failure of the fit", "No force law fits the whole record."},
       {"other_motion", laws, "motion beside the mode over its amplitude",

@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""Driven records with one thing described wrongly, made without beamid:  driven_faults.py BEAMID [FIRST [COUNT]]
+"""Driven records with one thing described wrongly, made without beamid:  driven_faults.py BEAMID [FIRST [COUNT [NOISE]]]
 
-Shear buildings of 2 to 6 storeys under a band-limited motion of the ground, or a force on the roof, that has gone on for
-ever: a sum of 160 sines, whose response is exact. Some floors carry an accelerometer with white noise of 0.1 to 5 % of the
-motion's standard deviation. Record number s has the fault number s modulo 10 of the list below, by 3, 10 or 30 %. Prints a
-line a record and a table a fault; exit code 1 where an estimate with exit code 0 is more than four standard deviations off.
-One to ten seconds of processor time a record, of six storeys with a reversed sign minutes. docs/verification.md has the table of `driven_faults.py build/release/bin/beamid 0 200`.
+Shear buildings of 2 to 6 storeys under a band-limited motion of the ground, or a force on the roof, that has gone on
+for ever: a sum of 160 sines, whose response is exact. Some floors carry an accelerometer with white noise of 0.1 to 5 %
+of the motion's standard deviation; NOISE is that of every measured input, as a share of its own, 0 where it is not
+given. Record s has the fault number s modulo 10 of the list below, by 3, 10 or 30 %. Prints a line a record and a table
+a fault; exit code 1 where an estimate with exit code 0 is more than four standard deviations off. One to ten seconds of
+processor time a record, of six storeys with a reversed sign minutes. docs/verification.md has the table of
+`driven_faults.py build/release/bin/beamid 0 200`.
 """
 import json
 import re
@@ -53,7 +55,7 @@ class Building:
         return moved
 
 
-def make(number, folder):
+def make(number, folder, input_noise):
     """Writes record and experiment file; returns (fault, what, truth (n + 1), file)."""
     fault = list(FAULTS)[number % len(FAULTS)]
     random = np.random.default_rng(30_000 + number)
@@ -102,6 +104,8 @@ def make(number, folder):
         force = force + abs(size) * np.std(force) * random.normal(0, 1, len(time))
     else:
         what = ""
+    if input_noise > 0:
+        force = force + input_noise * np.std(force) * random.normal(0, 1, len(time))
     stem = Path(folder) / f"s{number}"
     quantity, key, unit = ("force", "n", "N") if on_roof else ("base_acceleration", "m_per_s2", "m/s2")
     names = ",".join(f"acceleration_f{i + 1}_m_per_s2" for i in floors)
@@ -150,10 +154,11 @@ def judged(beamid, fault, truth, file):
 
 def main():
     numbers = [int(x) for x in sys.argv[2:4]] + [0, 40][len(sys.argv[2:4]):]
+    noise = float(sys.argv[4]) if len(sys.argv) > 4 else 0.0
     outcomes, held = {fault: {} for fault in FAULTS}, {fault: [] for fault in FAULTS}
     with tempfile.TemporaryDirectory() as folder:
         for number in range(numbers[0], numbers[0] + numbers[1]):
-            fault, what, truth, file = make(number, folder)
+            fault, what, truth, file = make(number, folder, noise)
             outcome, far, inside, sentence = judged(sys.argv[1], fault, truth, file)
             outcomes[fault][outcome] = outcomes[fault].get(outcome, 0) + 1
             if outcome == "answered":

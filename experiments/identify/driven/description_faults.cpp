@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -22,108 +20,10 @@
 namespace beamid::experiments {
 namespace {
 
-using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXd;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double worth_following = 0.1, mostly = 0.5, sure_score = 5.0;  // of what is left; deviations
 constexpr double hopeless = 2.5;  // times what is left, after a few steps
-
-/// What is left at the unknowns, its slopes, and what they leave of other directions.
-class LeftOver {
- public:
-  LeftOver(const DrivenProblem& problem, const VectorXd& theta) : problem_(problem), theta_(theta) {
-    const DrivenMotion motion(problem);
-    parts_ = motion.at(theta);
-    slopes_ = motion.slopes(parts_, theta).front();
-    normal_.compute(slopes_.transpose() * slopes_);
-    at_once_ = left() - slopes_ * normal_.solve(slopes_.transpose() * left());
-  }
-
-  const VectorXd& left() const { return part().left; }
-
-  /// Of a model of another description at the same unknowns: how the lines made differ from those of the
-  /// description as it is, made anew in the same way. Each has the ends that suit it.
-  VectorXd change_of(const JointModel& described, const JointModel& other) const {
-    VectorXd change = left_of(described) - left_of(other);
-    part().project(change);
-    return change;
-  }
-
-  /// Of a gain of one channel.
-  VectorXd gain_of(Index channel) const {
-    MatrixXcd lines = MatrixXcd::Zero(part().driven.rows(), part().driven.cols());
-    lines.row(channel) = part().driven.row(channel);
-    return projected(lines);
-  }
-
-  /// Of a gain of all inputs.
-  VectorXd gain_of_inputs() const { return projected(part().driven); }
-
-  const MatrixXd& slopes() const { return slopes_; }
-
-  /// s^T V^-1 s of many directions together, by what is left with them, whatever the noise of each line.
-  /// Directions that the unknowns make, or that make each other, drop out.
-  double together(const MatrixXd& directions) const {
-    const MatrixXd own = directions - slopes_ * normal_.solve(slopes_.transpose() * directions);
-    Eigen::ColPivHouseholderQR<MatrixXd> factors(own.rows(), own.cols());
-    factors.setThreshold(1e-3);
-    factors.compute(own);
-    const MatrixXd axes = factors.householderQ() * MatrixXd::Identity(own.rows(), factors.rank());
-    const VectorXd sum = axes.transpose() * at_once_;
-    return sum.dot(variance_along(axes, at_once_ - axes * sum).ldlt().solve(sum));
-  }
-
-  struct Score {
-    double change, deviation, score, explained;
-    VectorXd moved;
-  };
-
-  /// Absent where the unknowns make of it what it makes. @param collinear what they leave of it, at least
-  std::optional<Score> score(const VectorXd& direction, double collinear = 1e-3) const {
-    const VectorXd coefficients = normal_.solve(slopes_.transpose() * direction);
-    const VectorXd own = direction - slopes_ * coefficients;
-    const double squares = own.squaredNorm();
-    if (!(squares > collinear * collinear * direction.squaredNorm())) return {};
-    const double size = std::sqrt(squares);
-    const VectorXd axis = own / size;
-    // Of the change itself, by what is left with it: lines of their own noise, one that weighs much by more.
-    const double sum = axis.dot(at_once_), change = sum / size,
-                 spread = std::sqrt(variance_along(axis, at_once_ - sum * axis)(0, 0));
-    return Score{change, spread / size, std::abs(sum) / std::max(spread, 1e-300),
-                 sum * sum / std::max(left().squaredNorm(), 1e-300), -change * coefficients};
-  }
-
- private:
-  const DrivenProblem& problem_;
-  VectorXd theta_;
-  std::vector<PartAt> parts_;  // one
-  MatrixXd slopes_;
-  Eigen::LDLT<MatrixXd> normal_;
-  VectorXd at_once_;  // what no unknowns make, to first order
-
-  const PartAt& part() const { return parts_.front(); }
-  /// sum_k a_k a_k^T (r_k / (1 - h_k))^2 over the lines, a_k the rows of orthonormal axes and h_k = |a_k|^2.
-  static MatrixXd variance_along(const MatrixXd& axes, const VectorXd& rest) {
-    const Index half = axes.rows() / 2;
-    MatrixXd variance = MatrixXd::Zero(axes.cols(), axes.cols());
-    for (Index k = 0; k < half; ++k) {
-      const double weight = axes.row(k).squaredNorm() + axes.row(k + half).squaredNorm();
-      const VectorXd line =
-          (axes.row(k) * rest[k] + axes.row(k + half) * rest[k + half]) / std::max(1e-3, 1.0 - weight);
-      variance += line * line.transpose();
-    }
-    return variance;
-  }
-  VectorXd left_of(const JointModel& model) const {
-    const LinearResponse there(dynamic_cast<const filters::LinearMotion&>(*model.motion),
-                               state_of_unknowns(model, theta_));
-    return PartAt(problem_, there, problem_.parts.front()).left;
-  }
-  VectorXd projected(const MatrixXcd& lines) const {
-    VectorXd rows = line_rows(lines.reshaped());
-    part().project(rows);
-    return rows;
-  }
-};
 
 /// The model of another description.
 class OtherModels {
@@ -182,7 +82,7 @@ FollowedChange followed(const DrivenProblem& problem, const OtherModels& models,
     there.model = &model;
     const auto fit = promising_fit(there, from, round == 0 ? hopeless * whole : best.left);
     if (!fit) break;
-    const LeftOver left(there, fit->theta);
+    const LineScores left(there, fit->theta);
     const double step = 0.02 * candidate.scale();
     const JointModel moved = models.of(candidate.changed(experiment.structure, x + step));
     const auto score = left.score(left.change_of(model, moved) / step);
@@ -217,7 +117,7 @@ bool is_asked(const Experiment& experiment, const Candidate& candidate) {
 }
 
 void add_structure_changes(const DrivenProblem& problem, const OtherModels& models,
-                           const Experiment& experiment, const LeftOver& left, const VectorXd& theta,
+                           const Experiment& experiment, const LineScores& left, const VectorXd& theta,
                            bool much_is_left, bool weighed, std::vector<DescriptionFault>& faults) {
   const double whole = left.left().squaredNorm(), cost = evaluate_driven(problem, theta).cost;
   const JointModel described = models.of(experiment.structure);
@@ -254,7 +154,7 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
   }
 }
 
-void add_gains(const Record& record, const LeftOver& left, std::vector<DescriptionFault>& faults) {
+void add_gains(const Record& record, const LineScores& left, std::vector<DescriptionFault>& faults) {
   const auto add = [&](const std::string& name, const VectorXd& direction) {
     constexpr double least = 0.02;  // a gain is next to the masses and stiffnesses that are asked
     const auto score = left.score(direction, least);
@@ -273,9 +173,27 @@ void add_gains(const Record& record, const LeftOver& left, std::vector<Descripti
   add(driver, left.gain_of_inputs());
 }
 
+/// Of records whose inputs hold noise, which clocks/likeliest_clock.hpp takes for exact.
+void add_lags(const Record& record, const LineScores& left, std::vector<DescriptionFault>& faults) {
+  constexpr double largest = 2.0;  // sampling intervals: a linear step holds for no more
+  const auto add = [&](const std::string& name, std::optional<Index> channel) {
+    const auto score = left.score(left.lag_of(channel));
+    if (!score || !(score->score > sure_score) || std::abs(score->change) > largest) return;
+    const double lag = record.interval() * score->change;
+    faults.push_back(
+        {fmt::format("{} {:.3g} +- {:.2g} ms {} by the record", name, 1e3 * std::abs(lag),
+                     1e3 * quantile_95 * record.interval() * score->deviation, lag > 0.0 ? "late" : "early"),
+         score->score, score->explained, score->moved});
+  };
+  const std::vector<Index> outputs = output_channels(record);
+  for (std::size_t i = 0; i < outputs.size() && outputs.size() > 1; ++i)
+    add(record.channels[static_cast<std::size_t>(outputs[i])].name, static_cast<Index>(i));
+  add("the inputs are", {});
+}
+
 /// Every sensor of a chain at every other floor, and every two of one quantity exchanged.
 void add_places(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
-                const Record& record, const LeftOver& left, const VectorXd& theta,
+                const Record& record, const LineScores& left, const VectorXd& theta,
                 std::vector<DescriptionFault>& faults) {
   constexpr std::size_t most_floors = 12;
   std::vector<double> floors;
@@ -350,7 +268,7 @@ std::optional<std::size_t> common_ratio(const Experiment& experiment, const Join
 /// one, all together: with D their slopes beyond J, s = D^T r, and V = sum_k d_k d_k^T r'_k^2 over the lines,
 /// r' what is left with them, s^T V^-1 s is chi^2 [white1982].
 void add_modal_ratios(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
-                      const LeftOver& left, const VectorXd& theta, std::vector<DescriptionFault>& faults) {
+                      const LineScores& left, const VectorXd& theta, std::vector<DescriptionFault>& faults) {
   constexpr Index most_modes = 12;
   const std::optional<std::size_t> common = common_ratio(experiment, *problem.model);
   const double highest = 2.0 * problem.parts.front().omega.maxCoeff();
@@ -382,7 +300,7 @@ void add_modal_ratios(const DrivenProblem& problem, const OtherModels& models, c
   there.prior.covariance = covariance, there.prior.factor.resize(0, 0);
 
   const VectorXd start = theta(from);
-  const LeftOver all(there, start);
+  const LineScores all(there, start);
   const double score =
       normal_of_chi_squared(left.together(all.slopes().rightCols(modes)), static_cast<double>(modes - 1));
   if (!(score > sure_score)) return;
@@ -419,18 +337,18 @@ Experiment at_estimates(Experiment experiment, const JointModel& model, const Ve
 std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,
                                                  const Choice& reduction, const std::filesystem::path& folder,
                                                  const JointModel& model, const filters::Gaussian& prior,
-                                                 const VectorXd& theta) {
+                                                 const VectorXd& theta, const VectorXd& input_noise) {
   std::vector<DescriptionFault> faults;
   auto problem = driven_problem(model, measurements(record), prior);
   if (!problem) return faults;
   constexpr Index most_numbers = 2000;  // of a long record every so many lines: each costs all trials alike
   RecordLines& lines = problem->parts.front();
-  lines = thinned(lines, lines.outputs.size() / most_numbers + 1);
+  const Index stride = lines.outputs.size() / most_numbers + 1;
+  lines = thinned(lines, stride);
   try {
-    problem->weights.setOnes(output_channels(record).size());
-    const DrivenFit fit = evaluate_driven(*problem, theta);
-    problem->weights = fit.left.cwiseMax(1e-150).cwiseInverse();
-    const LeftOver left(*problem, theta);
+    if (has_noise(input_noise)) problem->input_noise = input_noise;
+    const DrivenFit fit = weigh_by_residual(*problem, theta);
+    const LineScores left(*problem, theta);
     const Experiment there = at_estimates(experiment, model, theta);
     const OtherModels models(there, record, reduction, folder),
         as_described(experiment, record, reduction, folder);
@@ -438,11 +356,14 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
     add_structure_changes(*problem, models, experiment, left, theta, fit.left_share > much,
                           measures_force(record), faults);
     add_gains(record, left, faults);
+    if (problem->input_noise.size() > 0) add_lags(record, left, faults);
     if (fit.left_share > misplaced)
       add_places(*problem, as_described, experiment, record, left, theta, faults);
     add_modal_ratios(*problem, models, there, left, theta, faults);
   } catch (const std::runtime_error&) {  // no motion at these unknowns
   }
+  for (DescriptionFault& fault : faults)
+    fault.gain = 0.5 * static_cast<double>(stride) * fault.score * fault.score;
   std::ranges::stable_sort(faults, std::greater<>(), &DescriptionFault::explained);
   return faults;
 }

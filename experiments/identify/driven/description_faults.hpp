@@ -19,6 +19,7 @@ struct DescriptionFault {
   double score = 0.0;      ///< |z| of the change; infinite for a place
   double explained = 0.0;  ///< share of what is left, in squares
   Eigen::VectorXd moved;   ///< by how much the unknowns move with it, in the model's coordinates eta (q)
+  double gain = 0.0;  ///< of the logarithm of the likelihood of all lines, by the score; infinite likewise
 };
 
 /// Score tests [rao1948], one quantity x at a time. With r what is left of all lines, J its slopes by the
@@ -32,12 +33,15 @@ struct DescriptionFault {
 /// change that explains a tenth or more is followed to its end, by fits of the unknowns with it. Of a chain
 /// each sensor is tried at every other floor, and every two are exchanged, where 15 % or more of the motion
 /// is left. A damping ratio that is asked of all modes together is held against ratios of their own of the
-/// modes in the band, all at once.
+/// modes in the band, all at once. Beside noise of the inputs r and its derivatives are whitened, and lags of
+/// the channels and of the inputs are tried.
 /// @param theta the unknowns that were found, in the model's coordinates (q)
+/// @param input_noise standard deviations (m); none above 0: the inputs are exact
 /// @returns the best first; empty where the record is none of a small linear model with measured inputs.
 std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,
                                                  const Choice& reduction, const std::filesystem::path& folder,
                                                  const JointModel& model, const filters::Gaussian& prior,
-                                                 const Eigen::VectorXd& theta);
+                                                 const Eigen::VectorXd& theta,
+                                                 const Eigen::VectorXd& input_noise);
 
 }  // namespace beamid::experiments

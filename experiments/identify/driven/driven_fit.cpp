@@ -13,6 +13,7 @@
 #include "experiments/identify/driven/driven_part.hpp"
 #include "experiments/identify/engine/low_mode_fit.hpp"
 #include "experiments/identify/verdict/noise_near_mode.hpp"
+#include "experiments/models/identification.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/signal/in_double.hpp"
 #include "experiments/signal/spectrum.hpp"
@@ -25,7 +26,7 @@ using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::
 
 std::optional<SectionScatter> section_scatter(const JointModel& model, const filters::Measurements& record,
                                               const filters::Gaussian& prior, const VectorXd& theta,
-                                              double lowest_hz) {
+                                              double lowest_hz, const VectorXd& input_noise) {
   constexpr double fewest_periods = 20.0;
   constexpr Index fewest_sections = 6, most_sections = 20;
   auto whole = driven_problem(model, record, prior);
@@ -34,9 +35,8 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
   const Index sections = std::min(most_sections, static_cast<Index>(periods / fewest_periods));
   if (sections < fewest_sections) return {};
   try {
-    whole->weights.setOnes(record.outputs.rows());
-    const DrivenFit all = evaluate_driven(*whole, theta);
-    whole->weights = all.left.cwiseMax(1e-150).cwiseInverse();
+    if (has_noise(input_noise)) whole->input_noise = input_noise;
+    const DrivenFit all = weigh_by_residual(*whole, theta);
     const auto parts = in_sections(*whole, record, sections);
     if (!parts) return {};
     const DrivenFit fit = evaluate_driven(*parts, theta);
@@ -240,7 +240,8 @@ std::optional<DrivenProblem> driven_problem(const JointModel& model, const filte
                          : degree == 1 ? InputPath::linear
                                        : InputPath::band_limited,
                          {},
-                         std::move(prior)};
+                         std::move(prior),
+                         {}};
   } catch (const std::invalid_argument&) {  // gaps, uneven stamps, or too short
     return {};
   }
@@ -323,6 +324,17 @@ DrivenFit fit_driven_from(const DrivenProblem& problem, const VectorXd& start, i
 DrivenFit evaluate_driven(const DrivenProblem& problem, const VectorXd& theta) {
   const DrivenMotion lines(problem);
   return summary(problem, lines, lines.at(theta), theta);
+}
+
+DrivenFit weigh_by_residual(DrivenProblem& problem, const VectorXd& theta) {
+  DrivenProblem exact = problem;
+  exact.input_noise.resize(0);
+  exact.weights.setOnes(problem.parts.front().outputs.rows());
+  DrivenFit fit = evaluate_driven(exact, theta);
+  const VectorXd& noise = problem.input_noise;
+  const VectorXd left = noise.size() > 0 ? likeliest_line_noise(exact, theta, noise, true).outputs : fit.left;
+  problem.weights = left.cwiseMax(1e-150).cwiseInverse();
+  return fit;
 }
 
 std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {

@@ -37,9 +37,10 @@ struct SectionScatter {
 /// has no lines (driven_problem()).
 /// @param theta of the model's unknowns, in its coordinates (q)
 /// @param prior what is known beforehand of them
+/// @param input_noise standard deviations (m); none above 0: the inputs are exact
 std::optional<SectionScatter> section_scatter(const JointModel& model, const filters::Measurements& record,
                                               const filters::Gaussian& prior, const Eigen::VectorXd& theta,
-                                              double lowest_hz);
+                                              double lowest_hz, const Eigen::VectorXd& input_noise = {});
 
 /// What sections say of one unknown, over a deviation beside which it stands, for 95 % intervals.
 double section_factor(const SectionScatter& scatter, Eigen::Index unknown, double deviation);
@@ -74,13 +75,19 @@ SizeChange by_twice_the_motion(const SizeTrend& trend, const Unknown& unknown);
 ///              + |theta - theta_0|^2_(P_0^-1)
 ///
 /// c is projected out (variable projection [golub1973]). Z has a column for every coordinate of the motion
-/// and, for what a part's ends do to its inputs, a constant and a slope of every channel.
+/// and, for what a part's ends do to its inputs, a constant and a slope of every channel. Where inputs hold
+/// noise of covariance R_u, |L_k^-1 W (...)|^2 takes the place of |W (...)|^2,
+///
+///     L_k L_k^H = 1 + W G_k R_u G_k^H W
+///
+/// without ln det: E[dJ] is 0 at the truth whatever the inputs were (errors in variables [pintelon2012]).
 struct DrivenProblem {
   const JointModel* model = nullptr;  ///< its motion is a filters::LinearMotion
   std::vector<RecordLines> parts;     ///< the whole record, or sections of it
   InputPath path = InputPath::band_limited;
-  Eigen::VectorXd weights;  ///< of the channels [1 / unit] (p)
-  filters::Gaussian prior;  ///< theta_0, P_0 in the model's coordinates eta (q)
+  Eigen::VectorXd weights;           ///< of the channels [1 / unit] (p)
+  filters::Gaussian prior;           ///< theta_0, P_0 in the model's coordinates eta (q)
+  Eigen::VectorXd input_noise = {};  ///< standard deviations [unit] (m); empty: the inputs are exact
 };
 
 /// Where a search ended, with what a part of the record says there.
@@ -120,6 +127,11 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem);
 /// J^T J and J^T r of every part at a theta; no search.
 DrivenFit evaluate_driven(const DrivenProblem& problem, const Eigen::VectorXd& theta);
 
+/// The weights become those of the channels' noise: of all that is left at a theta or, where the inputs hold
+/// noise, of the likeliest beside that (likeliest_line_noise()).
+/// @returns what is left there, of unit weights and exact inputs
+DrivenFit weigh_by_residual(DrivenProblem& problem, const Eigen::VectorXd& theta);
+
 /// What the lines of a record say for noise of its inputs, beside noise of its outputs of any smooth
 /// spectrum: with r_k the residual, G_k the responses to a unit of each input, and D_b the variances of the
 /// channels in bands of a third of an octave,
@@ -133,6 +145,23 @@ DrivenFit evaluate_driven(const DrivenProblem& problem, const Eigen::VectorXd& t
 /// there the lines cannot decide
 double input_noise_gain(const DrivenProblem& problem, const Eigen::VectorXd& theta,
                         const Eigen::VectorXd& sizes);
+
+/// White noise of the sensors, standard deviations [unit].
+struct LevelsOfNoise {
+  Eigen::VectorXd outputs, inputs;     ///< (p), (m)
+  Eigen::VectorXd relative_deviation;  ///< standard deviation of ln inputs, by the information (m)
+  double whiteness_p = 0.0;            ///< of such levels of L_k^-1 r_k by bands (c) or larger
+};
+
+/// The likeliest of r_k ~ CN(0, R + G_k R_u G_k^H), r_k what exact inputs leave of the lines of the first
+/// part: each variance times sqrt(a / b) in turn, a its share of sum_k |S_k^-1 r_k|^2, b what noise of these
+/// sizes makes of that on average [zhou2019]. Of such noise the mean squares m_c of n_c lines of L_k^-1 r_k,
+/// a channel in a third of an octave, make 2 sum_c n_c (m_c - 1 - ln m_c) chi-square, of a degree of freedom
+/// for each but those of the levels.
+/// @param sizes of the inputs' noise to begin with (m)
+/// @param keep_inputs whether it stays at these
+LevelsOfNoise likeliest_line_noise(const DrivenProblem& problem, const Eigen::VectorXd& theta,
+                                   const Eigen::VectorXd& sizes, bool keep_inputs);
 
 /// The whole state of a model at its unknowns, its motion at rest.
 Eigen::VectorXd state_of_unknowns(const JointModel& model, const Eigen::VectorXd& theta);

@@ -1,6 +1,8 @@
 #include "experiments/identify/driven/driven_part.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -8,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "experiments/signal/in_double.hpp"
 #include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
@@ -22,6 +25,31 @@ Complex path_gain(InputPath path, double omega, double interval) {
   if (path == InputPath::band_limited) return 1.0;
   const double half = 0.5 * omega * interval, sinc = std::sin(half) / half;
   return path == InputPath::linear ? Complex(sinc * sinc) : sinc * std::exp(Complex(0.0, -half));
+}
+
+// W G_k of every input by itself, times its size (p x L each).
+std::vector<MatrixXcd> motions_by_inputs(const DrivenProblem& problem, const LinearResponse& response,
+                                         const RecordLines& part, const VectorXd& sizes) {
+  std::vector<MatrixXcd> found;
+  const VectorXd at_rest = VectorXd::Zero(response.motion_size());
+  for (Index j = 0; j < part.inputs.rows(); ++j) {
+    RecordLines unit = part;
+    unit.inputs.setZero();
+    unit.inputs.row(j).setConstant(sizes[j]);
+    found.push_back(part_motion(problem, response, unit, at_rest));
+  }
+  return found;
+}
+
+// L_k^-1 before the rows of every line, 1 + W G_k R_u G_k^H W = L_k L_k^H. @param rows (p L x ...)
+void whiten(const std::vector<MatrixXcd>& by_inputs, Index lines, MatrixXcd& rows) {
+  const Index p = rows.rows() / lines;
+  for (Index k = 0; k < lines; ++k) {
+    MatrixXcd covariance = MatrixXcd::Identity(p, p);
+    for (const MatrixXcd& one : by_inputs) covariance.noalias() += one.col(k) * one.col(k).adjoint();
+    auto block = rows.middleRows(k * p, p);
+    covariance.llt().matrixL().solveInPlace(block);
+  }
 }
 
 }  // namespace
@@ -47,7 +75,13 @@ PartAt::PartAt(const DrivenProblem& problem, const LinearResponse& response, con
     }
   MatrixXcd read = part.outputs;
   read = problem.weights.asDiagonal() * read - driven;
-  const VectorXd all = line_rows(read.reshaped());
+  read.resize(p * lines, 1);
+  if (problem.input_noise.size() > 0) {
+    const auto by_inputs = motions_by_inputs(problem, response, part, problem.input_noise);
+    whiten(by_inputs, lines, read);
+    whiten(by_inputs, lines, added);
+  }
+  const VectorXd all = line_rows(read);
   MatrixXd columns = line_rows(added);
   VectorXd scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   // What dies out or turns within a sample is nothing that a record holds: its amplitudes would be rounding.
@@ -132,8 +166,12 @@ std::vector<MatrixXd> DrivenMotion::slopes(const std::vector<PartAt>& parts, con
   for (Index j = 0; j < q; ++j) {
     const double step = share * std::sqrt(problem_.prior.covariance(j, j));
     const LinearResponse moved = response(theta + step * VectorXd::Unit(q, j));
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      found[i].col(j) = parts[i].change_to(problem_, moved, problem_.parts[i]) / step;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const RecordLines& part = problem_.parts[i];
+      found[i].col(j) = problem_.input_noise.size() > 0 ? parts[i].left - PartAt(problem_, moved, part).left
+                                                        : parts[i].change_to(problem_, moved, part);
+      found[i].col(j) /= step;
+    }
   }
   return found;
 }
@@ -188,14 +226,7 @@ double input_noise_gain(const DrivenProblem& problem, const VectorXd& theta, con
   const Index p = part.outputs.rows(), count = part.omega.size();
   MatrixXcd left(p, count);
   left.reshaped() = at.left.head(p * count) + Complex(0.0, 1.0) * at.left.tail(p * count);
-  std::vector<MatrixXcd> by_inputs;
-  const VectorXd at_rest = VectorXd::Zero(response.motion_size());
-  for (Index j = 0; j < part.inputs.rows(); ++j) {
-    RecordLines unit = part;
-    unit.inputs.setZero();
-    unit.inputs.row(j).setConstant(sizes[j]);
-    by_inputs.push_back(part_motion(problem, response, unit, at_rest));
-  }
+  const std::vector<MatrixXcd> by_inputs = motions_by_inputs(problem, response, part, sizes);
   const std::vector<Index> edges = band_edges(part.omega);
   const auto cost = [&](double share) {
     double sum = 0.0;
@@ -216,6 +247,167 @@ double input_noise_gain(const DrivenProblem& problem, const VectorXd& theta, con
   for (double share = least_share * line; share <= line; share *= finer)
     gain = std::max(gain, without - cost(share));
   return gain;
+}
+
+LevelsOfNoise likeliest_line_noise(const DrivenProblem& problem, const VectorXd& theta, const VectorXd& sizes,
+                                   bool keep_inputs) {
+  constexpr int most_steps = 100;
+  constexpr double settled = 0.005, least = 1e-12;  // of a variance; of the residual's
+  constexpr Index most_numbers = 6000;
+  const LinearResponse response = DrivenMotion(problem).response(theta);
+  const RecordLines& all = problem.parts.front();
+  const RecordLines part = thinned(all, all.outputs.size() / most_numbers + 1);
+  const PartAt at(problem, response, part);
+  const Index p = part.outputs.rows(), m = part.inputs.rows(), count = part.omega.size();
+  MatrixXcd left(p, count);
+  left.reshaped() = at.left.head(p * count) + Complex(0.0, 1.0) * at.left.tail(p * count);
+  const std::vector<MatrixXcd> by_inputs = motions_by_inputs(problem, response, part, VectorXd::Ones(m));
+  const VectorXd squares = left.cwiseAbs2().rowwise().mean().cwiseMax(1e-300);
+  VectorXd variance(p + m);
+  variance << squares, sizes.cwiseAbs2();
+  const auto varied = Eigen::seqN(0, keep_inputs ? p : p + m);
+  MatrixXcd columns(p, p + m), solved;
+  columns.leftCols(p).setIdentity();
+  Eigen::LLT<MatrixXcd> factor;
+  const auto solve_line = [&](Index k) {  // L_k, S_k^-1 of the columns
+    for (Index j = 0; j < m; ++j) columns.col(p + j) = by_inputs[static_cast<std::size_t>(j)].col(k);
+    factor.compute(columns * variance.asDiagonal() * columns.adjoint());
+    solved = factor.solve(columns);
+  };
+  for (int step = 0; step < most_steps; ++step) {
+    VectorXd found = VectorXd::Zero(p + m), expected = found;
+    for (Index k = 0; k < count; ++k) {
+      solve_line(k);
+      found += (solved.adjoint() * left.col(k)).cwiseAbs2();
+      expected += columns.conjugate().cwiseProduct(solved).real().colwise().sum().transpose();
+    }
+    VectorXd next = variance;
+    next(varied) = variance(varied).cwiseProduct(
+        (found(varied).cwiseQuotient(expected(varied).cwiseMax(1e-300))).cwiseSqrt());
+    next.head(p) = next.head(p).cwiseMax(least * squares);
+    const double moved = (next - variance).cwiseQuotient(variance.cwiseMax(1e-300)).cwiseAbs().maxCoeff();
+    variance = next;
+    if (moved < settled) break;
+  }
+  MatrixXd information = MatrixXd::Zero(p + m, p + m);  // of the logarithms of the variances
+  for (Index k = 0; k < count; ++k) {
+    solve_line(k);
+    information += (columns.adjoint() * solved).cwiseAbs2();
+  }
+  const std::vector<Index> edges = band_edges(part.omega);
+  double statistic = 0.0;
+  for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+    const double lines = static_cast<double>(edges[b + 1] - edges[b]);
+    VectorXd mean = VectorXd::Zero(p);
+    for (Index k = edges[b]; k < edges[b + 1]; ++k) {
+      solve_line(k);
+      mean += factor.matrixL().solve(left.col(k)).cwiseAbs2() / lines;
+    }
+    statistic += 2.0 * lines * (mean.array() - 1.0 - mean.array().log()).sum();
+  }
+  const double freedom = static_cast<double>(
+      std::max<Index>(1, static_cast<Index>(edges.size() - 1) * p - (keep_inputs ? p : p + m)));
+  const boost::math::chi_squared_distribution<double, InDouble> law(freedom);
+  const double stride = static_cast<double>(all.omega.size()) / static_cast<double>(count);
+  information = stride * (variance.asDiagonal() * information * variance.asDiagonal()).eval();
+  const VectorXd spread = information.ldlt().solve(MatrixXd::Identity(p + m, p + m)).diagonal();
+  return {variance.head(p).cwiseSqrt().cwiseQuotient(problem.weights), variance.tail(m).cwiseSqrt(),
+          0.5 * spread.tail(m).cwiseMax(0.0).cwiseSqrt(), cdf(complement(law, statistic))};
+}
+
+LineScores::LineScores(const DrivenProblem& problem, const VectorXd& theta)
+    : problem_(problem),
+      theta_(theta),
+      motion_(problem),
+      response_(motion_.response(theta)),
+      parts_(motion_.at(theta)),
+      slopes_(motion_.slopes(parts_, theta).front()),
+      normal_(slopes_.transpose() * slopes_),
+      at_once_(left() - slopes_ * normal_.solve(slopes_.transpose() * left())) {}
+
+VectorXd LineScores::left_of(const JointModel& model) const {
+  const LinearResponse there(dynamic_cast<const filters::LinearMotion&>(*model.motion),
+                             state_of_unknowns(model, theta_));
+  return PartAt(problem_, there, problem_.parts.front()).left;
+}
+
+VectorXd LineScores::slope_by(const std::function<void(DrivenProblem& other, double step)>& change) const {
+  constexpr double step = 1e-4;
+  DrivenProblem other = problem_;
+  change(other, step);
+  return (left() - PartAt(other, response_, other.parts.front()).left) / step;
+}
+
+VectorXd LineScores::change_of(const JointModel& described, const JointModel& other) const {
+  VectorXd change = left_of(described) - left_of(other);
+  part().project(change);
+  return change;
+}
+
+VectorXd LineScores::gain_of(Index channel) const {
+  return slope_by([channel](DrivenProblem& other, double step) {
+    other.weights[channel] *= 1.0 + step;
+    other.parts.front().outputs.row(channel) /= 1.0 + step;
+  });
+}
+
+VectorXd LineScores::gain_of_inputs() const {
+  return slope_by([](DrivenProblem& other, double step) {
+    other.parts.front().inputs *= 1.0 + step;
+    other.input_noise *= 1.0 + step;
+  });
+}
+
+VectorXd LineScores::lag_of(std::optional<Index> channel) const {
+  return slope_by([channel](DrivenProblem& other, double step) {
+    RecordLines& part = other.parts.front();
+    const VectorXcd turned = (Complex(0.0, step * part.interval) * part.omega.cast<Complex>()).array().exp();
+    if (channel)
+      part.outputs.row(*channel).array() *= turned.transpose().array();
+    else
+      part.inputs.array().rowwise() *= turned.transpose().array();
+  });
+}
+
+namespace {
+
+/// sum_k a_k a_k^T (r_k / (1 - h_k))^2 over the lines, a_k the rows of orthonormal axes and h_k = |a_k|^2.
+MatrixXd variance_along(const MatrixXd& axes, const VectorXd& rest) {
+  const Index half = axes.rows() / 2;
+  MatrixXd variance = MatrixXd::Zero(axes.cols(), axes.cols());
+  for (Index k = 0; k < half; ++k) {
+    const double weight = axes.row(k).squaredNorm() + axes.row(k + half).squaredNorm();
+    const VectorXd line =
+        (axes.row(k) * rest[k] + axes.row(k + half) * rest[k + half]) / std::max(1e-3, 1.0 - weight);
+    variance += line * line.transpose();
+  }
+  return variance;
+}
+
+}  // namespace
+
+std::optional<LineScores::Score> LineScores::score(const VectorXd& direction, double collinear) const {
+  const VectorXd coefficients = normal_.solve(slopes_.transpose() * direction);
+  const VectorXd own = direction - slopes_ * coefficients;
+  const double squares = own.squaredNorm();
+  if (!(squares > collinear * collinear * direction.squaredNorm())) return {};
+  const double size = std::sqrt(squares);
+  const VectorXd axis = own / size;
+  // Of the change itself, by what is left with it: lines of their own noise, one that weighs much by more.
+  const double sum = axis.dot(at_once_), change = sum / size,
+               spread = std::sqrt(variance_along(axis, at_once_ - sum * axis)(0, 0));
+  return Score{change, spread / size, std::abs(sum) / std::max(spread, 1e-300),
+               sum * sum / std::max(left().squaredNorm(), 1e-300), -change * coefficients};
+}
+
+double LineScores::together(const MatrixXd& directions) const {
+  const MatrixXd own = directions - slopes_ * normal_.solve(slopes_.transpose() * directions);
+  Eigen::ColPivHouseholderQR<MatrixXd> factors(own.rows(), own.cols());
+  factors.setThreshold(1e-3);
+  factors.compute(own);
+  const MatrixXd axes = factors.householderQ() * MatrixXd::Identity(own.rows(), factors.rank());
+  const VectorXd sum = axes.transpose() * at_once_;
+  return sum.dot(variance_along(axes, at_once_ - axes * sum).ldlt().solve(sum));
 }
 
 }  // namespace beamid::experiments

@@ -1,8 +1,11 @@
 // One part of a driven record beside what a model makes of it, line by line.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/QR>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "experiments/identify/driven/driven_fit.hpp"
@@ -18,8 +21,8 @@ Eigen::MatrixXcd part_motion(const DrivenProblem& problem, const LinearResponse&
 /// Every so many lines of a part.
 RecordLines thinned(const RecordLines& part, Eigen::Index stride);
 
-/// The residual of one part, the ends of it projected out. Rows are all channels of one line, then those of
-/// the next, real parts before imaginary ones.
+/// The residual of one part, whitened, the ends of it projected out. Rows are all channels of one line, then
+/// those of the next, real parts before imaginary ones.
 struct PartAt {
   Eigen::MatrixXcd driven;                           ///< W G_k u_k (p x L)
   Eigen::MatrixXcd moved;                            ///< the same with what d adds (p x L)
@@ -31,7 +34,7 @@ struct PartAt {
 
   /// Without what the ends of the part could make of it.
   void project(Eigen::VectorXd& rows) const;
-  /// How the lines of another response with the same d differ from these, likewise (2 p L).
+  /// How the lines of another response with the same d differ from these, likewise (2 p L), of exact inputs.
   /// @throws std::runtime_error where it has another number of coordinates.
   Eigen::VectorXd change_to(const DrivenProblem& problem, const LinearResponse& other,
                             const RecordLines& part) const;
@@ -59,6 +62,52 @@ class DrivenMotion {
   const DrivenProblem& problem_;
   const filters::LinearMotion& motion_;
   Eigen::MatrixXd prior_;
+};
+
+/// The residual of a problem's first part at its unknowns, and score tests [rao1948] of what may be described
+/// otherwise: directions in which a change moves the residual (2 p L), the unknowns' own taken out. The
+/// problem outlives it.
+class LineScores {
+ public:
+  /// @throws std::runtime_error where there is no motion
+  LineScores(const DrivenProblem& problem, const Eigen::VectorXd& theta);
+
+  const Eigen::VectorXd& left() const { return part().left; }
+  const Eigen::MatrixXd& slopes() const { return slopes_; }  ///< by the unknowns (2 p L x q)
+
+  /// Of a model of another description at the same unknowns: how the lines made differ from those of the
+  /// description as it is, made anew in the same way. Each has the ends that suit it.
+  Eigen::VectorXd change_of(const JointModel& described, const JointModel& other) const;
+  Eigen::VectorXd gain_of(Eigen::Index channel) const;
+  Eigen::VectorXd gain_of_inputs() const;
+  /// Of a lag [sampling intervals] of one channel; absent: of all inputs.
+  Eigen::VectorXd lag_of(std::optional<Eigen::Index> channel) const;
+
+  struct Score {
+    double change, deviation, score, explained;  ///< score: |change| / deviation; of the squares left
+    Eigen::VectorXd moved;                       ///< the unknowns with it (q)
+  };
+  /// Absent where the unknowns make of it what it makes. @param collinear what they leave of it, at least
+  std::optional<Score> score(const Eigen::VectorXd& direction, double collinear = 1e-3) const;
+
+  /// s^T V^-1 s of many directions together, by what is left with them, whatever the noise of each line.
+  /// Directions that the unknowns make, or that make each other, drop out.
+  double together(const Eigen::MatrixXd& directions) const;
+
+ private:
+  const DrivenProblem& problem_;
+  Eigen::VectorXd theta_;
+  DrivenMotion motion_;
+  LinearResponse response_;
+  std::vector<PartAt> parts_;  // one
+  Eigen::MatrixXd slopes_;
+  Eigen::LDLT<Eigen::MatrixXd> normal_;
+  Eigen::VectorXd at_once_;  // what no unknowns make, to first order
+
+  const PartAt& part() const { return parts_.front(); }
+  Eigen::VectorXd left_of(const JointModel& model) const;
+  /// By a change of the readings or of what is known of them.
+  Eigen::VectorXd slope_by(const std::function<void(DrivenProblem& other, double step)>& change) const;
 };
 
 }  // namespace beamid::experiments

@@ -148,13 +148,19 @@ ComparedRun run_once(const RunContext& context, const ModelSetting& setting, con
 
 namespace {
 
+// Each is so of one healthy record in a thousand.
+bool are_white(const filters::InnovationConsistency& c) {
+  return c.whiteness_p_value >= 1e-3;
+}
+bool are_steady(const filters::InnovationConsistency& c) {
+  constexpr double surely = 1.4;  // the band of the worst of ten windows, 2.8 deviations, goes to 3.9
+  return c.windows.maxCoeff() - 1.0 <= surely * (c.window_upper_95 - 1.0) &&
+         1.0 - c.windows.minCoeff() <= surely * (1.0 - c.window_lower_95);
+}
+
 // @param misfit_percent of the record, motion that is left; 0: not said
 std::string innovations_text(const filters::InnovationConsistency& c, double misfit_percent) {
-  // One healthy record in a thousand: the band of the worst of ten windows, 2.8 deviations, goes to 3.9.
-  constexpr double surely_coloured = 1e-3, surely_unsteady = 1.4;
-  const bool white = c.whiteness_p_value >= surely_coloured,
-             steady = c.windows.maxCoeff() - 1.0 <= surely_unsteady * (c.window_upper_95 - 1.0) &&
-                      1.0 - c.windows.minCoeff() <= surely_unsteady * (1.0 - c.window_lower_95);
+  const bool white = are_white(c), steady = are_steady(c);
   if (white && steady) return {};
   const char* const what = white    ? "white, but their size changes along the record"
                            : steady ? "stationary, but not white"
@@ -173,12 +179,21 @@ std::string innovations_text(const filters::InnovationConsistency& c, double mis
 
 }  // namespace
 
+bool leaves_noise(const ComparedRun& run) {
+  constexpr double surely_coloured = 1e-3, alike = 3.0;  // of windows: storeys that yield have 10 and more
+  if (!run.likeliest_input_noise || !run.diagnostics || !run.diagnostics->consistency) return false;
+  const filters::InnovationConsistency& found = *run.diagnostics->consistency;
+  // The filter holds an input's noise over an interval, the lines approximate the ends of the record.
+  const double white = std::max(found.whiteness_p_value, run.likeliest_input_noise->whiteness_p);
+  return white > surely_coloured && found.windows.maxCoeff() < alike * found.windows.minCoeff();
+}
+
 // Noise of the inputs moves the structure, too, and what it moves is left beside their own response. It is
 // the noise that was stated as long as the innovations are no larger than that makes them.
-bool is_noise_of_inputs(const RunContext& context, const ComparedRun& run) {
+bool is_noise_of_inputs(const ComparedRun& run) {
   constexpr double much = 1.25;  // mean normalised square; a sample's delay at 5 % of noise 1.7, a place 100
-  return has_noise(input_noise(context.experiment, context.analysis.record)) && run.diagnostics &&
-         run.diagnostics->consistency && run.diagnostics->consistency->mean_normalised_square < much;
+  return has_noise(run.settings.input_noise) && run.diagnostics && run.diagnostics->consistency &&
+         run.diagnostics->consistency->mean_normalised_square < much;
 }
 
 namespace {
@@ -201,7 +216,7 @@ bool is_approximate(const ComparedRun& run) {
 void judge_motion_left(const RunContext& context, ComparedRun& run) {
   const bool forced = context.analysis.forced();
   const double too_much = forced || has_storey_laws(*run.model) ? too_much_driven : too_much_free;
-  if (!(run.misfit_percent > too_much) || is_noise_of_inputs(context, run)) return;
+  if (!(run.misfit_percent > too_much) || is_noise_of_inputs(run)) return;
   if (is_approximate(run)) {
     run.status = ComparedRun::Status::approximate;
     run.reason = fmt::format("the model explains {:.0f} % of the motion; the rest is not noise",
@@ -259,11 +274,14 @@ bool judge_faults(ComparedRun& run) {
       moves = moves || std::isinf(fault.score) || farthest(fault).first > quantile_95;
     }
   constexpr double slight = 3.0;  // % of the motion
-  if (count > 0 && !moves && run.misfit_percent < slight) {
+  const auto mention = [&](const std::string& what, double explained) {
     run.objections.emplace_back("description",
-                                "One thing described otherwise explains the residual: " + named +
+                                "One thing described otherwise explains the residual: " + what +
                                     ". Allowed for, it moves no estimate out of its interval.",
-                                run.faults.front().explained, mostly);
+                                explained, mostly);
+  };
+  if (count > 0 && !moves && run.misfit_percent < slight) {
+    mention(named, run.faults.front().explained);
     return true;
   }
   if (count == 0 && run.status == ComparedRun::Status::converged)
@@ -274,7 +292,14 @@ bool judge_faults(ComparedRun& run) {
                           run.parameters[unknown].estimate.name, moved);
       break;
     }
-  if (named.empty()) return false;
+  constexpr double beyond_doubt = 10.0, good_part = 0.1;  // deviations; of the residual, in squares
+  if (named.empty()) {
+    if (run.status == ComparedRun::Status::converged && !run.faults.empty())
+      if (const DescriptionFault& best = run.faults.front();
+          best.score > beyond_doubt && best.explained > good_part)
+        mention(share(best), best.explained);
+    return false;
+  }
   run.object({"description",
               "CONTRADICTED: one thing described otherwise explains the record better: " + named + ".",
               run.faults.front().explained, mostly});

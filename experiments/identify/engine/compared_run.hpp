@@ -52,6 +52,8 @@ struct RunSettings {
   int passes = 3;
   double true_mass = 0.0;  ///< of one degree of freedom of the beam simulated, by true_mass() [kg]
   filters::Keep keep = filters::Keep::last_estimate;
+  // Standard deviations of noise by the record; empty: as stated.
+  Eigen::VectorXd input_noise = {}, output_noise = {};  ///< (m), (p)
 };
 
 /// What every run of a comparison shares.
@@ -99,6 +101,11 @@ bool is_approximate(const ComparedRun& run);
 /// one surely differs, by five of its deviations, and moves an unknown by more than the interval reported.
 /// @returns whether a cause was named
 bool judge_faults(ComparedRun& run);
+
+/// Whether noise of the inputs, and white noise of the outputs beside it, is all that is left: innovations or
+/// lines whitened by it are white, but for a probability of one in a thousand, and innovations of one size
+/// within a factor of three.
+bool leaves_noise(const ComparedRun& run);
 
 /// A warning where the innovations are not those of a consistent filter: not white, or of changing size, with
 /// a probability below one in a thousand.

@@ -164,13 +164,34 @@ ComparedRun identified_or_refused(const RunContext& context, ReducedBeam& made, 
 void look_for_faults(const RunContext& context, const ReducedBeam& made, const Choice& reduction,
                      const std::filesystem::path& folder, ComparedRun& run) {
   if (!context.analysis.forced() || !run.answers() || !made.started || !run.model ||
-      !context.compared.clocks.empty() || has_noise(run.settings.input_noise))
+      !context.compared.clocks.empty())
     return;
   context.progress("what may be described wrongly");
   const filters::Gaussian known =
       known_about_start(*made.started, *made.setting, measurements(context.analysis.record).outputs);
   run.faults = description_faults(context.experiment, context.analysis.record, reduction, folder, *run.model,
-                                  known, run.unknown_state.mean);
+                                  known, run.unknown_state.mean, run.settings.input_noise);
+}
+
+// With noise of its inputs, where the record shows it better than anything that is described wrongly, and
+// what is left with it is noise, or has a cause: storeys that yield make a residual that noise of the base
+// cannot.
+void take_input_noise(const RunContext& context, ReducedBeam& made, RunSettings settings,
+                      const Choice& reduction, const std::filesystem::path& folder, ComparedRun& run) {
+  if (!shows_input_noise(context, run)) return;
+  settings.input_noise = run.likeliest_input_noise->deviation;
+  settings.output_noise = run.likeliest_input_noise->outputs;
+  ComparedRun with = identified_or_refused(context, made, settings);
+  if (!with.has_estimate()) return;
+  with.likeliest_input_noise = run.likeliest_input_noise;
+  with.reduction = run.reduction, with.filter = run.filter, with.discretisation = run.discretisation;
+  look_for_faults(context, made, reduction, folder, with);
+  judge_run(context, with);
+  const bool is_explained =
+      leaves_noise(with) ||
+      (run.status == ComparedRun::Status::converged &&
+       std::ranges::any_of(with.objections, [](const Objection& one) { return one.name == "description"; }));
+  if (with.has_estimate() && is_explained) run = std::move(with);
 }
 
 }  // namespace
@@ -278,6 +299,7 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
         run.discretisation = settings.discretisation;
         if (keep == filters::Keep::all_estimates) look_for_faults(context, made, reduction, folder, run);
         judge_run(context, run);
+        take_input_noise(context, made, settings, reduction, folder, run);
         comparison.runs.push_back(std::move(run));
       }
   }

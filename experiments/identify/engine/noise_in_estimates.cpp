@@ -299,7 +299,8 @@ std::optional<LikeliestInputNoise> likeliest_input_noise(const JointModel& model
                                                          const filters::Measurements& record) {
   constexpr double least_share = 1e-4, most_share = 1.0, finer = 2.0;
   if (!dynamic_cast<const filters::LinearMotion*>(model.motion.get())) return {};
-  const VectorXd size = root_mean_squares(record.inputs), theta = found(model.unknown_places);
+  const VectorXd size = root_mean_squares(record.inputs.topRows(model.motion->input_size())),
+                 theta = found(model.unknown_places);
   std::vector<double> shares{0.0};
   for (double share = least_share; share <= most_share; share *= finer) shares.push_back(share);
   try {
@@ -318,9 +319,18 @@ std::optional<LikeliestInputNoise> likeliest_input_noise(const JointModel& model
       return 0.5 * (count * std::log(scale(i)) + passes[i].log_determinants);
     };
     LikeliestInputNoise best{VectorXd::Zero(size.size()), 0.0, {}};
+    std::size_t at = 0;
     for (std::size_t i = 1; i < shares.size(); ++i)
-      if (const double gain = cost(0) - cost(i); !passes[i].failed && gain > best.gain)
+      if (const double gain = cost(0) - cost(i); !passes[i].failed && gain > best.gain) {
         best = {std::sqrt(scale(i)) * shares[i] * size, gain, {}};
+        at = i;
+      }
+    if (at < 2 || at + 1 == shares.size() || passes[at - 1].failed || passes[at + 1].failed) return best;
+    // The least of a parabola in the logarithm of the share.
+    const double below = cost(at - 1) - cost(at), above = cost(at + 1) - cost(at),
+                 steps = 0.5 * (below - above) / (below + above);
+    const auto level = [&](std::size_t i) { return std::log(std::sqrt(scale(i)) * shares[i]); };
+    best.deviation = std::exp(level(at) + 0.5 * steps * (level(at + 1) - level(at - 1))) * size;
     return best;
   } catch (const std::invalid_argument&) {  // uneven stamps
     return {};

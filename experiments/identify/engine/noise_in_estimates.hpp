@@ -65,9 +65,11 @@ NoisyInputFit fit_noisy_inputs(const JointModel& model, const IdentificationSett
 
 /// Noise of inputs that nobody stated.
 struct LikeliestInputNoise {
-  Eigen::VectorXd deviation;  ///< of the inputs, all the same share of their rms (m)
-  double gain = 0.0;          ///< of the logarithm of the likelihood, over that of exact inputs
-  Eigen::VectorXd moved;      ///< by it, the unknowns in their deviations (q); empty: not fitted
+  Eigen::VectorXd deviation;     ///< of the inputs; where there are no lines, the same share of their rms (m)
+  double gain = 0.0;             ///< of the logarithm of the likelihood, over that of exact inputs
+  Eigen::VectorXd moved;         ///< by it, the unknowns in their deviations (q); empty: not fitted
+  Eigen::VectorXd outputs = {};  ///< deviation of the outputs beside it (p); empty: levels are not known well
+  double whiteness_p = 0.0;      ///< of lines of the residual whitened by them (LevelsOfNoise)
 };
 
 /// The noise of the inputs that makes the innovations likeliest at unknowns as found, and noise of the

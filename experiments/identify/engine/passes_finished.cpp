@@ -50,7 +50,7 @@ void Passes::finish() {
   if (is_kept && context_.analysis.modal && context_.compared.clocks.empty())
     look_at_free_modes(context_, motion_.outputs, motion_.initial_state, run_);
   if (!drifts && (!nearest_with_own_scheme() || !context_.analysis.modal)) weigh_noise();
-  if (!drifts && context_.analysis.forced()) look_at_sections();
+  if (context_.analysis.forced()) look_at_sections();
   // What is left of a model that is not exact looks like noise of its inputs, too.
   if (inputs_are_asked && is_kept && !is_approximate(run_)) look_for_input_noise();
   run_.response_seconds += seconds_since(start);
@@ -109,8 +109,8 @@ void Passes::look_at_sections() {
   const auto modes = recorded_modes(*run_.model, run_.run.last.mean, run_.unknown_state, {});
   if (!modes) return;
   const filters::Gaussian known = known_about_start(started_, setting_, record_.outputs);
-  run_.sections =
-      section_scatter(*run_.model, record_, known, run_.unknown_state.mean, modes->lowest.frequency_hz);
+  run_.sections = section_scatter(*run_.model, record_, known, run_.unknown_state.mean,
+                                  modes->lowest.frequency_hz, run_.settings.input_noise);
 }
 
 // Lags that are unknown too leave less of the record to the unknowns.

@@ -35,6 +35,7 @@ NoisyInputFit Passes::fit_with_input_noise(const IdentificationSettings& setting
 // Of inputs that are said to be exact, beside innovations that exact ones do not leave.
 void Passes::look_for_input_noise() {
   constexpr double not_white = 1e-3, hardly = 3.0;
+  constexpr double well_known = 0.1;  // of a hit 0.15 of the noise moved a stiffness by eight deviations
   if (is_nonlinear(*run_.model) || is_whole_mesh(*run_.model)) return;
   if (run_.diagnostics && run_.diagnostics->consistency &&
       run_.diagnostics->consistency->whiteness_p_value > not_white)
@@ -45,23 +46,32 @@ void Passes::look_for_input_noise() {
   run_.likeliest_input_noise =
       likeliest_input_noise(*run_.model, noisy, known_beforehand(), run_.run.last.mean, record_);
   if (!run_.likeliest_input_noise) return;
+  LikeliestInputNoise& found = *run_.likeliest_input_noise;
+  const filters::Gaussian& exact = run_.unknown_state;
   const filters::Gaussian prior{
       started_.guess.mean(started_.model.unknown_places), started_.guess.unknowns, {}};
-  if (auto lines = driven_problem(*run_.model, record_, prior)) try {
-      // Noise of the outputs need not be white.
+  auto lines = driven_problem(*run_.model, record_, prior);
+  try {
+    if (lines) {  // noise of the outputs need not be white
       lines->weights.setOnes(record_.outputs.rows());
       const VectorXd sizes = root_mean_squares(record_.inputs.topRows(lines->parts.front().inputs.rows()));
-      run_.likeliest_input_noise->gain = std::min(run_.likeliest_input_noise->gain,
-                                                  input_noise_gain(*lines, run_.unknown_state.mean, sizes));
-    } catch (const std::runtime_error&) {  // no motion there
+      const double gain = input_noise_gain(*lines, exact.mean, sizes);
+      found.gain = std::min(found.gain, gain);
+      if (!std::isfinite(gain)) lines.reset();  // what their ends could be is most of a narrow resonance
     }
-  if (!(run_.likeliest_input_noise->gain > hardly)) return;
-  noisy.input_noise = run_.likeliest_input_noise->deviation;
-  const NoisyInputFit fit = fit_with_input_noise(noisy);
-  const filters::Gaussian& found = run_.unknown_state;
-  if (fit.failure.empty())
-    run_.likeliest_input_noise->moved =
-        (fit.unknowns.mean - found.mean).cwiseQuotient(found.covariance.diagonal().cwiseSqrt());
+    if (!(found.gain > hardly)) return;
+    if (lines) found.deviation = likeliest_line_noise(*lines, exact.mean, found.deviation, false).inputs;
+    noisy.input_noise = found.deviation;
+    const NoisyInputFit fit = fit_with_input_noise(noisy);
+    if (!fit.failure.empty()) return;
+    found.moved = (fit.unknowns.mean - exact.mean).cwiseQuotient(exact.covariance.diagonal().cwiseSqrt());
+    if (!lines) return;
+    // At unknowns that are not those of exact inputs.
+    const LevelsOfNoise levels = likeliest_line_noise(*lines, fit.unknowns.mean, found.deviation, false);
+    if (!(levels.relative_deviation.maxCoeff() < well_known)) return;
+    found.deviation = levels.inputs, found.outputs = levels.outputs, found.whiteness_p = levels.whiteness_p;
+  } catch (const std::runtime_error&) {  // no motion there
+  }
 }
 
 // A filter of motion and unknowns together is biased by the noise of its inputs (innovation_likelihood.hpp).

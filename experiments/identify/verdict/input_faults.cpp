@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/models/identification.hpp"
 #include "experiments/record/units.hpp"
 
 namespace beamid::experiments {
@@ -130,22 +131,32 @@ std::optional<InputFault> of_lags(const RunContext& context, const ComparedRun& 
   return fault;
 }
 
-std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun& run) {
-  constexpr double clearly = 0.5 * sure_deviations * sure_deviations;  // of a logarithm of likelihood
-  if (!run.likeliest_input_noise || !(run.likeliest_input_noise->gain > clearly)) return {};
-  const Record& record = context.analysis.record;
+// "0.0031 m/s2 of noise in base_acceleration", and what states it: "base_acceleration_m_per_s2 = 0.0031".
+std::pair<std::string, std::string> noise_texts(const Record& record, const VectorXd& noise) {
   const auto inputs = input_channels(record);
-  InputFault fault;
-  fault.name = "input_noise";
+  std::string text, stated;
   for (std::size_t j = 0; j < inputs.size(); ++j) {
     const Channel& channel = channel_of(record, inputs[j]);
-    const double noise = run.likeliest_input_noise->deviation[static_cast<Index>(j)];
-    fault.text += fmt::format("{}{:.2g} {} of noise in {}", j > 0 ? ", " : "", noise,
-                              si_unit(channel.quantity), channel.name);
-    fault.advice += fmt::format("{}{} = {:.2g}", j > 0 ? ", " : "", quantity_key(channel.quantity), noise);
+    const double deviation = noise[static_cast<Index>(j)];
+    text += fmt::format("{}{:.2g} {} of noise in {}", j > 0 ? ", " : "", deviation, si_unit(channel.quantity),
+                        channel.name);
+    stated += fmt::format("{}{} = {:.2g}", j > 0 ? ", " : "", quantity_key(channel.quantity), deviation);
   }
-  fault.text += " would explain the residual";
-  fault.advice = "State it: [noise] " + fault.advice + ".";
+  return {text, stated};
+}
+
+bool is_likelier_with_noise(const ComparedRun& run) {
+  constexpr double clearly = 0.5 * sure_deviations * sure_deviations;  // of a logarithm of likelihood
+  return run.likeliest_input_noise && run.likeliest_input_noise->gain > clearly;
+}
+
+std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun& run) {
+  if (!is_likelier_with_noise(run)) return {};
+  InputFault fault;
+  fault.name = "input_noise";
+  const auto [text, stated] = noise_texts(context.analysis.record, run.likeliest_input_noise->deviation);
+  fault.text = text + " would explain the residual";
+  fault.advice = "State it: [noise] " + stated + ".";
   const VectorXd moved = run.likeliest_input_noise->moved;
   if (moved.size() > 0) fault.moved = moved.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
   return fault;
@@ -153,8 +164,35 @@ std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun&
 
 }  // namespace
 
+bool shows_input_noise(const RunContext& context, const ComparedRun& run) {
+  if (run.parameters.empty() || !is_likelier_with_noise(run)) return false;
+  if (run.likeliest_input_noise->outputs.size() == 0) return false;
+  if (run.status == ComparedRun::Status::converged) return true;
+  constexpr double mostly = 0.5;
+  const double gain = run.likeliest_input_noise->gain;
+  for (const auto& clock : {of_rates(context, run), of_lags(context, run)})
+    if (clock && (clock->explained > mostly || !(0.5 * clock->surely * clock->surely < gain))) return false;
+  return std::ranges::all_of(run.faults, [&](const DescriptionFault& one) { return one.gain < gain; });
+}
+
+// Noise that the record shows and the estimates allow for.
+void name_input_noise(const RunContext& context, ComparedRun& run) {
+  const auto [text, stated] = noise_texts(context.analysis.record, run.settings.input_noise);
+  const double gain = run.likeliest_input_noise->gain;
+  run.objections.emplace_back(
+      "input_noise",
+      fmt::format("The record shows {} (log-likelihood {:+.3g}): estimates and intervals allow for it. A "
+                  "noise that is known is stated: [noise] {}.",
+                  text, gain, stated),
+      gain, 0.5 * sure_deviations * sure_deviations);
+}
+
 void judge_inputs(const RunContext& context, ComparedRun& run) {
   if (run.parameters.empty()) return;
+  if (has_noise(run.settings.input_noise)) {
+    if (run.likeliest_input_noise) name_input_noise(context, run);
+    return;
+  }
   const std::optional<InputFault> rate = of_rates(context, run);
   std::optional<InputFault> fault = rate && rate->is_sure ? rate : of_lags(context, run);
   if (!fault) fault = of_noise(context, run);
@@ -167,8 +205,11 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   const bool moves =
       fault->moved > quantile_95 || (fault->moved > material_move && fault->surely > beyond_doubt);
   const bool excluded = (moves && fault->is_sure && !approximate) || fault->explained > mostly;
-  // Noise of an input is named where the intervals hold it, too: stated, it makes them narrower.
-  const bool worth_stating = fault->moved > 1.0 || fault->name == "input_noise";
+  // Noise of an input is named where the intervals hold it, too: stated, it makes them narrower. So is a
+  // clock that is there beyond doubt and makes a good part of what is left.
+  constexpr double good_part = 0.1;
+  const bool worth_stating = fault->moved > 1.0 || fault->name == "input_noise" ||
+                             (fault->surely > beyond_doubt && fault->explained > good_part);
   if (!excluded && (approximate || !worth_stating)) return;
   const std::string explained =
       fault->explained > mostly

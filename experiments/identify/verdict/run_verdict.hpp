@@ -66,6 +66,11 @@ std::string step_error(const RunContext& context, const ComparedRun& run);
 /// deviation.
 void judge_inputs(const RunContext& context, ComparedRun& run);
 
+/// Whether noise of the inputs, its size well known, makes a judged run of exact inputs surely likelier and,
+/// where the run is contradicted, by more than a clock does, or anything of the description
+/// (DescriptionFault::gain), each by itself. Estimates then allow for it.
+bool shows_input_noise(const RunContext& context, const ComparedRun& run);
+
 /// What is said of them, and what to do.
 std::string clock_scatter_text(const Record& record, const ClockScatter& scatter);
 
