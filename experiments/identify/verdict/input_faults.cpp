@@ -162,6 +162,18 @@ std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun&
   return fault;
 }
 
+// Noise that the record shows and the estimates allow for.
+void name_input_noise(const RunContext& context, ComparedRun& run) {
+  const auto [text, stated] = noise_texts(context.analysis.record, run.settings.input_noise);
+  const double gain = run.likeliest_input_noise->gain;
+  run.objections.emplace_back(
+      "input_noise",
+      fmt::format("The record shows {} (log-likelihood {:+.3g}): estimates and intervals allow for it. A "
+                  "noise that is known is stated: [noise] {}.",
+                  text, gain, stated),
+      gain, 0.5 * sure_deviations * sure_deviations);
+}
+
 }  // namespace
 
 bool shows_input_noise(const RunContext& context, const ComparedRun& run) {
@@ -173,18 +185,6 @@ bool shows_input_noise(const RunContext& context, const ComparedRun& run) {
   for (const auto& clock : {of_rates(context, run), of_lags(context, run)})
     if (clock && (clock->explained > mostly || !(0.5 * clock->surely * clock->surely < gain))) return false;
   return std::ranges::all_of(run.faults, [&](const DescriptionFault& one) { return one.gain < gain; });
-}
-
-// Noise that the record shows and the estimates allow for.
-void name_input_noise(const RunContext& context, ComparedRun& run) {
-  const auto [text, stated] = noise_texts(context.analysis.record, run.settings.input_noise);
-  const double gain = run.likeliest_input_noise->gain;
-  run.objections.emplace_back(
-      "input_noise",
-      fmt::format("The record shows {} (log-likelihood {:+.3g}): estimates and intervals allow for it. A "
-                  "noise that is known is stated: [noise] {}.",
-                  text, gain, stated),
-      gain, 0.5 * sure_deviations * sure_deviations);
 }
 
 void judge_inputs(const RunContext& context, ComparedRun& run) {
