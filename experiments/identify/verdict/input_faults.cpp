@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/identify/engine/run_bound.hpp"
 #include "experiments/models/identification.hpp"
 #include "experiments/record/units.hpp"
 
@@ -162,6 +163,19 @@ std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun&
   return fault;
 }
 
+// Noise that may be there, or may be what the model lacks: intervals hold the estimates with it, too.
+void hold_estimates_with_noise(ComparedRun& run) {
+  const VectorXd& moved = run.likeliest_input_noise->moved;
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    const auto at = static_cast<Index>(j);
+    const double formal = std::abs(run.unknowns[j].slope(run.unknown_state.mean[at])) *
+                          std::sqrt(run.unknown_state.covariance(at, at)),
+                 factor =
+                     factor_to_hold(0.0, run.parameters[j].estimate.deviation, moved[at] * formal, formal);
+    if (factor > 1.0) widen(run, j, factor);
+  }
+}
+
 // Noise that the record shows and the estimates allow for.
 void name_input_noise(const RunContext& context, ComparedRun& run) {
   const auto [text, stated] = noise_texts(context.analysis.record, run.settings.input_noise);
@@ -211,6 +225,10 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   const bool worth_stating = fault->moved > 1.0 || fault->name == "input_noise" ||
                              (fault->surely > beyond_doubt && fault->explained > good_part);
   if (!excluded && (approximate || !worth_stating)) return;
+  if (fault->name == "input_noise" && fault->moved > 1.0 && !excluded) {
+    hold_estimates_with_noise(run);
+    fault->advice += " Intervals are widened to hold the estimates with it.";
+  }
   const std::string explained =
       fault->explained > mostly
           ? fmt::format(" and makes {:.0f} % of the residual, in squares", 100.0 * fault->explained)
