@@ -41,14 +41,17 @@ std::vector<MatrixXcd> motions_by_inputs(const DrivenProblem& problem, const Lin
   return found;
 }
 
-// L_k^-1 before the rows of every line, 1 + W G_k R_u G_k^H W = L_k L_k^H. @param rows (p L x ...)
-void whiten(const std::vector<MatrixXcd>& by_inputs, Index lines, MatrixXcd& rows) {
-  const Index p = rows.rows() / lines;
+// L_k^-1 before the rows of every line, 1 + W G_k R_u G_k^H W = L_k L_k^H. @param read, added (p L x ...)
+void whiten(const std::vector<MatrixXcd>& by_inputs, Index lines, MatrixXcd& read, MatrixXcd& added) {
+  const Index p = read.rows() / lines;
   for (Index k = 0; k < lines; ++k) {
     MatrixXcd covariance = MatrixXcd::Identity(p, p);
     for (const MatrixXcd& one : by_inputs) covariance.noalias() += one.col(k) * one.col(k).adjoint();
-    auto block = rows.middleRows(k * p, p);
-    covariance.llt().matrixL().solveInPlace(block);
+    const Eigen::LLT<MatrixXcd> factor(covariance);
+    for (MatrixXcd* rows : {&read, &added}) {
+      auto block = rows->middleRows(k * p, p);
+      factor.matrixL().solveInPlace(block);
+    }
   }
 }
 
@@ -76,11 +79,8 @@ PartAt::PartAt(const DrivenProblem& problem, const LinearResponse& response, con
   MatrixXcd read = part.outputs;
   read = problem.weights.asDiagonal() * read - driven;
   read.resize(p * lines, 1);
-  if (problem.input_noise.size() > 0) {
-    const auto by_inputs = motions_by_inputs(problem, response, part, problem.input_noise);
-    whiten(by_inputs, lines, read);
-    whiten(by_inputs, lines, added);
-  }
+  if (problem.input_noise.size() > 0)
+    whiten(motions_by_inputs(problem, response, part, problem.input_noise), lines, read, added);
   const VectorXd all = line_rows(read);
   MatrixXd columns = line_rows(added);
   VectorXd scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
@@ -168,6 +168,7 @@ std::vector<MatrixXd> DrivenMotion::slopes(const std::vector<PartAt>& parts, con
     const LinearResponse moved = response(theta + step * VectorXd::Unit(q, j));
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const RecordLines& part = problem_.parts[i];
+      // L_k moves with the unknowns, too.
       found[i].col(j) = problem_.input_noise.size() > 0 ? parts[i].left - PartAt(problem_, moved, part).left
                                                         : parts[i].change_to(problem_, moved, part);
       found[i].col(j) /= step;
@@ -188,6 +189,14 @@ std::vector<Index> band_edges(const VectorXd& omega) {
   if (omega.size() - edges.back() < fewest && edges.size() > 1) edges.pop_back();
   edges.push_back(omega.size());
   return edges;
+}
+
+/// The residual as lines again (p x L).
+MatrixXcd lines_left(const PartAt& at, Index channels) {
+  const Index rows = at.left.size() / 2;
+  MatrixXcd lines(channels, rows / channels);
+  lines.reshaped() = at.left.head(rows) + Complex(0.0, 1.0) * at.left.tail(rows);
+  return lines;
 }
 
 /// -ln of the likelihood of one band's lines, whose channels have the variances `noise` beside `share` of
@@ -222,10 +231,7 @@ double input_noise_gain(const DrivenProblem& problem, const VectorXd& theta, con
     if (pole.imag() > 0.0 && pole.imag() < part.omega[part.omega.size() - 1])
       width -= pole.real() / pi * duration;
   if (width < enough_width) return std::numeric_limits<double>::infinity();
-  const PartAt at(problem, response, part);
-  const Index p = part.outputs.rows(), count = part.omega.size();
-  MatrixXcd left(p, count);
-  left.reshaped() = at.left.head(p * count) + Complex(0.0, 1.0) * at.left.tail(p * count);
+  const MatrixXcd left = lines_left(PartAt(problem, response, part), part.outputs.rows());
   const std::vector<MatrixXcd> by_inputs = motions_by_inputs(problem, response, part, sizes);
   const std::vector<Index> edges = band_edges(part.omega);
   const auto cost = [&](double share) {
@@ -257,10 +263,8 @@ LevelsOfNoise likeliest_line_noise(const DrivenProblem& problem, const VectorXd&
   const LinearResponse response = DrivenMotion(problem).response(theta);
   const RecordLines& all = problem.parts.front();
   const RecordLines part = thinned(all, all.outputs.size() / most_numbers + 1);
-  const PartAt at(problem, response, part);
   const Index p = part.outputs.rows(), m = part.inputs.rows(), count = part.omega.size();
-  MatrixXcd left(p, count);
-  left.reshaped() = at.left.head(p * count) + Complex(0.0, 1.0) * at.left.tail(p * count);
+  const MatrixXcd left = lines_left(PartAt(problem, response, part), p);
   const std::vector<MatrixXcd> by_inputs = motions_by_inputs(problem, response, part, VectorXd::Ones(m));
   const VectorXd squares = left.cwiseAbs2().rowwise().mean().cwiseMax(1e-300);
   VectorXd variance(p + m);
@@ -290,10 +294,6 @@ LevelsOfNoise likeliest_line_noise(const DrivenProblem& problem, const VectorXd&
     if (moved < settled) break;
   }
   MatrixXd information = MatrixXd::Zero(p + m, p + m);  // of the logarithms of the variances
-  for (Index k = 0; k < count; ++k) {
-    solve_line(k);
-    information += (columns.adjoint() * solved).cwiseAbs2();
-  }
   const std::vector<Index> edges = band_edges(part.omega);
   double statistic = 0.0;
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
@@ -301,6 +301,7 @@ LevelsOfNoise likeliest_line_noise(const DrivenProblem& problem, const VectorXd&
     VectorXd mean = VectorXd::Zero(p);
     for (Index k = edges[b]; k < edges[b + 1]; ++k) {
       solve_line(k);
+      information += (columns.adjoint() * solved).cwiseAbs2();
       mean += factor.matrixL().solve(left.col(k)).cwiseAbs2() / lines;
     }
     statistic += 2.0 * lines * (mean.array() - 1.0 - mean.array().log()).sum();

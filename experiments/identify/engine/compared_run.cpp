@@ -292,11 +292,11 @@ bool judge_faults(ComparedRun& run) {
                           run.parameters[unknown].estimate.name, moved);
       break;
     }
-  constexpr double beyond_doubt = 10.0, good_part = 0.1;  // deviations; of the residual, in squares
+  constexpr double highly_significant = 10.0, good_part = 0.1;  // deviations; of the residual, in squares
   if (named.empty()) {
     if (run.status == ComparedRun::Status::converged && !run.faults.empty())
       if (const DescriptionFault& best = run.faults.front();
-          best.score > beyond_doubt && best.explained > good_part)
+          best.score > highly_significant && best.explained > good_part)
         mention(share(best), best.explained);
     return false;
   }

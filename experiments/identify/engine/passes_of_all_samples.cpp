@@ -34,7 +34,7 @@ NoisyInputFit Passes::fit_with_input_noise(const IdentificationSettings& setting
 
 // Of inputs that are said to be exact, beside innovations that exact ones do not leave.
 void Passes::look_for_input_noise() {
-  constexpr double not_white = 1e-3, hardly = 3.0;
+  constexpr double not_white = 1e-3, worth_fitting = 3.0;
   constexpr double well_known = 0.1;  // of a hit 0.15 of the noise moved a stiffness by eight deviations
   if (is_nonlinear(*run_.model) || is_whole_mesh(*run_.model)) return;
   if (run_.diagnostics && run_.diagnostics->consistency &&
@@ -59,7 +59,7 @@ void Passes::look_for_input_noise() {
       found.gain = std::min(found.gain, gain);
       if (!std::isfinite(gain)) lines.reset();  // what their ends could be is most of a narrow resonance
     }
-    if (!(found.gain > hardly)) return;
+    if (!(found.gain > worth_fitting)) return;
     if (lines) found.deviation = likeliest_line_noise(*lines, exact.mean, found.deviation, false).inputs;
     noisy.input_noise = found.deviation;
     const NoisyInputFit fit = fit_with_input_noise(noisy);

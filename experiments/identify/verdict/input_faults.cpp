@@ -84,6 +84,8 @@ constexpr double sure_deviations = 4.5,
                  likely = 3.3;     // deviations: by chance in one of 10^5 records, of 1000
 constexpr double small = 0.5;      // phase [rad]
 constexpr double material = 0.01;  // of an interval
+constexpr double clearly = 0.5 * sure_deviations * sure_deviations;  // of a logarithm of likelihood
+constexpr double mostly = 0.5;  // of the squares left: they are no noise then, and deviations are none
 
 // What a clock would do. @param lag the largest within the record [s]
 InputFault clock_fault(const RunContext& context, const ComparedRun& run, const LikeliestClock& found,
@@ -147,7 +149,6 @@ std::pair<std::string, std::string> noise_texts(const Record& record, const Vect
 }
 
 bool is_likelier_with_noise(const ComparedRun& run) {
-  constexpr double clearly = 0.5 * sure_deviations * sure_deviations;  // of a logarithm of likelihood
   return run.likeliest_input_noise && run.likeliest_input_noise->gain > clearly;
 }
 
@@ -185,7 +186,7 @@ void name_input_noise(const RunContext& context, ComparedRun& run) {
       fmt::format("The record shows {} (log-likelihood {:+.3g}): estimates and intervals allow for it. A "
                   "noise that is known is stated: [noise] {}.",
                   text, gain, stated),
-      gain, 0.5 * sure_deviations * sure_deviations);
+      gain, clearly);
 }
 
 }  // namespace
@@ -194,7 +195,6 @@ bool shows_input_noise(const RunContext& context, const ComparedRun& run) {
   if (run.parameters.empty() || !is_likelier_with_noise(run)) return false;
   if (run.likeliest_input_noise->outputs.size() == 0) return false;
   if (run.status == ComparedRun::Status::converged) return true;
-  constexpr double mostly = 0.5;
   const double gain = run.likeliest_input_noise->gain;
   for (const auto& clock : {of_rates(context, run), of_lags(context, run)})
     if (clock && (clock->explained > mostly || !(0.5 * clock->surely * clock->surely < gain))) return false;
@@ -211,19 +211,18 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   std::optional<InputFault> fault = rate && rate->is_sure ? rate : of_lags(context, run);
   if (!fault) fault = of_noise(context, run);
   if (!fault) fault = rate;
-  constexpr double mostly = 0.5;  // what is left is no noise then, and the deviations are none
   if (!fault) return;
   // What a model lacks looks like a clock or an input's noise; the cause of most of it is one all the same.
   const bool approximate = run.status == ComparedRun::Status::approximate;
-  constexpr double beyond_doubt = 10.0, material_move = 1.0;  // deviations
+  constexpr double highly_significant = 10.0, material_move = 1.0;  // deviations
   const bool moves =
-      fault->moved > quantile_95 || (fault->moved > material_move && fault->surely > beyond_doubt);
+      fault->moved > quantile_95 || (fault->moved > material_move && fault->surely > highly_significant);
   const bool excluded = (moves && fault->is_sure && !approximate) || fault->explained > mostly;
   // Noise of an input is named where the intervals hold it, too: stated, it makes them narrower. So is a
-  // clock that is there beyond doubt and makes a good part of what is left.
+  // clock that differs by ten of its deviations and makes a tenth of the residual.
   constexpr double good_part = 0.1;
   const bool worth_stating = fault->moved > 1.0 || fault->name == "input_noise" ||
-                             (fault->surely > beyond_doubt && fault->explained > good_part);
+                             (fault->surely > highly_significant && fault->explained > good_part);
   if (!excluded && (approximate || !worth_stating)) return;
   if (fault->name == "input_noise" && fault->moved > 1.0 && !excluded) {
     hold_estimates_with_noise(run);
