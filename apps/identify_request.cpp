@@ -163,7 +163,7 @@ std::vector<IdentifyRequest> undescribed_requests(const Values& values) {
   RecordFormat format;
   format.irregular = true;
   const std::vector<fs::path> files = record_files(values, {}, {}, format);
-  if (files.empty()) throw UsageError("--config FILE is missing");
+  if (files.empty()) throw UsageError("which RECORD? Expected a record, --config FILE, or both");
   std::vector<IdentifyRequest> requests;
   for (std::size_t r = 0; r < files.size(); ++r) {
     Experiment cut;

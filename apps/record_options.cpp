@@ -193,7 +193,7 @@ OptionGroup column_options() {
   return {
       "Record",
       {text("column", "N|NAME", "a column to use, by number from 1 or by name").repeated(),
-       text("quantity", "WHAT", "that it measures; one for each column or for all")
+       text("quantity", "WHAT", "quantity of each --column; one value for all or one per column")
            .repeated()
            .one_of(quantity_names()),
        text("unit", "UNIT", "of its numbers: g, m/s2, mm, N, um/m, ...; one for each column or for all")
@@ -207,8 +207,7 @@ OptionGroup column_options() {
        text("stamps", "HOW", "as_they_are: times may be at unequal intervals; even: they must not")
            .by_default("as_they_are")
            .one_of({"even", "as_they_are"}),
-       text("delimiter", "WHAT", "that parts the columns of a text; else what its rows show")
-           .one_of(names_of_separators()),
+       text("delimiter", "WHAT", "column separator of a text file [detected]").one_of(names_of_separators()),
        text("decimal", "SIGN", "of its numbers; else what its rows show").one_of({"auto", "point", "comma"}),
        whole("header-lines", "N", 0, 1e6, "lines before its first row; else found"),
        flag("skip-malformed", "omit malformed lines, counted and located"),
@@ -229,7 +228,11 @@ std::vector<fs::path> record_files(const Values& values, const fs::path& config,
                                    const std::optional<std::string>& named, RecordFormat& format) {
   take_columns(values, format);
   std::vector<fs::path> files;
-  for (const std::string& word : values.texts("record")) files.push_back(record_file(word));
+  for (const std::string& word : values.texts("record")) {
+    if (fs::path(word).extension() == ".toml" && fs::exists(word))
+      throw UsageError(fmt::format("'{0}' is an experiment file; expected a record, or --config {0}", word));
+    files.push_back(record_file(word));
+  }
   std::size_t parts = format.files.size();
   for (const ColumnDescription& channel : format.channels)
     parts = std::max(parts, static_cast<std::size_t>(channel.file));

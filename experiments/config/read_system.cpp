@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "experiments/config/key_tables.hpp"
-#include "experiments/record/files/mat_matrix.hpp"
+#include "experiments/record/read_apart.hpp"
 #include "experiments/text/choice.hpp"
 #include "experiments/text/matrix_market.hpp"
 

@@ -35,10 +35,8 @@ bool holds_words(const RecordTable& table, std::size_t index) {
 std::pair<Quantity, double> certain_unit(const RecordTable& table) {
   if (!std::isnan(table.stated_unit->second) || table.warnings.empty()) return *table.stated_unit;
   const std::string& found = table.warnings.back();
-  throw InputError({table.file, 0, 0},
-                   fmt::format("{}; expected the unit of each channel: --column 1 --quantity acceleration "
-                               "--unit gal, or {}",
-                               found.substr(0, found.size() - 1), in_configuration));
+  throw InputError({table.file, 0, 0}, fmt::format("{}; expected the unit of each channel: {}",
+                                                   found.substr(0, found.size() - 1), in_configuration));
 }
 
 std::string unit_of_time(double factor) {
@@ -62,6 +60,11 @@ std::string numbers_of(const std::vector<RecordColumn>& columns) {
                      columns.size() == 1 ? "is" : "are");
 }
 
+// In one unit, so that shapes of channels are.
+double size_of_reading(std::string_view unit) {
+  return unit == "mV" ? 1e-3 : unit == "uV" ? 1e-6 : 1.0;
+}
+
 constexpr double fastest = 5e-6;  // [s], of 200 kHz
 
 bool is_plausible(double step, double taken) {
@@ -75,7 +78,9 @@ bool is_plausible(double step, double taken) {
 void require_plausible_step(const RecordTable& table, std::size_t index, double taken) {
   constexpr double largest = 20.0;  // [s]
   const double step = mean_step(table.columns[index]);
-  if (is_plausible(step, taken)) return;
+  constexpr double alike = 0.02;
+  const bool as_stated = table.stated_rate && std::abs(step * taken * *table.stated_rate - 1.0) < alike;
+  if (is_plausible(step, taken) || as_stated) return;
   const std::string name = column_name_of(table, index);
   std::string answers;
   for (const auto& [unit, factor] : {std::pair{"ns", 1e-9},
@@ -136,12 +141,20 @@ class Recognition {
       return text;
     };
     const auto named = [&](const char* one) {
-      return std::ranges::any_of(table.names, [&](const auto& other) { return letters(other) == one; });
+      return std::ranges::any_of(table.names, [&](const auto& other) {
+        const std::string brief = letters(other);
+        const std::size_t end = std::string_view(one).size();
+        return brief.starts_with(one) && (brief.size() == end || brief[end] == '(' || brief[end] == ' ');
+      });
     };
     if (const std::string brief = letters(name);
-        brief.size() == 2 && std::string_view("gmw").find(brief[0]) != std::string_view::npos &&
+        brief.size() == 2 && std::string_view("gmwh").find(brief[0]) != std::string_view::npos &&
         std::string_view("xyz").find(brief[1]) != std::string_view::npos && (named("ax") || named("ay")))
-      found->kind = RecognisedColumn::Kind::other;                 // of a gyroscope or a compass
+      found->kind = RecognisedColumn::Kind::other;  // of a gyroscope or a compass
+    if (name.ends_with("(N)") && std::ranges::any_of(table.names, [](const std::string& other) {
+          return other.ends_with("(txt)");  // kinds of values: text, numbers
+        }))
+      found->kind = RecognisedColumn::Kind::other;
     if ((name == "U" || name == "u") && named("N") && named("E"))  // up
       found->quantity = Quantity::acceleration, found->states_quantity = false;
     const auto add = [&](std::string& list) {
@@ -206,9 +219,16 @@ class Recognition {
           std::tie(found->quantity, found->factor) = certain_unit(table), found->states_unit = true;
         columns.channels.push_back({index, found->factor, {found->quantity, name}});
         columns.recognised = true;
-        const bool as_it_is = !found->states_unit;
+        const std::string unit = std::string(si_unit(found->quantity));
+        std::string as_it_is;
+        if (!found->states_unit && found->reading.empty()) as_it_is = ", its unit taken for " + unit;
+        if (!found->states_unit && !found->reading.empty()) {
+          if (reading_.empty()) reading_ = found->reading;
+          columns.channels.back().factor = size_of_reading(found->reading) / size_of_reading(reading_);
+          as_it_is = fmt::format(", 1 {} taken for 1 {}", reading_, unit);
+        }
         read_ += fmt::format("{}'{}' as {}{}", read_.empty() ? "" : ", ", name, to_string(found->quantity),
-                             as_it_is ? ", its unit taken for " + std::string(si_unit(found->quantity)) : "");
+                             as_it_is);
       }
     }
     return true;
@@ -247,7 +267,7 @@ class Recognition {
   }
 
  private:
-  std::string read_, other_, words_;
+  std::string read_, other_, words_, reading_;  // reading_: unit of the first sensor's output
   std::optional<std::size_t> rising_, counted_, unnamed_, first_words_;
   bool stamped_, unit_is_sure_ = false;
 
@@ -311,39 +331,6 @@ class Recognition {
   }
 };
 
-// Whether a column is the root of the sum of squares of two or three others, in a row: what phones add.
-bool is_magnitude(const RecordTable& table, const std::vector<RecordColumn>& channels, std::size_t which) {
-  constexpr double tolerated = 1e-4;  // of squares
-  const std::vector<double>& values = table.columns[channels[which].index];
-  if (std::ranges::any_of(values, [](double value) { return value < 0.0; })) return false;
-  for (std::size_t first = 0; first + 1 < channels.size(); ++first)
-    for (const std::size_t count : {2u, 3u}) {
-      if (first + count > channels.size() || (which >= first && which < first + count)) continue;
-      double left = 0.0, all = 0.0;
-      for (std::size_t row = 0; row < values.size(); ++row) {
-        double square = 0.0;
-        for (std::size_t i = first; i < first + count; ++i)
-          square += std::pow(table.columns[channels[i].index][row], 2);
-        if (!std::isfinite(square + values[row])) continue;
-        left += std::pow(values[row] - std::sqrt(square), 2), all += values[row] * values[row];
-      }
-      if (all > 0.0 && left < tolerated * all) return true;
-    }
-  return false;
-}
-
-void leave_out_magnitudes(RecordTable& table, RecordColumns& columns) {
-  std::string magnitudes;
-  for (std::size_t k = columns.channels.size(); k-- > 0 && columns.channels.size() > 2;)
-    if (is_magnitude(table, columns.channels, k)) {
-      magnitudes += (magnitudes.empty() ? "'" : ", '") + columns.channels[k].channel.name + "'";
-      columns.channels.erase(columns.channels.begin() + static_cast<std::ptrdiff_t>(k));
-    }
-  if (!magnitudes.empty())
-    table.remarks.push_back(
-        "The magnitude of other columns, which has no frequency of its own, omitted: " + magnitudes + ".");
-}
-
 // The first column that rises is time.
 // @param columns of which `time` or `counted` is set
 // @returns the first column behind it
@@ -374,11 +361,18 @@ RecordColumns columns_without_header(RecordTable& table, bool stamped) {
   const auto never_moves = [](const std::vector<double>& values) {  // dates beside times of day
     return std::ranges::all_of(values, [&](double value) { return value == 0.0; });
   };
+  std::string rising;  // a second clock, a count: no motion does
+  const auto only_rises = [](const std::vector<double>& values) {
+    constexpr std::size_t enough = 100;  // a slow motion may rise over fewer
+    return values.size() > enough && std::ranges::is_sorted(values) && values.front() < values.back();
+  };
   const auto [quantity, factor] =
       table.stated_unit ? certain_unit(table) : std::pair{Quantity::acceleration, 1.0};
   for (std::size_t index = first; index < table.width(); ++index)
-    if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index) &&
-        !(table.width() > first + 1 && counts_rows(table.columns[index])))
+    if (table.time != index && table.width() > first + 1 && only_rises(table.columns[index]))
+      rising += fmt::format("{}{}", rising.empty() ? "" : ", ", index + 1);
+    else if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index) &&
+             !(table.width() > first + 1 && counts_rows(table.columns[index])))
       columns.channels.push_back({index, factor, {quantity, fmt::format("column_{}", index + 1)}});
   if (columns.channels.empty())
     throw InputError({table.file, 0, 0},
@@ -391,6 +385,7 @@ RecordColumns columns_without_header(RecordTable& table, bool stamped) {
       numbers_of(columns.channels),
       table.stated_unit ? "in the unit that the lines above state"
                         : "taken for acceleration in m/s2. Frequency and damping ratio do not depend on it"));
+  if (!rising.empty()) table.remarks.push_back("Columns of numbers that only rise, omitted: " + rising + ".");
   leave_out_magnitudes(table, columns);
   return columns;
 }

@@ -18,6 +18,7 @@ namespace beamid::experiments {
 
 /// Whether a field is a number with either decimal sign, or a date or time.
 bool is_reading(std::string_view field);
+bool holds_reading(const std::vector<std::string_view>& fields);
 
 /// The first line that is not blank behind a place of the text, 0 to 1: where its rows are.
 std::string_view line_near(std::string_view text, double place);
@@ -92,6 +93,8 @@ class DelimitedText {
   const std::vector<double>& short_end() const { return short_end_; }
 
  private:
+  static constexpr std::size_t most_early_lines = 20000;
+
   struct EarlyLine {
     std::string_view text;
     std::size_t number, width;
@@ -132,6 +135,10 @@ class DelimitedText {
   std::vector<std::string_view> fields_;
   std::vector<std::string> names_, units_;
 };
+
+/// Stamps parted from their rows, labels joined with their numbers, words beside numbers blanked, one of
+/// several sensors kept (written_text.cpp). @throws InputError where none of these measures accelerations
+void bring_to_fields(const std::string& file, const RecordFormat& format, std::string& text);
 
 /// The columns of a delimited text, dates and times of day as numbers of seconds.
 /// @param file for messages. @throws InputError at a row, or where there is none.

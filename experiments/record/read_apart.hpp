@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include <Eigen/SparseCore>
 
 #include "experiments/record/record.hpp"
 #include "experiments/record/record_table.hpp"
@@ -102,5 +105,12 @@ CollectedSignals read_apart(const std::string& file, const std::string& library,
 std::vector<std::string> texts_apart(const std::string& file, const std::string& library,
                                      const ReadingLimits& limits,
                                      const std::function<std::vector<std::string>()>& read);
+
+// Matrices of a structure in MATLAB files (files/mat.cpp).
+
+/// A real matrix of a MATLAB file of level 5 or 7.3, full or sparse, read in a child process.
+/// @param variable its name; empty: the file's only matrix
+/// @throws InputError where there is no such matrix, several without a name, or the file is damaged.
+Eigen::SparseMatrix<double> read_mat_matrix(const std::filesystem::path& file, const std::string& variable);
 
 }  // namespace beamid::experiments

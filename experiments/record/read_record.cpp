@@ -25,7 +25,6 @@ namespace {
 // One record from several files, a sensor or more each.
 
 using Eigen::Index, Eigen::VectorXd;
-
 struct RecordPart {
   std::string file, stem;
   Record record;
@@ -381,24 +380,6 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
   table.keep(kept);
 }
 
-/// A row that a logger wrote twice: the same stamp, the same readings.
-void leave_out_repeated(RecordTable& table, const std::vector<Used>& used, std::size_t time) {
-  std::vector<bool> kept(table.rows(), true);
-  std::vector<std::size_t> lines;
-  for (std::size_t row = 1; row < table.rows(); ++row) {
-    if (table.columns[time][row] != table.columns[time][row - 1]) continue;
-    const bool same = std::ranges::all_of(used, [&](const Used& one) {
-      return table.columns[one.index][row] == table.columns[one.index][row - 1];
-    });
-    if (!same) return;  // stamps of several samples
-    kept[row] = false;
-    lines.push_back(row < table.lines.size() ? table.lines[row] : row + 1);
-  }
-  if (lines.empty() || 10 * lines.size() > table.rows()) return;
-  table.remarks.push_back(skipped_text(lines, "repeats the line before it"));
-  table.keep(kept);
-}
-
 }  // namespace
 
 Record read_record(const std::filesystem::path& file, const RecordFormat& format) {
@@ -420,7 +401,8 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
         table.rows() ? table.row_place(table.rows() - 1) : Place{table.file},
         fmt::format("{} of numbers; expected at least two", table.rows() ? "one row" : "no row"));
   if (columns.recognised) leave_out_dead(table, columns);
-  if (columns.recognised && columns.time) leave_out_repeated(table, used, columns.time->index);
+  if (columns.recognised) leave_out_repeated(table, columns);
+  if (columns.recognised && !format.sampling_rate && !table.clock) keep_updates(table, columns);
 
   Record record;
   const Stamps stamps{&table, columns.time, &format};

@@ -90,9 +90,10 @@ const std::set<std::string> no_motion{
     "azimuth",  "battery",      "pressure", "humidity",   "status", "light",       "sound",      "altitude",
     "latitude", "longitude",    "gps",      "proximity",  "druck",  "feuchte",     "helligkeit", "current",
     "rpm",      "weight",       "gewicht",  "batt",       "vbat",   "vbatt",       "ptemp",      "utc",
-    "gmt",      "rotation",     "moment",   "torque",     "rssi",   "trigger",     "trig",       "flag",
-    "flags",    "valid",        "quality",  "steps",      "heart",  "accuracy",    "tacho",      "crc",
-    "checksum", "marker",       "event",    "events",     "mic",    "micl"};
+    "speed",    "lat",          "lon",      "lng",        "label",  "state",       "gmt",        "rotation",
+    "moment",   "torque",       "rssi",     "trigger",    "trig",   "flag",        "flags",      "valid",
+    "quality",  "steps",        "heart",    "accuracy",   "tacho",  "crc",         "checksum",   "marker",
+    "event",    "events",       "mic",      "micl"};
 // Of these not even with a quantity behind them: "angular_velocity".
 const std::set<std::string> no_motion_at_all{"angular",    "orientation", "gyro",     "gyroscope", "euler",
                                              "quaternion", "battery",     "rotation", "wind",      "cpu"};
@@ -131,7 +132,8 @@ std::optional<StatedUnit> unit_of(const std::string& unit) {
   static const std::set<std::string> milligravities{"mg", "mG", "milli-g", "milli g", "mgn"};
   if (milligravities.contains(unit)) return StatedUnit{Quantity::acceleration, 1e-3 * standard_gravity};
   if (unit == "mGal" || unit == "mgal") return StatedUnit{Quantity::acceleration, 1e-5};
-  if (unit == "g's" || unit == "gs" || unit == "g_n")
+  if (unit == "g's" || unit == "gs" || unit == "g_n" || unit == "G's" || unit == "Gs" ||
+      unit == "g\xe2\x80\x99s" || unit == "G\xe2\x80\x99s")
     return StatedUnit{Quantity::acceleration, standard_gravity};
   if (unit == "ug" || unit == "µg") return StatedUnit{Quantity::acceleration, 1e-6 * standard_gravity};
   if (unit == "gal" || unit == "Gal") return StatedUnit{Quantity::acceleration, 1e-2};
@@ -219,6 +221,7 @@ std::optional<double> seconds_per_unit(std::string_view unit) {
       {"ns", 1e-9}, {"min", 60.0}, {"h", 3600.0}, {"µs", 1e-6}, {"μs", 1e-6}};
   for (const auto& [symbol, seconds] : more)
     if (unit == symbol) return seconds;
+  if (folded(unit) == "second" || folded(unit) == "seconds") return 1.0;
   if (unit == "mS" || unit == "MS") return 1e-3;
   if (unit == "uS" || unit == "US") return 1e-6;
   const auto stated = stated_unit(unit);
@@ -263,13 +266,15 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
                                                  std::string_view written_unit) {
   const std::string name = with_one_micro(written_name),
                     unit = without_brackets(with_one_micro(written_unit));
-  if (name.find("_per_") != std::string::npos) return {};  // of this project's own kind
+  if (name.find("_per_") != std::string::npos &&  // of this project's own kind
+      std::ranges::any_of(all_quantities, [&](Quantity one) { return name.starts_with(to_string(one)); }))
+    return {};
   auto [plain, stated] = parted(name);
   if (!unit.empty()) stated = unit;
   const std::vector<std::string> words = words_of(plain);
   // Microseconds at 120 Hz at most; other instruments of the maker count 0.1 ms under this name.
   if (plain.find("SampleTimeFine") != std::string::npos)
-    return RecognisedColumn{Kind::time, {}, 1e-6, true, true, 1e6 / 125.0};
+    return RecognisedColumn{Kind::time, {}, 1e-6, true, true, "", 1e6 / 125.0};
   RecognisedColumn found;
   const auto is_time = [&](std::optional<double> seconds) {
     found.kind = Kind::time;
@@ -277,6 +282,7 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
     found.states_unit = seconds.has_value();
     return found;
   };
+  if (folded(unit) == "second" || folded(unit) == "seconds") return is_time(1.0);  // "Source" above "Second"
   for (const auto& [word, seconds] : clocks)
     if (any_word(words, {std::string(word)})) return is_time(seconds);
   if (const auto seconds = seconds_per_unit(stated);
@@ -323,7 +329,11 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
   if (!named && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts) &&
       (words.size() == 1 || words.front().size() > 1))
     return RecognisedColumn{Kind::count};
+  if (folded(stated) == "volt" || folded(stated) == "volts") stated = "V";
+  static const std::regex range_of_sensor("[0-9]+ ?g");  // "X (100g)"
+  if (std::regex_match(stated, range_of_sensor)) stated = "g";
   const auto known = unit_of(stated);
+  if (readings.contains(stated)) found.reading = stated;
   if (!named && !stated.empty() &&
       (stated.find("deg") != std::string::npos || stated.find("rad") != std::string::npos ||
        stated.find("°") != std::string::npos || (other_units.contains(stated) && !readings.contains(stated))))
@@ -356,7 +366,8 @@ bool are_units(const std::vector<std::string_view>& fields) {
   for (const std::string_view field : fields) {
     const std::string text = without_brackets(unquoted(field));
     if (text.empty() || text == "-") continue;
-    if (!unit_of(text) && !seconds_per_unit(text) && !other_units.contains(text)) return false;
+    const bool is_volt = folded(text) == "volt" || folded(text) == "volts";
+    if (!unit_of(text) && !seconds_per_unit(text) && !other_units.contains(text) && !is_volt) return false;
     any = true;
   }
   return any;

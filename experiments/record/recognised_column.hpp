@@ -24,6 +24,7 @@ struct RecognisedColumn {
   double factor = 1.0;           ///< to SI units
   bool states_quantity = false;  ///< else it is taken for an acceleration
   bool states_unit = false;      ///< else values stay as in the file
+  std::string reading = {};      ///< unit of a sensor's output, "mV": no sensitivity is stated
   double least_step = 0.0;       ///< of times in the file's unit, below which the unit is not certain
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <regex>
 
 #include "experiments/record/inspect/defects.hpp"
 #include "experiments/record/recognised_column.hpp"
@@ -46,9 +48,11 @@ RecordColumn find_column(RecordTable& table, const ColumnDescription& wanted) {
     if (!meaning || !meaning->quantity)
       throw InputError(
           Place{table.file, table.header_line, 0},
-          fmt::format("column {} does not state what it measures, and in which unit; expected that as text "
-                      "beside it: a quantity and its unit",
-                      wanted.name.empty() ? std::to_string(wanted.number) : "'" + wanted.name + "'"));
+          fmt::format(
+              "column {} does not state what it measures, and in which unit; expected "
+              "--quantity acceleration --unit g, or the like, beside --column; in [record] a quantity "
+              "and its unit",
+              wanted.name.empty() ? std::to_string(wanted.number) : "'" + wanted.name + "'"));
     column.channel.quantity = *meaning->quantity, column.factor = meaning->factor;
   }
   if (wanted.stated) compare_with_header(wanted, column.index, table);
@@ -140,6 +144,86 @@ std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted
   return index;
 }
 
+namespace {
+
+// "time diff in ms", "delta t (s)": intervals, of which the times are the sum.
+bool sum_intervals(const RecordTable& table, std::size_t index, std::vector<double>& values) {
+  static const std::regex intervals(R"((^|[^a-z])(diff\w*|delta|dt|interval)([^a-z]|$))");
+  const auto found = recognised(table, index);
+  if (!found || found->kind != RecognisedColumn::Kind::time || rises(values) ||
+      !std::regex_search(folded(column_name_of(table, index)), intervals) ||
+      std::ranges::any_of(values, [](double value) { return !(value >= 0.0); }))
+    return false;
+  std::partial_sum(values.begin(), values.end(), values.begin());
+  return true;
+}
+
+}  // namespace
+
+void leave_out_repeated(RecordTable& table, const RecordColumns& columns) {
+  constexpr double few = 0.2;  // of the rows
+  if (!columns.time) return;
+  const std::vector<double>& times = table.columns[columns.time->index];
+  std::vector<bool> kept(table.rows(), true);
+  std::vector<std::size_t> lines;
+  bool same = true;
+  for (std::size_t row = 1; row < table.rows(); ++row) {
+    if (times[row] != times[row - 1]) continue;
+    same = same && std::ranges::all_of(columns.channels, [&](const RecordColumn& one) {
+             return table.columns[one.index][row] == table.columns[one.index][row - 1];
+           });
+    kept[row] = false;
+    lines.push_back(row < table.lines.size() ? table.lines[row] : row + 1);
+  }
+  if (lines.empty() || static_cast<double>(lines.size()) > few * static_cast<double>(table.rows())) return;
+  if (!same) {  // stamps of several samples, or printed more coarsely than samples follow each other
+    const double step = mean_step(times),
+                 printed = table.precision[columns.time->index].resolution(times.back());
+    double off = 0.0;
+    for (std::size_t row = 1; row < table.rows(); ++row) {
+      if (times[row] < times[row - 1]) return;
+      off = std::max(off, std::abs(times[row] - times[0] - step * static_cast<double>(row)));
+    }
+    if (off < 2.0 * printed + step) return;
+  }
+  table.remarks.push_back(
+      skipped_text(lines, same ? "repeats the line before it" : "has the stamp of the line before it"));
+  table.keep(kept);
+}
+
+void keep_updates(RecordTable& table, const RecordColumns& columns) {
+  constexpr std::size_t fewest = 16, longest = 64;
+  constexpr double nearly_all = 0.95;
+  std::size_t repeats = 0;
+  for (const RecordColumn& column : columns.channels) {
+    const std::vector<double>& values = table.columns[column.index];
+    std::vector<std::size_t> runs;
+    std::size_t begin = 0;
+    for (std::size_t row = 1; row < values.size(); ++row)
+      if (values[row] != values[row - 1]) {
+        if (begin > 0) runs.push_back(row - begin);
+        begin = row;
+      }
+    if (runs.size() < fewest) return;
+    std::ranges::nth_element(runs, runs.begin() + std::ssize(runs) / 2);
+    const std::size_t usual = runs[runs.size() / 2];
+    const auto regular = std::ranges::count_if(runs, [&](std::size_t run) { return run % usual == 0; });
+    if (usual < 2 || usual > longest || (repeats != 0 && usual != repeats) ||
+        static_cast<double>(regular) < nearly_all * static_cast<double>(runs.size()))
+      return;
+    repeats = usual;
+  }
+  if (repeats == 0) return;
+  const std::vector<double>& first = table.columns[columns.channels.front().index];
+  std::vector<bool> kept(table.rows(), false);
+  std::size_t last = 0;
+  for (std::size_t row = 1; row < kept.size(); ++row)
+    if (first[row] != first[row - 1] || row == last + repeats) kept[row] = true, last = row;
+  table.keep(kept);
+  table.remarks.push_back(fmt::format(
+      "The readings of each channel are repeated over {0} rows: one row of {0} is kept.", repeats));
+}
+
 RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   RecordColumns columns;
   // Times that are stated elsewhere need no column.
@@ -148,6 +232,8 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
     if (go_on_past_32_bits(table.columns[index]))
       table.remarks.push_back(
           fmt::format("Column {} starts again after 2^32 counts: it goes on from there.", index + 1));
+    else if (sum_intervals(table, index, table.columns[index]))
+      table.remarks.push_back(fmt::format("Column {} holds intervals: times are their sum.", index + 1));
   if (format.channels.empty()) columns = columns_of_header(table, stamped);
   for (const ColumnDescription& wanted : format.channels)
     columns.channels.push_back(find_column(table, wanted));
@@ -181,6 +267,43 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
                      "no column of time; expected the sampling rate, --rate HZ, or the column, --time "
                      "COLUMN:UNIT (record.sampling_rate_hz, record.time in the configuration)");
   return columns;
+}
+
+namespace {
+
+// Whether a column is the root of the sum of squares of two or three others, in a row: what phones add.
+bool is_magnitude(const RecordTable& table, const std::vector<RecordColumn>& channels, std::size_t which) {
+  constexpr double tolerated = 1e-4;  // of squares
+  const std::vector<double>& values = table.columns[channels[which].index];
+  if (std::ranges::any_of(values, [](double value) { return value < 0.0; })) return false;
+  for (std::size_t first = 0; first + 1 < channels.size(); ++first)
+    for (const std::size_t count : {2u, 3u}) {
+      if (first + count > channels.size() || (which >= first && which < first + count)) continue;
+      double left = 0.0, all = 0.0;
+      for (std::size_t row = 0; row < values.size(); ++row) {
+        double square = 0.0;
+        for (std::size_t i = first; i < first + count; ++i)
+          square += std::pow(table.columns[channels[i].index][row], 2);
+        if (!std::isfinite(square + values[row])) continue;
+        left += std::pow(values[row] - std::sqrt(square), 2), all += values[row] * values[row];
+      }
+      if (all > 0.0 && left < tolerated * all) return true;
+    }
+  return false;
+}
+
+}  // namespace
+
+void leave_out_magnitudes(RecordTable& table, RecordColumns& columns) {
+  std::string magnitudes;
+  for (std::size_t k = columns.channels.size(); k-- > 0 && columns.channels.size() > 2;)
+    if (is_magnitude(table, columns.channels, k)) {
+      magnitudes += (magnitudes.empty() ? "'" : ", '") + columns.channels[k].channel.name + "'";
+      columns.channels.erase(columns.channels.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  if (!magnitudes.empty())
+    table.remarks.push_back(
+        "The magnitude of other columns, which has no frequency of its own, omitted: " + magnitudes + ".");
 }
 
 void leave_out_dead(RecordTable& table, RecordColumns& columns) {

@@ -36,7 +36,8 @@ std::string column_name_of(const RecordTable& table, std::size_t index);
 std::optional<RecognisedColumn> recognised(const RecordTable& table, std::size_t index);
 
 /// Where the configuration states what no file does, for messages.
-inline constexpr const char* in_configuration = "record.channels in the configuration";
+inline constexpr const char* in_configuration =
+    "--column N --quantity acceleration --unit g, or record.channels in the configuration";
 
 // Columns of a file that nobody described (columns_of_header.cpp).
 
@@ -56,6 +57,16 @@ std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted
 /// with units those whose unit says nothing are left out, with a remark.
 /// @throws InputError at the header or the first row.
 RecordColumns find_columns(RecordTable& table, const RecordFormat& format);
+
+/// Rows that a logger wrote twice, and rows of an uneven clock that share the stamp of the row before.
+void leave_out_repeated(RecordTable& table, const RecordColumns& columns);
+
+/// One row of each few where every channel repeats its readings over as many, as where a logger writes a row
+/// for each of its sensors: what is repeated would be images of the modes.
+void keep_updates(RecordTable& table, const RecordColumns& columns);
+
+/// Likewise magnitudes of other columns, which have no frequency of their own.
+void leave_out_magnitudes(RecordTable& table, RecordColumns& columns);
 
 /// Of a file that nobody described: an axis that is not connected is no channel, unless no other moves
 /// either. Left out with a remark in `table`.

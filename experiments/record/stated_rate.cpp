@@ -152,8 +152,8 @@ std::optional<double> samples_per_second(const std::string& unit) {
 // Of one line, the rate that a word for one states, or for an interval; below 0 where it states two.
 std::optional<double> rate_of_line(const std::string& line, char decimal) {
   static const std::regex sure(
-      R"(\b(sampl\w*[ _-]*(?:rate|freq\w*)|(?:samples|points) ?(?:/|per) ?sec(?:ond)?|abtast(?:rate|frequenz)|messrate|odr|fps|fs|)"
-      R"((?:fre[cq]uen\w*|cadence|taxa|tasa|velocid?a\w*) (?:d'echantillonnage|d'acquisition|de muestreo|)"
+      R"(\b(samp\w*[ _-]*(?:rate|freq\w*)|(?:samples|points) ?(?:/|per) ?sec(?:ond)?|abtast(?:rate|frequenz)|messrate|odr|fps|fs|)"
+      R"((?:fre[cq]uen\w*|cadence|taxa|tasa|velocid?a\w*|vel\.) (?:d'echantillonnage|d'acquisition|de muestreo|)"
       R"(di campionamento|de amostragem))(?![a-z]))"),
       with_unit(
           R"((?:\b(?:scan|acquisition|logging|recording|output data|output|data)[ _-]*(?:rate|frequency)|^\W*rate|\bsampl(?:ing|ed))\b)"),
@@ -221,7 +221,9 @@ std::optional<double> stated_rate(std::string_view lines, char decimal) {
     constexpr std::size_t longest = 400;
     const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    const auto rate = rate_of_line(std::string(line.substr(0, longest)), decimal);
+    static const std::regex channels(R"(, *c[0-9]+ ?- ?c?[0-9]+)");  // "INTERVALO DE MUESTREO, C1-C6 (s)"
+    const auto rate =
+        rate_of_line(std::regex_replace(std::string(line.substr(0, longest)), channels, ""), decimal);
     constexpr double tolerated = 0.02;
     if (rate && *rate < 0.0) return {};
     if (rate && found && std::abs(*rate / *found - 1.0) > tolerated) return {};  // which of them

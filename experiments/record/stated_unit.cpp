@@ -114,7 +114,7 @@ struct UnitLine {
 // G", "UNIDADES DE LOS DATOS : Gal (cm/s/s)", "#AmplitudeUnit:  gal. DCoffset(corr)"; not "length units: mm".
 UnitLine of_units(const std::vector<std::string_view>& words) {
   static const std::regex name(
-      R"((?:amplitude|data|signal|y|acc[a-z]*)?[_-]?(?:units?|einheit(?:en)?|unites?|unidad(?:es)?|unita|unidades?))");
+      R"((?:amplitude|data|signal|value|y|acc[a-z]*)?[_-]?(?:units?(?:_?name)?(?:_[0-9]+)?|einheit(?:en)?|unites?|unidad(?:es)?|unita|unidades?))");
   UnitLine found;
   std::size_t at = 0;
   for (; at < words.size(); ++at) {
@@ -126,7 +126,9 @@ UnitLine of_units(const std::vector<std::string_view>& words) {
     }
     if (!is_plain(word) && word.find_first_not_of("0123456789.*/%") != word.npos) return found;
   }
-  const std::size_t first = at + 1;
+  const auto is_motion_at = [&](std::size_t k) { return k < words.size() && is_motion(folded(words[k])); };
+  const std::size_t number = is_motion_at(at + 2) && parse_number(words[at + 1]).finite ? 1 : 0;
+  const std::size_t first = at + 1 + number;  // "ValueUnit;1;Velocity [mm/s]"
   for (at = first; at < words.size(); ++at) {
     const std::string word = folded(words[at]);
     if (const auto unit = motion_unit(words[at]))

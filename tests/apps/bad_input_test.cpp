@@ -57,7 +57,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Missing", toml, "", "", "no.toml: no such file; expected a TOML file",
               "identify --config no.toml"},
         Fault{"IsAFolder", toml, "", "", ".: a directory; expected a TOML file", "identify --config ."},
-        Fault{"NotNamed", toml, "", "", "beamid: identify: --config FILE is missing", "identify"},
+        Fault{"NotNamed", toml, "", "",
+              "beamid: identify: which RECORD? Expected a record, --config FILE, or both", "identify"},
         Fault{"NegativeMass", toml, "mass_kg = 3.055", "mass_kg = -3.055",
               "cantilever.toml:10:11: beam.mass_kg is -3.055; expected a positive number"},
         Fault{"UnknownFilter", toml, "\"ekf\"", "\"ufk\"",
@@ -109,7 +110,9 @@ INSTANTIATE_TEST_SUITE_P(
             "force_kn, strain_m_per_m, strain_um_per_m, base_acceleration_m_per_s2, "
             "base_acceleration_mm_per_s2, base_acceleration_g, support_acceleration_m_per_s2, "
             "support_acceleration_mm_per_s2, support_acceleration_g, angular_acceleration_rad_per_s2, "
-            "angular_acceleration_mrad_per_s2), or record.channels in the configuration"}),
+            "angular_acceleration_mrad_per_s2), or --column N --quantity acceleration --unit g, or "
+            "record.channels "
+            "in the configuration"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -103,7 +103,11 @@ class CellFile {
 /// The columns of all series of the first quantity; the others are counted in a remark.
 /// @throws InputError where there is none, or their intervals or sizes differ
 RecordTable table_of_series(const CellFile& file, std::vector<Series> series) {
-  if (series.empty()) throw file.bad(0, "no data; expected a line such as '7000 acceleration pts'");
+  if (series.empty())
+    throw file.bad(
+        0,
+        "no data in a unit of motion; expected a line such as '7000 acceleration pts', in cm/sec2 or g, "
+        "and no raw counts");
   RecordTable table;
   table.file = file.name();
   const std::string quantity = series.front().quantity;

@@ -329,7 +329,9 @@ std::optional<RecordColumn> recognised_time(RecordTable& table, const RecordForm
       table.clock = copy.clock;
       return {};
     }
-    const std::string name = column_name_of(table, columns.time->index);
+    const std::size_t index = columns.time->index;
+    if (copy.rows() == table.rows()) table.columns[index] = copy.columns[index];  // with what starts again
+    const std::string name = column_name_of(table, index);
     text =
         fmt::format("Time is column {}{}.", columns.time->index + 1, name.empty() ? "" : ", '" + name + "'");
     return columns.time;
@@ -346,7 +348,14 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
   Inspection found;
   found.file = file.filename().string();
   found.reader = reader_of(file, format);
-  RecordTable table = read_table(file, tolerant);
+  const auto read = [&]() -> RecordTable {
+    try {
+      return read_table(file, format);
+    } catch (const InputError&) {  // malformed lines
+      return read_table(file, tolerant);
+    }
+  };
+  RecordTable table = read();
   found.skipped_lines = table.skipped_lines;
   std::optional<RecordColumn> time = recognised_time(table, format, found.time_text);
   if (!time) time = find_time(table, format, found.time_text, found.time_key);

@@ -217,15 +217,15 @@ TEST(ReadRecord, RefusesColumnsThatAreNotThere) {
   "support_acceleration_g, angular_acceleration_rad_per_s2, angular_acceleration_mrad_per_s2"
 
 TEST(ReadRecord, RefusesHeadersThatDoNotTellTheUnits) {
-  expect_refused({},
-                 {{"time_s,acceleration_ft_per_s2\n0,1\n1,1\n",
-                   "bad.txt:1: unknown column 'acceleration_ft_per_s2'; expected names with units (" KNOWN
-                   "), or record.channels in the configuration"},
-                  {"time_s\n0\n1\n", "bad.txt:1: no column but time; expected a measured quantity"},
-                  {"time_s,time_ms,force_n\n0,1,2\n1,1,2\n", "bad.txt:1: two columns of time; expected one"},
-                  {"force_n\n0\n1\n",
-                   "bad.txt: no column of time; expected the sampling rate, --rate HZ, or the column, --time "
-                   "COLUMN:UNIT (record.sampling_rate_hz, record.time in the configuration)"}});
+  expect_refused(
+      {}, {{"time_s,acceleration_ft_per_s2\n0,1\n1,1\n",
+            "bad.txt:1: unknown column 'acceleration_ft_per_s2'; expected names with units (" KNOWN
+            "), or --column N --quantity acceleration --unit g, or record.channels in the configuration"},
+           {"time_s\n0\n1\n", "bad.txt:1: no column but time; expected a measured quantity"},
+           {"time_s,time_ms,force_n\n0,1,2\n1,1,2\n", "bad.txt:1: two columns of time; expected one"},
+           {"force_n\n0\n1\n",
+            "bad.txt: no column of time; expected the sampling rate, --rate HZ, or the column, --time "
+            "COLUMN:UNIT (record.sampling_rate_hz, record.time in the configuration)"}});
 }
 
 // One decay at 400 Hz, 4 m/s2 at first, as people write it.

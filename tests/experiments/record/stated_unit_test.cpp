@@ -57,7 +57,7 @@ TEST(StatedUnit, OfPeaksThatTheColumnsDoNotReachIsAQuestion) {
   const std::string other =
       afad("RAW PGA VALUES (gal)    : (N-S) 1.218825 (E-W) 0.607812 (U-D) 0.305862", 30.0);
   EXPECT_THAT(question_of(other),
-              AllOf(HasSubstr("a peak of 1.219 gal"), HasSubstr("reach 30"), HasSubstr("--unit gal")));
+              AllOf(HasSubstr("a peak of 1.219 gal"), HasSubstr("reach 30"), HasSubstr("--unit g")));
   RecordFormat stated;
   stated.channels = {{Quantity::acceleration, "", 1, gal}};
   EXPECT_EQ(question_of(other, stated), "read at 100 Hz");
@@ -110,7 +110,7 @@ TEST(StatedUnit, ThatIsNotOneIsAQuestion) {
   for (const char* const head :
        {"UNITS: g\nUNITS: gal\n", "units: s, g, mm\n", "Acceleration units: g, cm/s2\n"}) {
     EXPECT_THAT(question_of(std::string("dt = 0.01\n") + head + "N-S E-W U-D\n" + three_columns()),
-                AllOf(HasSubstr("state several units"), HasSubstr("--unit gal")))
+                AllOf(HasSubstr("state several units"), HasSubstr("--unit g")))
         << head;
     EXPECT_NEAR(
         recognised(std::string("dt = 0.01\n") + head + "a [m/s2],b [g],c [g]\n" +

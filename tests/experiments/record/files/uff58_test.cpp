@@ -179,9 +179,11 @@ TEST(Uff58Reader, RefusesWhatItCannotRead) {
   EXPECT_EQ(input_error_of(none, [&] { read_record(none.path()); }),
             "none.uff: no real time response among 0 datasets 58; expected one");
   const TemporaryFile volts("volts.uff", ascii_58(1, 4, true, "V", first_signal));
-  EXPECT_EQ(input_error_of(volts, [&] { read_record(volts.path()); }),
-            "volts.uff: no unit states what is measured: '1:+Z' [V]; expected record.channels in the "
-            "configuration");
+  EXPECT_EQ(
+      input_error_of(volts, [&] { read_record(volts.path()); }),
+      "volts.uff: no unit states what is measured: '1:+Z' [V]; expected --column N --quantity acceleration "
+      "--unit g, or record.channels in the "
+      "configuration");
 }
 
 TEST(Uff58Reader, RefusesABeginningSoLateThatItsIntervalIsLost) {

@@ -1,5 +1,5 @@
 // Matrices of MATLAB files. Oracle: what was written, by matio.
-#include "experiments/record/files/mat_matrix.hpp"
+#include "experiments/record/read_apart.hpp"
 
 #include <gmock/gmock.h>
 #include <matio.h>

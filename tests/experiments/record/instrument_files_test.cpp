@@ -1,0 +1,170 @@
+// Heads and rows as instruments and telephones write them, shortened. Oracle: the numbers written, and the
+// units and names of the makers' own files.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "experiments/record/inspect/inspection.hpp"
+#include "experiments/record/read_record.hpp"
+#include "experiments/record/units.hpp"
+#include "tests/experiments/config/temporary_file.hpp"
+#include "tests/experiments/record/recognised_text.hpp"
+
+namespace beamid::experiments::instrument_files_test {
+namespace {
+
+using testing::Contains, testing::ElementsAre, testing::HasSubstr;
+
+constexpr int rows = 60;
+
+std::string two_signals(const char* separator = ",") {
+  return signal_rows(rows, [=](int k, double a) {
+    return fmt::format("{:.4f}{}{:.5f}{}{:.5f}", 0.0025 * k, separator, a, separator, 0.5 * a);
+  });
+}
+
+TEST(RowOfUnits, HasTheNamesAboveItWhateverTheyAre) {
+  const Record scanner = recognised("Time,101,102\ns,g,mm\n" + two_signals());
+  EXPECT_THAT(scanner.channel_names(), ElementsAre("101", "102"));
+  EXPECT_EQ(scanner.channels[1].quantity, Quantity::displacement);
+  EXPECT_NEAR(scanner.samples(0, 0), standard_gravity, 1e-9);
+  EXPECT_NEAR(scanner.samples(1, 0), 0.5e-3, 1e-12);
+  const Record catman = recognised("Time CH=1\tAcc CH=2\tLVDT CH=14\ns\tg\tmm\n" + two_signals("\t"));
+  EXPECT_NEAR(catman.samples(1, 0), 0.5e-3, 1e-12);
+  const Record scope = recognised("X,CH1,CH2\nSecond,Volt,Volt\n" + two_signals());
+  EXPECT_THAT(scope.channel_names(), ElementsAre("CH1", "CH2"));
+}
+
+TEST(RowOfUnits, CountsWhereItsLastCellIsEmpty) {
+  const Record record = recognised("Time,AccTop,AccMid\ns,g,\n" + two_signals());
+  EXPECT_NEAR(record.samples(0, 0), standard_gravity, 1e-9);
+}
+
+TEST(Volts, OfChannelsAreBroughtToOneUnit) {
+  const Record record = recognised("Time,A,B\n(s),(mV),(V)\n" + two_signals());
+  EXPECT_NEAR(record.samples(1, 0) / record.samples(0, 0), 500.0, 1e-9);
+  EXPECT_THAT(record.remarks, Contains(HasSubstr("1 mV taken for 1 m/s2")));
+}
+
+TEST(StatementAbove, IsNoHeader) {
+  const Record record = recognised("Units: g\nSample rate: 100 Hz\n" + signal_rows(rows, [](int, double a) {
+                                     return fmt::format("{:.5f}\t{:.5f}", a, -a);
+                                   }));
+  EXPECT_NEAR(record.interval(), 0.01, 1e-12);
+  EXPECT_NEAR(record.samples(0, 0), standard_gravity, 1e-9);
+}
+
+TEST(StatementAbove, NamesUnitsOfChannelsByNumber) {
+  const std::string head =
+      "SampleRate=10000\nNumChannels=1\nInputName_1=Lager 12\nMeasurandName_1=acceleration\nUnit_1=1\n"
+      "UnitName_1=mm/s\xc2\xb2\n";
+  const Record record =
+      recognised(head + signal_rows(rows, [](int, double a) { return fmt::format("{:.5f}", a); }));
+  EXPECT_NEAR(record.interval(), 1e-4, 1e-12);
+  EXPECT_NEAR(record.samples(0, 0), 1e-3, 1e-12);
+}
+
+// The rows of the head have other cells than those of the record.
+TEST(DataLogger, HasTheRestOfTheSecondsInAColumnOfItsOwn) {
+  std::string text =
+      "Vendor,GRAPHTEC Corporation\nSampling interval,10ms\nTotal data points,60\nCH,Signal name,Unit\n"
+      "CH3,Acc_top,m/s2\nData\nNumber,Date,Time,us,CH3,CH5,AlarmOut\nNO.,Date,Time,us,m/s2,mm,A1234\n";
+  for (int k = 0; k < rows; ++k)
+    text += fmt::format("{},2026/07/02,17:02:{:02},{:06},{:+.4f},{:+.3f},LLLL\n", k + 1, 5 + k / 100,
+                        10000 * (k % 100), std::cos(0.3 * k), 2.0 * std::sin(0.3 * k));
+  const Record record = recognised(text);
+  EXPECT_EQ(record.size(), rows);
+  EXPECT_NEAR(record.interval(), 0.01, 1e-9);
+  EXPECT_THAT(record.channel_names(), ElementsAre("CH3", "CH5"));
+  EXPECT_EQ(record.channels[1].quantity, Quantity::displacement);
+  EXPECT_NEAR(record.samples(1, 1), 2e-3 * std::sin(0.3), 1e-6);
+}
+
+TEST(RecordingOscilloscope, NamesItsTracesByKeys) {
+  std::string text =
+      "\"Header Size\",        16\n\"TraceName\",\"CH1\",\"CH2\"\n\"BlockSize\",      60,      60\n"
+      "\"VUnit\",\"m/s2\",\"g\"\n\"HResolution\", 1.0E-03, 1.0E-03\n\"Date\",\"2013/05/10\",\"2013/05/10\"\n"
+      "\"Time\",\"10:11:12.123456\",\"10:11:12.123456\"\n";
+  text += signal_rows(rows, [](int, double a) { return fmt::format("       , {:.5E}, {:.5E}", a, 0.5 * a); });
+  const Record record = recognised(text);
+  EXPECT_EQ(record.size(), rows);
+  EXPECT_NEAR(record.interval(), 1e-3, 1e-12);
+  EXPECT_THAT(record.channel_names(), ElementsAre("CH1", "CH2"));
+  EXPECT_NEAR(record.samples(1, 0), 0.5 * standard_gravity, 1e-9);
+}
+
+TEST(Wristband, StatesStartAndRateInItsFirstRows) {
+  std::string text =
+      "1642471872.000000, 1642471872.000000, 1642471872.000000\n32.000000, 32.000000, 32.000000\n";
+  for (int k = 0; k < rows; ++k)
+    text += fmt::format("{:.0f},{:.0f},{:.0f}\n", 60.0 * std::cos(0.3 * k), 30.0 * std::sin(0.3 * k),
+                        64.0 - k % 3);
+  const Record record = recognised(text);
+  EXPECT_EQ(record.size(), rows);
+  EXPECT_NEAR(record.interval(), 1.0 / 32.0, 1e-12);
+}
+
+TEST(Telephone, WritesNumbersBesideTextNotNewtons) {
+  const std::string text =
+      "loggingTime(txt),loggingSample(N),accelerometerAccelerationX(G),label(N)\n" +
+      signal_rows(rows, [](int k, double a) {
+        return fmt::format("2026-03-01 10:00:00.{:03},{},{:.5f},{}", 10 * k, k + 1, a, k / 20 % 2);
+      });
+  EXPECT_THAT(recognised(text).channel_names(), ElementsAre("accelerometerAccelerationX(G)"));
+}
+
+TEST(Telephone, HoldsReadingsOverTheRowsOfItsOtherSensors) {
+  std::string text = "time,gFx,gFy,ax\n";
+  for (int k = 0; k < 3 * rows; ++k)
+    text += fmt::format("{:.3f},{:.4f},{:.4f},{:.4f}\n", 0.02 * k, std::cos(0.4 * (k / 3)),
+                        std::sin(0.4 * (k / 3)), std::cos(0.4 * ((k + 1) / 3)));
+  const Record record = recognised(text);
+  EXPECT_NEAR(record.interval(), 0.06, 1e-9);
+  EXPECT_NEAR(static_cast<double>(record.size()), rows, 2);
+  EXPECT_THAT(record.remarks, Contains(HasSubstr("repeated over 3 rows")));
+}
+
+TEST(Times, AreTheSumOfIntervals) {
+  const Record record = recognised(
+      "ax,time diff in ms\n" + signal_rows(rows, [](int, double a) { return fmt::format("{:.5f},20", a); }));
+  EXPECT_NEAR(record.interval(), 0.02, 1e-12);
+}
+
+TEST(Times, OfAnUnevenClockMayRepeat) {
+  std::string text = "time,ax\n";
+  for (int k = 0; k < rows; ++k) {
+    const double time = 0.01 * k + 0.004 * std::sin(1.7 * k);
+    text +=
+        fmt::format("{:.3f},{:.4f}\n", k % 10 == 9 ? 0.01 * (k - 1) + 0.004 * std::sin(1.7 * (k - 1)) : time,
+                    std::cos(0.3 * k));
+  }
+  RecordFormat uneven;
+  uneven.irregular = true;
+  const Record record = recognised(text, uneven);
+  EXPECT_EQ(record.size(), rows - 6);
+  EXPECT_THAT(record.remarks, Contains(HasSubstr("has the stamp of the line before it")));
+}
+
+TEST(ColumnsWithoutNames, ThatOnlyRiseAreNoMotion) {
+  const Record record = recognised(signal_rows(2 * rows, [](int k, double a) {
+    return fmt::format("{:.4f} {:.4f} {:.5f}", 0.0025 * k, 8902.7 + 0.0025 * k + 1e-4 * (k % 3), a);
+  }));
+  EXPECT_THAT(record.channel_names(), ElementsAre("column_3"));
+  EXPECT_THAT(record.remarks, Contains(HasSubstr("only rise, omitted: 2")));
+}
+
+TEST(Inspection, ReadsWhatOtherCommandsRead) {
+  const TemporaryFile file(
+      "logger.dat",
+      "\"TOA5\",\"station\",\"CR1000\",\"1\"\n\"TIMESTAMP\",\"RECORD\",\"AccX\",\"AccY\"\n"
+      "\"TS\",\"RN\",\"g\",\"g\"\n\"\",\"\",\"Smp\",\"Smp\"\n" +
+          signal_rows(rows, [](int k, double a) {
+            return fmt::format("\"2026-03-01 10:00:00.{:03}\",{},{:.5f},{:.5f}", 10 * k, k, a, -a);
+          }));
+  const Inspection found = inspect(file.path(), {});
+  EXPECT_EQ(found.channels.back().name, "AccY");
+}
+
+}  // namespace
+}  // namespace beamid::experiments::instrument_files_test
